@@ -1,0 +1,39 @@
+//! Log densities with samplers that match them.
+//!
+//! ```
+//! use plaus_dist::{Density, Gaussian, Gibbs, Purpose, Sample, Seed};
+//! use plaus_dist::LogDensity;
+//!
+//! // A prior and a goal: the angle is Gaussian, and each of three pins that falls is worth a factor e^2.5.
+//! let angle = Gaussian::new(0.0, 10.0)?;
+//! let goal = Gibbs::from_ln_lambda(2.5)?;
+//! let mut stream = Seed(1).chain(0).at(0, Purpose::START);
+//! let draw = angle.sample(&mut stream);
+//! let log_p = angle.log_density(&draw)? + goal.log_potential(3);
+//! assert!(log_p.value().is_finite());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod log;
+pub mod math;
+pub mod stream;
+
+pub use log::{LogDensity, LogPotential, LogRatio, NotANumber};
+pub use stream::{ChainStreams, Purpose, Seed, Stream, open_unit};
+
+/// A normalised density (or probability mass) over values `X`.
+pub trait Density<X: ?Sized> {
+    /// Log density at `x`; [`LogDensity::ZERO`] outside the support.
+    ///
+    /// # Errors
+    /// [`NotANumber`] where `x` holds a NaN, or the density there is infinite.
+    fn log_density(&self, x: &X) -> Result<LogDensity, NotANumber>;
+}
+
+/// A law that can be drawn from; where it is a [`Density`] too, the two agree.
+pub trait Sample {
+    /// What one draw is.
+    type Value;
+    /// One draw, using only `stream`.
+    fn sample(&self, stream: &mut Stream) -> Self::Value;
+}
