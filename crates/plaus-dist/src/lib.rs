@@ -14,12 +14,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod gaussian;
+mod gibbs;
 pub mod log;
 pub mod math;
+mod normal;
+pub mod param;
 pub mod stream;
+mod uniform;
 
+pub use gaussian::Gaussian;
+pub use gibbs::Gibbs;
 pub use log::{LogDensity, LogPotential, LogRatio, NotANumber};
+pub use normal::standard_normal;
+pub use param::ParamError;
 pub use stream::{ChainStreams, Purpose, Seed, Stream, open_unit};
+pub use uniform::Uniform;
 
 /// A normalised density (or probability mass) over values `X`.
 pub trait Density<X: ?Sized> {

@@ -104,6 +104,13 @@ impl LogPotential {
         checked(nats, "log potential").map(Self)
     }
 
+    /// Wraps `nats` known to be finite from how it was computed.
+    #[inline]
+    pub(crate) fn finite(nats: f64) -> Self {
+        debug_assert!(nats.is_finite(), "{nats}");
+        Self(nats)
+    }
+
     /// The value in nats.
     #[must_use]
     pub fn value(self) -> f64 {
