@@ -14,22 +14,36 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bernoulli;
 mod gaussian;
 mod gibbs;
+mod isotropic;
 pub mod log;
 pub mod math;
 mod normal;
 pub mod param;
+mod radial;
 pub mod stream;
+#[cfg(test)]
+mod testing;
+mod truncated;
 mod uniform;
+mod uniform_box;
+mod wrapped;
 
+pub use bernoulli::Bernoulli;
 pub use gaussian::Gaussian;
 pub use gibbs::Gibbs;
+pub use isotropic::IsotropicGaussian;
 pub use log::{LogDensity, LogPotential, LogRatio, NotANumber};
 pub use normal::standard_normal;
 pub use param::ParamError;
+pub use radial::Radial;
 pub use stream::{ChainStreams, Purpose, Seed, Stream, open_unit};
+pub use truncated::TruncatedGaussian;
 pub use uniform::Uniform;
+pub use uniform_box::UniformBox;
+pub use wrapped::WrappedUniform;
 
 /// A normalised density (or probability mass) over values `X`.
 pub trait Density<X: ?Sized> {

@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 
 const LAYERS: usize = 256;
 /// Where the tail begins: the root of Marsaglia and Tsang's closing condition for 256 layers.
-const TAIL: f64 = 3.654_152_885_361_008_8;
+const TAIL: f64 = 3.654_152_885_361_009;
 
 /// Layer `i` spans |x| < `edge[i]`, heights `height[i]` to `height[i + 1]`; layer 0 is the base strip together with the tail.
 struct Ziggurat {

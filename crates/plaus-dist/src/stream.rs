@@ -105,6 +105,12 @@ pub fn open_unit(stream: &mut impl Rng) -> f64 {
     ((stream.next_u64() >> 12) as f64 + 0.5) * (1.0 / 4_503_599_627_370_496.0)
 }
 
+/// Uniform on the whole numbers 0 .. `count`, to within 2⁻⁶⁴ · `count` of each one's probability; 0 where `count` is 0.
+#[inline]
+pub fn below(stream: &mut impl Rng, count: usize) -> usize {
+    ((u128::from(stream.next_u64()) * count as u128) >> 64) as usize
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! Uniform laws: on an interval, on an interval bent to a ring, and on a box.
+//! The uniform law on an interval.
 
 use crate::param::ParamError;
 use crate::{Density, LogDensity, NotANumber, Sample, Stream, math, open_unit};
@@ -49,7 +49,7 @@ impl Uniform {
     }
 
     /// The same, with errors in the name of another distribution.
-    fn named(distribution: &'static str, low: f64, high: f64) -> Result<Self, ParamError> {
+    pub(crate) fn named(distribution: &'static str, low: f64, high: f64) -> Result<Self, ParamError> {
         ParamError::check_location(distribution, "low", low)?;
         ParamError::check_location(distribution, "high", high)?;
         ParamError::unless(low < high, distribution, "high", high, "above low")?;
