@@ -82,19 +82,29 @@ pub trait Goal: Target {
 pub struct SolutionClass(pub u64);
 
 impl SolutionClass {
+    /// The label of the empty sequence.
+    pub const EMPTY: Self = Self(0x9e37_79b9_7f4a_7c15);
+
+    /// The label of the sequence that continues this one's by `feature`.
+    #[inline]
+    #[must_use]
+    pub fn with(self, feature: i64) -> Self {
+        Self(mix(self.0.rotate_left(23) ^ mix(feature.cast_unsigned().wrapping_add(0x51ed))))
+    }
+
     /// The label of a sequence of whole numbers (cells, bins, faces). Different sequences collide with probability 2⁻⁶⁴.
     #[must_use]
     pub fn of(features: impl IntoIterator<Item = i64>) -> Self {
-        // The multiply-xorshift mix of MurmurHash3's finaliser, chained.
-        let mix = |mut z: u64| {
-            z = (z ^ (z >> 33)).wrapping_mul(0xff51_afd7_ed55_8ccd);
-            z = (z ^ (z >> 33)).wrapping_mul(0xc4ce_b9fe_1a85_ec53);
-            z ^ (z >> 33)
-        };
-        Self(features.into_iter().fold(0x9e37_79b9_7f4a_7c15, |hash, x| {
-            mix(hash.rotate_left(23) ^ mix(x.cast_unsigned().wrapping_add(0x51ed)))
-        }))
+        features.into_iter().fold(Self::EMPTY, Self::with)
     }
+}
+
+/// MurmurHash3's finaliser: a bijection of 64 bits.
+#[inline]
+fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 33)).wrapping_mul(0xff51_afd7_ed55_8ccd);
+    z = (z ^ (z >> 33)).wrapping_mul(0xc4ce_b9fe_1a85_ec53);
+    z ^ (z >> 33)
 }
 
 /// How a simulation ended.
