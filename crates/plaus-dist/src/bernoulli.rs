@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 
 /// `true` with probability p.
 ///
-/// Mass p for `true` and 1 − p for `false`; dimensionless. Exact at both ends: p = 0 never draws `true` and gives it log mass −∞, p = 1 the reverse.
-/// In between draws have the probability p rounded to a multiple of 2⁻⁵², so a p below 2⁻⁵³ is never drawn.
+/// Mass p for `true` and 1 − p for `false`; dimensionless. Exact at both ends: p = 0 never draws `true` and gives it
+/// log mass −∞, p = 1 the reverse. In between draws have the probability p rounded to a multiple of 2⁻⁵², so a p below
+/// 2⁻⁵³ is never drawn.
 ///
 /// ```
 /// use plaus_dist::{Bernoulli, Density};

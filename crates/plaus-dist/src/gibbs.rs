@@ -7,10 +7,11 @@ use serde::{Deserialize, Serialize};
 
 const LARGEST_LN_LAMBDA: f64 = 700.0;
 
-/// Weight `λ^k` of a state that meets `k` wishes (Chenney & Forsyth 2000, sections 5.2 and 5.3: pins down, bins filled).
+/// Weight `λ^k` of a state that meets `k` wishes (Chenney & Forsyth 2000, sections 5.2 and 5.3: pins down, bins
+/// filled).
 ///
-/// Unnormalised, and only ever held as `k · ln λ` in nats: λ^k itself passes the largest float at k = 2 for λ = e^400. λ = 1 prefers nothing; each wish met
-/// multiplies the odds by λ.
+/// Unnormalised, and only ever held as `k · ln λ` in nats: λ^k itself passes the largest float at k = 2 for λ = e^400.
+/// λ = 1 prefers nothing; each wish met multiplies the odds by λ.
 ///
 /// ```
 /// use plaus_dist::Gibbs;
@@ -72,5 +73,41 @@ impl Gibbs {
     #[must_use]
     pub fn log_potential(&self, k: u64) -> LogPotential {
         LogPotential::finite(k as f64 * self.ln_lambda)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::stored;
+
+    #[test]
+    fn extremes_stay_finite() {
+        for ln_lambda in [0.0, 5.0, 700.0] {
+            let goal = Gibbs::from_ln_lambda(ln_lambda).unwrap();
+            assert_eq!(goal.log_potential(0), LogPotential::ONE);
+            assert_eq!(goal.log_potential(1_000_000).value(), 1e6 * ln_lambda);
+            assert!(goal.log_potential(u64::MAX).value().is_finite());
+        }
+    }
+
+    #[test]
+    fn both_constructors_agree() {
+        for ln_lambda in [0.0, 2.5, 5.0, 699.0, 700.0] {
+            let goal = Gibbs::from_lambda(math::exp(ln_lambda)).unwrap();
+            // exp and ln round to a unit in the last place each.
+            assert!((goal.ln_lambda() - ln_lambda).abs() < 1e-15 * (1.0 + ln_lambda));
+        }
+    }
+
+    #[test]
+    fn parameters_out_of_range_are_refused_also_from_storage() {
+        for lambda in [0.0, -1.0, 0.999, 1e305, f64::INFINITY, f64::NAN] {
+            assert!(Gibbs::from_lambda(lambda).is_err());
+        }
+        for ln_lambda in [-1e-9, 700.1, f64::INFINITY, f64::NAN] {
+            assert!(Gibbs::from_ln_lambda(ln_lambda).is_err());
+            assert!(Gibbs::deserialize(stored(&[("ln_lambda", ln_lambda)])).is_err());
+        }
     }
 }

@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 
 /// Offsets whose `D` Cartesian components are independent N(0, sd).
 ///
-/// Density `exp(−r²/2 sd²) / (sd √2π)^D` per unit of length to the power `D`. It is normalised, so it may be compared between states of different
-/// dimension; `D` = 0 is the empty product, certainty. Fresh draws have E[−r²/2 sd²] = −D/2, unlike those of [`Radial`](crate::Radial).
+/// Density `exp(−r²/2 sd²) / (sd √2π)^D` per unit of length to the power `D`. It is normalised, so it may be compared
+/// between states of different dimension; `D` = 0 is the empty product, certainty. Fresh draws have E[−r²/2 sd²] =
+/// −D/2, unlike those of [`Radial`](crate::Radial).
 ///
 /// ```
 /// use plaus_dist::{Density, IsotropicGaussian};

@@ -1,8 +1,9 @@
 //! Portable float functions: the only door to transcendental functions in the whole project.
 //!
 //! `f64::sin` and its kin call the platform's C library or a compiler intrinsic, whose last bits differ between
-//! systems. Everything here is the pure-Rust `libm` at one pinned version, or a fixed sequence of `+ − × ÷ √`, which IEEE 754
-//! rounds in exactly one way; so the same draw gives the same bits everywhere. Workspace lints forbid the std methods.
+//! systems. Everything here is the pure-Rust `libm` at one pinned version, or a fixed sequence of `+ − × ÷ √`, which
+//! IEEE 754 rounds in exactly one way; so the same draw gives the same bits everywhere. Workspace lints forbid the std
+//! methods.
 //!
 //! ```
 //! use plaus_dist::math;
@@ -106,10 +107,12 @@ pub fn ln_add_exp(a: f64, b: f64) -> f64 {
     if high == f64::NEG_INFINITY { high } else { high + ln_1p(exp(low - high)) }
 }
 
-/// `exp(x²) erfc(x)` for x ≥ 0, which neither overflows nor underflows: about `1/(x √π)` far out. Relative error below 1e-14.
+/// `exp(x²) erfc(x)` for x ≥ 0, which neither overflows nor underflows: about `1/(x √π)` far out. Relative error below
+/// 1e-14.
 ///
-/// Below 5 the product itself; above, the continued fraction `1/(x + (1/2)/(x + (2/2)/(x + (3/2)/(x + …))))/√π` (Abramowitz & Stegun 7.1.14),
-/// from its 40th term inwards: at x = 5 the rest is below one unit in the last place, and it falls with x.
+/// Below 5 the product itself; above, the continued fraction `1/(x + (1/2)/(x + (2/2)/(x + (3/2)/(x + …))))/√π`
+/// (Abramowitz & Stegun 7.1.14), from its 40th term inwards: at x = 5 the rest is below one unit in the last place, and
+/// it falls with x.
 #[must_use]
 pub fn erfc_scaled(x: f64) -> f64 {
     if x < 5.0 {
@@ -159,8 +162,9 @@ mod tests {
         assert!((ln_add_exp(1e6, 1e6) - (1e6 + ln(2.0))).abs() < 1e-9);
     }
 
-    /// Golden bits: a change of libm would change every golden trace, so it shows here first and by name. Each is within one unit in the last
-    /// place of the exact value (checked once against Python's correctly printed constants).
+    /// Golden bits: a change of libm would change every golden trace, so it shows here first and by name. Each is
+    /// within one unit in the last place of the exact value (checked once against Python's correctly printed
+    /// constants).
     #[test]
     fn bits_are_pinned() {
         let bits: Vec<u64> = [sin(1.0), cos(1.0), exp(1.0), ln(3.0), atan2(1.0, 3.0), erfc(2.0), powf(2.5, 1.7)]

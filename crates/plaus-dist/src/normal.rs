@@ -1,11 +1,13 @@
 //! Draws from the standard normal law, the same bits on every platform.
 //!
-//! Ziggurat of 256 layers of equal area (Marsaglia & Tsang, "The ziggurat method for generating random variables", J. Stat.
-//! Software 5(8), 2000), with the layer and the position taken from disjoint bits of one 64-bit number (Doornik, "An improved ziggurat
-//! method to generate normal random samples", 2005: sharing them correlates). About 98.8% of draws cost one generator call, a table
-//! look-up and a multiplication; wedges and tail go through [`math`]. The tables are computed once, by `libm`, at first use.
+//! Ziggurat of 256 layers of equal area (Marsaglia & Tsang, "The ziggurat method for generating random variables", J.
+//! Stat. Software 5(8), 2000), with the layer and the position taken from disjoint bits of one 64-bit number (Doornik,
+//! "An improved ziggurat method to generate normal random samples", 2005: sharing them correlates). About 98.8% of
+//! draws cost one generator call, a table look-up and a multiplication; wedges and tail go through [`math`]. The tables
+//! are computed once, by `libm`, at first use.
 //!
-//! `rand_distr`'s sampler is not used because its values change with any crate that switches `num-traits` to the platform's maths; in the tests it is the oracle.
+//! `rand_distr`'s sampler is not used because its values change with any crate that switches `num-traits` to the
+//! platform's maths; in the tests it is the oracle.
 
 use crate::math;
 use crate::stream::{Stream, open_unit};
@@ -16,7 +18,8 @@ const LAYERS: usize = 256;
 /// Where the tail begins: the root of Marsaglia and Tsang's closing condition for 256 layers.
 const TAIL: f64 = 3.654_152_885_361_009;
 
-/// Layer `i` spans |x| < `edge[i]`, heights `height[i]` to `height[i + 1]`; layer 0 is the base strip together with the tail.
+/// Layer `i` spans |x| < `edge[i]`, heights `height[i]` to `height[i + 1]`; layer 0 is the base strip together with the
+/// tail.
 struct Ziggurat {
     edge: [f64; LAYERS + 1],
     height: [f64; LAYERS + 1],
@@ -96,5 +99,72 @@ fn tail(stream: &mut Stream) -> f64 {
         if -2.0 * math::ln(open_unit(stream)) > excess * excess {
             return TAIL + excess;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{KS_LIMIT, Z_LIMIT, ks, stream, z_score};
+    use statrs::distribution::{ContinuousCDF, Normal};
+
+    /// The recurrence from the tail inwards ends at the peak: the last layer, of the same area, reaches height 1. 254
+    /// steps lose four digits.
+    #[test]
+    fn the_layers_close_at_the_peak() {
+        let last = ZIGGURAT.edge[LAYERS - 1];
+        let reached = layer_area() / last + bell(last);
+        assert!((reached - 1.0).abs() < 1e-12, "{reached}");
+        assert!(ZIGGURAT.edge.windows(2).all(|pair| pair[0] > pair[1]));
+    }
+
+    #[test]
+    fn draws_follow_the_normal_law() {
+        let mut stream = stream(11);
+        let x: Vec<f64> = (0..1_000_000).map(|_| standard_normal(&mut stream)).collect();
+        let law = Normal::standard();
+        assert!(ks(x.iter().copied(), |x| law.cdf(x)) < KS_LIMIT);
+        // The wrong twin: the inner rectangles alone, as if every wedge were left out.
+        let inner = x.iter().copied().filter(|x| ZIGGURAT.edge.iter().any(|e| x.abs() < *e && x.abs() > 0.985 * e));
+        assert!(ks(inner, |x| law.cdf(x)) > KS_LIMIT);
+        // Variance of x² is 2, of x⁴ it is 105 − 9.
+        assert!(z_score(x.iter().map(|x| x * x), 1.0, 2_f64.sqrt()).abs() < Z_LIMIT);
+        assert!(z_score(x.iter().map(|x| x * x * x * x), 3.0, 96_f64.sqrt()).abs() < Z_LIMIT);
+        assert!(z_score(x.windows(2).map(|pair| pair[0] * pair[1]), 0.0, 1.0).abs() < Z_LIMIT);
+    }
+
+    #[test]
+    fn the_tail_follows_the_normal_law() {
+        let mut stream = stream(12);
+        let n = 4_000_000;
+        let beyond: Vec<f64> = (0..n).map(|_| standard_normal(&mut stream)).filter(|x| x.abs() > TAIL).collect();
+        let upper = |x: f64| math::erfc(x * std::f64::consts::FRAC_1_SQRT_2);
+        let expected = f64::from(n) * upper(TAIL);
+        // A Poisson count of about 1030.
+        assert!((beyond.len() as f64 - expected).abs() < Z_LIMIT * expected.sqrt(), "{}", beyond.len());
+        assert!(z_score(beyond.iter().map(|x| x.signum()), 0.0, 1.0).abs() < Z_LIMIT);
+        let many: Vec<f64> = (0..100_000).map(|_| tail(&mut stream)).collect();
+        assert!(ks(many.iter().copied(), |x| 1.0 - upper(x) / upper(TAIL)) < KS_LIMIT);
+        // The wrong twin: the exponential proposal, never rejected.
+        let proposed = (0..100_000).map(|_| TAIL - math::ln(open_unit(&mut stream)) / TAIL);
+        assert!(ks(proposed, |x| 1.0 - upper(x) / upper(TAIL)) > KS_LIMIT);
+    }
+
+    #[test]
+    fn values_are_pinned() {
+        let mut stream = stream(1);
+        let bits: Vec<u64> = (0..4).map(|_| standard_normal(&mut stream).to_bits()).collect();
+        assert_eq!(
+            bits,
+            [
+                4_608_503_601_310_125_455,
+                4_598_394_643_146_891_493,
+                4_605_814_404_881_758_774,
+                13_814_384_862_670_319_178
+            ]
+        );
+        // Through wedges and tail: the sum of bits of 10⁵ draws.
+        let sum = (0..100_000).fold(0_u64, |sum, _| sum.wrapping_add(standard_normal(&mut stream).to_bits()));
+        assert_eq!(sum, 3_596_075_405_992_803_118);
     }
 }

@@ -2,7 +2,8 @@
 
 /// Smallest standard deviation, in the units of the variable. Its reciprocal and its log are ordinary floats.
 pub const SMALLEST_SCALE: f64 = 1e-300;
-/// Largest standard deviation, and largest magnitude of a mean or a finite bound. Sums of a few of them cannot overflow.
+/// Largest standard deviation, and largest magnitude of a mean or a finite bound. Sums of a few of them cannot
+/// overflow.
 pub const LARGEST: f64 = 1e300;
 
 /// A parameter outside its range: which, what it was, and what is allowed.

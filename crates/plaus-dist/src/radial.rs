@@ -8,14 +8,17 @@ use serde::{Deserialize, Serialize};
 
 /// Offsets in a uniformly random direction whose signed length is N(0, sd).
 ///
-/// Density `2 φ_sd(r) / (S r^(D−1))` on Cartesian offsets, per unit of length to the power `D`, where `φ_sd` is the Gaussian density and `S` the
-/// surface of the unit sphere in `D` dimensions: 2, 2π, 4π for `D` = 1, 2, 3. The length is folded (a direction and its
-/// opposite are equally likely, hence the 2) and spread over a sphere of surface `S r^(D−1)`.
+/// Density `2 φ_sd(r) / (S r^(D−1))` on Cartesian offsets, per unit of length to the power `D`, where `φ_sd` is the
+/// Gaussian density and `S` the surface of the unit sphere in `D` dimensions: 2, 2π, 4π for `D` = 1, 2, 3. The length
+/// is folded (a direction and its opposite are equally likely, hence the 2) and spread over a sphere of surface `S
+/// r^(D−1)`.
 ///
-/// It is **not** the Gaussian `exp(−r²/2 sd²)` except for `D` = 1: its density is infinite at the centre for `D` ≥ 2, and fresh draws have
-/// E[−r²/2 sd²] = −1/2 in every dimension. Use it only to reproduce published figures; the Gaussian is [`IsotropicGaussian`](crate::IsotropicGaussian).
+/// It is **not** the Gaussian `exp(−r²/2 sd²)` except for `D` = 1: its density is infinite at the centre for `D` ≥ 2,
+/// and fresh draws have E[−r²/2 sd²] = −1/2 in every dimension. Use it only to reproduce published figures; the
+/// Gaussian is [`IsotropicGaussian`](crate::IsotropicGaussian).
 ///
-/// Source: Chenney & Forsyth, "Sampling plausible solutions to multi-body constraint problems", SIGGRAPH 2000, appendices A.2 and B.2.
+/// Source: Chenney & Forsyth, "Sampling plausible solutions to multi-body constraint problems", SIGGRAPH 2000,
+/// appendices A.2 and B.2.
 ///
 /// ```
 /// use plaus_dist::{Density, Radial};
@@ -73,7 +76,8 @@ impl<const D: usize> Radial<D> {
 
 impl<const D: usize> Density<[f64; D]> for Radial<D> {
     /// # Errors
-    /// [`NotANumber`] where a component is NaN, and at the centre itself for `D` ≥ 2, where the density is infinite. Infinitely far out it is 0.
+    /// [`NotANumber`] where a component is NaN, and at the centre itself for `D` ≥ 2, where the density is infinite.
+    /// Infinitely far out it is 0.
     fn log_density(&self, x: &[f64; D]) -> Result<LogDensity, NotANumber> {
         if let Some(&nan) = x.iter().find(|component| component.is_nan()) {
             return LogDensity::new(nan);
@@ -123,7 +127,8 @@ mod tests {
         }
     }
 
-    /// Over shells: ∫ density · S r^(D−1) dr = 1, by a rule exact to 1e-13 for this smooth integrand, the mass past 12 sd (1e-32) left out.
+    /// Over shells: ∫ density · S r^(D−1) dr = 1, by a rule exact to 1e-13 for this smooth integrand, the mass past 12
+    /// sd (1e-32) left out.
     #[test]
     fn it_is_normalised() {
         let sd = 0.5;
@@ -138,8 +143,8 @@ mod tests {
         assert!((ball - 1.0).abs() < 1e-12, "{ball}");
     }
 
-    /// Standard errors by which the mean of (Gaussian density / radial density) misses 1, as it does not when `offsets` are radial.
-    /// The ratio is r√(π/2)/sd in the plane (variance π/2 − 1) and r²/sd² in space (variance 2).
+    /// Standard errors by which the mean of (Gaussian density / radial density) misses 1, as it does not when `offsets`
+    /// are radial. The ratio is r√(π/2)/sd in the plane (variance π/2 − 1) and r²/sd² in space (variance 2).
     fn misfit<const D: usize>(offsets: &[[f64; D]], sd: f64, variance: f64) -> f64 {
         let (radial, gaussian) = (Radial::<D>::new(sd).unwrap(), IsotropicGaussian::<D>::new(sd).unwrap());
         let ratio =

@@ -1,11 +1,12 @@
 //! Keyed random streams: every random number is a pure function of (seed, chain, iteration, purpose).
 //!
-//! No generator is carried from one iteration to the next, so a chain resumes from its state and an iteration number alone, a simulation that
-//! stops early cannot shift later randomness, and the number of threads cannot matter.
+//! No generator is carried from one iteration to the next, so a chain resumes from its state and an iteration number
+//! alone, a simulation that stops early cannot shift later randomness, and the number of threads cannot matter.
 //!
-//! The seed and the chain are hashed with BLAKE3 into a 256-bit chain key once. The state of the xoshiro256++ generator of one
-//! iteration and purpose is that key, offset by a counter and passed through the SplitMix64 finaliser word by word; xoshiro's authors recommend SplitMix64 for seeding
-//! (Blackman & Vigna, "Scrambled linear pseudorandom number generators", ACM TOMS 47, 2021).
+//! The seed and the chain are hashed with BLAKE3 into a 256-bit chain key once. The state of the xoshiro256++ generator
+//! of one iteration and purpose is that key, offset by a counter and passed through the SplitMix64 finaliser word by
+//! word; xoshiro's authors recommend SplitMix64 for seeding (Blackman & Vigna, "Scrambled linear pseudorandom number
+//! generators", ACM TOMS 47, 2021).
 //!
 //! ```
 //! use plaus_dist::{Seed, Purpose};

@@ -70,3 +70,10 @@ pub(crate) fn integrate(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     };
     half * (0..200).map(panel).sum::<f64>()
 }
+
+/// Named numbers as a stored distribution would hold them.
+pub(crate) fn stored<'a>(
+    fields: &'a [(&'a str, f64)],
+) -> serde::de::value::MapDeserializer<'a, impl Iterator<Item = (&'a str, f64)>, serde::de::value::Error> {
+    serde::de::value::MapDeserializer::new(fields.iter().copied())
+}

@@ -12,14 +12,18 @@ const NAME: &str = "TruncatedGaussian";
 
 /// A Gaussian given that it fell into [low, high]; either end may be infinite.
 ///
-/// Density `φ((x − mean)/sd) / (sd Z)` on the closed interval, with `Z = Φ((high − mean)/sd) − Φ((low − mean)/sd)`, per unit of x; 0
-/// outside. `Z` is part of it, so it stays right when mean, sd or bounds are random too (a restitution in [0, 1], a friction above 0).
+/// Density `φ((x − mean)/sd) / (sd Z)` on the closed interval, with `Z = Φ((high − mean)/sd) − Φ((low − mean)/sd)`, per
+/// unit of x; 0 outside. `Z` is part of it, so it stays right when mean, sd or bounds are random too (a restitution in
+/// [0, 1], a friction above 0).
 ///
-/// Both density and sampler stay accurate when the interval is far in a tail, where `Z` itself underflows: everything is measured
-/// from the end nearest the mean. Relative error of the density below 1e-13, plus what the rounding of x and of the bounds entails.
+/// Both density and sampler stay accurate when the interval is far in a tail, where `Z` itself underflows: everything
+/// is measured from the end nearest the mean. The log density is right to 1e-13 and a few roundings of its largest
+/// term. (Far out the law may be narrower than the gap between floats: at a bound of 1 with sd 1e-9, say, all draws are
+/// the bound itself and its neighbours.)
 ///
-/// Source of the tail sampler: C. P. Robert, "Simulation of truncated normal variables", Statistics and Computing 5, 1995. Deviation: his
-/// exponential proposal is itself truncated to the interval, so one rule serves wide and narrow intervals; at least 3 of 4 proposals are accepted.
+/// Source of the tail sampler: C. P. Robert, "Simulation of truncated normal variables", Statistics and Computing 5,
+/// 1995. Deviation: his exponential proposal is itself truncated to the interval, so one rule serves wide and narrow
+/// intervals; at least 3 of 4 proposals are accepted.
 ///
 /// ```
 /// use plaus_dist::{Density, Purpose, Sample, Seed, TruncatedGaussian};
@@ -67,8 +71,9 @@ impl TruncatedGaussian {
     /// `mean` and `sd` of the Gaussian before it is restricted to [`low`, `high`], all in the unit of x.
     ///
     /// # Errors
-    /// [`ParamError`] unless |mean| ≤ 1e300, 1e-300 ≤ sd ≤ 1e300, low < high with finite ends within ±1e300; and unless the interval holds a mass whose logarithm
-    /// is a float: its near end at most 1e154 sd from the mean, its width at least 1e-300 sd.
+    /// [`ParamError`] unless |mean| ≤ 1e300, 1e-300 ≤ sd ≤ 1e300, low < high with finite ends within ±1e300; and unless
+    /// the interval holds a mass whose logarithm is a float: its near end at most 1e154 sd from the mean, its width at
+    /// least 1e-300 sd.
     pub fn new(mean: f64, sd: f64, low: f64, high: f64) -> Result<Self, ParamError> {
         ParamError::check_location(NAME, "mean", mean)?;
         ParamError::check_scale(NAME, "sd", sd)?;

@@ -4,8 +4,8 @@ use crate::{Density, LogDensity, NotANumber, Sample, Stream, Uniform};
 
 /// Independent uniform coordinates: an interval, a rectangle, a box in `D` dimensions.
 ///
-/// Density 1/volume inside and 0 outside (per unit of length to the power `D`): a ball dropped on a rectangle of area a has density 1/a. Half-open in every
-/// axis, like [`Uniform`]; `D` = 0 is the empty product, certainty.
+/// Density 1/volume inside and 0 outside (per unit of length to the power `D`): a ball dropped on a rectangle of area a
+/// has density 1/a. Half-open in every axis, like [`Uniform`]; `D` = 0 is the empty product, certainty.
 ///
 /// ```
 /// use plaus_dist::{Density, Uniform, UniformBox};

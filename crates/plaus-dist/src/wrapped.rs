@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 /// Equal density on [low, high), where leaving at one end means entering at the other.
 ///
-/// Density `1/(high − low)`, as for [`Uniform`]. What is added is [`wrap`](Self::wrap): a step `x → wrap(x + d)` with `d` symmetric about 0 is a symmetric
-/// move, and leaves this law invariant.
+/// Density `1/(high − low)`, as for [`Uniform`]. What is added is [`wrap`](Self::wrap): a step `x → wrap(x + d)` with
+/// `d` symmetric about 0 is a symmetric move, and leaves this law invariant.
 ///
 /// ```
 /// use plaus_dist::WrappedUniform;
@@ -46,8 +46,9 @@ impl WrappedUniform {
 
     /// The point of [low, high) that differs from `x` by whole periods; `x` itself where it is inside.
     ///
-    /// Remainders are exact, so that however far away `x` is, the result misses the true one by no more than the last rounding and the rounding of the
-    /// remainder of `low`. NaN where `x` is NaN or infinite, which the density then refuses.
+    /// Remainders are exact, so that however far away `x` is, the result misses the true one by no more than the last
+    /// rounding and the rounding of the remainder of `low`. NaN where `x` is NaN or infinite, which the density then
+    /// refuses.
     #[inline]
     #[must_use]
     pub fn wrap(&self, x: f64) -> f64 {
@@ -126,7 +127,8 @@ mod tests {
         }
     }
 
-    /// Steps of up to ±3 on a ring of 10 keep the law; a step that stops at the ends instead does not, and the same test says so.
+    /// Steps of up to ±3 on a ring of 10 keep the law; a step that stops at the ends instead does not, and the same
+    /// test says so.
     #[test]
     fn wrapped_steps_leave_the_law_invariant() {
         let ring = WrappedUniform::new(-2.0, 8.0).unwrap();
