@@ -87,6 +87,7 @@ mod tests {
             let goal = Gibbs::from_ln_lambda(ln_lambda).unwrap();
             assert_eq!(goal.log_potential(0), LogPotential::ONE);
             assert_eq!(goal.log_potential(1_000_000).value(), 1e6 * ln_lambda);
+            assert_eq!(goal.log_potential(1 << 40).value(), 1_099_511_627_776.0 * ln_lambda);
             assert!(goal.log_potential(u64::MAX).value().is_finite());
         }
     }

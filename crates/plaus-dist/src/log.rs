@@ -1,6 +1,7 @@
 //! Quantities kept as logarithms: what may be mixed up silently has a type of its own.
 //!
-//! * [`LogDensity`]: log of a **normalised** density or probability. Terms whose dimension changes between states must be these.
+//! * [`LogDensity`]: log of a **normalised** density or probability. Terms whose dimension changes between states
+//!   must be these.
 //! * [`LogPotential`]: log of an **unnormalised** weight, such as a Gibbs factor. Only differences of it mean something.
 //! * [`LogRatio`]: log of an acceptance or Hastings ratio.
 //!

@@ -196,7 +196,11 @@ fn empty_and_massless_intervals_are_refused_also_from_storage() {
 proptest! {
     #[test]
     fn whatever_is_built_gives_values_and_draws_inside(
-        shift in -1e6..1e6_f64, exponent in -280..270_i32, below in -200.0..200.0_f64, exponent_of_width in -20..20_i32, seed: u64,
+        shift in -1e6..1e6_f64,
+        exponent in -280..270_i32,
+        below in -200.0..200.0_f64,
+        exponent_of_width in -20..20_i32,
+        seed: u64,
     ) {
         let sd = math::powi(10.0, exponent);
         let mean = shift * sd;
