@@ -47,12 +47,15 @@
 //! The crate knows no bodies and does no input or output.
 
 pub mod chain;
+pub mod check;
 pub mod diagnose;
 pub mod moves;
 pub mod record;
 pub mod run;
 pub mod solutions;
 pub mod target;
+pub mod tempered;
+pub mod view;
 
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
 pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
@@ -60,3 +63,4 @@ pub use record::{Block, Entry};
 pub use run::{Control, Ending, Plan, Progress, RunError, Sink, Snapshot, Start, run};
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
+pub use tempered::Tempered;
