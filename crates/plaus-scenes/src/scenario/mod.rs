@@ -1,16 +1,26 @@
 //! Scenario files: TOML that says which world to sample, and how.
 
+mod bounds;
+mod check;
 mod keys;
+mod nearest;
+mod overrides;
 mod problem;
+mod schema;
+mod shape;
+mod tree;
+mod value;
 
-pub use keys::{KeyDoc, explain, keys, schema, template};
+pub use keys::{KeyDoc, explain, keys, template};
 pub use problem::{Problem, ScenarioError, Source};
+pub use schema::schema;
 
-use crate::registry::World;
+use crate::registry::{Visitor, World};
 use crate::rules::Rules;
-use crate::scene::ConfigError;
+use crate::scene::{ConfigError, Scene};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use tree::Tree;
 
 /// A scenario: a world and how to sample it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -63,35 +73,63 @@ impl Default for Sampler {
 }
 
 impl Scenario {
-    /// Reads a scenario.
+    /// Reads a scenario: a file called `name` with the contents `text`, and `key=value` strings that override it, in order.
+    ///
+    /// An override's key is a full dotted name (`world.ball2d.sigma_d`) or an end of it that no other key of the file's world has
+    /// (`sigma_d`, `weights.aim`). Its value is TOML, else a bare string: `moves=paper`. Tables that the file lacks are made.
     ///
     /// # Errors
-    /// [`ScenarioError`] with all problems.
+    /// [`ScenarioError`] with all that is wrong, each in its place. Only where the text is no TOML is nothing else looked at, and what one
+    /// key alone does not show (weights that are all zero) is found where each key by itself is right.
     pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, ScenarioError> {
-        let _ = overrides;
-        toml::from_str(text).map_err(|error| {
-            let problem = Problem::new("", error.message()).at(&Source::File, error.span());
-            ScenarioError::new(name, text, vec![problem])
-        })
+        let fail = |problems| Err(ScenarioError::new(name, text, problems));
+        let (mut tree, syntax) = Tree::parse(text);
+        if !syntax.is_empty() {
+            return fail(syntax);
+        }
+        let shape = shape::scenario();
+        let mut problems = Vec::new();
+        for said in overrides {
+            problems.extend(overrides::apply(said, shape, &mut tree).err().map(|problem| *problem));
+        }
+        let (value, found) = check::check(shape, &tree);
+        problems.extend(found);
+        if !problems.is_empty() {
+            return fail(problems);
+        }
+        let Some(value) = value else { return fail(vec![Problem::new("", "no scenario")]) };
+        let scenario: Self = match value.try_into() {
+            Ok(scenario) => scenario,
+            Err(error) => return fail(vec![Problem::new("", error.message())]),
+        };
+        match scenario.try_building() {
+            Ok(()) => Ok(scenario),
+            Err(error) => fail(vec![problem::located(&tree, &error)]),
+        }
     }
 
-    /// The whole effective scenario as TOML; reading it back gives an equal scenario.
+    /// Whether the scene can be built and sampled.
+    fn try_building(&self) -> Result<(), ConfigError> {
+        struct Build<'a>(&'a Rules);
+        impl Visitor for Build<'_> {
+            type Output = Result<(), ConfigError>;
+            fn visit<S: Scene>(self, scene: S) -> Self::Output {
+                scene.moves(self.0).map(drop)
+            }
+        }
+        self.world.visit(Build(&self.sampler.rules))?
+    }
+
+    /// The whole effective scenario as TOML: every key that is set, in full precision. Reading it back gives an equal scenario.
     #[must_use]
     pub fn to_toml(&self) -> String {
+        // Tables, numbers, booleans and strings can all be written, so this cannot fail; an empty text would be refused when read.
         toml::to_string(self).unwrap_or_default()
     }
 
-    /// The scenario of a scene with all settings at their defaults.
+    /// The scenario of a scene with all settings at their defaults; `None` where there is no such scene.
     #[must_use]
     pub fn default_of(scene: &str) -> Option<Self> {
         World::default_of(scene).map(|world| Self { sampler: Sampler::default(), world })
-    }
-}
-
-impl ScenarioError {
-    /// An error found later by the scene, blamed on its key's place in the file.
-    #[must_use]
-    pub fn locate(name: &str, text: &str, error: &ConfigError) -> Self {
-        Self::new(name, text, vec![Problem::new(error.key.clone(), error.message.clone()).with_help(None)])
     }
 }

@@ -1,5 +1,7 @@
 //! What is wrong with a scenario, and where.
 
+use super::tree::Tree;
+use crate::scene::ConfigError;
 use std::fmt;
 use std::ops::Range;
 
@@ -116,6 +118,35 @@ impl ScenarioError {
         problems.sort_by_key(|problem| (problem.source.clone(), problem.span.clone().map(|span| span.start)));
         Self { name: name.into(), text: text.into(), problems }
     }
+
+    /// An error that a scene found later, blamed on its key's place in the file, or on the table that lacks the key.
+    #[must_use]
+    pub fn locate(name: &str, text: &str, error: &ConfigError) -> Self {
+        let (tree, _) = Tree::parse(text);
+        Self::new(name, text, vec![located(&tree, error)])
+    }
+
+    /// The text of a file called `name`, for [`Scenario::read`](super::Scenario::read).
+    ///
+    /// # Errors
+    /// [`ScenarioError`] where `bytes` are no UTF-8; its text is then what can be read of them.
+    pub fn decode(name: &str, bytes: Vec<u8>) -> Result<String, Self> {
+        String::from_utf8(bytes).map_err(|error| {
+            let start = error.utf8_error().valid_up_to();
+            let byte = error.as_bytes().get(start).copied().unwrap_or_default();
+            let problem = Problem::new("", format!("byte {start} (0x{byte:02x}) is no UTF-8 text"))
+                .with_help(Some("a scenario is a TOML file".into()))
+                .at(&Source::File, Some(start..start + 1));
+            Self::new(name, &String::from_utf8_lossy(error.as_bytes()), vec![problem])
+        })
+    }
+}
+
+/// A scene's complaint about a key of `tree`.
+pub(super) fn located(tree: &Tree, error: &ConfigError) -> Problem {
+    let (found, value) = tree.nearest(&error.key);
+    let problem = Problem::new(error.key.clone(), error.message.clone());
+    if found == error.key { value.place.blame_value(problem) } else { value.place.blame_key(problem) }
 }
 
 /// The part of `span` that lies in `text`, on character boundaries.
