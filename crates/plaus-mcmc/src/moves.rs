@@ -118,15 +118,18 @@ impl<T: Target> Mixture<T> {
             return Err(MixtureError::Weight { name: bad.name().to_owned(), weight: *weight });
         }
         let moves: Vec<_> = moves.into_iter().filter(|(weight, _)| *weight > 0.0).collect();
-        let total: f64 = moves.iter().map(|(weight, _)| weight).sum();
         if moves.is_empty() {
             return Err(MixtureError::Empty);
         }
+        let sum_in_units_of = |unit: f64| moves.iter().map(|(weight, _)| weight / unit).sum::<f64>();
+        // Weights whose sum overflows are taken in a unit of 2⁶⁴, which is exact.
+        let unit = if sum_in_units_of(1.0).is_finite() { 1.0 } else { 18_446_744_073_709_551_616.0 };
+        let total = sum_in_units_of(unit);
         let mut sum = 0.0;
         let mut cumulative: Vec<f64> = moves
             .iter()
             .map(|(weight, _)| {
-                sum += weight;
+                sum += weight / unit;
                 sum / total
             })
             .collect();
