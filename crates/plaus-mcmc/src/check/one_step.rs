@@ -30,7 +30,7 @@ pub struct OneStep {
     pub seed: Seed,
     /// Exact draws to step from, and as many to compare with; at least 1000. A shift by a share s of a statistic's standard deviation shows from about 100/s² on.
     pub samples: u64,
-    /// Iterations from each; at least 1. One tests the kernel most directly, several make a small fault larger.
+    /// Iterations from each; at least 1. One tests the kernel most directly; with a kernel that seldom accepts, several let the drift of a fault add up.
     pub steps: u64,
     /// Cells of equal probability into which each statistic is cut, at least 2.
     pub cells: usize,
