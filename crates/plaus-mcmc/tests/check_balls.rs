@@ -12,10 +12,11 @@ use plaus_mcmc::check::{
     one_step, prior, ratio_pair, ratios, rejection,
 };
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Mixture, Move, StateOf};
+use plaus_mcmc::{Mixture, Move, StateOf, Tempered};
 use std::sync::Arc;
 use toys::balls::{Balls, Drops, active, filled};
 use toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle, Ways};
+use toys::remembering::Remembering;
 
 const CHANGE_ALL: ChangeAll = ChangeAll { symmetric: false };
 const REDROP: Redrop = Redrop { fault: Fault::None };
@@ -166,4 +167,44 @@ fn a_bound_that_is_too_low_is_caught() {
     let low = early_exit(&Balls::anywhere(6, 4, AREA, 2.0), mixture(Fault::Bound), Seed(5), 20_000).unwrap();
     println!("{low}");
     assert!(!low.passed(), "{low}");
+}
+
+/// What stops early when tempered is what would not have been accepted: the floor is translated without losing a rounding.
+#[test]
+fn early_stops_survive_tempering() {
+    let balls: &'static Balls = Box::leak(Box::new(Balls::anywhere(6, 4, AREA, 2.0)));
+    for beta in [0.0, 0.1, 0.37, 1.0, 3.0] {
+        let tempered = Tempered::new(balls, beta).unwrap();
+        let moves = lend::<Tempered<'static, Balls>>(mixture(Fault::None)).unwrap();
+        let report = early_exit(&tempered, Arc::new(moves), Seed(8), 10_000).unwrap();
+        assert!(report.passed() && report.stopped_early > 0, "β = {beta}: {report}");
+    }
+    let moves = lend::<PriorOnly<'static, Balls>>(mixture(Fault::None)).unwrap();
+    let report = early_exit(&PriorOnly::new(balls), Arc::new(moves), Seed(8), 10_000).unwrap();
+    assert!(report.passed() && report.stopped_early > 0, "{report}");
+}
+
+/// Memory about the current state that follows every simulation instead of the accepted ones.
+#[test]
+fn reuse_that_goes_stale_is_caught() {
+    let right = early_exit(
+        &Remembering { balls: Balls::anywhere(4, 3, AREA, 1.0), forgets_verdict: false },
+        lent(),
+        Seed(9),
+        5_000,
+    );
+    assert!(right.as_ref().unwrap().passed(), "{}", right.unwrap());
+    let wrong = early_exit(
+        &Remembering { balls: Balls::anywhere(4, 3, AREA, 1.0), forgets_verdict: true },
+        lent(),
+        Seed(9),
+        5_000,
+    );
+    println!("{}", wrong.as_ref().unwrap());
+    assert!(!wrong.unwrap().passed());
+}
+
+fn lent() -> Arc<Mixture<Remembering>> {
+    let shared = mixture(Fault::None);
+    Arc::new(lend::<Remembering>(shared).unwrap())
 }

@@ -5,13 +5,13 @@
 
 mod toys;
 
-use plaus_dist::{LogPotential, Seed};
+use plaus_dist::{LogPotential, LogRatio, Seed, Stream};
 use plaus_mcmc::check::{
-    Balance, BalanceReport, CheckError, Enumerable, OneStep, OneStepReport, PriorOnly, Ratios, Statistic, any_of,
-    balance, one_step, prior, ratios, rejection, visited,
+    Balance, BalanceReport, Branch, CheckError, Enumerable, LogP, OneStep, OneStepReport, PriorOnly, Ratios, Statistic,
+    any_of, balance, one_step, prior, ratios, rejection, visited,
 };
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Mixture, State, Tempered};
+use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, State, StateOf, Target, Tempered};
 use toys::IgnoresForbidden;
 use toys::ring::{Redraw, Ring, Walk};
 
@@ -52,6 +52,100 @@ fn moves_are_in_balance_and_a_symmetric_redraw_is_not() {
         let wrong = balanced(&Ring::of_nine(ln_lambda), &SYMMETRIC);
         println!("symmetric redraw: {wrong}");
         assert!(!wrong.mixture_passed() && wrong.mixture.value > 1e-3, "{wrong}");
+    }
+}
+
+/// A move whose list, or whose ratio, is not what it does.
+struct Lying<'a> {
+    listed: &'a dyn Enumerable<Ring>,
+    done: &'a dyn Move<Ring>,
+}
+
+impl Move<Ring> for Lying<'_> {
+    fn name(&self) -> &str {
+        "lying"
+    }
+    fn propose(
+        &self,
+        ring: &Ring,
+        current: &StateOf<Ring>,
+        place: &mut usize,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        self.done.propose(ring, current, place, stream)
+    }
+    fn log_ratio(
+        &self,
+        ring: &Ring,
+        from: &StateOf<Ring>,
+        to: &StateOf<Ring>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.listed.log_ratio(ring, from, to, path)
+    }
+    fn reverse(&self, path: Path) -> Path {
+        self.listed.reverse(path)
+    }
+}
+
+impl Enumerable<Ring> for Lying<'_> {
+    fn branches(&self, ring: &Ring, state: &StateOf<Ring>) -> Result<Vec<Branch<usize>>, ModelError> {
+        self.listed.branches(ring, state)
+    }
+}
+
+#[test]
+fn a_list_that_is_not_what_a_move_does_is_caught() {
+    let ring = Ring::of_nine(1.0);
+    let check = |lying: Lying<'_>| balance(&ring, ring.all(), &[(1.0, &lying)], Balance::default()).unwrap();
+    // In perfect balance on paper, and not what is proposed.
+    let other_law = check(Lying { listed: &Walk, done: &RIGHT });
+    assert!(other_law.mixture.value < 1e-12 && !other_law.passed(), "{other_law}");
+    assert_eq!(other_law.moves[0].frequencies.unwrap().p, LogP::ZERO);
+    let other_ratio = check(Lying { listed: &RIGHT, done: &SYMMETRIC });
+    assert!(other_ratio.mixture.value < 1e-12 && !other_ratio.passed(), "{other_ratio}");
+    assert!(other_ratio.moves[0].frequencies.unwrap().gap > 0.1);
+    // Slightly other weights: the likeliest place comes 36 % of the time, not 32 %.
+    let mut tilted = Ring::of_nine(1.0);
+    tilted.weights[4] *= 1.15;
+    let plan = Balance { tries: 20_000, ..Balance::default() };
+    let tilted = balance(&ring, ring.all(), &[(1.0, &Tilted(tilted))], plan).unwrap();
+    println!("{tilted}");
+    let deviates = tilted.moves[0].frequencies.is_some_and(|found| found.p.value() < plan.false_alarm);
+    assert!(tilted.mixture.value < 1e-12 && deviates && !tilted.passed(), "{tilted}");
+}
+
+/// A redraw from the prior of another ring, listed as if it were this one's.
+struct Tilted(Ring);
+
+impl Move<Ring> for Tilted {
+    fn name(&self) -> &str {
+        "tilted"
+    }
+    fn propose(
+        &self,
+        _: &Ring,
+        _: &StateOf<Ring>,
+        place: &mut usize,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        *place = self.0.start(stream);
+        Ok(Proposal::SYMMETRIC)
+    }
+    fn log_ratio(
+        &self,
+        ring: &Ring,
+        from: &StateOf<Ring>,
+        to: &StateOf<Ring>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        RIGHT.log_ratio(ring, from, to, path)
+    }
+}
+
+impl Enumerable<Ring> for Tilted {
+    fn branches(&self, ring: &Ring, state: &StateOf<Ring>) -> Result<Vec<Branch<usize>>, ModelError> {
+        RIGHT.branches(ring, state)
     }
 }
 

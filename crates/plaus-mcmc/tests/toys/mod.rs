@@ -3,6 +3,7 @@
 
 pub mod balls;
 pub mod balls_moves;
+pub mod remembering;
 pub mod ring;
 pub mod vertices;
 
