@@ -14,7 +14,7 @@ pub const MAX_COLLISIONS: u32 = 64;
 pub struct Config {
     /// How far the ball falls before its first bounce, in D. The paper's "height of 4.5 D" reads as 4.5 where the height is the
     /// bottom's, or the ball a point, and as 4 where it is the centre's.
-    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1e6, "x-unit" = "D"))]
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub drop_height: f64,
     /// Number of bounces before the resting place; each has a random normal.
     #[schemars(range(min = 1, max = 64))]
@@ -23,16 +23,16 @@ pub struct Config {
     #[schemars(range(min = 0.0, max = 1.0))]
     pub restitution: f64,
     /// Standard deviation of each normal's angle from the vertical, in degrees.
-    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 90.0, "x-unit" = "degree"))]
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 90.0, "x-unit" = "degree"))]
     pub sigma_theta_deg: f64,
     /// Where the ball should come to rest, in D from where it is dropped.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "D"))]
     pub target: f64,
     /// Standard deviation of the constraint on the resting place, in D: smaller is stricter.
-    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1e6, "x-unit" = "D"))]
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub sigma_d: f64,
     /// A ball that rests closer than this to the target satisfies the constraint, in D.
-    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1e6, "x-unit" = "D"))]
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub tolerance: f64,
     /// What happens where a bounce would leave the ball moving into the table.
     pub downward: Downward,
@@ -41,13 +41,13 @@ pub struct Config {
     /// Relative weights of the moves of "mixed".
     pub weights: Weights,
     /// Half width of the paper's random step of an angle, in degrees.
-    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 180.0, "x-unit" = "degree"))]
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 180.0, "x-unit" = "degree"))]
     pub step_deg: f64,
     /// Two solutions are the same where all their bounces fall into the same cells of this width, in D.
-    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1e6, "x-unit" = "D"))]
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub distinct_cell: f64,
     /// The ball's diameter in metres: fixes the size and, with gravity, the time of exported animations. No influence on what is sampled.
-    #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m"))]
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1000.0, "x-unit" = "m"))]
     pub diameter_m: f64,
 }
 

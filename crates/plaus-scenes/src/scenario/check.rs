@@ -75,7 +75,7 @@ impl Check {
             return Some(format!("did you mean `{known}`?"));
         }
         let known = keys.iter().map(|(known, _)| known.as_str()).collect::<Vec<_>>().join(", ");
-        Some(if path.is_empty() { format!("known are {known}") } else { format!("known in [{path}] are {known}") })
+        Some(if path.is_empty() { format!("known: {known}") } else { format!("known in [{path}]: {known}") })
     }
 
     /// A table that must hold exactly one of `keys`: which scene.
@@ -144,4 +144,75 @@ fn missing(shape: &Shape, key: &str) -> Problem {
 
 fn add_one(keys: &[(String, Shape)], path: &str) -> String {
     format!("add a table {}", any_of(keys.iter().map(|(name, _)| format!("[{path}.{name}]"))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// Two scenes, a required key, a list, and an optional word.
+    fn shape() -> Shape {
+        let number = json!({ "type": "number", "default": 1.0, "minimum": 0.0, "x-unit": "m" });
+        let schema = json!({
+            "type": "object",
+            "required": ["world"],
+            "properties": {
+                "world": {
+                    "type": "object", "minProperties": 1, "maxProperties": 1,
+                    "properties": {
+                        "ball": { "type": "object", "properties": { "size": number, "at": {
+                            "type": "array", "minItems": 2, "maxItems": 2, "items": number, "default": [1, 2],
+                        } } },
+                        "dice": { "$ref": "#/$defs/Dice" },
+                    },
+                },
+            },
+            "$defs": { "Dice": { "type": "object", "properties": {
+                "size": number,
+                "label": { "type": "string" },
+                "law": { "anyOf": [{ "enum": ["fair", "loaded"] }, { "type": "null" }], "default": null },
+            } } },
+        });
+        Shape::of_schema(&schema, &schema, 0)
+    }
+
+    fn problems(text: &str) -> Vec<String> {
+        let (tree, syntax) = Tree::parse(text);
+        assert_eq!(syntax, []);
+        check(&shape(), &tree).1.iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn exactly_one_world() {
+        let second = "world.dice: a second world besides `ball`: exactly one must be chosen; remove [world.ball] or [world.dice]";
+        assert_eq!(problems("[world.ball]\n[world.dice]\nlabel = \"d6\""), [second]);
+        let none = "world: no world: exactly one must be chosen; add a table [world.ball] or [world.dice]";
+        assert_eq!(problems(""), [none]);
+        assert_eq!(problems("world = {}"), [none]);
+        let unknown = "world.bal: unknown world `bal`; did you mean `world.ball`? known: ball or dice";
+        assert_eq!(problems("[world.bal]"), [unknown]);
+    }
+
+    #[test]
+    fn advice_stays_in_the_chosen_world() {
+        let meant = "world.ball.law: unknown key `law`; known in [world.ball]: at, size";
+        assert_eq!(problems("[world.ball]\nlaw = \"fair\""), [meant]);
+        assert_eq!(
+            problems("law = 1\n[world.dice]\nlabel = \"\""),
+            ["law: unknown key `law`; write it as `world.dice.law`"]
+        );
+    }
+
+    #[test]
+    fn required_optional_and_listed_values() {
+        assert_eq!(problems("[world.dice]"), ["world.dice.label: missing: a string must be given"]);
+        let words =
+            "world.dice.law: \"fare\" is not allowed: it must be \"fair\" or \"loaded\"; did you mean \"fair\"?";
+        assert_eq!(problems("[world.dice]\nlabel = \"\"\nlaw = \"fare\""), [words]);
+        assert_eq!(problems("[world.ball]\nat = [0, 2.5]"), [] as [&str; 0]);
+        let length = "world.ball.at: a list of 1 is out of range: its length must be from 2 to 2";
+        let item = "world.ball.at[0]: -1 is out of range: it must be at least 0 m";
+        assert_eq!(problems("[world.ball]\nat = [-1]"), [length, item]);
+    }
 }

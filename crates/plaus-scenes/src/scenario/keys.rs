@@ -103,26 +103,38 @@ fn header(text: &mut String, shape: &Shape, key: &str) {
 fn entry(text: &mut String, shape: &Shape, name: &str) {
     text.push('\n');
     comment(text, &shape.description);
-    let (range, mut facts) = (shape.range(), String::new());
-    if matches!(shape.kind, Kind::Number(_) | Kind::Integer(_)) {
-        let kind = shape.kind_in_words();
-        facts = if range.is_empty() { kind } else { format!("{kind} {range}") };
-    }
-    if let Some(unit) = &shape.unit {
-        facts += &format!(", in {unit}");
-    }
-    let mut facts: Vec<char> = facts.chars().collect();
-    if let Some(first) = facts.first_mut() {
-        *first = first.to_ascii_uppercase();
-        comment(text, &(facts.into_iter().collect::<String>() + "."));
+    if let Some(facts) = facts(shape) {
+        comment(text, &facts);
     }
     for (word, meaning) in meanings(shape) {
         comment(text, &format!("\"{word}\": {meaning}"));
     }
     let _ = match default(shape) {
         Some(default) => writeln!(text, "{name} = {default}"),
-        None => writeln!(text, "# {name} = {}", if range.is_empty() { "…" } else { &range }),
+        None => writeln!(text, "# {name} = {}", example(shape)),
     };
+}
+
+/// "A number above 0 and at most 90. Unit: degree."
+fn facts(shape: &Shape) -> Option<String> {
+    let kind = match &shape.kind {
+        Kind::Number(_) => "A number",
+        Kind::Integer(_) => "An integer",
+        _ => return shape.unit.as_ref().map(|unit| format!("Unit: {unit}.")),
+    };
+    let range = shape.range();
+    let space = if range.is_empty() { "" } else { " " };
+    let unit = shape.unit.as_ref().map(|unit| format!(" Unit: {unit}.")).unwrap_or_default();
+    Some(format!("{kind}{space}{range}.{unit}"))
+}
+
+/// A value that an unset key could have.
+fn example(shape: &Shape) -> String {
+    match &shape.kind {
+        Kind::Boolean => "true".into(),
+        Kind::Words(words) => words.first().map(|(word, _)| format!("\"{word}\"")).unwrap_or_default(),
+        _ => "…".into(),
+    }
 }
 
 /// `words` as comment lines, broken between words.

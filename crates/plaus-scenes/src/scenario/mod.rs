@@ -38,6 +38,7 @@ pub struct Scenario {
 #[serde(default, deny_unknown_fields)]
 pub struct Sampler {
     /// Seed of all randomness. The same scenario, seed and version give the same bits.
+    /// Seeds end at 2⁶³ − 1, the largest integer that TOML promises to hold.
     pub seed: u64,
     /// Number of independent chains.
     #[schemars(range(min = 1, max = 100_000))]
@@ -48,7 +49,7 @@ pub struct Sampler {
     /// Iterations of each chain after the warm-up.
     #[schemars(range(min = 1, max = 1_000_000_000_000_u64))]
     pub iterations: u64,
-    /// Record every so-manieth iteration.
+    /// Record every `thin`-th iteration.
     #[schemars(range(min = 1, max = 1_000_000_000_u64))]
     pub thin: u64,
     /// Iterations between two checkpoints of a chain.

@@ -26,8 +26,8 @@ pub(super) fn apply(said: &str, shape: &Shape, tree: &mut Tree) -> Result<(), Bo
         return Err(blame(Problem::new(shown(said), "an override is `key=value`, and this has no `=`")));
     };
     let name = name.trim();
-    let key =
-        resolve(name, &shape.paths(Some(tree)), &shape.paths(None)).map_err(|error| blame(error.problem(name)))?;
+    let key = resolve(name, &shape.paths(Some(tree)), &shape.paths(None))
+        .map_err(|error| blame(error.problem(name, shape)))?;
     insert(tree, &key, value_of(value.trim(), said), said);
     Ok(())
 }
@@ -61,15 +61,11 @@ fn nearest_key(name: &str, keys: &[String]) -> Option<String> {
 }
 
 impl NoKey {
-    fn problem(self, name: &str) -> Problem {
+    fn problem(self, name: &str, shape: &Shape) -> Problem {
         match self {
             Self::Unknown(nearest) => {
-                let help = nearest.map(|key| format!("did you mean `{key}`?"));
-                Problem::new(
-                    if name.is_empty() { String::new() } else { name.chars().take(200).collect() },
-                    "unknown key",
-                )
-                .with_help(help)
+                let help = nearest.map(|key| format!("did you mean `{key}`?")).or_else(|| known_beside(name, shape));
+                Problem::new(name.chars().take(200).collect::<String>(), "unknown key").with_help(help)
             }
             Self::Ambiguous(keys) => {
                 let keys = any_of(keys.into_iter().map(|key| format!("`{key}`")));
@@ -77,6 +73,18 @@ impl NoKey {
             }
         }
     }
+}
+
+/// What the last known table on the way to `name` holds.
+fn known_beside(name: &str, shape: &Shape) -> Option<String> {
+    let (mut table, mut rest) = (shape, name);
+    while let Some((first, after)) = rest.split_once('.') {
+        let Some(inner) = table.get(first) else { break };
+        (table, rest) = (inner, after);
+    }
+    let known = table.keys().iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>().join(", ");
+    let path = name.strip_suffix(rest)?.trim_end_matches('.');
+    if known.is_empty() || path.is_empty() { None } else { Some(format!("known in [{path}]: {known}")) }
 }
 
 /// The value as TOML, else as a bare string.

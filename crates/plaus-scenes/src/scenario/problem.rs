@@ -1,6 +1,6 @@
 //! What is wrong with a scenario, and where.
 
-use super::tree::Tree;
+use super::tree::{Data, Tree};
 use crate::scene::ConfigError;
 use std::fmt;
 use std::ops::Range;
@@ -106,7 +106,7 @@ impl Problem {
 }
 
 impl ScenarioError {
-    /// Gives each problem its line and column, and puts those of the file in its order, before those of overrides.
+    /// Gives each problem its line and column, and puts them in order: those of the file, those of what it lacks, those of overrides.
     pub(super) fn new(name: &str, text: &str, mut problems: Vec<Problem>) -> Self {
         for problem in &mut problems {
             if let Some(span) = &mut problem.span {
@@ -115,7 +115,9 @@ impl ScenarioError {
                 (problem.line, problem.column) = (Some(line), Some(column));
             }
         }
-        problems.sort_by_key(|problem| (problem.source.clone(), problem.span.clone().map(|span| span.start)));
+        let place = |problem: &Problem| (problem.source.clone(), problem.span.is_none(), problem.line, problem.column);
+        problems.sort_by_key(place);
+        problems.dedup();
         Self { name: name.into(), text: text.into(), problems }
     }
 
@@ -146,7 +148,8 @@ impl ScenarioError {
 pub(super) fn located(tree: &Tree, error: &ConfigError) -> Problem {
     let (found, value) = tree.nearest(&error.key);
     let problem = Problem::new(error.key.clone(), error.message.clone());
-    if found == error.key { value.place.blame_value(problem) } else { value.place.blame_key(problem) }
+    let is_value = found == error.key && !matches!(value.data, Data::Table(_));
+    if is_value { value.place.blame_value(problem) } else { value.place.blame_key(problem) }
 }
 
 /// The part of `span` that lies in `text`, on character boundaries.
@@ -157,7 +160,8 @@ fn inside(text: &str, span: Range<usize>) -> Range<usize> {
 
 /// Line and column of a byte, both from 1; columns count characters, and a byte order mark is none.
 fn line_column(text: &str, offset: usize) -> (usize, usize) {
-    let before = text[..offset].trim_start_matches('\u{feff}');
+    let before = &text[..offset];
+    let before = before.strip_prefix('\u{feff}').unwrap_or(before);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
     (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
 }

@@ -133,11 +133,23 @@ impl Shape {
         }
     }
 
+    /// The allowed values with their unit: "above 0 and at most 90°".
+    pub(super) fn range_with_unit(&self) -> String {
+        let range = self.range();
+        match self.unit.as_deref() {
+            Some("degree") if !range.is_empty() => range + "°",
+            Some(unit) if !range.is_empty() => range + " " + unit,
+            _ => range,
+        }
+    }
+
     /// The kind of value, with its article.
     pub(super) fn kind_in_words(&self) -> String {
         match &self.kind {
             Kind::Table(_) => "a table".into(),
-            Kind::OneOf(_) => "a table with one table in it".into(),
+            Kind::OneOf(keys) => {
+                format!("a table that holds {}", nearest::any_of(keys.iter().map(|(name, _)| name.clone())))
+            }
             Kind::Words(_) => "a word".into(),
             Kind::Integer(_) => "an integer".into(),
             Kind::Number(_) => "a number".into(),

@@ -67,12 +67,7 @@ fn number(bounds: &Bounds<f64>, digits: &str, shape: &Shape) -> Result<Value, Wr
 
 /// States the allowed range, with its unit.
 fn out_of_range(value: &str, shape: &Shape) -> Wrong {
-    let mut range = shape.range();
-    match shape.unit.as_deref() {
-        Some("degree") => range.push('°'),
-        Some(unit) if !range.is_empty() => range = format!("{range} {unit}"),
-        _ => {}
-    }
+    let range = shape.range_with_unit();
     let value = clipped(value);
     if range.is_empty() {
         return Wrong::new(format!("{value} is no finite number"));
@@ -82,19 +77,20 @@ fn out_of_range(value: &str, shape: &Shape) -> Wrong {
 
 fn wrong_type(shape: &Shape, data: &Data) -> Wrong {
     let mut expected = shape.kind_in_words();
-    let range = shape.range();
-    if !range.is_empty() && !matches!(shape.kind, Kind::Boolean) {
+    let range = shape.range_with_unit();
+    if !range.is_empty() {
         expected = format!("{expected}, {range}");
     }
     let help = match (&shape.kind, data) {
-        (Kind::Integer(bounds), Data::Float(digits)) => {
-            let whole = digits.parse::<f64>().ok().filter(|value| value.fract() == 0.0 && value.abs() < 1e15);
-            whole.map(|value| value as i128).filter(|value| bounds.contains(*value)).map(|value| value.written())
+        (Kind::Integer(bounds), Data::Float(text) | Data::Text(text)) => {
+            let whole = text.parse::<f64>().ok().filter(|value| value.fract() == 0.0 && value.abs() < 1e15);
+            whole.map(|value| value as i128).filter(|value| bounds.contains(*value)).map(Bounded::written)
         }
-        (Kind::Integer(_) | Kind::Number(_) | Kind::Boolean, Data::Text(text)) => {
-            let fits = text.parse::<f64>().is_ok_and(f64::is_finite) || text == "true" || text == "false";
-            fits.then(|| text.clone())
+        (Kind::Number(bounds), Data::Text(text)) => {
+            let number = text.parse::<f64>().ok().filter(|value| value.is_finite() && bounds.contains(*value));
+            number.map(Bounded::written)
         }
+        (Kind::Boolean, Data::Text(text)) => Some(text.to_lowercase()).filter(|text| text == "true" || text == "false"),
         _ => None,
     };
     let help = help.map(|value| format!("write {value}"));
