@@ -189,12 +189,10 @@ impl<'a, T: Target> Chain<'a, T> {
     fn judge(&mut self, next: u64, move_id: MoveId, proposal: Proposal) -> Result<Verdict, ModelError> {
         let Proposal::Candidate { log_ratio, path, later } = proposal else { return Ok(Verdict::Stayed) };
         let log_prior = self.target.log_prior(&self.candidate)?;
-        if log_prior.is_zero() || log_ratio == LogRatio::ZERO {
-            return Ok(Verdict::RejectedByPrior);
-        }
         let ln_u = math::ln(open_unit(&mut self.streams.at(next, Purpose::ACCEPT)));
         let log_p = self.state.log_p();
-        let floor = floor(ln_u, log_ratio.times(later.unwrap_or(LogRatio::ONE))?, log_p, log_prior)?;
+        let most = log_ratio.times(later.unwrap_or(LogRatio::ONE))?;
+        let Some(floor) = floor(ln_u, most, log_p, log_prior)? else { return Ok(Verdict::RejectedByPrior) };
         let simulated = self.target.simulate(&self.candidate, Some(&self.state), floor, &mut self.scratch)?;
         let Simulated::Complete(outcome) = simulated else {
             self.target.settle(false, &mut self.scratch);
@@ -207,8 +205,10 @@ impl<'a, T: Target> Chain<'a, T> {
             let candidate = State { draw: self.candidate.clone(), outcome, log_prior, log_constraint };
             let (_, kernel) = self.moves.get(move_id);
             let after = kernel.log_ratio_after(self.target, &self.state, &candidate, path)?;
-            let floor = self::floor(ln_u, log_ratio.times(after)?, log_p, log_prior)?;
-            self.accept_above(floor, candidate.outcome, log_prior, log_constraint)
+            match self::floor(ln_u, log_ratio.times(after)?, log_p, log_prior)? {
+                Some(floor) => self.accept_above(floor, candidate.outcome, log_prior, log_constraint),
+                None => false,
+            }
         };
         self.target.settle(accepted, &mut self.scratch);
         Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
@@ -232,12 +232,16 @@ impl<'a, T: Target> Chain<'a, T> {
     }
 }
 
-/// What the candidate's log constraint must exceed: `ln u − log ratio + log p(current) − log p_w(candidate)`.
+/// What the candidate's log constraint must exceed: `ln u − log ratio + log p(current) − log p_w(candidate)`. `None`: no constraint is enough, the
+/// candidate is impossible or could not be undone.
 fn floor(
     ln_u: f64,
     log_ratio: LogRatio,
     log_p: LogPotential,
     log_prior: LogDensity,
-) -> Result<LogPotential, ModelError> {
-    Ok(LogPotential::new(ln_u - log_ratio.value() + log_p.value() - log_prior.value())?)
+) -> Result<Option<LogPotential>, ModelError> {
+    if log_prior.is_zero() || log_ratio == LogRatio::ZERO {
+        return Ok(None);
+    }
+    Ok(Some(LogPotential::new(ln_u - log_ratio.value() + log_p.value() - log_prior.value())?))
 }

@@ -64,23 +64,36 @@ pub(super) fn landing(velocity: DVec2) -> DVec2 {
     DVec2::new(velocity.x, -velocity.y)
 }
 
-/// Places of the bounces and, last, of the rest; `None` where a bounce rejects the draw. `visit` sees each bounce's place, normal and
-/// velocity after it.
+/// Flies the ball over bounces about `normals`: the place of rest, or `None` where a bounce rejects the draw. `visit` sees each bounce's place, normal
+/// and velocity after it.
 #[inline]
 pub(super) fn fly(
     table: &Table,
     height: f64,
-    degrees: &[f64],
+    normals: impl IntoIterator<Item = DVec2>,
     mut visit: impl FnMut(f64, DVec2, &Bounce),
 ) -> Option<f64> {
     let mut x = 0.0;
     let mut incoming = fallen(height);
-    for &angle in degrees {
-        let normal = normal(angle);
+    for normal in normals {
         let bounce = table.bounce(incoming, normal)?;
         visit(x, normal, &bounce);
         x += range(bounce.velocity);
         incoming = landing(bounce.velocity);
     }
     Some(x)
+}
+
+/// Which bounces are downward: bit i for bounce i, counted from 0.
+pub(super) type Pattern = u64;
+
+/// Flies the ball: where it comes to rest, and which bounces were downward.
+#[inline]
+pub(super) fn rest(table: &Table, height: f64, normals: impl IntoIterator<Item = DVec2>) -> (Option<f64>, Pattern) {
+    let (mut downward, mut bit) = (0, 1);
+    let x = fly(table, height, normals, |_, _, bounce| {
+        downward |= if bounce.downward { bit } else { 0 };
+        bit <<= 1;
+    });
+    (x, downward)
 }

@@ -11,7 +11,7 @@ use crate::animation::{Animation, Impact, Piece, Track};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene};
 use flight::Table;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, NotANumber, Sample, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
 use serde::{Deserialize, Serialize};
@@ -27,12 +27,21 @@ pub struct Ball2d {
     config: Config,
     table: Table,
     angle: Gaussian,
+    /// tan of the largest angle [`Aim`] looks for.
+    reach: f64,
 }
 
 /// Angles of the normals from the vertical, in degrees, in order of the bounces.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Normals(pub Vec<f64>);
+
+impl Normals {
+    /// Unit vectors.
+    fn directions(&self) -> impl Iterator<Item = DVec2> {
+        self.0.iter().map(|&degrees| flight::normal(degrees))
+    }
+}
 
 impl Clone for Normals {
     fn clone(&self) -> Self {
@@ -48,8 +57,8 @@ impl Clone for Normals {
 pub struct Rest {
     /// Where it came to rest, in D; `None` where a downward normal rejected the draw.
     pub x: Option<f64>,
-    /// How many bounces the rule for downward normals decided.
-    pub downward: u32,
+    /// Which bounces the rule for downward normals decided: bit i for bounce i, counted from 0.
+    pub downward: u64,
 }
 
 impl Ball2d {
@@ -79,7 +88,8 @@ impl Ball2d {
             }
         }
         let table = Table { restitution: config.restitution, downward: config.downward };
-        Ok(Self { config: config.clone(), table, angle })
+        let reach = moves::reach(config.sigma_theta_deg);
+        Ok(Self { config: config.clone(), table, angle, reach })
     }
 
     /// The configuration.
@@ -98,7 +108,7 @@ impl Ball2d {
     #[must_use]
     pub fn path(&self, draw: &Normals) -> Vec<f64> {
         let mut places = Vec::with_capacity(draw.0.len() + 1);
-        let rest = flight::fly(&self.table, self.config.drop_height, &draw.0, |x, _, _| places.push(x));
+        let rest = flight::fly(&self.table, self.config.drop_height, draw.directions(), |x, _, _| places.push(x));
         match rest {
             Some(x) => places.push(x),
             None => places.clear(),
@@ -128,10 +138,7 @@ impl Target for Ball2d {
         _floor: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<Rest>, ModelError> {
-        let mut downward = 0;
-        let x = flight::fly(&self.table, self.config.drop_height, &draw.0, |_, _, bounce| {
-            downward += u32::from(bounce.downward);
-        });
+        let (x, downward) = flight::rest(&self.table, self.config.drop_height, draw.directions());
         Ok(Simulated::Complete(Rest { x, downward }))
     }
 
@@ -151,7 +158,7 @@ impl Goal for Ball2d {
         }
         let per_cell = 1.0 / self.config.distinct_cell;
         let mut class = SolutionClass::EMPTY;
-        flight::fly(&self.table, self.config.drop_height, &state.draw.0, |place, _, _| {
+        flight::fly(&self.table, self.config.drop_height, state.draw.directions(), |place, _, _| {
             class = class.with((place * per_cell).floor() as i64);
         });
         Some(class)
@@ -196,7 +203,7 @@ impl Scene for Ball2d {
         let mut pieces = vec![Piece { start: 0.0, position: start, velocity: DVec3::ZERO, acceleration }];
         let mut impacts = Vec::new();
         let mut time = (2.0 * height).sqrt();
-        let rest = flight::fly(&self.table, height, &draw.0, |x, normal, bounce| {
+        let rest = flight::fly(&self.table, height, draw.directions(), |x, normal, bounce| {
             let (point, start) = (DVec3::new(x * size, 0.0, 0.0), time * second);
             let velocity = (bounce.velocity * speed).extend(0.0);
             pieces.push(Piece { start, position: point, velocity, acceleration });

@@ -1,31 +1,52 @@
 //! Redraw some normals and solve for another, so that the ball lands near the target all the same.
 //!
-//! With every other normal held, the place of rest is a trigonometric polynomial of degree two in twice the angle θ of one normal, as long as
-//! no bounce is downward: the bounce maps the incoming velocity to one affine in (cos 2θ, sin 2θ), all later bounces are linear maps, and each hop's length is a
-//! quadratic form of its velocity. So the angles that land the ball at a given x are the roots of a quartic in tan θ.
-//!
-//! The move draws x from the constraint's own Gaussian, finds all roots, and chooses one with probability in proportion to
-//! `w = φ(θ)/|dx/dθ|`, φ the angle's prior. The density of the result is `h(θ) = N(x(θ); target, σ_d) · φ(θ) / S(x(θ))` with `S` the sum of `w` over the roots.
-//! Together with the redrawn angles the acceptance ratio becomes `S` of the candidate over `S` of the current state (a collapsed independence sampler),
-//! wherever no bounce is downward; where one is, `h` is still the density proposed from, and the ratio true.
+//! The move redraws some angles from their prior, draws a pattern of downward bounces (mostly the one the other angles have together with a
+//! probe angle), draws a place x from the constraint's own Gaussian, finds all angles that land the ball there and whose bounces follow the
+//! pattern, and chooses one with probability in proportion to `w = φ(θ)/|dx/dθ|`, φ the angle's prior. The density of the
+//! result is `h(θ) = P(pattern) · N(x(θ); target, σ_d) · φ(θ) / S(x(θ))`, `S` the sum of `w` over the angles found. Together with the redrawn
+//! angles the acceptance ratio becomes `S/P(pattern)` of the candidate over that of the current state: nearly an independence sampler of
+//! the target. Which angles are redrawn, which one is solved for and the probe are drawn without looking at the state: they are the path.
 
-use super::roots::{Roots, quartic};
-use crate::ball2d::flight::{self, Table};
+use super::landing::{Course, Landing};
+use super::roots::Roots;
+use crate::ball2d::flight::{self, Pattern};
 use crate::ball2d::{Ball2d, Normals};
-use glam::{DMat2, DVec2};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, LogRatio, Sample, Stream, math, open_unit, standard_normal};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
 /// Angles looked for, in standard deviations and in degrees at most: beyond, the proposal density is 0.
-const REACH_SD: f64 = 8.0;
+const REACH_SD: f64 = 5.0;
 const REACH_DEG: f64 = 89.0;
 
-/// Which normals a path redraws, and which it aims with.
+/// How many probe angles there are, and how far they reach, in standard deviations.
+const PROBES: usize = 64;
+const PROBE_REACH_SD: f64 = 3.0;
+
+/// Probability of drawing the pattern found at the probe angle outright.
+const EXPECTED: f64 = 0.7;
+
+/// Otherwise: the probability of each later bounce to be drawn as downward.
+const DOWNWARD: f64 = 0.12;
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// tan of the largest angle looked for, given the angles' standard deviation in degrees.
+pub(in crate::ball2d) fn reach(sigma_theta_deg: f64) -> f64 {
+    math::tan(DEGREE * (REACH_SD * sigma_theta_deg).min(REACH_DEG))
+}
+
+/// Redraws one or all of the other normals and solves for one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Aim;
+
+/// Which normal is aimed with, which are redrawn, and the aimed angle at which a pattern is looked up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Choice {
     aimed: usize,
     redrawn: Redrawn,
+    /// One of [`PROBES`] angles, evenly spaced over ±[`PROBE_REACH_SD`] standard deviations.
+    probe: usize,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,178 +57,145 @@ enum Redrawn {
 }
 
 impl Choice {
+    /// The first normal moves the ball furthest, so it is aimed with more often.
     fn draw(collisions: usize, stream: &mut Stream) -> Self {
-        let aimed = below(stream, collisions);
+        let aimed = below(stream, 2 * collisions).saturating_sub(collisions);
         let other = below(stream, 2 * collisions);
         let redrawn = if other < collisions { Redrawn::One(other) } else { Redrawn::AllOthers };
-        Self { aimed, redrawn }
-    }
-
-    fn path(self) -> Path {
-        let other = match self.redrawn {
-            Redrawn::One(index) => index as u64 + 1,
-            Redrawn::AllOthers => 0,
-        };
-        Path(other << 32 | self.aimed as u64)
-    }
-
-    fn of(path: Path) -> Self {
-        let redrawn = match path.0 >> 32 {
-            0 => Redrawn::AllOthers,
-            index => Redrawn::One(index as usize - 1),
-        };
-        Self { aimed: (path.0 & 0xffff_ffff) as usize, redrawn }
+        Self { aimed, redrawn, probe: below(stream, PROBES) }
     }
 
     fn redraws(self, index: usize) -> bool {
         index != self.aimed && (self.redrawn == Redrawn::AllOthers || self.redrawn == Redrawn::One(index))
     }
-}
 
-/// Redraws one or all of the other normals and aims with one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Aim;
-
-/// Where the ball comes to rest as a function of one angle θ: `a0 + a1·cos φ + a2·sin φ + a3·cos 2φ + a4·sin 2φ`, φ = 2θ.
-struct Landing {
-    a: [f64; 5],
-}
-
-impl Landing {
-    /// `None` where a bounce before the aimed one rejects the draw.
-    fn of(table: &Table, height: f64, degrees: &[f64], aimed: usize) -> Option<Self> {
-        let (before, after) = (&degrees[..aimed], &degrees[aimed + 1..]);
-        let mut incoming = flight::fallen(height);
-        let start = flight::fly(table, height, before, |_, _, bounce| incoming = flight::landing(bounce.velocity))?;
-        // Place of rest = start + vᵀ·form·v, v the velocity after the aimed bounce.
-        let mut form = hop(DMat2::IDENTITY);
-        let mut map = DMat2::IDENTITY;
-        for &angle in after {
-            let n = flight::normal(angle);
-            let outer = DMat2::from_cols(n * n.x, n * n.y);
-            let reflect = DMat2::IDENTITY - (1.0 + table.restitution) * outer;
-            map = reflect * DMat2::from_diagonal(DVec2::new(1.0, -1.0)) * map;
-            form += hop(map);
-        }
-        // v = level + cosine·cos φ + sine·sin φ.
-        let half = 0.5 * (1.0 + table.restitution);
-        let level = (1.0 - half) * incoming;
-        let cosine = half * DVec2::new(incoming.x, -incoming.y);
-        let sine = -half * DVec2::new(incoming.y, incoming.x);
-        let [cc, ss] = [cosine.dot(form * cosine), sine.dot(form * sine)];
-        Some(Self {
-            a: [
-                start + level.dot(form * level) + 0.5 * (cc + ss),
-                2.0 * level.dot(form * cosine),
-                2.0 * level.dot(form * sine),
-                0.5 * (cc - ss),
-                cosine.dot(form * sine),
-            ],
-        })
+    fn probe_degrees(self, sigma_theta_deg: f64) -> f64 {
+        let place = (2 * self.probe + 1) as f64 / PROBES as f64 - 1.0;
+        place * PROBE_REACH_SD * sigma_theta_deg
     }
 
-    /// Place of rest and its slope in θ (per radian), from t = tan θ.
-    fn at(&self, t: f64) -> (f64, f64) {
-        let (c, s) = ((1.0 - t * t) / (1.0 + t * t), 2.0 * t / (1.0 + t * t));
-        let (c2, s2) = (c * c - s * s, 2.0 * c * s);
-        let [a0, a1, a2, a3, a4] = self.a;
-        (a0 + a1 * c + a2 * s + a3 * c2 + a4 * s2, 2.0 * (a2 * c - a1 * s + 2.0 * (a4 * c2 - a3 * s2)))
+    /// Three fields of 16 bits; in that of the redrawn one, 0 stands for all others.
+    fn path(self) -> Path {
+        let redrawn = match self.redrawn {
+            Redrawn::One(index) => index + 1,
+            Redrawn::AllOthers => 0,
+        };
+        Path((self.aimed | redrawn << 16 | self.probe << 32) as u64)
     }
 
-    /// tan θ of every angle within reach that lands the ball at `x`.
-    fn tangents(&self, x: f64, reach: f64) -> Roots {
-        let [a0, a1, a2, a3, a4] = self.a;
-        let a0 = a0 - x;
-        let coefficients = [a0 + a1 + a3, 2.0 * a2 + 4.0 * a4, 2.0 * a0 - 6.0 * a3, 2.0 * a2 - 4.0 * a4, a0 - a1 + a3];
-        quartic(&coefficients, -reach, reach)
+    fn of(path: Path) -> Self {
+        let field = |shift: u32| ((path.0 >> shift) & 0xffff) as usize;
+        let redrawn = field(16).checked_sub(1).map_or(Redrawn::AllOthers, Redrawn::One);
+        Self { aimed: field(0), redrawn, probe: field(32) }
     }
-}
-
-/// The quadratic form of a hop's length, for a velocity that `map` makes of the aimed bounce's: 2·vx·vy.
-fn hop(map: DMat2) -> DMat2 {
-    let (x, y) = (map.row(0), map.row(1));
-    DMat2::from_cols(x * y.x + y * x.x, x * y.y + y * x.y)
 }
 
 /// The proposal of one angle given all others.
-struct Aiming {
-    landing: Landing,
-    reach: f64,
-    sd: f64,
-    target: f64,
-    sigma: f64,
+struct Aiming<'a> {
+    scene: &'a Ball2d,
+    course: Course<'a>,
+    expected: Option<Pattern>,
 }
 
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
-
-impl Aiming {
-    fn new(scene: &Ball2d, degrees: &[f64], aimed: usize) -> Option<Self> {
+impl<'a> Aiming<'a> {
+    fn new(scene: &'a Ball2d, degrees: &[f64], choice: Choice) -> Self {
         let config = scene.config();
-        let landing = Landing::of(&scene.table, config.drop_height, degrees, aimed)?;
-        let reach = math::tan(DEGREE * (REACH_SD * config.sigma_theta_deg).min(REACH_DEG));
-        Some(Self { landing, reach, sd: config.sigma_theta_deg, target: config.target, sigma: config.sigma_d })
+        let course = Course::new(&scene.table, config.drop_height, degrees, choice.aimed);
+        let expected = course.pattern(flight::normal(choice.probe_degrees(config.sigma_theta_deg)));
+        Self { scene, course, expected }
     }
 
-    /// ln of `exp(−½(θ/sd)²)/|dx/dθ|`, from tan θ.
-    fn ln_weight(&self, t: f64) -> f64 {
-        let z = math::atan(t) / (DEGREE * self.sd);
-        -0.5 * z * z - math::ln(self.landing.at(t).1.abs())
+    /// A pattern of the bounces after the aimed one: the expected one, or, in case that is wrong, any.
+    fn draw_pattern(&self, stream: &mut Stream) -> Pattern {
+        match self.expected {
+            Some(pattern) if open_unit(stream) < EXPECTED => pattern,
+            _ => {
+                let later = self.course.aimed + 1..self.course.collisions();
+                later.filter(|_| open_unit(stream) < DOWNWARD).fold(0, |pattern, index| pattern | 1 << index)
+            }
+        }
     }
 
-    /// ln of the sum of weights over the angles that land at `x`.
-    fn ln_sum(&self, x: f64) -> f64 {
-        let roots = self.landing.tangents(x, self.reach);
-        roots.as_slice().iter().fold(f64::NEG_INFINITY, |sum, &t| math::ln_add_exp(sum, self.ln_weight(t)))
+    /// ln of the probability of drawing `pattern`.
+    fn ln_pattern(&self, pattern: Pattern) -> f64 {
+        let downward = pattern.count_ones() as i32;
+        let upward = (self.course.collisions() - 1 - self.course.aimed) as i32 - downward;
+        let any = math::powi(DOWNWARD, downward) * math::powi(1.0 - DOWNWARD, upward);
+        math::ln(match self.expected {
+            None => any,
+            Some(expected) if expected == pattern => EXPECTED + (1.0 - EXPECTED) * any,
+            Some(_) => (1.0 - EXPECTED) * any,
+        })
     }
 
-    /// Draws an angle in degrees; `None` where the drawn place cannot be reached.
-    fn sample(&self, stream: &mut Stream) -> Option<f64> {
-        let x = self.target + self.sigma * standard_normal(stream);
-        let roots = self.landing.tangents(x, self.reach);
-        let roots = roots.as_slice();
-        let t = if roots.len() < 2 {
-            *roots.first()?
-        } else {
-            let threshold = math::ln(open_unit(stream)) + self.ln_sum(x);
-            let mut sum = f64::NEG_INFINITY;
-            *roots
-                .iter()
-                .find(|&&t| {
-                    sum = math::ln_add_exp(sum, self.ln_weight(t));
-                    sum >= threshold
-                })
-                .or(roots.last())?
-        };
-        Some(math::atan(t) / DEGREE)
+    /// Roots that land at `x` and follow `pattern`, each with its weight `exp(−½(θ/sd)²)/|dx/dθ|`, and the sum of the weights.
+    fn roots(&self, landing: &Landing, pattern: Pattern, x: f64) -> (Roots, [f64; 4], f64) {
+        let roots = landing.tangents(x, self.scene.reach);
+        let mut weights = [0.0; 4];
+        for (weight, &t) in weights.iter_mut().zip(roots.as_slice()) {
+            if self.course.pattern(Course::normal(t)) == Some(pattern) {
+                let z = math::atan(t) / (DEGREE * self.scene.config.sigma_theta_deg);
+                *weight = math::exp(-0.5 * z * z) / landing.at(t).1.abs();
+            }
+        }
+        (roots, weights, weights.iter().sum())
     }
 
-    /// Log density of `sample` at `degrees`, up to a constant of the scene.
+    /// Draws an angle in degrees, with the log of its density up to a constant of the scene; `None` where the drawn place cannot be reached.
+    fn sample(&self, stream: &mut Stream) -> Option<(f64, f64)> {
+        let pattern = self.draw_pattern(stream);
+        let off = standard_normal(stream);
+        let config = &self.scene.config;
+        let landing = self.course.landing(pattern)?;
+        let (roots, weights, sum) = self.roots(&landing, pattern, config.target + config.sigma_d * off);
+        let mut left = open_unit(stream) * sum;
+        let index = weights.iter().position(|&weight| {
+            left -= weight;
+            weight > 0.0 && left < 0.0
+        })?;
+        let degrees = math::atan(roots.as_slice()[index]) / DEGREE;
+        Some((degrees, self.ln_density_of(degrees, off, pattern, sum)))
+    }
+
+    /// Log density of `sample` at `degrees`, up to the same constant.
     fn ln_density(&self, degrees: f64) -> f64 {
         let t = math::tan(DEGREE * degrees);
-        if degrees.abs() >= 90.0 || t.abs() > self.reach {
+        let pattern = self.course.pattern(flight::normal(degrees));
+        let (Some(pattern), true) = (pattern, degrees.abs() < 90.0 && t.abs() <= self.scene.reach) else {
+            return f64::NEG_INFINITY;
+        };
+        let Some(landing) = self.course.landing(pattern) else { return f64::NEG_INFINITY };
+        let x = landing.at(t).0;
+        let (_, _, sum) = self.roots(&landing, pattern, x);
+        let config = &self.scene.config;
+        self.ln_density_of(degrees, (x - config.target) / config.sigma_d, pattern, sum)
+    }
+
+    fn ln_density_of(&self, degrees: f64, off: f64, pattern: Pattern, sum: f64) -> f64 {
+        if sum == 0.0 {
+            // The angle itself was lost among the roots, at a turning point or the edge of a pattern: it cannot be proposed.
             return f64::NEG_INFINITY;
         }
-        let x = self.landing.at(t).0;
-        let (z, off) = (degrees / self.sd, (x - self.target) / self.sigma);
-        -0.5 * (z * z + off * off) - self.ln_sum(x)
+        let z = degrees / self.scene.config.sigma_theta_deg;
+        self.ln_pattern(pattern) - 0.5 * (z * z + off * off) - math::ln(sum)
     }
 }
 
-/// `ln q(from | to) − ln q(to | from)`.
-fn ratio(scene: &Ball2d, from: &[f64], to: &[f64], choice: Choice) -> Result<LogRatio, ModelError> {
-    let density = |degrees: &[f64]| {
-        Aiming::new(scene, degrees, choice.aimed)
-            .map_or(f64::NEG_INFINITY, |aiming| aiming.ln_density(degrees[choice.aimed]))
-    };
-    let (back, forth) = (density(from), density(to));
-    if back == f64::NEG_INFINITY {
-        return Ok(LogRatio::ZERO);
-    }
-    let mut redrawn = 0.0;
+/// Log ratio of proposing the redrawn angles of `from` to proposing those of `to`.
+fn ln_redrawn(scene: &Ball2d, from: &[f64], to: &[f64], choice: Choice) -> Result<f64, ModelError> {
+    let mut sum = 0.0;
     for (index, (old, new)) in from.iter().zip(to).enumerate() {
         if choice.redraws(index) {
-            redrawn += scene.angle().log_density(old)?.value() - scene.angle().log_density(new)?.value();
+            sum += scene.angle().log_density(old)?.value() - scene.angle().log_density(new)?.value();
         }
+    }
+    Ok(sum)
+}
+
+/// `back − forth + redrawn` as a ratio; 0 where there is no way back.
+fn ratio(back: f64, forth: f64, redrawn: f64) -> Result<LogRatio, ModelError> {
+    if back == f64::NEG_INFINITY {
+        return Ok(LogRatio::ZERO);
     }
     Ok(LogRatio::new(back - forth + redrawn)?)
 }
@@ -230,11 +218,12 @@ impl Move<Ball2d> for Aim {
                 *angle = scene.angle().sample(stream);
             }
         }
-        let aimed = Aiming::new(scene, &candidate.0, choice.aimed).and_then(|aiming| aiming.sample(stream));
-        let Some(aimed) = aimed else { return Ok(Proposal::Stay) };
+        let drawn = Aiming::new(scene, &candidate.0, choice).sample(stream);
+        let Some((aimed, forth)) = drawn else { return Ok(Proposal::Stay) };
         candidate.0[choice.aimed] = aimed;
-        let log_ratio = ratio(scene, &current.draw.0, &candidate.0, choice)?;
-        Ok(Proposal::Candidate { log_ratio, path: choice.path(), later: None })
+        let back = Aiming::new(scene, &current.draw.0, choice).ln_density(current.draw.0[choice.aimed]);
+        let redrawn = ln_redrawn(scene, &current.draw.0, &candidate.0, choice)?;
+        Ok(Proposal::Candidate { log_ratio: ratio(back, forth, redrawn)?, path: choice.path(), later: None })
     }
 
     fn log_ratio(
@@ -244,6 +233,9 @@ impl Move<Ball2d> for Aim {
         to: &StateOf<Ball2d>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        ratio(scene, &from.draw.0, &to.draw.0, Choice::of(path))
+        let choice = Choice::of(path);
+        let density = |draw: &Normals| Aiming::new(scene, &draw.0, choice).ln_density(draw.0[choice.aimed]);
+        let (back, forth) = (density(&from.draw), density(&to.draw));
+        ratio(back, forth, ln_redrawn(scene, &from.draw.0, &to.draw.0, choice)?)
     }
 }

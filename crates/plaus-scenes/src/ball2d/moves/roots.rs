@@ -33,26 +33,35 @@ fn value_and_slope<const N: usize>(coefficients: &[f64; N], t: f64) -> (f64, f64
     (value, slope)
 }
 
-/// The root in a bracket with a change of sign.
-fn refine<const N: usize>(coefficients: &[f64; N], mut low: f64, mut high: f64, rising: bool) -> f64 {
-    let mut t = 0.5 * (low + high);
-    // Newton doubles the digits and a bisection halves the bracket: 64 steps are never needed, but bound the loop.
-    for _ in 0..64 {
+/// Newton steps shorter than this, relative to 1 + |t|, are the last: the next one would be of the order of its square.
+const LAST_STEP: f64 = 1e-11;
+
+/// The root in a bracket over which the polynomial goes from `at_low` to `at_high`, of different signs.
+fn refine<const N: usize>(coefficients: &[f64; N], mut low: f64, mut high: f64, at_low: f64, at_high: f64) -> f64 {
+    let rising = at_high >= 0.0;
+    let mut t = low + (high - low) * (at_low / (at_low - at_high));
+    // A step either is Newton's or halves the bracket; 128 are never needed, but bound the loop.
+    for _ in 0..128 {
         let (value, slope) = value_and_slope(coefficients, t);
-        if value == 0.0 {
-            return t;
-        }
-        if (value > 0.0) == rising {
+        if (value >= 0.0) == rising {
             high = t;
         } else {
             low = t;
         }
-        let newton = t - value / slope;
-        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-        if (next - t).abs() <= 2.0 * f64::EPSILON * t.abs() || next == low || next == high {
-            return next;
+        let step = value / slope;
+        let newton = t - step;
+        if newton >= low && newton <= high {
+            t = newton;
+            if step.abs() <= LAST_STEP * (1.0 + t.abs()) {
+                return t;
+            }
+        } else {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                return t;
+            }
+            t = middle;
         }
-        t = next;
     }
     t
 }
@@ -65,7 +74,7 @@ fn between<const N: usize>(coefficients: &[f64; N], turns: &[f64], low: f64, hig
     for &right in turns.iter().chain(std::iter::once(&high)) {
         let at_right = value_and_slope(coefficients, right).0;
         if (at_left < 0.0) != (at_right < 0.0) {
-            roots.push(refine(coefficients, left, right, at_right >= 0.0));
+            roots.push(refine(coefficients, left, right, at_left, at_right));
         }
         (left, at_left) = (right, at_right);
     }
