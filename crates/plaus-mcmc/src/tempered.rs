@@ -91,3 +91,65 @@ impl<T: Target + 'static> View for Tempered<'_, T> {
         self.target
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plaus_dist::{Purpose, Seed, open_unit};
+
+    /// A target of which only the tempering is of interest.
+    struct Nothing;
+
+    impl Target for Nothing {
+        type Draw = ();
+        type Outcome = f64;
+        type Scratch = ();
+        fn start(&self, _: &mut Stream) {}
+        fn log_prior(&self, (): &()) -> Result<LogDensity, ModelError> {
+            Ok(LogDensity::ONE)
+        }
+        fn simulate(
+            &self,
+            (): &(),
+            _: Option<&StateOf<Self>>,
+            _: LogPotential,
+            (): &mut (),
+        ) -> Result<Simulated<f64>, ModelError> {
+            Ok(Simulated::Complete(0.0))
+        }
+        fn log_constraint(&self, outcome: &f64) -> Result<LogPotential, ModelError> {
+            Ok(LogPotential::new(*outcome)?)
+        }
+    }
+
+    /// A constraint at the floor handed on does not exceed the floor asked for, in floating point; one a hair above does, within three units in
+    /// the last place.
+    #[test]
+    fn a_floor_handed_on_is_never_too_high_and_hardly_too_low() {
+        let mut stream = Seed(1).chain(0).at(0, Purpose(100));
+        for _ in 0..100_000 {
+            let mut around = |scale: f64| (open_unit(&mut stream) - 0.5) * scale;
+            let (floor, beta) = (around(200.0), around(6.0).abs());
+            let tempered = Tempered::new(&Nothing, beta).unwrap();
+            let seen = tempered.floor_seen(LogPotential::new(floor).unwrap()).unwrap().value();
+            let weight = |x: f64| tempered.log_constraint(&x).unwrap().value();
+            assert!(weight(seen) <= floor, "floor {floor}, beta {beta}");
+            let above = (0..3).fold(seen, |x, _| x.next_up());
+            assert!(weight(above) >= floor, "floor {floor}, beta {beta}");
+        }
+    }
+
+    #[test]
+    fn floors_at_the_extremes() {
+        let floor = |beta: f64, floor: f64| {
+            let tempered = Tempered::new(&Nothing, beta).unwrap();
+            tempered.floor_seen(LogPotential::new(floor).unwrap()).map(LogPotential::value)
+        };
+        assert_eq!(floor(0.0, -1.0), Some(f64::NEG_INFINITY));
+        assert_eq!(floor(0.0, 0.0), None);
+        assert_eq!(floor(1e-300, 1e300), Some(f64::MAX));
+        assert_eq!(floor(1e-300, -1e300), Some(f64::NEG_INFINITY));
+        assert_eq!(floor(1e300, f64::NEG_INFINITY), Some(f64::NEG_INFINITY));
+        assert_eq!(floor(1.0, -3.5), Some(-3.5));
+    }
+}

@@ -187,6 +187,31 @@ fn a_run_reports_the_first_failing_chain() {
     }
 }
 
+/// A start that satisfies the constraint is a recorded solution, found at iteration 0.
+#[test]
+fn the_start_counts_as_a_solution() {
+    struct Ends(Vec<(u64, usize)>);
+    impl Sink<u64, u64> for Ends {
+        type Error = std::convert::Infallible;
+        fn block(&mut self, _: u32, block: Block<u64, u64>, snapshot: &Snapshot<u64, u64>) -> Result<(), Self::Error> {
+            assert_eq!((snapshot.hits.first, snapshot.hits.count), (Some(0), block.end_iteration));
+            Ok(())
+        }
+        fn round(&mut self, progress: &Progress<'_>) -> Result<Control, Self::Error> {
+            self.0.push((progress.end_iteration, progress.distinct.firsts().len()));
+            Ok(Control::Continue)
+        }
+    }
+    for (wanted, block) in [(1, 1), (1, 100), (3, 1), (3, 100)] {
+        let solutions = Some(wanted);
+        let plan = Plan { seed: Seed(1), chains: 1, warmup: 0, iterations: 50, thin: 1, block, solutions };
+        let mut ends = Ends(Vec::new());
+        run(&COUNTER, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), 1, &mut ends).unwrap();
+        // The counter reaches a new class in every iteration.
+        assert_eq!(ends.0.last(), Some(&(wanted, wanted as usize)));
+    }
+}
+
 #[test]
 fn moves_are_chosen_by_weight() {
     let weights = [3.0, 0.0, 1.0, 4.0];
@@ -196,7 +221,7 @@ fn moves_are_chosen_by_weight() {
     let probabilities: Vec<f64> = mixture.iter().map(|(probability, _)| probability).collect();
     assert_eq!(probabilities, [0.375, 0.125, 0.5]);
     assert_eq!(mixture.get(MoveId(1)).0, 0.125);
-    let tries = 100_000;
+    let tries = 400_000;
     let mut counts = [0_u32; 3];
     for iteration in 0..tries {
         let (MoveId(id), _) = mixture.choose(&mut Seed(4).chain(0).at(iteration, Purpose::PROPOSE));
