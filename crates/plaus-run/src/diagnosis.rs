@@ -90,7 +90,7 @@ impl fmt::Display for Finding {
         match self {
             Self::NoSatisfyingSample => f.write_str("no sample satisfies the constraint"),
             Self::Rhat { scalar, rhat } => {
-                write!(f, "{scalar}: R-hat {rhat:.3} is above {MAX_RHAT}: the chains have not come to agree")
+                write!(f, "{scalar}: R-hat {rhat:.4} is above {MAX_RHAT}: the chains have not come to agree")
             }
             Self::Ess { scalar, kind, ess, needed } => {
                 write!(
