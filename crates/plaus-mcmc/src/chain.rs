@@ -120,17 +120,27 @@ impl<'a, T: Target> Chain<'a, T> {
         let mut stream = streams.at(0, Purpose::START);
         for _ in 0..START_TRIES {
             let draw = target.start(&mut stream);
-            let state = State::evaluate(target, draw, &mut scratch).map_err(|source| ChainError::Model {
+            let state = Self::state_of(target, draw, &mut scratch).map_err(|source| ChainError::Model {
                 iteration: 0,
                 step: None,
                 source,
             })?;
-            if !state.log_p().is_zero() {
+            if let Some(state) = state {
                 let counts = vec![MoveCounts::default(); moves.names().len()];
                 return Ok(Self::resume(target, moves, streams, 0, state, counts));
             }
         }
         Err(ChainError::NoStart)
+    }
+
+    /// The state of a draw of positive probability; the prior is asked first.
+    fn state_of(target: &T, draw: T::Draw, scratch: &mut T::Scratch) -> Result<Option<StateOf<T>>, ModelError> {
+        let log_prior = target.log_prior(&draw)?;
+        if log_prior.is_zero() {
+            return Ok(None);
+        }
+        let state = State::simulate(target, draw, log_prior, scratch)?;
+        Ok(Some(state).filter(|state| !state.log_p().is_zero()))
     }
 
     /// A chain that goes on from a state it, or an equal chain, had at `iteration`. `counts` has one entry a move.

@@ -60,7 +60,7 @@ pub mod view;
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
 pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
 pub use record::{Block, Entry};
-pub use run::{Control, Ending, Plan, Progress, RunError, Sink, Snapshot, Start, run};
+pub use run::{Control, Ending, Plan, PlanError, Progress, RunError, Sink, Snapshot, Start, run};
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
 pub use tempered::Tempered;

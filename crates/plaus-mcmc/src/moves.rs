@@ -106,13 +106,16 @@ pub enum MixtureError {
     /// No move has a positive weight.
     #[error("no move has a positive weight")]
     Empty,
+    /// More moves than [`MoveId`] can tell apart.
+    #[error("{0} moves are more than the 65,535 a mixture can hold")]
+    TooMany(usize),
 }
 
 impl<T: Target> Mixture<T> {
     /// A mixture of `moves` with relative weights; moves of weight 0 are left out.
     ///
     /// # Errors
-    /// [`MixtureError`] where a weight is negative or not finite, or none is positive.
+    /// [`MixtureError`] where a weight is negative or not finite, none is positive, or there are more than 65,535 moves.
     pub fn new(moves: Vec<(f64, Box<dyn Move<T>>)>) -> Result<Self, MixtureError> {
         if let Some((weight, bad)) = moves.iter().find(|(weight, _)| !weight.is_finite() || *weight < 0.0) {
             return Err(MixtureError::Weight { name: bad.name().to_owned(), weight: *weight });
@@ -120,6 +123,9 @@ impl<T: Target> Mixture<T> {
         let moves: Vec<_> = moves.into_iter().filter(|(weight, _)| *weight > 0.0).collect();
         if moves.is_empty() {
             return Err(MixtureError::Empty);
+        }
+        if moves.len() > usize::from(u16::MAX) {
+            return Err(MixtureError::TooMany(moves.len()));
         }
         let sum_in_units_of = |unit: f64| moves.iter().map(|(weight, _)| weight / unit).sum::<f64>();
         // Weights whose sum overflows are taken in a unit of 2⁶⁴, which is exact.

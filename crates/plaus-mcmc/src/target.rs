@@ -148,6 +148,19 @@ impl<D, O> State<D, O> {
         T: Target<Draw = D, Outcome = O> + ?Sized,
     {
         let log_prior = target.log_prior(&draw)?;
+        Self::simulate(target, draw, log_prior, scratch)
+    }
+
+    /// Simulates a draw whose prior is known.
+    pub(crate) fn simulate<T>(
+        target: &T,
+        draw: D,
+        log_prior: LogDensity,
+        scratch: &mut T::Scratch,
+    ) -> Result<Self, ModelError>
+    where
+        T: Target<Draw = D, Outcome = O> + ?Sized,
+    {
         match target.simulate(&draw, None, LogPotential::ZERO, scratch)? {
             Simulated::Complete(outcome) => {
                 let log_constraint = target.log_constraint(&outcome)?;

@@ -7,8 +7,8 @@ mod toys;
 
 use plaus_dist::Seed;
 use plaus_mcmc::{
-    Block, Chain, Control, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture, Move, Plan, Progress, RunError,
-    Sink, Snapshot, Start, StateOf, Verdict, run,
+    Block, Chain, Control, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture, Move, Plan, PlanError, Progress,
+    RunError, Sink, Snapshot, Start, StateOf, Verdict, run,
 };
 use toys::balls::{Balls, Drops};
 use toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
@@ -263,4 +263,24 @@ fn a_failing_sink_stops_the_run() {
     }
     let error = run(&balls(), &mixture(), PLAN, Vec::new(), 1, &mut Full).unwrap_err();
     assert!(matches!(&error, RunError::Sink(text) if text == "disk full"), "{error:?}");
+}
+
+#[test]
+fn a_plan_or_starts_that_make_no_run_are_refused() {
+    let refused = |plan: Plan, starts| match run(&balls(), &mixture(), plan, starts, 1, &mut Log::default()) {
+        Err(RunError::Plan(error)) => error,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(refused(Plan { chains: 0, ..PLAN }, Vec::new()), PlanError::Zero("chains"));
+    assert_eq!(refused(Plan { thin: 0, ..PLAN }, Vec::new()), PlanError::Zero("thin"));
+    assert_eq!(refused(Plan { block: 0, ..PLAN }, Vec::new()), PlanError::Zero("block"));
+    let endless = Plan { iterations: u64::MAX, ..PLAN };
+    assert_eq!(refused(endless, Vec::new()), PlanError::TooLong(u64::MAX));
+    let (_, log) = go(PLAN, Vec::new(), 1, Log { stop_after: Some(1), ..Log::default() });
+    let mut starts = log.starts(1);
+    starts.pop();
+    assert_eq!(refused(PLAN, starts), PlanError::Starts { chains: 3, found: 2 });
+    let mut starts = log.starts(1);
+    starts[1].snapshot.end_iteration += 1;
+    assert_eq!(refused(PLAN, starts), PlanError::Starts { chains: 3, found: 3 });
 }

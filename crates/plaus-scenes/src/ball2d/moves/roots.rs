@@ -34,7 +34,7 @@ fn value_and_slope<const N: usize>(coefficients: &[f64; N], t: f64) -> (f64, f64
 }
 
 /// Newton steps shorter than this, relative to 1 + |t|, are the last: the next one would be of the order of its square.
-const LAST_STEP: f64 = 1e-11;
+const LAST_STEP: f64 = 1e-8;
 
 /// The root in a bracket over which the polynomial goes from `at_low` to `at_high`, of different signs.
 fn refine<const N: usize>(coefficients: &[f64; N], mut low: f64, mut high: f64, at_low: f64, at_high: f64) -> f64 {
