@@ -9,7 +9,7 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
     match arguments {
         [] => check(&[]).run(),
         ["--bless"] => {
-            check(&["--", "--nocapture"]).env(BLESS, "1").run()?;
+            check(&["golden_traces_have_the_same_bits"]).env(BLESS, "1").run()?;
             println!(
                 "tests/golden is as this build makes it. Look at `git status tests/golden`: where a trace changed that was"
             );

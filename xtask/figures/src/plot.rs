@@ -48,7 +48,7 @@ impl Axes<'_> {
     /// Draws the axes on `area`.
     pub(crate) fn draw<'a>(&self, area: &Area<'a>) -> Result<Chart<'a>> {
         let mut builder = ChartBuilder::on(area);
-        builder.margin_right(px(14.0)).margin_top(px(8.0)).margin_bottom(px(4.0)).margin_left(px(4.0));
+        builder.margin_right(px(28.0)).margin_top(px(8.0)).margin_bottom(px(4.0)).margin_left(px(4.0));
         builder.set_label_area_size(LabelAreaPosition::Left, px(58.0));
         builder.set_label_area_size(LabelAreaPosition::Bottom, px(44.0));
         if !self.title.is_empty() {

@@ -90,6 +90,8 @@ pub(crate) struct Ess {
     pub(crate) value: f64,
     /// The same from either half of the chains alone: what the value is worth.
     halves: [f64; 2],
+    /// Median of the same from one chain alone: how it mixes where it is, if it has not seen the rest.
+    pub(crate) within: f64,
 }
 
 impl Ess {
@@ -100,7 +102,9 @@ impl Ess {
         };
         let (first, second) = chains.split_at(chains.len() / 2);
         let halves = [of(first)?, of(second)?];
-        Ok(Self { value: of(chains)?, halves })
+        let mut alone = chains.iter().map(|chain| of(std::slice::from_ref(chain))).collect::<Result<Vec<_>, _>>()?;
+        alone.sort_by(f64::total_cmp);
+        Ok(Self { value: of(chains)?, halves, within: alone[alone.len() / 2] })
     }
 
     /// Two digits, with the range of the halves where it differs.

@@ -65,7 +65,7 @@ impl Default for Sampler {
             seed: 1,
             chains: 4,
             warmup: 1000,
-            iterations: 10_000,
+            iterations: 20_000,
             thin: 1,
             checkpoint_every: 20_000,
             rules: Rules::default(),

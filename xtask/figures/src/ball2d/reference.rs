@@ -63,7 +63,7 @@ impl Reference {
 }
 
 pub(super) fn sample(work: &Work) -> Result<Reference> {
-    let blocks = work.size(200, 4);
+    let blocks = work.size(1000, 4);
     let draws = blocks * BLOCK;
     work.say(format_args!("reference values: {draws} prior draws, seed {SEED}"));
     let parts: Vec<_> = (0..blocks).into_par_iter().map(block).collect();

@@ -1,0 +1,127 @@
+//! The edges between crates, and other properties of the sources that no compiler checks.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// What each of our packages may use of the others. The chain knows no bodies; the simulator knows no chain.
+const EDGES: &[(&str, &[&str])] = &[
+    ("plaus-dist", &[]),
+    ("plaus-mcmc", &["plaus-dist"]),
+    ("plaus-scenes", &["plaus-dist", "plaus-mcmc"]),
+    ("plaus-run", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
+    ("plaus-cli", &["plaus-dist", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
+    ("plaus-figures", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
+    ("plaus-tests", &[]),
+    ("xtask", &[]),
+];
+
+/// Crates that only one of our packages, or one file, may name.
+const ONLY_IN: &[(&str, &str)] = &[("bincode", "crates/plaus-run/src/codec.rs")];
+
+/// Longest source file, in lines: what one can still hold in the head.
+const LONGEST: usize = 450;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().unwrap()
+}
+
+/// Every file below `folder` whose name ends in `ending`, but not what is built.
+fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() {
+            if name != "target" && !name.starts_with('.') && name != "out" {
+                found.extend(files(&path, ending));
+            }
+        } else if name.ends_with(ending) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn shown(path: &Path) -> String {
+    path.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/")
+}
+
+/// Our packages: name, folder, and what its `[dependencies]` are.
+fn packages() -> BTreeMap<String, (PathBuf, BTreeSet<String>)> {
+    let mut packages = BTreeMap::new();
+    for path in files(&root(), "Cargo.toml") {
+        let manifest: toml::Table = toml::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        let Some(name) = manifest.get("package").and_then(|package| package["name"].as_str()) else { continue };
+        let dependencies = manifest.get("dependencies").and_then(toml::Value::as_table);
+        let dependencies = dependencies.map(|table| table.keys().cloned().collect()).unwrap_or_default();
+        packages.insert(name.to_owned(), (path.parent().unwrap().to_owned(), dependencies));
+    }
+    packages
+}
+
+#[test]
+fn packages_use_each_other_only_along_the_layers() {
+    let packages = packages();
+    let known: BTreeSet<&str> = EDGES.iter().map(|edge| edge.0).collect();
+    let there: BTreeSet<&str> = packages.keys().map(String::as_str).collect();
+    assert_eq!(there, known, "packages there are, and packages with edges in this file");
+    for &(name, allowed) in EDGES {
+        let ours = packages[name].1.iter().map(String::as_str).filter(|used| known.contains(used));
+        let forbidden: Vec<&str> = ours.filter(|used| !allowed.contains(used)).collect();
+        assert!(forbidden.is_empty(), "{name} may not depend on {forbidden:?}");
+    }
+}
+
+#[test]
+fn what_one_file_may_name_no_other_does() {
+    for &(name, only) in ONLY_IN {
+        let using = files(&root(), ".rs").into_iter().filter(|path| {
+            let text = std::fs::read_to_string(path).unwrap();
+            text.lines().any(|line| !line.trim_start().starts_with("//") && line.contains(&format!("{name}::")))
+        });
+        let using: Vec<String> = using.map(|path| shown(&path)).collect();
+        assert_eq!(using, [only], "files that name {name}");
+    }
+}
+
+#[test]
+fn sources_are_of_a_size_to_hold_in_the_head() {
+    let mut long = Vec::new();
+    for path in files(&root(), ".rs") {
+        let lines = std::fs::read_to_string(&path).unwrap().lines().count();
+        if lines > LONGEST {
+            long.push(format!("{} ({lines} lines)", shown(&path)));
+        }
+    }
+    assert!(long.is_empty(), "longer than {LONGEST} lines: {}", long.join(", "));
+}
+
+#[test]
+fn pages_link_to_files_that_exist() {
+    let mut broken = Vec::new();
+    for page in files(&root(), ".md") {
+        let text = std::fs::read_to_string(&page).unwrap();
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let target = link.split('#').next().unwrap_or_default();
+            if target.is_empty() || target.contains("://") || target.contains(char::is_whitespace) {
+                continue;
+            }
+            if !page.parent().unwrap().join(target).exists() {
+                broken.push(format!("{}: {link}", shown(&page)));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "links that lead nowhere: {}", broken.join(", "));
+}
+
+#[test]
+fn every_path_named_in_architecture_exists() {
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let named = text.split('`').skip(1).step_by(2);
+    let paths =
+        named.filter(|word| ["crates/", "tests/", "xtask/", "scenarios/"].iter().any(|top| word.starts_with(top)));
+    let missing: Vec<&str> =
+        paths.filter(|path| !path.contains(['<', '*', '{']) && !root().join(path).exists()).collect();
+    assert!(missing.is_empty(), "named in ARCHITECTURE.md, but not there: {missing:?}");
+}
