@@ -1,6 +1,8 @@
 //! The 2D ball is sampled exactly: every move leaves the target as it is, wrong twins of the moves do not, and chains agree with reference values
 //! that no chain was needed for.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math};
 use plaus_mcmc::check::{OneStep, PriorOnly, Ratios, Statistic, one_step, prior, ratios, rejection, visited};
 use plaus_mcmc::view::lend;
