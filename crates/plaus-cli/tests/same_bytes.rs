@@ -19,8 +19,8 @@ fn start(place: &Place, arguments: &str) -> Child {
     place.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-fn interrupt(child: &Child) {
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+fn signal(child: &Child, name: &str) {
+    assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
 }
 
 fn pause(milliseconds: u64) {
@@ -101,13 +101,38 @@ fn an_interrupted_run_says_how_to_go_on_and_does() {
     while !place.path("run/chain-00002.records").exists() {
         pause(5);
     }
-    interrupt(&child);
+    signal(&child, "-INT");
     let ended = Ended::of(child.wait_with_output().unwrap(), &long);
     assert_eq!(ended.code, Some(130), "{}", ended.err);
     ended.says(&["seed 7", "interrupted after iteration ", "with a checkpoint; go on: plaus resume run"]);
     assert_ne!(place.bytes("run"), place.bytes("whole"));
     place.ok("resume run -q");
     assert!(place.bytes("run") == place.bytes("whole"));
+}
+
+/// `nohup` has a program ignore the end of its terminal; SIGTERM still interrupts it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_started_by_nohup_outlives_its_terminal() {
+    let place = Place::new();
+    let endless = "sample ball.toml --iterations 100000000 -q --out run";
+    let script = format!("trap '' HUP; exec {} {endless}", env!("CARGO_BIN_EXE_plaus"));
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &script]).current_dir(place.path(""));
+    let mut child = shell.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    while !place.path("run/chain-00003.records").exists() {
+        pause(5);
+    }
+    signal(&child, "-HUP");
+    let length = || std::fs::metadata(place.path("run/chain-00003.records")).unwrap().len();
+    let before = length();
+    while length() == before && child.try_wait().unwrap().is_none() {
+        pause(5);
+    }
+    pause(100);
+    assert!(child.try_wait().unwrap().is_none(), "it works on");
+    signal(&child, "-TERM");
+    assert_eq!(child.wait().unwrap().code(), Some(130));
 }
 
 #[test]
