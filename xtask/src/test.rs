@@ -1,17 +1,20 @@
 //! Everything that must pass.
 
-use crate::command::{Failure, cargo, has_subcommand, root, target};
+use crate::command::{Command, Failure, cargo, has_subcommand, root, target};
 use crate::steps::{self, Done, Step};
 use std::fs;
+use std::path::PathBuf;
 
 /// Runs all of it.
 pub(crate) fn run() -> Result<(), Failure> {
     let golden = ["--package", "plaus-tests", "--test", "golden"];
     let quick = target().join("figures-quick");
-    let figures = cargo(&["run", "--quiet", "--package", "plaus-figures", "--", "--quick", "--out"]).args([&quick]);
+    let figures = Command::new(built("plaus-figures")).args(["--quick", "--out"]).args([&quick]);
     steps::run(vec![
         Step::command("format", cargo(&["fmt", "--all", "--", "--check"])),
         Step::command("clippy", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])),
+        // Everything at once: with a package at a time, cargo would build what they share anew for each choice of features.
+        Step::command("build", cargo(&["build", "--workspace", "--all-targets"])),
         Step::command("tests", cargo(&["test", "--workspace"])),
         Step::command("golden traces, unoptimised", cargo(&["test", "--profile", "unoptimised"]).args(golden)),
         Step::command("golden traces, release", cargo(&["test", "--release"]).args(golden)),
@@ -24,6 +27,11 @@ pub(crate) fn run() -> Result<(), Failure> {
     ])
 }
 
+/// Where the step `build` puts what has this name.
+fn built(name: &str) -> PathBuf {
+    target().join("debug").join(name)
+}
+
 /// Runs every example of every crate.
 fn examples() -> Result<Done, Failure> {
     let mut found = Vec::new();
@@ -34,14 +42,13 @@ fn examples() -> Result<Done, Failure> {
         for example in examples {
             let path = example.map_err(Failure::new)?.path();
             if path.extension().is_some_and(|extension| extension == "rs") {
-                let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                found.push((package.file_name().to_string_lossy().into_owned(), name));
+                found.push(path.file_stem().unwrap_or_default().to_string_lossy().into_owned());
             }
         }
     }
     found.sort();
-    for (package, example) in &found {
-        let command = cargo(&["run", "--quiet", "--package", package, "--example", example]);
+    for example in &found {
+        let command = Command::new(built("examples").join(example));
         println!("$ {}", command.shown());
         command.run()?;
     }
