@@ -24,6 +24,13 @@ pub(super) struct Member {
     pub(super) is_held: bool,
 }
 
+impl Member {
+    /// Acceleration of the parabola from the start to where the step ends.
+    pub(super) fn acceleration(&self, h: f64) -> DVec3 {
+        (self.x - self.start - self.start_v * h) * (2.0 / (h * h))
+    }
+}
+
 /// A lasting contact of a group: of member `a` with a surface or with member `b`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contact {
