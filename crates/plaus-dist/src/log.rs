@@ -1,12 +1,13 @@
 //! Quantities kept as logarithms: what may be mixed up silently has a type of its own.
 //!
-//! * [`LogDensity`]: log of a **normalised** density or probability. Terms whose dimension changes between states must be these.
+//! * [`LogDensity`]: log of a **normalised** density or probability. Terms whose dimension changes between states
+//!   must be these.
 //! * [`LogPotential`]: log of an **unnormalised** weight, such as a Gibbs factor. Only differences of it mean something.
 //! * [`LogRatio`]: log of an acceptance or Hastings ratio.
 //!
-//! −∞ is a value of all three (probability 0). NaN never is: it is the error [`NotANumber`] where it would arise, so that a
-//! broken model stops with a message instead of silently rejecting, or worse accepting, for ever. +∞ is no value of a density or a
-//! potential (an infinitely likely state could never be left) but it is one of a ratio.
+//! −∞ is a value of all three (probability 0). NaN never is: it is the error [`NotANumber`] where it would arise, so
+//! that a broken model stops with a message instead of silently rejecting, or worse accepting, for ever. +∞ is no value
+//! of a density or a potential (an infinitely likely state could never be left) but it is one of a ratio.
 //!
 //! ```
 //! use plaus_dist::{LogDensity, LogPotential};
@@ -31,18 +32,29 @@ pub struct NotANumber {
     pub value: f64,
 }
 
+#[inline]
 fn checked(value: f64, quantity: &'static str) -> Result<f64, NotANumber> {
     if value < f64::INFINITY { Ok(value) } else { Err(NotANumber { quantity, value }) }
 }
 
 /// Both summands lie in [−∞, ∞), so the sum is never NaN; a sum past the largest float saturates there.
+#[inline]
 fn saturating(a: f64, b: f64) -> f64 {
     (a + b).min(f64::MAX)
 }
 
 /// Log of a normalised density or probability, in nats, in [−∞, ∞).
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(try_from = "f64")]
 pub struct LogDensity(f64);
+
+/// Stored values are checked like new ones.
+impl TryFrom<f64> for LogDensity {
+    type Error = NotANumber;
+    fn try_from(nats: f64) -> Result<Self, NotANumber> {
+        Self::new(nats)
+    }
+}
 
 impl LogDensity {
     /// Certainty: the empty product, log 1.
@@ -54,17 +66,20 @@ impl LogDensity {
     ///
     /// # Errors
     /// [`NotANumber`] where `nats` is NaN or +∞.
+    #[inline]
     pub fn new(nats: f64) -> Result<Self, NotANumber> {
         checked(nats, "log density").map(Self)
     }
 
     /// The value in nats.
+    #[inline]
     #[must_use]
     pub fn value(self) -> f64 {
         self.0
     }
 
     /// Whether the density is 0.
+    #[inline]
     #[must_use]
     pub fn is_zero(self) -> bool {
         self.0 == f64::NEG_INFINITY
@@ -74,6 +89,7 @@ impl LogDensity {
 /// Product of independent densities.
 impl Add for LogDensity {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self(saturating(self.0, other.0))
     }
@@ -88,7 +104,16 @@ impl Sum for LogDensity {
 
 /// Log of an unnormalised weight, in nats, in [−∞, ∞).
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(try_from = "f64")]
 pub struct LogPotential(f64);
+
+/// Stored values are checked like new ones.
+impl TryFrom<f64> for LogPotential {
+    type Error = NotANumber;
+    fn try_from(nats: f64) -> Result<Self, NotANumber> {
+        Self::new(nats)
+    }
+}
 
 impl LogPotential {
     /// No preference: weight 1.
@@ -100,23 +125,34 @@ impl LogPotential {
     ///
     /// # Errors
     /// [`NotANumber`] where `nats` is NaN or +∞.
+    #[inline]
     pub fn new(nats: f64) -> Result<Self, NotANumber> {
         checked(nats, "log potential").map(Self)
     }
 
+    /// Wraps `nats` known to be finite from how it was computed.
+    #[inline]
+    pub(crate) fn finite(nats: f64) -> Self {
+        debug_assert!(nats.is_finite(), "{nats}");
+        Self(nats)
+    }
+
     /// The value in nats.
+    #[inline]
     #[must_use]
     pub fn value(self) -> f64 {
         self.0
     }
 
     /// Whether the weight is 0.
+    #[inline]
     #[must_use]
     pub fn is_zero(self) -> bool {
         self.0 == f64::NEG_INFINITY
     }
 
-    /// The same preference at inverse temperature `beta` ≥ 0: `beta · log weight`. A forbidden state stays forbidden at `beta` = 0.
+    /// The same preference at inverse temperature `beta` ≥ 0: `beta · log weight`. A forbidden state stays forbidden at
+    /// `beta` = 0.
     ///
     /// # Errors
     /// [`NotANumber`] where `beta` is NaN, negative against a forbidden state, or the product overflows upwards.
@@ -131,6 +167,7 @@ impl LogPotential {
 /// Product of weights.
 impl Add for LogPotential {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self(saturating(self.0, other.0))
     }
@@ -146,6 +183,7 @@ impl Sum for LogPotential {
 /// A density times a weight is an unnormalised target.
 impl Add<LogPotential> for LogDensity {
     type Output = LogPotential;
+    #[inline]
     fn add(self, other: LogPotential) -> LogPotential {
         LogPotential(saturating(self.0, other.0))
     }
@@ -153,7 +191,16 @@ impl Add<LogPotential> for LogDensity {
 
 /// Log of a ratio of probabilities or densities, in nats, in [−∞, ∞].
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
+#[serde(try_from = "f64")]
 pub struct LogRatio(f64);
+
+/// Stored values are checked like new ones.
+impl TryFrom<f64> for LogRatio {
+    type Error = NotANumber;
+    fn try_from(nats: f64) -> Result<Self, NotANumber> {
+        Self::new(nats)
+    }
+}
 
 impl LogRatio {
     /// The ratio 1: a symmetric proposal.
@@ -165,6 +212,7 @@ impl LogRatio {
     ///
     /// # Errors
     /// [`NotANumber`] where `nats` is NaN.
+    #[inline]
     pub fn new(nats: f64) -> Result<Self, NotANumber> {
         if nats.is_nan() { Err(NotANumber { quantity: "log ratio", value: nats }) } else { Ok(Self(nats)) }
     }
@@ -173,11 +221,13 @@ impl LogRatio {
     ///
     /// # Errors
     /// [`NotANumber`] where both are 0.
+    #[inline]
     pub fn of(numerator: LogDensity, denominator: LogDensity) -> Result<Self, NotANumber> {
         Self::new(numerator.0 - denominator.0)
     }
 
     /// The value in nats.
+    #[inline]
     #[must_use]
     pub fn value(self) -> f64 {
         self.0
@@ -187,11 +237,13 @@ impl LogRatio {
     ///
     /// # Errors
     /// [`NotANumber`] for 0 × ∞.
+    #[inline]
     pub fn times(self, other: Self) -> Result<Self, NotANumber> {
         Self::new(self.0 + other.0)
     }
 
     /// The ratio of the opposite direction.
+    #[inline]
     #[must_use]
     pub fn inverse(self) -> Self {
         Self(-self.0)
@@ -209,6 +261,15 @@ mod tests {
         assert!(LogPotential::new(f64::INFINITY).is_err());
         assert!(LogRatio::new(f64::INFINITY).is_ok());
         assert!(LogRatio::of(LogDensity::ZERO, LogDensity::ZERO).is_err());
+    }
+
+    #[test]
+    fn stored_values_are_checked_too() {
+        type Stored = serde::de::value::F64Deserializer<serde::de::value::Error>;
+        assert_eq!(LogDensity::deserialize(Stored::new(-2.5)).unwrap().value(), -2.5);
+        assert!(LogDensity::deserialize(Stored::new(f64::NAN)).is_err());
+        assert!(LogPotential::deserialize(Stored::new(f64::INFINITY)).is_err());
+        assert!(LogRatio::deserialize(Stored::new(f64::NAN)).is_err());
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! Keyed random streams: every random number is a pure function of (seed, chain, iteration, purpose).
 //!
-//! No generator is carried from one iteration to the next, so a chain resumes from its state and an iteration number alone, a simulation that
-//! stops early cannot shift later randomness, and the number of threads cannot matter.
+//! No generator is carried from one iteration to the next, so a chain resumes from its state and an iteration number
+//! alone, a simulation that stops early cannot shift later randomness, and the number of threads cannot matter.
 //!
-//! The seed and the chain are hashed with BLAKE3 into a 256-bit chain key once. The state of the xoshiro256++ generator of one
-//! iteration and purpose is that key, offset by a counter and passed through the SplitMix64 finaliser word by word; xoshiro's authors recommend SplitMix64 for seeding
-//! (Blackman & Vigna, "Scrambled linear pseudorandom number generators", ACM TOMS 47, 2021).
+//! The seed and the chain are hashed with BLAKE3 into a 256-bit chain key once. The state of the xoshiro256++ generator
+//! of one iteration and purpose is that key, offset by a counter and passed through the SplitMix64 finaliser word by
+//! word; xoshiro's authors recommend SplitMix64 for seeding (Blackman & Vigna, "Scrambled linear pseudorandom number
+//! generators", ACM TOMS 47, 2021).
 //!
 //! ```
 //! use plaus_dist::{Seed, Purpose};
@@ -103,6 +104,12 @@ fn split_mix(mut z: u64) -> u64 {
 #[inline]
 pub fn open_unit(stream: &mut impl Rng) -> f64 {
     ((stream.next_u64() >> 12) as f64 + 0.5) * (1.0 / 4_503_599_627_370_496.0)
+}
+
+/// Uniform on the whole numbers 0 .. `count`, to within 2⁻⁶⁴ · `count` of each one's probability; 0 where `count` is 0.
+#[inline]
+pub fn below(stream: &mut impl Rng, count: usize) -> usize {
+    ((u128::from(stream.next_u64()) * count as u128) >> 64) as usize
 }
 
 #[cfg(test)]

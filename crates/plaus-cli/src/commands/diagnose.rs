@@ -1,0 +1,59 @@
+//! `plaus diagnose`
+
+use crate::console;
+use crate::failure::{Failure, Outcome};
+use crate::report;
+use plaus_run::{Folder, Phase, Run, RunOf, RunVisitor};
+use plaus_scenes::Scene;
+use std::path::PathBuf;
+
+/// Which run.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Folder of the run
+    run: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Counts the draws of each chain.
+pub(super) struct CountDraws;
+
+impl RunVisitor for CountDraws {
+    type Output = u64;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> u64 {
+        run.draws(Phase::Sampling)
+    }
+}
+
+impl Args {
+    pub(super) fn run(self) -> Result<Outcome, Failure> {
+        let run = Run::open(&Folder::new(&self.run))?;
+        if run.folder().is_being_written() {
+            console::note_line("note: the run is being written; this is as of its last checkpoint");
+        }
+        if run.visit(CountDraws)? == 0 {
+            return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
+        }
+        let diagnosis = report::diagnose(&run, None)?;
+        let manifest = run.manifest();
+        if let Some(warning) = report::warning(manifest) {
+            console::note_line(&warning);
+        }
+        if self.json {
+            console::print_line(&report::to_json(manifest, &diagnosis).to_string())?;
+        } else {
+            let solutions = report::solutions(&diagnosis, diagnosis.draws);
+            let findings: String = diagnosis.findings.iter().map(|finding| format!("  {finding}\n")).collect();
+            let verdict = if diagnosis.is_healthy() { "nothing speaks against these chains\n" } else { "findings:\n" };
+            console::print(&format!(
+                "{}\n{solutions}\n{}\n{}\n{verdict}{findings}",
+                report::headline(manifest),
+                report::scalar_table(&diagnosis),
+                report::move_table(manifest, &diagnosis),
+            ))?;
+        }
+        Ok(if diagnosis.is_healthy() { Outcome::Done } else { Outcome::Unsatisfied })
+    }
+}

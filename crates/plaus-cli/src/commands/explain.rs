@@ -1,0 +1,64 @@
+//! `plaus explain`
+
+use crate::console;
+use crate::failure::{Failure, Outcome};
+use plaus_scenes::registry::NAMES;
+use plaus_scenes::scenario::{self, KeyDoc};
+
+/// What to explain.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// A key such as sigma_d or world.ball2d.sigma_d, or a scene such as ball2d; nothing lists all keys
+    key: Option<String>,
+}
+
+impl Args {
+    pub(super) fn run(self) -> Result<Outcome, Failure> {
+        let text = match self.key.as_deref() {
+            None => list(""),
+            Some(scene) if NAMES.contains(&scene) => {
+                let table = format!("world.{scene}");
+                let about = scenario::explain(&table).map(|doc| format!("{}\n\n", doc.description)).unwrap_or_default();
+                format!("{about}{}", list(&format!("{table}.")))
+            }
+            Some(key) => describe(&scenario::explain(key).map_err(|nearest| unknown(key, nearest))?),
+        };
+        console::print(&text)?;
+        Ok(Outcome::Done)
+    }
+}
+
+fn unknown(key: &str, nearest: Option<String>) -> Failure {
+    let advice = match nearest {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "`plaus explain` lists all keys".to_owned(),
+    };
+    Failure::Message(format!("there is no key `{key}`; {advice}"))
+}
+
+fn list(prefix: &str) -> String {
+    let rows = scenario::keys().into_iter().filter(|doc| doc.key.starts_with(prefix)).map(|doc| {
+        let first = doc.description.lines().next().unwrap_or_default();
+        let sentence = first.split_once(". ").map_or(first, |(sentence, _)| sentence).trim_end_matches('.');
+        (doc.key, format!("{} = {}", sentence, doc.default))
+    });
+    rows.map(|(key, about)| format!("{key}\n    {about}\n")).collect()
+}
+
+fn describe(doc: &KeyDoc) -> String {
+    let unit = doc.unit.as_ref().map(|unit| format!(", in {unit}")).unwrap_or_default();
+    let range = if doc.range.is_empty() { String::new() } else { format!(", {}", doc.range) };
+    let mut rows = vec![vec!["kind".to_owned(), format!("{}{range}{unit}", doc.kind)]];
+    if !doc.default.is_empty() {
+        rows.push(vec!["default".to_owned(), doc.default.clone()]);
+    }
+    let facts = rows.iter().map(|row| format!("{:<8} {}\n", row[0], row[1])).collect::<String>();
+    let inside = table_keys(&doc.key);
+    format!("{}\n{facts}\n{}\n{inside}", doc.key, doc.description)
+}
+
+/// The keys in a table; nothing for a key that holds a value.
+fn table_keys(key: &str) -> String {
+    let keys = list(&format!("{key}."));
+    if keys.is_empty() { keys } else { format!("\n{keys}") }
+}

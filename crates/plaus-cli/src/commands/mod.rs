@@ -1,0 +1,58 @@
+//! The subcommands, one a file.
+
+mod check;
+mod completions;
+mod diagnose;
+mod explain;
+mod export;
+mod new;
+mod replay;
+mod resume;
+mod sample;
+mod schema;
+
+use crate::failure::{Failure, Outcome};
+use clap::Subcommand;
+
+/// What to do.
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Write a commented scenario file for a scene.
+    New(new::Args),
+    /// Say whether a scenario file is right, and show it with all defaults.
+    Check(check::Args),
+    /// Sample a scenario into a run folder.
+    Sample(sample::Args),
+    /// Go on with an interrupted run from its last checkpoint, or make it longer.
+    Resume(resume::Args),
+    /// Say whether the chains of a run have converged: R-hat, effective sample sizes, acceptance.
+    Diagnose(diagnose::Args),
+    /// Write the draws of a run as a table or for ArviZ.
+    Export(export::Args),
+    /// Rebuild the animation of one sample from its draw.
+    Replay(replay::Args),
+    /// Print the JSON Schema of scenario files.
+    Schema,
+    /// Explain a scenario key, or list all keys.
+    Explain(explain::Args),
+    /// Print completions for a shell.
+    Completions(completions::Args),
+}
+
+impl Command {
+    /// Does it.
+    pub(crate) fn run(self) -> Result<Outcome, Failure> {
+        match self {
+            Self::New(args) => args.run(),
+            Self::Check(args) => args.run(),
+            Self::Sample(args) => args.run(),
+            Self::Resume(args) => args.run(),
+            Self::Diagnose(args) => args.run(),
+            Self::Export(args) => args.run(),
+            Self::Replay(args) => args.run(),
+            Self::Schema => schema::run(),
+            Self::Explain(args) => args.run(),
+            Self::Completions(args) => args.run(),
+        }
+    }
+}

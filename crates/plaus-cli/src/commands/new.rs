@@ -1,0 +1,35 @@
+//! `plaus new`
+
+use crate::console;
+use crate::failure::{Failure, Outcome};
+use plaus_scenes::registry::NAMES;
+use plaus_scenes::scenario;
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Which scene, and where to.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Name of the scene, e.g. ball2d
+    scene: String,
+    /// File to write; nothing, or `-`, writes to standard output. Never overwritten
+    file: Option<PathBuf>,
+}
+
+impl Args {
+    pub(super) fn run(self) -> Result<Outcome, Failure> {
+        let unknown = || Failure::Message(format!("there is no scene `{}`; known: {}", self.scene, NAMES.join(", ")));
+        let text = scenario::template(&self.scene).ok_or_else(unknown)?;
+        match self.file.filter(|file| file != Path::new("-")) {
+            None => console::print(&text)?,
+            Some(file) => {
+                let refuse = |error| Failure::Message(format!("{}: cannot write: {error}", file.display()));
+                let mut out = File::create_new(&file).map_err(refuse)?;
+                out.write_all(text.as_bytes()).map_err(refuse)?;
+                console::note_line(&format!("wrote {0}; next: plaus sample {0} --out run", file.display()));
+            }
+        }
+        Ok(Outcome::Done)
+    }
+}

@@ -1,0 +1,270 @@
+//! `plaus sample`, and what it shares with `plaus resume`.
+
+use crate::clock::{in_words, parse_duration};
+use crate::console;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt;
+use crate::progress::{Monitor, Stop, Style};
+use crate::report;
+use crate::scenario_file;
+use crate::table::{grouped, rate};
+use plaus_mcmc::Ending;
+use plaus_run::{Diagnosis, Error, Folder, Manifest, Run, Sampling};
+use plaus_scenes::scenario::ScenarioError;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Draws of all chains together that the closing summary looks at; `plaus diagnose` looks at all.
+const SUMMARISED: u64 = 400_000;
+
+/// What to sample, and how.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Scenario file (TOML); `plaus new` writes one
+    scenario: PathBuf,
+    /// Folder to make for the run; must not exist
+    #[arg(long, value_name = "RUN")]
+    out: PathBuf,
+    /// Seed of all randomness
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Number of independent chains
+    #[arg(long)]
+    chains: Option<u64>,
+    /// Iterations of each chain after the warm-up
+    #[arg(long)]
+    iterations: Option<u64>,
+    /// Iterations before sampling begins
+    #[arg(long)]
+    warmup: Option<u64>,
+    /// Record every so-manieth iteration
+    #[arg(long)]
+    thin: Option<u64>,
+    /// Stop once so many distinct satisfying solutions are recorded
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..))]
+    solutions: Option<u64>,
+    /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    overrides: Vec<String>,
+    #[command(flatten)]
+    watching: Watching,
+}
+
+/// How a run is watched.
+#[derive(clap::Args)]
+pub(crate) struct Watching {
+    /// Threads; 0 is one a core. Results never depend on it
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Stop after this time, e.g. 60s, 1.5m or 2h; the run can be resumed
+    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
+    max_time: Option<Duration>,
+    /// Print progress and the summary as JSON lines
+    #[arg(long)]
+    json: bool,
+    /// Show no progress
+    #[arg(short, long, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Show progress more often, chain by chain, also where there is no terminal
+    #[arg(short, long)]
+    verbose: bool,
+}
+
+impl Args {
+    pub(super) fn run(mut self) -> Result<Outcome, Failure> {
+        let flags = [
+            ("seed", self.seed),
+            ("chains", self.chains),
+            ("iterations", self.iterations),
+            ("warmup", self.warmup),
+            ("thin", self.thin),
+        ];
+        let given = flags.into_iter().filter_map(|(key, value)| Some(format!("sampler.{key}={}", value?)));
+        self.overrides.extend(given);
+        let recipe = scenario_file::read(&self.scenario, self.overrides, self.solutions)?;
+        let folder = Folder::new(&self.out);
+        self.watching.watch(&folder, |sampling| {
+            plaus_run::sample(&folder, &recipe, sampling).map_err(|error| match error {
+                Error::Config(error) => {
+                    ScenarioError::locate(&self.scenario.display().to_string(), &recipe.text, &error).into()
+                }
+                other => other.into(),
+            })
+        })
+    }
+}
+
+impl Watching {
+    fn style(&self) -> Style {
+        match (self.json, self.quiet) {
+            (true, _) => Style::Json,
+            (_, true) => Style::Silent,
+            _ if console::is_live() => Style::Live,
+            _ => Style::Plain,
+        }
+    }
+
+    /// Runs `sampling`, shows how it goes, and sums up.
+    pub(super) fn watch(
+        &self,
+        folder: &Folder,
+        sampling: impl FnOnce(Sampling<'_>) -> Result<Ending, Failure>,
+    ) -> Result<Outcome, Failure> {
+        interrupt::listen()?;
+        let mut monitor = Monitor::new(self.style(), self.verbose, self.max_time);
+        let mut opening = Opening { watching: self, monitor: &mut monitor, folder };
+        let ended = sampling(Sampling::new(self.threads, &mut opening));
+        monitor.clear();
+        self.sum_up(folder, &monitor, ended?)
+    }
+
+    fn open(&self, folder: &Folder, manifest: &Manifest, done: u64) {
+        if self.json {
+            let begin = json!({
+                "event": "begin",
+                "run": folder.path().display().to_string(),
+                "plaus": manifest.plaus,
+                "scene": manifest.scene,
+                "seed": manifest.plan.seed,
+                "scenario_hash": manifest.scenario.hash,
+                "exact_acceptance": manifest.exact,
+                "plan": manifest.plan,
+                "iteration": done,
+            });
+            let _ = console::print_line(&begin.to_string()); // where the reader has gone, the end of the run will say so
+        } else if self.quiet {
+            console::note_line(&format!("seed {}", manifest.plan.seed));
+        } else {
+            console::note_line(&report::headline(manifest));
+            if done > 0 {
+                console::note_line(&format!("going on from iteration {}", grouped(done)));
+            }
+        }
+        if let Some(warning) = report::warning(manifest) {
+            console::note_line(&warning);
+        }
+    }
+
+    fn sum_up(&self, folder: &Folder, monitor: &Monitor, ending: Ending) -> Result<Outcome, Failure> {
+        let path = folder.path();
+        if monitor.stop() == Some(Stop::Interrupted) && ending == Ending::Stopped {
+            if self.json {
+                console::print_line(
+                    &json!({ "event": "end", "ending": "interrupted", "iteration": monitor.done() }).to_string(),
+                )?;
+            }
+            let done = grouped(monitor.done());
+            console::note_line(&format!(
+                "interrupted after iteration {done}, with a checkpoint; go on: plaus resume {}",
+                quoted(path)
+            ));
+            return Ok(Outcome::Interrupted);
+        }
+        let run = Run::open(folder)?;
+        let plan = run.manifest().plan;
+        let diagnosis = report::diagnose(&run, Some(SUMMARISED / u64::from(plan.chains)))?;
+        if self.json {
+            let mut end = report::to_json(run.manifest(), &diagnosis);
+            end["event"] = json!("end");
+            end["ending"] = json!(ending_in_words(ending));
+            end["seconds"] = json!(monitor.seconds());
+            end["iterations_per_second"] = json!(monitor.rate());
+            console::print_line(&end.to_string())?;
+        } else if !self.quiet {
+            console::print(&summary(&run, &diagnosis, monitor, ending))?;
+        }
+        let missing = plan.solutions.filter(|&wanted| ending == Ending::Complete && diagnosis.tally.distinct < wanted);
+        if let Some(wanted) = missing {
+            let found = diagnosis.tally.distinct;
+            console::note_line(&format!(
+                "only {found} of the {wanted} distinct solutions were found; go on: plaus resume {} --iterations {}",
+                quoted(path),
+                10 * plan.iterations
+            ));
+        }
+        if !diagnosis.tally.is_satisfied() {
+            console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
+        }
+        let satisfied = diagnosis.tally.is_satisfied() && missing.is_none();
+        Ok(if satisfied { Outcome::Done } else { Outcome::Unsatisfied })
+    }
+}
+
+/// Says what is sampled once that is known, then hands over to the monitor.
+struct Opening<'a> {
+    watching: &'a Watching,
+    monitor: &'a mut Monitor,
+    folder: &'a Folder,
+}
+
+impl plaus_run::Watch for Opening<'_> {
+    fn begin(&mut self, manifest: &Manifest, done: u64) {
+        self.watching.open(self.folder, manifest, done);
+        self.monitor.begin(manifest, done);
+    }
+    fn round(&mut self, progress: &plaus_mcmc::Progress<'_>) -> plaus_mcmc::Control {
+        self.monitor.round(progress)
+    }
+    fn checkpoint_due(&mut self) -> bool {
+        self.monitor.checkpoint_due()
+    }
+    fn checkpoint_done(&mut self) {
+        self.monitor.checkpoint_done();
+    }
+}
+
+fn ending_in_words(ending: Ending) -> &'static str {
+    match ending {
+        Ending::Complete => "complete",
+        Ending::EnoughSolutions => "enough_solutions",
+        Ending::Stopped => "stopped",
+    }
+}
+
+fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) -> String {
+    let path = quoted(run.folder().path());
+    let plan = run.manifest().plan;
+    let iterations = diagnosis.iterations + plan.warmup;
+    let why = match ending {
+        Ending::Complete => format!("done: {} iterations of each chain", grouped(plan.end())),
+        Ending::EnoughSolutions => {
+            format!("done: enough solutions after {} iterations of each chain", grouped(iterations))
+        }
+        Ending::Stopped => {
+            format!("out of time after {} of {} iterations of each chain", grouped(iterations), grouped(plan.end()))
+        }
+    };
+    let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
+    let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
+    let recorded = diagnosis.iterations / plan.thin;
+    text += &report::solutions(diagnosis, recorded);
+    text += &format!("\n{}", report::scalar_table(diagnosis));
+    if diagnosis.stride > 1 {
+        text += &format!("(from every {}th draw; `plaus diagnose` uses all)\n", diagnosis.stride);
+    }
+    match diagnosis.findings.as_slice() {
+        [] => {}
+        [first] => text += &format!("\nnot to be trusted yet: {first}\n"),
+        [first, rest @ ..] => {
+            text += &format!("\nnot to be trusted yet: {first}; and {} more findings of `plaus diagnose`\n", rest.len())
+        }
+    }
+    text += &format!("\nnext:\n  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
+    if let Some(best) = diagnosis.tally.best() {
+        text += &format!("  plaus replay {path} --sample {best}\n");
+    }
+    if ending == Ending::Stopped {
+        text += &format!("  plaus resume {path}\n");
+    } else if !diagnosis.is_healthy() {
+        text += &format!("  plaus resume {path} --iterations {}\n", 10 * plan.iterations);
+    }
+    text
+}
+
+/// A path as a shell takes it.
+pub(super) fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || "/._-+=:@,%".contains(c));
+    if plain { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
+}

@@ -1,0 +1,11 @@
+//! `plaus schema`
+
+use crate::console;
+use crate::failure::{Failure, Outcome};
+use plaus_scenes::scenario;
+
+/// Prints the JSON Schema of scenario files.
+pub(super) fn run() -> Result<Outcome, Failure> {
+    console::print_line(&format!("{:#}", scenario::schema()))?;
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,105 @@
+//! How the program ends, and how it says what went wrong.
+
+use crate::console;
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use plaus_scenes::scenario::{Problem, ScenarioError, Source};
+use std::io;
+use std::process::ExitCode;
+
+/// How a command ended that did what it could.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// As wished.
+    Done,
+    /// No satisfying sample, or failed diagnostics.
+    Unsatisfied,
+    /// Interrupted, with a checkpoint.
+    Interrupted,
+}
+
+/// Why a command could not do its work.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The scenario is wrong.
+    Scenario(ScenarioError),
+    /// Anything else that is said in one message.
+    Message(String),
+    /// Whoever read our output has gone.
+    ReaderGone,
+}
+
+impl From<ScenarioError> for Failure {
+    fn from(error: ScenarioError) -> Self {
+        Self::Scenario(error)
+    }
+}
+
+impl From<plaus_run::Error> for Failure {
+    fn from(error: plaus_run::Error) -> Self {
+        match error {
+            plaus_run::Error::Output(error) => Self::of_output(error),
+            other => Self::Message(other.to_string()),
+        }
+    }
+}
+
+impl From<plaus_run::RunFileError> for Failure {
+    fn from(error: plaus_run::RunFileError) -> Self {
+        Self::Message(error.to_string())
+    }
+}
+
+impl Failure {
+    /// A failed write of output.
+    pub(crate) fn of_output(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Self::ReaderGone,
+            _ => Self::Message(format!("cannot write: {error}")),
+        }
+    }
+
+    /// The same, saying which file it is about.
+    pub(crate) fn about(self, what: &str) -> Self {
+        match self {
+            Self::Message(message) if !message.contains(what) => Self::Message(format!("{what}: {message}")),
+            other => other,
+        }
+    }
+
+    /// Tells the user; gives the exit code.
+    pub(crate) fn report(&self) -> ExitCode {
+        match self {
+            Self::Scenario(error) => console::note_line(&render(error, console::is_coloured())),
+            Self::Message(message) => console::note_line(&format!("error: {message}")),
+            Self::ReaderGone => return ExitCode::SUCCESS,
+        }
+        ExitCode::from(2)
+    }
+}
+
+/// All problems of a scenario, each with its line shown.
+fn render(error: &ScenarioError, coloured: bool) -> String {
+    let renderer = if coloured { Renderer::styled() } else { Renderer::plain() };
+    let shown = error.problems.iter().map(|problem| render_one(error, problem, &renderer));
+    shown.collect::<Vec<_>>().join("\n")
+}
+
+fn render_one(error: &ScenarioError, problem: &Problem, renderer: &Renderer) -> String {
+    let title = match &problem.source {
+        Source::File if problem.key.is_empty() => problem.message.clone(),
+        Source::File => format!("{}: {}", problem.key, problem.message),
+        Source::Override(said) => format!("--set {said}: {}", problem.message),
+    };
+    let mut group = Group::with_title(Level::ERROR.primary_title(title));
+    if let Some(span) = &problem.span {
+        let end = span.end.min(error.text.len());
+        let mark = AnnotationKind::Primary.span(span.start.min(end)..end);
+        group = group.element(Snippet::source(&error.text).path(&error.name).annotation(mark));
+    } else if problem.source == Source::File {
+        group = group.element(Level::NOTE.message(format!("in {}", error.name)));
+    }
+    if let Some(help) = &problem.help {
+        group = group.element(Level::HELP.message(help));
+    }
+    renderer.render(&[group]).to_string()
+}

@@ -1,0 +1,244 @@
+//! Watches a run: shows how far it is, makes it durable about once a second, stops it when asked to.
+
+use crate::clock::{Stopwatch, in_words};
+use crate::console;
+use crate::interrupt;
+use crate::table::{grouped, percent, rate};
+use plaus_mcmc::{Control, Hits, MoveCounts, Progress};
+use plaus_run::{Manifest, Watch};
+use serde_json::{Value, json};
+use std::time::Duration;
+
+/// Chains shown on a terminal; the others are summed up.
+const SHOWN_CHAINS: usize = 8;
+
+/// How progress is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Style {
+    /// Not at all.
+    Silent,
+    /// A block of lines on a terminal, drawn again and again.
+    Live,
+    /// A line now and then.
+    Plain,
+    /// A JSON line on stdout now and then.
+    Json,
+}
+
+/// Why a run was stopped before its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stop {
+    /// By Ctrl-C or a signal.
+    Interrupted,
+    /// By `--max-time`.
+    OutOfTime,
+}
+
+/// The watch of a run.
+pub(crate) struct Monitor {
+    style: Style,
+    verbose: bool,
+    limit: Option<Duration>,
+    clock: Stopwatch,
+    manifest: Option<Manifest>,
+    begun_at: u64,
+    done: u64,
+    shown: Option<Stopwatch>,
+    drawn: usize,
+    checkpoint: Stopwatch,
+    /// Seconds between checkpoints: at least one, and more where writing one takes long.
+    pause: f64,
+    writing: Option<Stopwatch>,
+    stop: Option<Stop>,
+}
+
+impl Monitor {
+    /// A watch that stops the run after `limit`.
+    pub(crate) fn new(style: Style, verbose: bool, limit: Option<Duration>) -> Self {
+        Self {
+            style,
+            verbose,
+            limit,
+            clock: Stopwatch::start(),
+            manifest: None,
+            begun_at: 0,
+            done: 0,
+            shown: None,
+            drawn: 0,
+            checkpoint: Stopwatch::start(),
+            pause: 1.0,
+            writing: None,
+            stop: None,
+        }
+    }
+
+    /// Why the run was stopped, if it was.
+    pub(crate) fn stop(&self) -> Option<Stop> {
+        self.stop
+    }
+
+    /// Iterations each chain has done.
+    pub(crate) fn done(&self) -> u64 {
+        self.done
+    }
+
+    /// Seconds since the run began, or went on.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.clock.seconds()
+    }
+
+    /// Iterations of all chains together, per second.
+    pub(crate) fn rate(&self) -> f64 {
+        let chains = self.manifest.as_ref().map_or(0, |manifest| manifest.plan.chains);
+        (self.done - self.begun_at) as f64 * f64::from(chains) / self.seconds()
+    }
+
+    fn show(&mut self, progress: &Progress<'_>) {
+        let every = match (self.style, self.verbose) {
+            (Style::Silent, _) => return,
+            (Style::Live, _) => 0.15,
+            (Style::Json, _) | (Style::Plain, true) => 1.0,
+            (Style::Plain, false) => 10.0,
+        };
+        if self.shown.map_or(self.seconds(), |shown| shown.seconds()) < every {
+            return;
+        }
+        let Some(manifest) = self.manifest.take() else { return };
+        match self.style {
+            Style::Live => self.draw(&manifest, progress),
+            Style::Json => self.print_json(&manifest, progress),
+            _ => {
+                console::note_line(&self.headline(&manifest, progress));
+                let chains = if self.verbose { self.chain_lines(&manifest, progress) } else { Vec::new() };
+                chains.iter().for_each(|line| console::note_line(line));
+            }
+        }
+        self.manifest = Some(manifest);
+        self.shown = Some(Stopwatch::start());
+    }
+
+    fn eta(&self, manifest: &Manifest) -> f64 {
+        let left = manifest.plan.end().saturating_sub(self.done) as f64;
+        left * self.seconds() / (self.done - self.begun_at) as f64
+    }
+
+    fn headline(&self, manifest: &Manifest, progress: &Progress<'_>) -> String {
+        let end = manifest.plan.end();
+        let wanted = manifest.plan.solutions.map(|wanted| format!(" of {wanted}")).unwrap_or_default();
+        format!(
+            "{} {:>3.0}%  iteration {} of {}  {}  hits {}  distinct {}{wanted}  ETA {}",
+            manifest.scene,
+            100.0 * self.done as f64 / end as f64,
+            grouped(self.done),
+            grouped(end),
+            rate(self.rate()),
+            percent(share_of_hits(&progress.chains, self.done)),
+            grouped(progress.distinct.count()),
+            in_words(self.eta(manifest)),
+        )
+    }
+
+    fn chain_lines(&self, manifest: &Manifest, progress: &Progress<'_>) -> Vec<String> {
+        let speed = rate(self.rate() / f64::from(manifest.plan.chains));
+        let line = |(chain, (counts, hits)): (usize, &(&[MoveCounts], Hits))| {
+            let moves = manifest.moves.iter().zip(*counts);
+            let accepted = moves.map(|(name, count)| format!("{name} {}", percent(count.acceptance())));
+            let hit = percent(hits.count as f64 / self.done as f64);
+            format!(
+                "  chain {chain:<3} {speed:>10}  hits {hit:>6}  accepted: {}",
+                accepted.collect::<Vec<_>>().join("  ")
+            )
+        };
+        let mut lines: Vec<String> = progress.chains.iter().enumerate().take(SHOWN_CHAINS).map(line).collect();
+        if let Some(more) = progress.chains.len().checked_sub(SHOWN_CHAINS).filter(|&more| more > 0) {
+            lines.push(format!("  and {more} more chains"));
+        }
+        lines
+    }
+
+    /// Draws the block in place of the one before.
+    fn draw(&mut self, manifest: &Manifest, progress: &Progress<'_>) {
+        let mut lines = vec![self.headline(manifest, progress)];
+        lines.extend(self.chain_lines(manifest, progress));
+        let text: String = lines.iter().map(|line| format!("\x1b[2K{line}\n")).collect();
+        console::note(&format!("{}{text}", self.up()));
+        self.drawn = lines.len();
+    }
+
+    fn up(&self) -> String {
+        if self.drawn > 0 { format!("\x1b[{}A", self.drawn) } else { String::new() }
+    }
+
+    /// Takes the block away, so that what follows stands in its place.
+    pub(crate) fn clear(&mut self) {
+        if self.drawn > 0 {
+            console::note(&format!("{}\x1b[J", self.up()));
+            self.drawn = 0;
+        }
+    }
+
+    fn print_json(&self, manifest: &Manifest, progress: &Progress<'_>) {
+        let chain = |(chain, (counts, hits)): (usize, &(&[MoveCounts], Hits))| {
+            json!({
+                "chain": chain,
+                "iterations_per_second": self.rate() / f64::from(manifest.plan.chains),
+                "hits": hits.count,
+                "first_hit": hits.first,
+                "acceptance": acceptance(&manifest.moves, counts),
+            })
+        };
+        let line = json!({
+            "event": "progress",
+            "iteration": self.done,
+            "end": manifest.plan.end(),
+            "distinct": progress.distinct.count(),
+            "iterations_per_second": self.rate(),
+            "eta_seconds": self.eta(manifest),
+            "chains": progress.chains.iter().enumerate().map(chain).collect::<Vec<_>>(),
+        });
+        let _ = console::print_line(&line.to_string()); // where the reader has gone, the end of the run will say so
+    }
+}
+
+/// Acceptance of each move, by name.
+pub(crate) fn acceptance(moves: &[String], counts: &[MoveCounts]) -> Value {
+    moves.iter().zip(counts).map(|(name, count)| (name.clone(), json!(count.acceptance()))).collect()
+}
+
+fn share_of_hits(chains: &[(&[MoveCounts], Hits)], done: u64) -> f64 {
+    let hits: u64 = chains.iter().map(|(_, hits)| hits.count).sum();
+    hits as f64 / (done as f64 * chains.len() as f64)
+}
+
+impl Watch for Monitor {
+    fn begin(&mut self, manifest: &Manifest, done: u64) {
+        self.clock = Stopwatch::start();
+        self.checkpoint = self.clock;
+        (self.begun_at, self.done) = (done, done);
+        self.manifest = Some(manifest.clone());
+    }
+
+    fn round(&mut self, progress: &Progress<'_>) -> Control {
+        self.done = progress.end_iteration;
+        if interrupt::asked() {
+            self.stop = Some(Stop::Interrupted);
+        } else if self.limit.is_some_and(|limit| self.clock.elapsed() >= limit) {
+            self.stop = Some(Stop::OutOfTime);
+        }
+        self.show(progress);
+        if self.stop.is_some() { Control::Stop } else { Control::Continue }
+    }
+
+    fn checkpoint_due(&mut self) -> bool {
+        let due = self.checkpoint.seconds() >= self.pause;
+        self.writing = due.then(Stopwatch::start);
+        due
+    }
+
+    fn checkpoint_done(&mut self) {
+        if let Some(writing) = self.writing.take() {
+            self.pause = (20.0 * writing.seconds()).max(1.0);
+        }
+        self.checkpoint = Stopwatch::start();
+    }
+}

@@ -1,0 +1,153 @@
+//! What is said about a run once it is there.
+
+use crate::progress::acceptance;
+use crate::table::{grouped, lay_out, percent, short};
+use plaus_run::{Diagnosis, Manifest, Run, RunFileError, RunOf, RunVisitor};
+use plaus_scenes::{Role, Scene};
+use serde_json::{Value, json};
+
+/// Diagnoses a run, from at most so many draws a chain.
+pub(crate) struct Diagnose(pub(crate) Option<u64>);
+
+impl RunVisitor for Diagnose {
+    type Output = Result<Diagnosis, RunFileError>;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+        Diagnosis::of(&run, self.0)
+    }
+}
+
+/// Diagnoses a run.
+pub(crate) fn diagnose(run: &Run, most: Option<u64>) -> Result<Diagnosis, plaus_run::Error> {
+    Ok(run.visit(Diagnose(most))??)
+}
+
+/// The line that says what a run is; the seed is always in it.
+pub(crate) fn headline(manifest: &Manifest) -> String {
+    let plan = &manifest.plan;
+    let thin = if plan.thin > 1 { format!(", every {}th recorded", plan.thin) } else { String::new() };
+    let rule = if manifest.exact { "exact" } else { "not exact" };
+    format!(
+        "{} ({}): seed {}, {} chains of {} iterations after {} of warm-up{thin}, {rule} acceptance",
+        manifest.scene,
+        manifest.scenario.file,
+        plan.seed,
+        plan.chains,
+        grouped(plan.iterations),
+        grouped(plan.warmup),
+    )
+}
+
+/// What to tell of an acceptance rule without a guarantee.
+pub(crate) fn warning(manifest: &Manifest) -> Option<String> {
+    let on: Vec<&str> = manifest.acceptance_rule.iter().filter(|(_, on)| **on).map(|(flag, _)| flag.as_str()).collect();
+    let flags = on.join(", ");
+    (!manifest.exact).then(|| {
+        format!(
+            "warning: the acceptance rule is the paper's as printed ({flags}): such a chain has no guaranteed stationary law, \
+             and what it converges to, if it does, is unknown. Set sampler.rules.preset = \"exact\" for samples of the stated law"
+        )
+    })
+}
+
+/// The table of all scalars, those of the draw first.
+pub(crate) fn scalar_table(diagnosis: &Diagnosis) -> String {
+    let head = ["", "mean", "sd", "MCSE", "ESS bulk", "ESS tail", "ESS/1000 it", "R-hat"];
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for (role, title) in [(Role::Draw, "variables of the draw"), (Role::Outcome, "outcomes")] {
+        let mut of_role = diagnosis.scalars.iter().filter(|row| row.scalar.role == role).peekable();
+        if of_role.peek().is_none() {
+            continue;
+        }
+        let mut heading = head.map(str::to_owned).to_vec();
+        heading[0] = title.to_owned();
+        rows.push(heading);
+        for row in of_role {
+            let unit = if row.scalar.unit.is_empty() { String::new() } else { format!(" ({})", row.scalar.unit) };
+            let mut cells = vec![format!("  {}{unit}", row.scalar.name)];
+            match &row.summary {
+                Some(s) => {
+                    let per_1000 = row.ess_per_1000.map_or("-".to_owned(), short);
+                    let rhat = s.rhat.map_or("-".to_owned(), |rhat| format!("{rhat:.4}"));
+                    cells.extend([s.mean, s.sd, s.mcse_mean].map(short));
+                    cells.extend([s.ess_bulk, s.ess_tail].map(|ess| format!("{ess:.0}")));
+                    cells.extend([per_1000, rhat]);
+                }
+                None => cells.extend(std::iter::repeat_n("-".to_owned(), head.len() - 1)),
+            }
+            rows.push(cells);
+        }
+    }
+    lay_out(&rows)
+}
+
+/// Each move's acceptance, over all chains and per chain where there are few.
+pub(crate) fn move_table(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
+    let tally = &diagnosis.tally;
+    let few = tally.chains.len() <= 8;
+    let mut rows = vec![vec!["move".to_owned(), "tried".to_owned(), "accepted".to_owned()]];
+    if few {
+        rows[0].extend((0..tally.chains.len()).map(|chain| format!("chain {chain}")));
+    }
+    for (index, (name, count)) in manifest.moves.iter().zip(&tally.counts).enumerate() {
+        let mut row = vec![format!("  {name}"), grouped(count.made()), percent(count.acceptance())];
+        if few {
+            let of = |chain: &plaus_run::tally::ChainTally| {
+                chain.counts.get(index).map_or("-".to_owned(), |count| percent(count.acceptance()))
+            };
+            row.extend(tally.chains.iter().map(of));
+        }
+        rows.push(row);
+    }
+    lay_out(&rows)
+}
+
+/// First hit, share of satisfying draws, distinct solutions.
+pub(crate) fn solutions(diagnosis: &Diagnosis, recorded: u64) -> String {
+    let tally = &diagnosis.tally;
+    let firsts: Vec<u64> = tally.chains.iter().filter_map(|chain| chain.hits.first).collect();
+    let (Some(first), Some(last)) = (firsts.iter().min(), firsts.iter().max()) else {
+        return "no iteration satisfied the constraint\n".to_owned();
+    };
+    let all = match tally.chains.len() - firsts.len() {
+        0 => format!("all chains by iteration {}", grouped(*last)),
+        never => format!("{never} of {} chains never", tally.chains.len()),
+    };
+    let satisfying: u64 = tally.chains.iter().map(|chain| chain.satisfying_draws).sum();
+    let share = satisfying as f64 / (recorded * tally.chains.len() as u64) as f64;
+    let note =
+        if share.is_finite() { format!("{} of the sampled draws satisfy; ", percent(share)) } else { String::new() };
+    format!("first hit at iteration {}, {all}\n{note}{} distinct solutions\n", grouped(*first), grouped(tally.distinct))
+}
+
+/// The diagnosis as JSON.
+pub(crate) fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
+    let tally = &diagnosis.tally;
+    let chain = |(chain, tally): (usize, &plaus_run::tally::ChainTally)| {
+        json!({
+            "chain": chain,
+            "hits": tally.hits.count,
+            "first_hit": tally.hits.first,
+            "satisfying_draws": tally.satisfying_draws,
+            "distinct": tally.distinct,
+            "acceptance": acceptance(&manifest.moves, &tally.counts),
+        })
+    };
+    json!({
+        "scene": manifest.scene,
+        "seed": manifest.plan.seed,
+        "exact_acceptance": manifest.exact,
+        "scenario_hash": manifest.scenario.hash,
+        "iterations": diagnosis.iterations,
+        "draws": diagnosis.draws,
+        "stride": diagnosis.stride,
+        "scalars": diagnosis.scalars,
+        "first_hit": tally.first_hit(),
+        "distinct": tally.distinct,
+        "best_sample": tally.best().map(|sample| sample.to_string()),
+        "acceptance": acceptance(&manifest.moves, &tally.counts),
+        "moves": manifest.moves.iter().zip(&tally.counts).map(|(name, count)| (name.clone(), json!(count))).collect::<Value>(),
+        "chains": tally.chains.iter().enumerate().map(chain).collect::<Vec<_>>(),
+        "findings": diagnosis.findings,
+        "healthy": diagnosis.is_healthy(),
+    })
+}

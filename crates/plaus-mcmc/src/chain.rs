@@ -1,0 +1,257 @@
+//! One Markov chain: the accept step that leaves the target invariant.
+
+use crate::moves::{Mixture, MoveId, Proposal};
+use crate::target::{ModelError, Simulated, State, StateOf, Target};
+use plaus_dist::{ChainStreams, LogDensity, LogPotential, LogRatio, Purpose, math, open_unit};
+use serde::{Deserialize, Serialize};
+
+/// Start draws tried before giving up on finding one of positive probability.
+const START_TRIES: u64 = 10_000;
+
+/// Why a chain could not go on.
+#[derive(Debug, thiserror::Error)]
+pub enum ChainError {
+    /// No start draw had positive probability.
+    #[error("none of {START_TRIES} start draws has positive probability: the constraint forbids what the prior offers")]
+    NoStart,
+    /// The model failed.
+    #[error("iteration {iteration}{}: {source}", .step.as_ref().map(|name| format!(", move `{name}`")).unwrap_or_default())]
+    Model {
+        /// The iteration being made; 0 is the start.
+        iteration: u64,
+        /// The move being made, if any.
+        step: Option<String>,
+        /// What the model said.
+        source: ModelError,
+    },
+}
+
+/// What became of an iteration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Verdict {
+    /// The move had nothing to change.
+    Stayed,
+    /// The candidate has prior density 0, or could not be undone: rejected before any simulation.
+    RejectedByPrior,
+    /// The simulation stopped early, certain to be rejected.
+    RejectedEarly,
+    /// Rejected after a whole simulation.
+    Rejected,
+    /// Accepted.
+    Accepted,
+}
+
+/// How often a move ended how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct MoveCounts {
+    /// Iterations that had nothing to change.
+    pub stayed: u64,
+    /// Candidates of prior density 0.
+    pub rejected_by_prior: u64,
+    /// Candidates whose simulation stopped early.
+    pub rejected_early: u64,
+    /// Candidates rejected after a whole simulation.
+    pub rejected: u64,
+    /// Candidates accepted.
+    pub accepted: u64,
+}
+
+impl MoveCounts {
+    /// Iterations in which the move was made.
+    #[must_use]
+    pub fn made(&self) -> u64 {
+        self.stayed + self.rejected_by_prior + self.rejected_early + self.rejected + self.accepted
+    }
+
+    /// Accepted share of the iterations in which the move was made, in [0, 1]; 0 where it never was.
+    #[must_use]
+    pub fn acceptance(&self) -> f64 {
+        if self.made() == 0 { 0.0 } else { self.accepted as f64 / self.made() as f64 }
+    }
+
+    /// Adds another chain's counts.
+    pub fn add(&mut self, other: &Self) {
+        self.stayed += other.stayed;
+        self.rejected_by_prior += other.rejected_by_prior;
+        self.rejected_early += other.rejected_early;
+        self.rejected += other.rejected;
+        self.accepted += other.accepted;
+    }
+
+    fn count(&mut self, verdict: Verdict) {
+        *match verdict {
+            Verdict::Stayed => &mut self.stayed,
+            Verdict::RejectedByPrior => &mut self.rejected_by_prior,
+            Verdict::RejectedEarly => &mut self.rejected_early,
+            Verdict::Rejected => &mut self.rejected,
+            Verdict::Accepted => &mut self.accepted,
+        } += 1;
+    }
+}
+
+/// One iteration, as told to the caller.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Step {
+    /// The move made.
+    pub move_id: MoveId,
+    /// What became of it.
+    pub verdict: Verdict,
+}
+
+/// A chain at one iteration. With the same streams, target and moves, its future follows from `iteration` and `state` alone.
+pub struct Chain<'a, T: Target> {
+    target: &'a T,
+    moves: &'a Mixture<T>,
+    streams: ChainStreams,
+    iteration: u64,
+    state: StateOf<T>,
+    counts: Vec<MoveCounts>,
+    candidate: T::Draw,
+    scratch: T::Scratch,
+}
+
+impl<'a, T: Target> Chain<'a, T> {
+    /// A chain at iteration 0, at the first start draw of positive probability.
+    ///
+    /// # Errors
+    /// [`ChainError::NoStart`] where there is none in 10,000 tries; [`ChainError::Model`] where the model fails.
+    pub fn start(target: &'a T, moves: &'a Mixture<T>, streams: ChainStreams) -> Result<Self, ChainError> {
+        let mut scratch = T::Scratch::default();
+        let mut stream = streams.at(0, Purpose::START);
+        for _ in 0..START_TRIES {
+            let draw = target.start(&mut stream);
+            let state = Self::state_of(target, draw, &mut scratch).map_err(|source| ChainError::Model {
+                iteration: 0,
+                step: None,
+                source,
+            })?;
+            if let Some(state) = state {
+                let counts = vec![MoveCounts::default(); moves.names().len()];
+                return Ok(Self::resume(target, moves, streams, 0, state, counts));
+            }
+        }
+        Err(ChainError::NoStart)
+    }
+
+    /// The state of a draw of positive probability; the prior is asked first.
+    fn state_of(target: &T, draw: T::Draw, scratch: &mut T::Scratch) -> Result<Option<StateOf<T>>, ModelError> {
+        let log_prior = target.log_prior(&draw)?;
+        if log_prior.is_zero() {
+            return Ok(None);
+        }
+        let state = State::simulate(target, draw, log_prior, scratch)?;
+        Ok(Some(state).filter(|state| !state.log_p().is_zero()))
+    }
+
+    /// A chain that goes on from a state it, or an equal chain, had at `iteration`. `counts` has one entry a move.
+    #[must_use]
+    pub fn resume(
+        target: &'a T,
+        moves: &'a Mixture<T>,
+        streams: ChainStreams,
+        iteration: u64,
+        state: StateOf<T>,
+        counts: Vec<MoveCounts>,
+    ) -> Self {
+        let candidate = state.draw.clone();
+        Self { target, moves, streams, iteration, state, counts, candidate, scratch: T::Scratch::default() }
+    }
+
+    /// The current state.
+    #[must_use]
+    pub fn state(&self) -> &StateOf<T> {
+        &self.state
+    }
+
+    /// How many iterations led to the current state.
+    #[must_use]
+    pub fn iteration(&self) -> u64 {
+        self.iteration
+    }
+
+    /// How often each move ended how, in order of [`MoveId`].
+    #[must_use]
+    pub fn counts(&self) -> &[MoveCounts] {
+        &self.counts
+    }
+
+    /// Makes one iteration: choose a move, propose, evaluate from cheap to dear, accept or stay.
+    ///
+    /// # Errors
+    /// [`ChainError::Model`] where the model fails; the state is then still the one before.
+    pub fn step(&mut self) -> Result<Step, ChainError> {
+        let next = self.iteration + 1;
+        let mut stream = self.streams.at(next, Purpose::PROPOSE);
+        let (move_id, kernel) = self.moves.choose(&mut stream);
+        self.candidate.clone_from(&self.state.draw);
+        let proposal = kernel.propose(self.target, &self.state, &mut self.candidate, &mut stream);
+        let verdict = proposal
+            .and_then(|proposal| self.judge(next, move_id, proposal))
+            .map_err(|source| ChainError::Model { iteration: next, step: Some(kernel.name().to_owned()), source })?;
+        self.iteration = next;
+        self.counts[usize::from(move_id.0)].count(verdict);
+        Ok(Step { move_id, verdict })
+    }
+
+    /// The accept step of Metropolis and Hastings, solved for the constraint: with u uniform and drawn first, `ln u < log α` says that the
+    /// candidate's log constraint exceeds a floor known before the simulation. Rounding is monotone, so a bound on the constraint at
+    /// or below the floor decides exactly as the whole simulation would.
+    fn judge(&mut self, next: u64, move_id: MoveId, proposal: Proposal) -> Result<Verdict, ModelError> {
+        let Proposal::Candidate { log_ratio, path, later } = proposal else { return Ok(Verdict::Stayed) };
+        let log_prior = self.target.log_prior(&self.candidate)?;
+        let ln_u = math::ln(open_unit(&mut self.streams.at(next, Purpose::ACCEPT)));
+        let log_p = self.state.log_p();
+        let most = log_ratio.times(later.unwrap_or(LogRatio::ONE))?;
+        let Some(floor) = floor(ln_u, most, log_p, log_prior)? else { return Ok(Verdict::RejectedByPrior) };
+        let simulated = self.target.simulate(&self.candidate, Some(&self.state), floor, &mut self.scratch)?;
+        let Simulated::Complete(outcome) = simulated else {
+            self.target.settle(false, &mut self.scratch);
+            return Ok(Verdict::RejectedEarly);
+        };
+        let log_constraint = self.target.log_constraint(&outcome)?;
+        let accepted = if later.is_none() {
+            self.accept_above(floor, outcome, log_prior, log_constraint)
+        } else {
+            let candidate = State { draw: self.candidate.clone(), outcome, log_prior, log_constraint };
+            let (_, kernel) = self.moves.get(move_id);
+            let after = kernel.log_ratio_after(self.target, &self.state, &candidate, path)?;
+            match self::floor(ln_u, log_ratio.times(after)?, log_p, log_prior)? {
+                Some(floor) => self.accept_above(floor, candidate.outcome, log_prior, log_constraint),
+                None => false,
+            }
+        };
+        self.target.settle(accepted, &mut self.scratch);
+        Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
+    }
+
+    fn accept_above(
+        &mut self,
+        floor: LogPotential,
+        outcome: T::Outcome,
+        log_prior: LogDensity,
+        log_constraint: LogPotential,
+    ) -> bool {
+        let accepted = log_constraint > floor;
+        if accepted {
+            std::mem::swap(&mut self.state.draw, &mut self.candidate);
+            self.state.outcome = outcome;
+            self.state.log_prior = log_prior;
+            self.state.log_constraint = log_constraint;
+        }
+        accepted
+    }
+}
+
+/// What the candidate's log constraint must exceed: `ln u − log ratio + log p(current) − log p_w(candidate)`. `None`: no constraint is enough, the
+/// candidate is impossible or could not be undone.
+fn floor(
+    ln_u: f64,
+    log_ratio: LogRatio,
+    log_p: LogPotential,
+    log_prior: LogDensity,
+) -> Result<Option<LogPotential>, ModelError> {
+    if log_prior.is_zero() || log_ratio == LogRatio::ZERO {
+        return Ok(None);
+    }
+    Ok(Some(LogPotential::new(ln_u - log_ratio.value() + log_p.value() - log_prior.value())?))
+}

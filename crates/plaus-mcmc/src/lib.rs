@@ -1,0 +1,66 @@
+//! Markov chain Monte Carlo over an opaque draw.
+//!
+//! A [`Target`] says how likely a draw is, simulates it, and judges the outcome; [`Move`]s propose; a [`Chain`] accepts so that the
+//! target stays invariant; [`run()`] advances many chains at once.
+//!
+//! ```
+//! use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Seed, Stream};
+//! use plaus_mcmc::{Chain, Mixture, ModelError, Move, Path, Proposal, Simulated, StateOf, Target};
+//!
+//! /// A throw of unknown strength that should land at 3.
+//! struct Throw { strength: Gaussian }
+//!
+//! impl Target for Throw {
+//!     type Draw = f64;
+//!     type Outcome = f64;
+//!     type Scratch = ();
+//!     fn start(&self, stream: &mut Stream) -> f64 { self.strength.sample(stream) }
+//!     fn log_prior(&self, draw: &f64) -> Result<LogDensity, ModelError> { Ok(self.strength.log_density(draw)?) }
+//!     fn simulate(&self, draw: &f64, _: Option<&StateOf<Self>>, _: LogPotential, _: &mut ())
+//!         -> Result<Simulated<f64>, ModelError> { Ok(Simulated::Complete(2.0 * draw)) }
+//!     fn log_constraint(&self, landing: &f64) -> Result<LogPotential, ModelError> {
+//!         Ok(LogPotential::new(-0.5 * ((landing - 3.0) / 0.1) * ((landing - 3.0) / 0.1))?)
+//!     }
+//! }
+//!
+//! /// Adds a symmetric step.
+//! struct Nudge(Gaussian);
+//! impl Move<Throw> for Nudge {
+//!     fn name(&self) -> &str { "nudge" }
+//!     fn propose(&self, _: &Throw, _: &StateOf<Throw>, candidate: &mut f64, stream: &mut Stream) -> Result<Proposal, ModelError> {
+//!         *candidate += self.0.sample(stream);
+//!         Ok(Proposal::SYMMETRIC)
+//!     }
+//!     fn log_ratio(&self, _: &Throw, _: &StateOf<Throw>, _: &StateOf<Throw>, _: Path) -> Result<LogRatio, ModelError> {
+//!         Ok(LogRatio::ONE)
+//!     }
+//! }
+//!
+//! let target = Throw { strength: Gaussian::new(1.0, 1.0)? };
+//! let moves = Mixture::of(Box::new(Nudge(Gaussian::new(0.0, 0.1)?)));
+//! let mut chain = Chain::start(&target, &moves, Seed(1).chain(0))?;
+//! for _ in 0..1000 { chain.step()?; }
+//! assert!((chain.state().outcome - 3.0).abs() < 0.6); // six standard deviations of the constraint
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The crate knows no bodies and does no input or output.
+
+pub mod chain;
+pub mod check;
+pub mod diagnose;
+pub mod moves;
+pub mod record;
+pub mod run;
+pub mod solutions;
+pub mod target;
+pub mod tempered;
+pub mod view;
+
+pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
+pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
+pub use record::{Block, Entry};
+pub use run::{Control, Ending, Plan, PlanError, Progress, RunError, Sink, Snapshot, Start, run};
+pub use solutions::{Distinct, FirstOfClass, Hits};
+pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
+pub use tempered::Tempered;

@@ -1,0 +1,186 @@
+//! Moves propose candidates and answer for their own Hastings ratio; a mixture chooses among them.
+
+use crate::target::{ModelError, StateOf, Target};
+use plaus_dist::{LogRatio, Stream, open_unit};
+use serde::{Deserialize, Serialize};
+
+/// Which of a move's ways led to a candidate (which coordinate, which pair, …), where that matters for the ratio.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Path(pub u64);
+
+/// What a move proposed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Proposal {
+    /// Nothing to change: the chain stays, and the iteration counts.
+    Stay,
+    /// The candidate buffer holds a proposal.
+    Candidate {
+        /// `log q(current | candidate) − log q(candidate | current)` along `path`, as far as it is known without the candidate's outcome.
+        log_ratio: LogRatio,
+        /// The way it was made.
+        path: Path,
+        /// For a move whose ratio needs the candidate's outcome: an upper bound of [`Move::log_ratio_after`]. `None`: nothing is missing.
+        later: Option<LogRatio>,
+    },
+}
+
+impl Proposal {
+    /// A proposal as likely as its reverse.
+    pub const SYMMETRIC: Self = Self::Candidate { log_ratio: LogRatio::ONE, path: Path(0), later: None };
+
+    /// A proposal with a ratio, made the only way there is.
+    #[must_use]
+    pub fn with_ratio(log_ratio: LogRatio) -> Self {
+        Self::Candidate { log_ratio, path: Path(0), later: None }
+    }
+}
+
+/// A proposal kernel. Choosing a [`Path`] must not depend on the state in a way that the ratio ignores: given the path, `q` is what the
+/// ratio is about.
+pub trait Move<T: Target>: Send + Sync {
+    /// A short name for statistics and scenario files, e.g. `redraw`.
+    fn name(&self) -> &str;
+
+    /// Changes `candidate`, which comes in as a copy of the current draw, into a proposal.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a density is no number.
+    fn propose(
+        &self,
+        target: &T,
+        current: &StateOf<T>,
+        candidate: &mut T::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError>;
+
+    /// The whole `log q(from | to) − log q(to | from)` along `path`. The chain does not call it; the checks of [`crate::check`] hold it
+    /// against what `propose` returned and against the reverse direction.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a density is no number.
+    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, path: Path) -> Result<LogRatio, ModelError>;
+
+    /// The path that leads back; most moves go back the way they came.
+    fn reverse(&self, path: Path) -> Path {
+        path
+    }
+
+    /// The part of the ratio that needs the candidate's outcome; called only where `propose` announced it.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a density is no number.
+    fn log_ratio_after(
+        &self,
+        _target: &T,
+        _current: &StateOf<T>,
+        _candidate: &StateOf<T>,
+        _path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::ONE)
+    }
+}
+
+/// Index of a move in its mixture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct MoveId(pub u16);
+
+/// Moves chosen at random with fixed weights, whatever the state.
+pub struct Mixture<T: Target> {
+    moves: Vec<Box<dyn Move<T>>>,
+    /// Probability that the move is this one or one before it; ends with 1.
+    cumulative: Vec<f64>,
+}
+
+/// Weights that make no mixture.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MixtureError {
+    /// A weight is negative or no number.
+    #[error("the weight of move `{name}` is {weight}; weights are finite and at least 0")]
+    Weight {
+        /// The move.
+        name: String,
+        /// Its weight.
+        weight: f64,
+    },
+    /// No move has a positive weight.
+    #[error("no move has a positive weight")]
+    Empty,
+    /// More moves than [`MoveId`] can tell apart.
+    #[error("{0} moves are more than the 65,535 a mixture can hold")]
+    TooMany(usize),
+}
+
+impl<T: Target> Mixture<T> {
+    /// A mixture of `moves` with relative weights; moves of weight 0 are left out.
+    ///
+    /// # Errors
+    /// [`MixtureError`] where a weight is negative or not finite, none is positive, or there are more than 65,535 moves.
+    pub fn new(moves: Vec<(f64, Box<dyn Move<T>>)>) -> Result<Self, MixtureError> {
+        if let Some((weight, bad)) = moves.iter().find(|(weight, _)| !weight.is_finite() || *weight < 0.0) {
+            return Err(MixtureError::Weight { name: bad.name().to_owned(), weight: *weight });
+        }
+        let moves: Vec<_> = moves.into_iter().filter(|(weight, _)| *weight > 0.0).collect();
+        if moves.is_empty() {
+            return Err(MixtureError::Empty);
+        }
+        if moves.len() > usize::from(u16::MAX) {
+            return Err(MixtureError::TooMany(moves.len()));
+        }
+        let sum_in_units_of = |unit: f64| moves.iter().map(|(weight, _)| weight / unit).sum::<f64>();
+        // Weights whose sum overflows are taken in a unit of 2⁶⁴, which is exact.
+        let unit = if sum_in_units_of(1.0).is_finite() { 1.0 } else { 18_446_744_073_709_551_616.0 };
+        let total = sum_in_units_of(unit);
+        let mut sum = 0.0;
+        let mut cumulative: Vec<f64> = moves
+            .iter()
+            .map(|(weight, _)| {
+                sum += weight / unit;
+                sum / total
+            })
+            .collect();
+        if let Some(last) = cumulative.last_mut() {
+            *last = 1.0;
+        }
+        Ok(Self { moves: moves.into_iter().map(|(_, kernel)| kernel).collect(), cumulative })
+    }
+
+    /// A mixture of one move.
+    #[must_use]
+    pub fn of(only: Box<dyn Move<T>>) -> Self {
+        Self { moves: vec![only], cumulative: vec![1.0] }
+    }
+
+    /// Chooses a move. A mixture of one spends no random number.
+    pub fn choose(&self, stream: &mut Stream) -> (MoveId, &dyn Move<T>) {
+        let index = if self.moves.len() == 1 {
+            0
+        } else {
+            let u = open_unit(stream);
+            self.cumulative.iter().position(|&bound| u < bound).unwrap_or(self.moves.len() - 1)
+        };
+        (MoveId(index as u16), self.moves[index].as_ref())
+    }
+
+    /// The move of an id this mixture gave, with its probability.
+    ///
+    /// # Panics
+    /// Where the id is another mixture's and out of range.
+    #[must_use]
+    pub fn get(&self, id: MoveId) -> (f64, &dyn Move<T>) {
+        let index = usize::from(id.0);
+        let before = if index == 0 { 0.0 } else { self.cumulative[index - 1] };
+        (self.cumulative[index] - before, self.moves[index].as_ref())
+    }
+
+    /// The moves with their probabilities, in order of their [`MoveId`].
+    pub fn iter(&self) -> impl Iterator<Item = (f64, &dyn Move<T>)> {
+        (0..self.moves.len()).map(|index| self.get(MoveId(index as u16)))
+    }
+
+    /// The moves' names, in order of their [`MoveId`].
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        self.moves.iter().map(|kernel| kernel.name().to_owned()).collect()
+    }
+}

@@ -1,0 +1,59 @@
+//! What a chain leaves behind: recorded draws, run-length encoded, in blocks of fixed iterations.
+
+use crate::moves::MoveId;
+use crate::target::{SolutionClass, State};
+use serde::{Deserialize, Serialize};
+
+/// Consecutive recorded draws at the same state.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Entry<D, O> {
+    /// How many recorded draws in a row have this state; at least 1.
+    pub draws: u64,
+    /// Proposals accepted since the recorded draw before the first of these; 0 in an entry that continues the last block's state.
+    pub accepted: u32,
+    /// The move accepted last, where `accepted` is positive.
+    pub by: Option<MoveId>,
+    /// Which class of solutions the state belongs to; `None` where it does not satisfy the constraint.
+    pub class: Option<SolutionClass>,
+    /// The state.
+    pub state: State<D, O>,
+}
+
+/// The recorded draws of a stretch of iterations of one chain.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Block<D, O> {
+    /// First iteration the block covers.
+    pub first_iteration: u64,
+    /// One past the last iteration it covers.
+    pub end_iteration: u64,
+    /// Its recorded draws in order.
+    pub entries: Vec<Entry<D, O>>,
+}
+
+impl<D: Clone, O: Clone> Block<D, O> {
+    /// An empty block from `first_iteration` on.
+    #[must_use]
+    pub fn starting_at(first_iteration: u64) -> Self {
+        Self { first_iteration, end_iteration: first_iteration, entries: Vec::new() }
+    }
+
+    /// Records one draw. `accepted` proposals were accepted since the draw before, the last by `by`.
+    pub(crate) fn push(
+        &mut self,
+        accepted: u32,
+        by: Option<MoveId>,
+        class: Option<SolutionClass>,
+        state: &State<D, O>,
+    ) {
+        match self.entries.last_mut() {
+            Some(last) if accepted == 0 => last.draws += 1,
+            _ => self.entries.push(Entry { draws: 1, accepted, by, class, state: state.clone() }),
+        }
+    }
+}
+
+/// The iterations that are recorded: every `thin`-th from 0 on.
+#[must_use]
+pub fn is_recorded(iteration: u64, thin: u64) -> bool {
+    iteration.is_multiple_of(thin)
+}

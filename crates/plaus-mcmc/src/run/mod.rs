@@ -1,0 +1,298 @@
+//! Several chains in parallel, in rounds, with the same bits whatever the number of threads.
+//!
+//! Every chain advances to the next multiple of [`Plan::block`] iterations, then all wait: rounds are where the caller receives records and
+//! snapshots, in order of chain, and says whether to go on. A run that goes on from its last snapshots gives the bits of one that was never interrupted.
+
+mod worker;
+
+use crate::chain::{ChainError, MoveCounts};
+use crate::moves::{Mixture, MoveId};
+use crate::record::Block;
+use crate::solutions::{Distinct, FirstOfClass, Hits};
+use crate::target::{Goal, State, Target};
+use plaus_dist::Seed;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use worker::{Job, Made, Worker};
+
+/// How long, how often, from which seed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Seed of the run.
+    pub seed: Seed,
+    /// Number of chains, at least 1.
+    pub chains: u32,
+    /// Iterations before the sampling phase; recorded, but told apart.
+    pub warmup: u64,
+    /// Iterations of the sampling phase, whose states are what diagnostics see.
+    pub iterations: u64,
+    /// Every `thin`-th iteration is recorded; at least 1.
+    pub thin: u64,
+    /// Iterations between two points at which the run can stop and later go on; at least 1.
+    pub block: u64,
+    /// Stop at the first iteration by which the chains together have recorded this many distinct solutions.
+    pub solutions: Option<u64>,
+}
+
+impl Plan {
+    /// One past the last iteration: the states are those of iterations `0 .. end`.
+    #[must_use]
+    pub fn end(&self) -> u64 {
+        self.warmup.saturating_add(self.iterations)
+    }
+
+    fn check<D, O>(&self, starts: &[Start<D, O>]) -> Result<(), PlanError> {
+        for (name, value) in [("chains", u64::from(self.chains)), ("thin", self.thin), ("block", self.block)] {
+            if value == 0 {
+                return Err(PlanError::Zero(name));
+            }
+        }
+        if self.end() >= 1 << 48 {
+            return Err(PlanError::TooLong(self.end()));
+        }
+        let aligned = starts.windows(2).all(|pair| pair[0].snapshot.end_iteration == pair[1].snapshot.end_iteration);
+        let begun = starts.iter().all(|start| start.snapshot.end_iteration > 0);
+        if !starts.is_empty() && (starts.len() != self.chains as usize || !aligned || !begun) {
+            return Err(PlanError::Starts { chains: self.chains, found: starts.len() });
+        }
+        Ok(())
+    }
+}
+
+/// A plan that makes no run.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum PlanError {
+    /// A number that must be positive is 0.
+    #[error("`{0}` is 0, but must be at least 1")]
+    Zero(&'static str),
+    /// The last iteration is no 48-bit number: streams would repeat.
+    #[error("{0} iterations are more than the 2^48 that have random numbers of their own")]
+    TooLong(u64),
+    /// Starts for another number of chains, or not all at the same iteration.
+    #[error(
+        "{found} starts for {chains} chains, or not all at the same iteration: they are not the snapshots of one run"
+    )]
+    Starts {
+        /// Chains of the plan.
+        chains: u32,
+        /// Starts given.
+        found: usize,
+    },
+}
+
+/// A chain between two blocks: all that its future and its statistics follow from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot<D, O> {
+    /// Iterations 0 up to here, exclusive, are done and recorded.
+    pub end_iteration: u64,
+    /// The state of iteration `end_iteration − 1`.
+    pub state: State<D, O>,
+    /// How often each move ended how.
+    pub counts: Vec<MoveCounts>,
+    /// Satisfying iterations.
+    pub hits: Hits,
+    /// Proposals accepted since the last recorded draw, and the last such move.
+    pub pending: (u32, Option<MoveId>),
+}
+
+/// Where a chain goes on from, with the classes of solutions it has recorded (from its records).
+pub struct Start<D, O> {
+    /// The snapshot.
+    pub snapshot: Snapshot<D, O>,
+    /// First recorded solutions of each class in this chain.
+    pub distinct: Distinct,
+}
+
+/// What the caller says after a round.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// Stop here; the run can be resumed.
+    Stop,
+}
+
+/// Receives what the chains leave behind.
+pub trait Sink<D, O> {
+    /// What may go wrong in the sink.
+    type Error;
+
+    /// Called for every chain after each round, in order of chain.
+    ///
+    /// # Errors
+    /// Stops the run.
+    fn block(&mut self, chain: u32, block: Block<D, O>, snapshot: &Snapshot<D, O>) -> Result<(), Self::Error>;
+
+    /// Called once after each round.
+    ///
+    /// # Errors
+    /// Stops the run.
+    fn round(&mut self, progress: &Progress<'_>) -> Result<Control, Self::Error>;
+}
+
+/// Where a run stands after a round.
+pub struct Progress<'a> {
+    /// Iterations done by every chain.
+    pub end_iteration: u64,
+    /// Distinct solutions recorded by all chains together.
+    pub distinct: &'a Distinct,
+    /// Per chain: counts of each move, and hits.
+    pub chains: Vec<(&'a [MoveCounts], Hits)>,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Ending {
+    /// All planned iterations are done.
+    Complete,
+    /// The demanded number of distinct solutions is recorded.
+    EnoughSolutions,
+    /// The sink said stop.
+    Stopped,
+}
+
+/// Why a run broke off.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError<E> {
+    /// A chain failed.
+    #[error("chain {chain}: {source}")]
+    Chain {
+        /// Which.
+        chain: u32,
+        /// How.
+        source: ChainError,
+    },
+    /// The sink failed.
+    #[error(transparent)]
+    Sink(E),
+    /// The plan or the starts make no run.
+    #[error("{0}")]
+    Plan(#[from] PlanError),
+    /// The operating system gave no threads.
+    #[error("cannot start worker threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// Runs, or goes on with, the chains of `plan` on `threads` threads (0: one a core). `starts` is empty, or holds one start a chain, all at the same
+/// iteration.
+///
+/// # Errors
+/// [`RunError`] where the plan makes no run, or a chain or the sink fails. Everything the sink received before stays valid.
+pub fn run<T: Goal, S: Sink<T::Draw, T::Outcome>>(
+    target: &T,
+    moves: &Mixture<T>,
+    plan: Plan,
+    starts: Vec<Start<T::Draw, T::Outcome>>,
+    threads: usize,
+    sink: &mut S,
+) -> Result<Ending, RunError<S::Error>> {
+    plan.check(&starts)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let mut fleet = Fleet::new(Job { target, moves, plan }, starts);
+    while fleet.done < plan.end() && !fleet.has_enough() {
+        let made =
+            pool.install(|| fleet.round()).map_err(|Failed { chain, source }| RunError::Chain { chain, source })?;
+        for (worker, made) in fleet.workers.iter().zip(made) {
+            if let Some(snapshot) = worker.snapshot() {
+                sink.block(worker.index, made.block, &snapshot).map_err(RunError::Sink)?;
+            }
+        }
+        let stop = sink.round(&fleet.progress()).map_err(RunError::Sink)? == Control::Stop;
+        if stop && fleet.done < plan.end() && !fleet.has_enough() {
+            return Ok(Ending::Stopped);
+        }
+    }
+    Ok(if fleet.has_enough() { Ending::EnoughSolutions } else { Ending::Complete })
+}
+
+/// Which chain failed, and how.
+struct Failed {
+    chain: u32,
+    source: ChainError,
+}
+
+/// All chains of a run, at the same iteration.
+struct Fleet<'a, T: Target> {
+    job: Job<'a, T>,
+    workers: Vec<Worker<'a, T>>,
+    /// Of all chains together, in the order of iteration, then chain.
+    distinct: Distinct,
+    /// Iterations 0 up to here, exclusive, are done.
+    done: u64,
+}
+
+type MadeOf<T> = Made<<T as Target>::Draw, <T as Target>::Outcome>;
+
+impl<'a, T: Goal> Fleet<'a, T> {
+    fn new(job: Job<'a, T>, starts: Vec<Start<T::Draw, T::Outcome>>) -> Self {
+        let workers: Vec<_> = if starts.is_empty() {
+            (0..job.plan.chains).map(Worker::new).collect()
+        } else {
+            (0..).zip(starts).map(|(index, start)| Worker::resume(&job, index, start)).collect()
+        };
+        let firsts = workers.iter().flat_map(|worker| worker.distinct.firsts().iter().copied()).collect();
+        let done = workers.first().map_or(0, |worker| worker.end_iteration);
+        let mut fleet = Self { job, workers, distinct: Distinct::default(), done };
+        fleet.merge(firsts);
+        fleet
+    }
+
+    /// Advances to the next multiple of the block, or to the iteration that completes the demanded solutions.
+    fn round(&mut self) -> Result<Vec<MadeOf<T>>, Failed> {
+        let plan = self.job.plan;
+        let before = if plan.solutions.is_some() { self.keep() } else { Vec::new() };
+        let mut made = self.advance(((self.done / plan.block + 1) * plan.block).min(plan.end()))?;
+        self.merge(made.iter().flat_map(|made| made.firsts.iter().copied()).collect());
+        if let Some(last) = self.completed() {
+            // The chains ran past the iteration that completed the demanded number: redo the round up to there, so that the result does not
+            // depend on the block.
+            self.workers = before;
+            made = self.advance(last + 1)?;
+            self.distinct.truncate(last);
+        }
+        Ok(made)
+    }
+
+    /// Advances all chains in parallel until iterations `0 .. end` are done; the first failing chain, by index, is the one reported.
+    fn advance(&mut self, end: u64) -> Result<Vec<MadeOf<T>>, Failed> {
+        let job = &self.job;
+        let results: Vec<_> = self.workers.par_iter_mut().map(|worker| worker.advance(job, end)).collect();
+        let fail = |(chain, result): (u32, Result<_, _>)| result.map_err(|source| Failed { chain, source });
+        let made = (0..).zip(results).map(fail).collect();
+        self.done = end;
+        made
+    }
+
+    /// Workers in the state of these, to redo a round.
+    fn keep(&self) -> Vec<Worker<'a, T>> {
+        let copy = |worker: &Worker<'a, T>| match worker.snapshot() {
+            Some(snapshot) => {
+                Worker::resume(&self.job, worker.index, Start { snapshot, distinct: worker.distinct.clone() })
+            }
+            None => Worker::new(worker.index),
+        };
+        self.workers.iter().map(copy).collect()
+    }
+
+    fn merge(&mut self, mut news: Vec<FirstOfClass>) {
+        news.sort_unstable();
+        for first in news {
+            self.distinct.note(first);
+        }
+    }
+
+    fn has_enough(&self) -> bool {
+        self.completed().is_some() || self.job.plan.solutions == Some(0)
+    }
+
+    /// The iteration that recorded the last demanded solution.
+    fn completed(&self) -> Option<u64> {
+        let wanted = usize::try_from(self.job.plan.solutions?).ok()?;
+        self.distinct.firsts().get(wanted.checked_sub(1)?).map(|first| first.iteration)
+    }
+
+    fn progress(&self) -> Progress<'_> {
+        let chains = self.workers.iter().map(|worker| (worker.counts(), worker.hits)).collect();
+        Progress { end_iteration: self.done, distinct: &self.distinct, chains }
+    }
+}

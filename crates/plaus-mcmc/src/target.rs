@@ -1,0 +1,174 @@
+//! What a chain samples: a prior over opaque draws, a simulation, and a constraint on its outcome.
+
+use plaus_dist::{LogDensity, LogPotential, NotANumber, Stream};
+use serde::{Deserialize, Serialize};
+
+/// A model failed in a way that no rejection may hide: a NaN, a non-finite simulator state, a broken invariant.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+pub struct ModelError(Box<dyn std::error::Error + Send + Sync>);
+
+impl ModelError {
+    /// Wraps any error, or a message.
+    pub fn new(source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+        Self(source.into())
+    }
+}
+
+impl From<NotANumber> for ModelError {
+    fn from(error: NotANumber) -> Self {
+        Self::new(error)
+    }
+}
+
+/// The distribution `p(A) ∝ p_w(draw) · p_c(outcome)` over animations `A = (draw, outcome)`.
+///
+/// A draw holds the value of every random variable of a world; the outcome is what a deterministic simulation makes of it. The chain
+/// never looks into either. Evaluation goes from cheap to dear: prior, then simulation, then constraint.
+pub trait Target: Sync {
+    /// Values of all random variables. `clone_from` should reuse its allocation: the chain calls it once an iteration.
+    type Draw: Clone + PartialEq + Send + Sync;
+    /// What of a simulation's result the constraint, the record and the moves need.
+    type Outcome: Clone + Send + Sync;
+    /// Working memory of one chain, reused from simulation to simulation. It may speed results up, never change them.
+    type Scratch: Default + Send;
+
+    /// A draw to start a chain from, usually a draw from the prior.
+    fn start(&self, stream: &mut Stream) -> Self::Draw;
+
+    /// Log prior density `log p_w(draw)`, up to one constant for all draws, including draws of different dimension.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the density is no number.
+    fn log_prior(&self, draw: &Self::Draw) -> Result<LogDensity, ModelError>;
+
+    /// Simulates `draw`.
+    ///
+    /// `floor` is what [`Target::log_constraint`] must exceed for the draw to be accepted; where it is certain that it cannot, the
+    /// simulation may stop and answer [`Simulated::CannotExceedFloor`]. `current` is the chain's state, from which unchanged parts may be
+    /// reused as long as the outcome has the same bits as without it.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the simulation broke down.
+    fn simulate(
+        &self,
+        draw: &Self::Draw,
+        current: Option<&StateOf<Self>>,
+        floor: LogPotential,
+        scratch: &mut Self::Scratch,
+    ) -> Result<Simulated<Self::Outcome>, ModelError>;
+
+    /// Log constraint `log p_c(outcome)`, up to a constant.
+    ///
+    /// # Errors
+    /// [`ModelError`] where it is no number.
+    fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError>;
+
+    /// Told after every accept step that followed a simulation whether the simulated candidate became the current state, so that memory kept in
+    /// `scratch` about the current state can follow.
+    fn settle(&self, _accepted: bool, _scratch: &mut Self::Scratch) {}
+}
+
+/// A target whose states may satisfy its constraint, in ways that can be told apart.
+pub trait Goal: Target {
+    /// The class of solutions `state` belongs to, or `None` where it does not satisfy the constraint. Two satisfying states of the same class
+    /// count as one distinct solution.
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass>;
+}
+
+/// A label of a class of solutions: equal for solutions a user would call the same. See [`SolutionClass::of`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct SolutionClass(pub u64);
+
+impl SolutionClass {
+    /// The label of the empty sequence.
+    pub const EMPTY: Self = Self(0x9e37_79b9_7f4a_7c15);
+
+    /// The label of the sequence that continues this one's by `feature`.
+    #[inline]
+    #[must_use]
+    pub fn with(self, feature: i64) -> Self {
+        Self(mix(self.0.rotate_left(23) ^ mix(feature.cast_unsigned().wrapping_add(0x51ed))))
+    }
+
+    /// The label of a sequence of whole numbers (cells, bins, faces). Different sequences collide with probability 2⁻⁶⁴.
+    #[must_use]
+    pub fn of(features: impl IntoIterator<Item = i64>) -> Self {
+        features.into_iter().fold(Self::EMPTY, Self::with)
+    }
+}
+
+/// MurmurHash3's finaliser: a bijection of 64 bits.
+#[inline]
+fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 33)).wrapping_mul(0xff51_afd7_ed55_8ccd);
+    z = (z ^ (z >> 33)).wrapping_mul(0xc4ce_b9fe_1a85_ec53);
+    z ^ (z >> 33)
+}
+
+/// How a simulation ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Simulated<O> {
+    /// It ran to its end.
+    Complete(O),
+    /// It stopped: whatever came, the constraint could not exceed the floor.
+    CannotExceedFloor,
+}
+
+/// A draw with everything evaluated about it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct State<D, O> {
+    /// Values of all random variables.
+    pub draw: D,
+    /// What the simulation made of them.
+    pub outcome: O,
+    /// `log p_w(draw)`.
+    pub log_prior: LogDensity,
+    /// `log p_c(outcome)`.
+    pub log_constraint: LogPotential,
+}
+
+/// The state of a target.
+pub type StateOf<T> = State<<T as Target>::Draw, <T as Target>::Outcome>;
+
+impl<D, O> State<D, O> {
+    /// `log p(A)`, up to the target's constant.
+    #[must_use]
+    pub fn log_p(&self) -> LogPotential {
+        self.log_prior + self.log_constraint
+    }
+
+    /// Evaluates `draw` wholly, reusing nothing and never stopping early.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the target fails.
+    pub fn evaluate<T>(target: &T, draw: D, scratch: &mut T::Scratch) -> Result<Self, ModelError>
+    where
+        T: Target<Draw = D, Outcome = O> + ?Sized,
+    {
+        let log_prior = target.log_prior(&draw)?;
+        Self::simulate(target, draw, log_prior, scratch)
+    }
+
+    /// Simulates a draw whose prior is known.
+    pub(crate) fn simulate<T>(
+        target: &T,
+        draw: D,
+        log_prior: LogDensity,
+        scratch: &mut T::Scratch,
+    ) -> Result<Self, ModelError>
+    where
+        T: Target<Draw = D, Outcome = O> + ?Sized,
+    {
+        match target.simulate(&draw, None, LogPotential::ZERO, scratch)? {
+            Simulated::Complete(outcome) => {
+                let log_constraint = target.log_constraint(&outcome)?;
+                Ok(Self { draw, outcome, log_prior, log_constraint })
+            }
+            Simulated::CannotExceedFloor => {
+                Err(ModelError::new("a simulation stopped early although no floor was set: a bug of the target"))
+            }
+        }
+    }
+}

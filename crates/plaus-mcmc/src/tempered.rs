@@ -1,0 +1,155 @@
+//! A target whose constraint counts less: `p_w · p_c^β`.
+
+use crate::target::{ModelError, Simulated, StateOf, Target};
+use crate::view::View;
+use plaus_dist::{LogDensity, LogPotential, ParamError, Stream};
+
+/// The target `p_w(draw) · p_c(outcome)^β`: for `p_c = λ^k`, the same target at `λ^β`.
+///
+/// β = 1 is the target itself; β = 0 is the prior restricted to outcomes the constraint does not forbid (−∞ stays −∞). For the whole prior see
+/// [`crate::check::PriorOnly`]. The moves of the target serve it through [`crate::view::lend`].
+#[derive(Debug)]
+pub struct Tempered<'a, T> {
+    target: &'a T,
+    beta: f64,
+}
+
+impl<'a, T: Target> Tempered<'a, T> {
+    /// `target` at inverse temperature `beta`.
+    ///
+    /// # Errors
+    /// [`ParamError`] unless 0 ≤ `beta` ≤ 1e300.
+    pub fn new(target: &'a T, beta: f64) -> Result<Self, ParamError> {
+        if (0.0..=1e300).contains(&beta) {
+            Ok(Self { target, beta })
+        } else {
+            let allowed = "from 0 to 1e300";
+            Err(ParamError { distribution: "Tempered", parameter: "beta", value: beta, allowed })
+        }
+    }
+
+    /// The inverse temperature.
+    #[must_use]
+    pub fn beta(&self) -> f64 {
+        self.beta
+    }
+
+    /// A floor for the target itself: whatever constraint does not exceed it does not exceed `floor` when tempered, in floating point.
+    /// `None` where no constraint can exceed `floor`.
+    fn floor_seen(&self, floor: LogPotential) -> Option<LogPotential> {
+        if self.beta == 0.0 {
+            return (floor < LogPotential::ONE).then_some(LogPotential::ZERO);
+        }
+        let mut seen = (floor.value() / self.beta).min(f64::MAX);
+        // Multiplication by β rounds monotonically, so the inequality at the floor holds for all below. One or two steps are enough.
+        while seen * self.beta > floor.value() {
+            seen = seen.next_down();
+        }
+        LogPotential::new(seen).ok()
+    }
+}
+
+impl<T: Target> Target for Tempered<'_, T> {
+    type Draw = T::Draw;
+    type Outcome = T::Outcome;
+    type Scratch = T::Scratch;
+
+    fn start(&self, stream: &mut Stream) -> T::Draw {
+        self.target.start(stream)
+    }
+
+    fn log_prior(&self, draw: &T::Draw) -> Result<LogDensity, ModelError> {
+        self.target.log_prior(draw)
+    }
+
+    fn simulate(
+        &self,
+        draw: &T::Draw,
+        current: Option<&StateOf<Self>>,
+        floor: LogPotential,
+        scratch: &mut T::Scratch,
+    ) -> Result<Simulated<T::Outcome>, ModelError> {
+        match self.floor_seen(floor) {
+            Some(floor) => self.target.simulate(draw, current, floor, scratch),
+            None => Ok(Simulated::CannotExceedFloor),
+        }
+    }
+
+    fn log_constraint(&self, outcome: &T::Outcome) -> Result<LogPotential, ModelError> {
+        Ok(self.target.log_constraint(outcome)?.tempered(self.beta)?)
+    }
+
+    fn settle(&self, accepted: bool, scratch: &mut T::Scratch) {
+        self.target.settle(accepted, scratch);
+    }
+}
+
+impl<T: Target + 'static> View for Tempered<'_, T> {
+    type Seen = T;
+
+    fn seen(&self) -> &T {
+        self.target
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plaus_dist::{Purpose, Seed, open_unit};
+
+    /// A target of which only the tempering is of interest.
+    struct Nothing;
+
+    impl Target for Nothing {
+        type Draw = ();
+        type Outcome = f64;
+        type Scratch = ();
+        fn start(&self, _: &mut Stream) {}
+        fn log_prior(&self, (): &()) -> Result<LogDensity, ModelError> {
+            Ok(LogDensity::ONE)
+        }
+        fn simulate(
+            &self,
+            (): &(),
+            _: Option<&StateOf<Self>>,
+            _: LogPotential,
+            (): &mut (),
+        ) -> Result<Simulated<f64>, ModelError> {
+            Ok(Simulated::Complete(0.0))
+        }
+        fn log_constraint(&self, outcome: &f64) -> Result<LogPotential, ModelError> {
+            Ok(LogPotential::new(*outcome)?)
+        }
+    }
+
+    /// A constraint at the floor handed on does not exceed the floor asked for, in floating point; one a hair above does, within three units in
+    /// the last place.
+    #[test]
+    fn a_floor_handed_on_is_never_too_high_and_hardly_too_low() {
+        let mut stream = Seed(1).chain(0).at(0, Purpose(100));
+        for _ in 0..100_000 {
+            let mut around = |scale: f64| (open_unit(&mut stream) - 0.5) * scale;
+            let (floor, beta) = (around(200.0), around(6.0).abs());
+            let tempered = Tempered::new(&Nothing, beta).unwrap();
+            let seen = tempered.floor_seen(LogPotential::new(floor).unwrap()).unwrap().value();
+            let weight = |x: f64| tempered.log_constraint(&x).unwrap().value();
+            assert!(weight(seen) <= floor, "floor {floor}, beta {beta}");
+            let above = (0..3).fold(seen, |x, _| x.next_up());
+            assert!(weight(above) >= floor, "floor {floor}, beta {beta}");
+        }
+    }
+
+    #[test]
+    fn floors_at_the_extremes() {
+        let floor = |beta: f64, floor: f64| {
+            let tempered = Tempered::new(&Nothing, beta).unwrap();
+            tempered.floor_seen(LogPotential::new(floor).unwrap()).map(LogPotential::value)
+        };
+        assert_eq!(floor(0.0, -1.0), Some(f64::NEG_INFINITY));
+        assert_eq!(floor(0.0, 0.0), None);
+        assert_eq!(floor(1e-300, 1e300), Some(f64::MAX));
+        assert_eq!(floor(1e-300, -1e300), Some(f64::NEG_INFINITY));
+        assert_eq!(floor(1e300, f64::NEG_INFINITY), Some(f64::NEG_INFINITY));
+        assert_eq!(floor(1.0, -3.5), Some(-3.5));
+    }
+}

@@ -1,0 +1,76 @@
+//! Targets seen differently: same draws, same outcomes, another weight or another way to simulate.
+
+use crate::moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
+use crate::target::{ModelError, StateOf, Target};
+use plaus_dist::{LogRatio, Stream};
+use std::sync::Arc;
+
+/// A target that shows another one under a different constraint, or simulates it in a different way, over the same draws and outcomes. The other
+/// one's moves propose for the view as they are: see [`lend`].
+///
+/// The `log_constraint` in a view's states is the view's own, also where such a state is handed to the target seen or to its moves.
+pub trait View: Target {
+    /// The target seen.
+    type Seen: Target<Draw = Self::Draw, Outcome = Self::Outcome> + 'static;
+
+    /// The target seen.
+    fn seen(&self) -> &Self::Seen;
+}
+
+/// The moves of a target, with their probabilities, for a view of it. Many views can share them through one [`Arc`].
+///
+/// # Errors
+/// [`MixtureError`] is not expected: the weights are those of a mixture already.
+pub fn lend<V: View>(moves: impl Into<Arc<Mixture<V::Seen>>>) -> Result<Mixture<V>, MixtureError> {
+    let moves = moves.into();
+    let lent = (0..).zip(moves.iter()).map(|(id, (weight, _))| -> (f64, Box<dyn Move<V>>) {
+        (weight, Box::new(Lent { moves: Arc::clone(&moves), id: MoveId(id) }))
+    });
+    Mixture::new(lent.collect())
+}
+
+/// One move of a shared mixture.
+struct Lent<T: Target> {
+    moves: Arc<Mixture<T>>,
+    id: MoveId,
+}
+
+impl<T: Target> Lent<T> {
+    fn kernel(&self) -> &dyn Move<T> {
+        self.moves.get(self.id).1
+    }
+}
+
+impl<V: View> Move<V> for Lent<V::Seen> {
+    fn name(&self) -> &str {
+        self.kernel().name()
+    }
+
+    fn propose(
+        &self,
+        target: &V,
+        current: &StateOf<V>,
+        candidate: &mut V::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        self.kernel().propose(target.seen(), current, candidate, stream)
+    }
+
+    fn log_ratio(&self, target: &V, from: &StateOf<V>, to: &StateOf<V>, path: Path) -> Result<LogRatio, ModelError> {
+        self.kernel().log_ratio(target.seen(), from, to, path)
+    }
+
+    fn reverse(&self, path: Path) -> Path {
+        self.kernel().reverse(path)
+    }
+
+    fn log_ratio_after(
+        &self,
+        target: &V,
+        current: &StateOf<V>,
+        candidate: &StateOf<V>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.kernel().log_ratio_after(target.seen(), current, candidate, path)
+    }
+}

@@ -1,0 +1,135 @@
+//! Checkpoints: one a chain, replaced all together.
+//!
+//! A run is resumed with all chains at one iteration, but files can only be replaced one by one. So all next checkpoints are written beside
+//! the valid ones first; only when they are on the disk does each take its place. A run that dies while they do has some chains' new
+//! checkpoints in place and all others' beside them: [`settle`] finishes the replacement.
+
+use crate::codec::{self, Kind};
+use crate::disk::Disk;
+use crate::error::{RunFileError, RunFileProblem};
+use crate::folder::Folder;
+use plaus_mcmc::Snapshot;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+const KIND: Kind = Kind::new(*b"chkp", 1, "a checkpoint of a chain");
+
+/// Where a chain can go on from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Checkpoint<D, O> {
+    /// The run, see the records.
+    pub run: u64,
+    /// The chain.
+    pub chain: u32,
+    /// Length of the chain's records, in bytes, as of this checkpoint: what follows is not valid.
+    pub records: u64,
+    /// All that the chain's future follows from.
+    pub snapshot: Snapshot<D, O>,
+}
+
+impl<D: Serialize + DeserializeOwned, O: Serialize + DeserializeOwned> Checkpoint<D, O> {
+    /// Reads a chain's checkpoint; `None` where it has none yet.
+    ///
+    /// # Errors
+    /// [`RunFileError`] where it is damaged or belongs elsewhere.
+    pub fn read(path: &Path, run: u64, chain: u32) -> Result<Option<Self>, RunFileError> {
+        let bytes = match fs::read(path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            read => read.map_err(RunFileError::io(path, "read"))?,
+        };
+        let found: Self = codec::decode(KIND, &bytes)
+            .map_err(|source| RunFileError::new(path, RunFileProblem::Checkpoint { source }))?;
+        let mixed = |what: String| RunFileError::new(path, RunFileProblem::Mixed(what));
+        if found.run != run {
+            return Err(mixed("this checkpoint belongs to another run".into()));
+        }
+        if found.chain != chain {
+            return Err(mixed(format!("this checkpoint belongs to chain {}", found.chain)));
+        }
+        if found.snapshot.end_iteration == 0 {
+            return Err(mixed("this checkpoint covers no iteration".into()));
+        }
+        Ok(Some(found))
+    }
+}
+
+/// Puts checkpoints of all chains in place of the ones before, such that at any moment either all old or all new ones can be had.
+///
+/// # Errors
+/// [`RunFileError`] where the disk refuses; what was valid before then still is.
+pub fn replace<D: Serialize, O: Serialize>(
+    folder: &Folder,
+    disk: &dyn Disk,
+    checkpoints: &[Checkpoint<D, O>],
+) -> Result<(), RunFileError> {
+    let written = checkpoints.iter().try_for_each(|checkpoint| {
+        let path = folder.next_checkpoint(checkpoint.chain);
+        let bytes = codec::encode(KIND, checkpoint).map_err(|error| RunFileError::new(&path, error.into()))?;
+        disk.write(&path, &bytes).map_err(RunFileError::io(&path, "write"))
+    });
+    let sync = |()| disk.sync(folder.path()).map_err(RunFileError::io(folder.path(), "write"));
+    if let Err(error) = written.and_then(sync) {
+        for checkpoint in checkpoints {
+            let _ = disk.remove(&folder.next_checkpoint(checkpoint.chain)); // gives a full disk back what it can
+        }
+        return Err(error);
+    }
+    checkpoints.iter().try_for_each(|checkpoint| promote(folder, disk, checkpoint.chain)).and_then(sync)
+}
+
+/// Reads the checkpoints of all chains, all of one iteration, and finishes a replacement that was cut short. Empty where there is none yet.
+///
+/// # Errors
+/// [`RunFileError`] where a checkpoint is damaged, or they do not fit each other.
+pub fn settle<D, O>(
+    folder: &Folder,
+    disk: &dyn Disk,
+    run: u64,
+    chains: u32,
+) -> Result<Vec<Checkpoint<D, O>>, RunFileError>
+where
+    D: Serialize + DeserializeOwned,
+    O: Serialize + DeserializeOwned,
+{
+    let read = |chain| Checkpoint::<D, O>::read(&folder.checkpoint(chain), run, chain);
+    let valid: Vec<Option<_>> = (0..chains).map(read).collect::<Result<_, _>>()?;
+    let end = |checkpoint: &Checkpoint<D, O>| checkpoint.snapshot.end_iteration;
+    let Some(newest) = valid.iter().flatten().map(end).max() else {
+        return clear(folder, disk, chains).map(|()| Vec::new());
+    };
+    let mut settled = Vec::new();
+    for (chain, old) in (0..chains).zip(valid) {
+        if let Some(checkpoint) = old.filter(|old| end(old) == newest) {
+            settled.push(checkpoint);
+            continue;
+        }
+        let next = Checkpoint::read(&folder.next_checkpoint(chain), run, chain)?.filter(|next| end(next) == newest);
+        settled.push(next.ok_or_else(|| {
+            let message = format!("other chains have checkpoints of iteration {newest}, this one has none");
+            RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message))
+        })?);
+        promote(folder, disk, chain)?;
+    }
+    clear(folder, disk, chains)?;
+    disk.sync(folder.path()).map_err(RunFileError::io(folder.path(), "write"))?;
+    Ok(settled)
+}
+
+fn promote(folder: &Folder, disk: &dyn Disk, chain: u32) -> Result<(), RunFileError> {
+    let path = folder.checkpoint(chain);
+    disk.rename(&folder.next_checkpoint(chain), &path).map_err(RunFileError::io(&path, "replace"))
+}
+
+/// Removes next checkpoints that never became valid.
+fn clear(folder: &Folder, disk: &dyn Disk, chains: u32) -> Result<(), RunFileError> {
+    for path in (0..chains).map(|chain| folder.next_checkpoint(chain)) {
+        match disk.remove(&path) {
+            Err(error) if error.kind() != ErrorKind::NotFound => return Err(RunFileError::io(&path, "remove")(error)),
+            _ => {}
+        }
+    }
+    Ok(())
+}

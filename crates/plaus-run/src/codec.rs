@@ -1,0 +1,303 @@
+//! Frames: how values are stored so that damage is noticed before anything is believed.
+//!
+//! A frame is
+//!
+//! | bytes | what |
+//! | --- | --- |
+//! | 8 | magic `\x89plaus\r\n`: a copy through a text mode breaks it visibly |
+//! | 4 | kind, four ASCII letters |
+//! | 4 | version of that kind, little-endian |
+//! | 8 | length of the payload, little-endian |
+//! | … | payload: bincode 2, standard configuration (little-endian, variable-length whole numbers) |
+//! | 32 | BLAKE3 of everything before |
+//!
+//! A file is one frame, or frames one after the other. No other module of the project names bincode: its bytes are frozen and
+//! specified, but nobody maintains it any more, so that replacing it must touch one file.
+//!
+//! ```
+//! use plaus_run::codec::{Kind, decode, encode};
+//! const GREETING: Kind = Kind::new(*b"helo", 1, "a greeting");
+//! let bytes = encode(GREETING, &("hello", 7_u32))?;
+//! assert_eq!(decode::<(String, u32)>(GREETING, &bytes)?, ("hello".to_owned(), 7));
+//!
+//! let mut broken = bytes.clone();
+//! broken[30] ^= 1;
+//! assert!(decode::<(String, u32)>(GREETING, &broken).is_err());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use bincode::config::{Configuration, Limit, LittleEndian, Varint};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::io::{self, Read};
+use std::marker::PhantomData;
+
+const MAGIC: [u8; 8] = *b"\x89plaus\r\n";
+const HEADER: usize = 24;
+const TRAILER: usize = 32;
+/// Longest payload, in bytes. Hostile lengths end here instead of in an allocation.
+pub const LONGEST_PAYLOAD: usize = 1 << 30;
+
+const CONFIG: Configuration<LittleEndian, Varint, Limit<LONGEST_PAYLOAD>> =
+    bincode::config::standard().with_limit::<LONGEST_PAYLOAD>();
+
+/// What a frame holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Kind {
+    tag: [u8; 4],
+    version: u32,
+    name: &'static str,
+}
+
+impl Kind {
+    /// A kind of frame: four ASCII letters, the version this build writes and reads, and a name for messages.
+    #[must_use]
+    pub const fn new(tag: [u8; 4], version: u32, name: &'static str) -> Self {
+        Self { tag, version, name }
+    }
+}
+
+/// A value that cannot be stored.
+#[derive(Debug, thiserror::Error)]
+pub enum EncodeError {
+    /// The payload is too long for one frame.
+    #[error(
+        "{bytes} bytes in one frame, at most {LONGEST_PAYLOAD} are possible: a smaller `checkpoint_every` makes smaller frames"
+    )]
+    TooLong {
+        /// Its length.
+        bytes: usize,
+    },
+    /// The value's own serialisation failed.
+    #[error("cannot be stored: {0}")]
+    Value(String),
+}
+
+/// A frame that cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("at byte {offset}: {problem}")]
+pub struct FrameError {
+    /// Where in the file the frame begins.
+    pub offset: u64,
+    /// What is wrong with it.
+    pub problem: FrameProblem,
+}
+
+/// What is wrong with a frame.
+#[derive(Debug, thiserror::Error)]
+pub enum FrameProblem {
+    /// The file cannot be read.
+    #[error("cannot read: {0}")]
+    Io(#[from] io::Error),
+    /// It does not begin like a frame.
+    #[error("no frame of plaus begins here")]
+    Magic,
+    /// It holds something else.
+    #[error("expected {expected}, found a frame of kind `{found}`")]
+    Kind {
+        /// What was asked for.
+        expected: &'static str,
+        /// The tag that is there.
+        found: String,
+    },
+    /// Another version of plaus wrote it.
+    #[error("format version {found} of {name}; this plaus reads version {known}")]
+    Version {
+        /// What it holds.
+        name: &'static str,
+        /// The version this build reads.
+        known: u32,
+        /// The version that is there.
+        found: u32,
+    },
+    /// The file ends inside the frame.
+    #[error("the file ends inside this frame: {present} bytes are there, {needed} are needed")]
+    Truncated {
+        /// Length of the frame.
+        needed: u64,
+        /// What is there of it.
+        present: u64,
+    },
+    /// The length is absurd.
+    #[error("a payload of {length} bytes is claimed, at most {LONGEST_PAYLOAD} are possible")]
+    TooLong {
+        /// The claim.
+        length: u64,
+    },
+    /// Something changed since it was written.
+    #[error("the checksum does not match: bytes were changed after they were written")]
+    Checksum,
+    /// The checksum is right, but the payload is no such value.
+    #[error("the payload is no {name}: {reason}")]
+    Payload {
+        /// What it should be.
+        name: &'static str,
+        /// Why it is not.
+        reason: String,
+    },
+    /// Bytes follow where nothing should.
+    #[error("{bytes} unexpected bytes follow")]
+    Trailing {
+        /// How many.
+        bytes: u64,
+    },
+}
+
+/// Appends a frame that holds `value` to `out`. On an error `out` is as before.
+///
+/// # Errors
+/// [`EncodeError`] where the value is too long or cannot be serialised.
+pub fn append<T: Serialize + ?Sized>(kind: Kind, value: &T, out: &mut Vec<u8>) -> Result<(), EncodeError> {
+    let start = out.len();
+    out.extend_from_slice(&MAGIC);
+    out.extend_from_slice(&kind.tag);
+    out.extend_from_slice(&kind.version.to_le_bytes());
+    out.extend_from_slice(&[0; 8]);
+    let written = bincode::serde::encode_into_std_write(value, out, CONFIG);
+    let checked = match written {
+        Ok(bytes) if bytes <= LONGEST_PAYLOAD => Ok(bytes),
+        Ok(bytes) => Err(EncodeError::TooLong { bytes }),
+        Err(error) => Err(EncodeError::Value(error.to_string())),
+    };
+    match checked {
+        Ok(bytes) => {
+            out[start + HEADER - 8..start + HEADER].copy_from_slice(&(bytes as u64).to_le_bytes());
+            let hash = blake3::hash(&out[start..]);
+            out.extend_from_slice(hash.as_bytes());
+            Ok(())
+        }
+        Err(error) => {
+            out.truncate(start);
+            Err(error)
+        }
+    }
+}
+
+/// One frame that holds `value`.
+///
+/// # Errors
+/// As [`append`].
+pub fn encode<T: Serialize + ?Sized>(kind: Kind, value: &T) -> Result<Vec<u8>, EncodeError> {
+    let mut out = Vec::new();
+    append(kind, value, &mut out)?;
+    Ok(out)
+}
+
+/// The value of a file of one frame.
+///
+/// # Errors
+/// [`FrameError`] where `bytes` are anything but one whole frame of `kind`.
+pub fn decode<T: DeserializeOwned>(kind: Kind, bytes: &[u8]) -> Result<T, FrameError> {
+    let length = bytes.len() as u64;
+    let mut frames = Frames::<T, _>::new(kind, bytes, length);
+    let truncated = FrameProblem::Truncated { needed: (HEADER + TRAILER) as u64, present: length };
+    let value = frames.next().unwrap_or(Err(FrameError { offset: 0, problem: truncated }))?;
+    match length - frames.offset {
+        0 => Ok(value),
+        bytes => Err(FrameError { offset: frames.offset, problem: FrameProblem::Trailing { bytes } }),
+    }
+}
+
+/// The values of a file of frames of one kind, in order. After an error it ends.
+#[derive(Debug)]
+pub struct Frames<T, R> {
+    kind: Kind,
+    input: R,
+    offset: u64,
+    end: u64,
+    buffer: Vec<u8>,
+    value: PhantomData<T>,
+}
+
+impl<T: DeserializeOwned, R: Read> Frames<T, R> {
+    /// Reads frames of `kind` from the first `length` bytes of `input`.
+    pub fn new(kind: Kind, input: R, length: u64) -> Self {
+        Self { kind, input, offset: 0, end: length, buffer: Vec::new(), value: PhantomData }
+    }
+
+    /// Where the next frame begins.
+    pub fn offset(&self) -> u64 {
+        self.offset
+    }
+
+    fn read(&mut self) -> Result<T, FrameProblem> {
+        let present = self.end - self.offset;
+        let overhead = (HEADER + TRAILER) as u64;
+        if present < overhead {
+            return Err(FrameProblem::Truncated { needed: overhead, present });
+        }
+        self.buffer.clear();
+        self.fill(HEADER as u64)?;
+        let length = self.check_header()?;
+        if present - overhead < length {
+            return Err(FrameProblem::Truncated { needed: overhead + length, present });
+        }
+        self.fill(length + TRAILER as u64)?;
+        let (content, trailer) = self.buffer.split_at(self.buffer.len() - TRAILER);
+        if blake3::hash(content).as_bytes() != trailer {
+            return Err(FrameProblem::Checksum);
+        }
+        let value = decode_payload(self.kind.name, &content[HEADER..])?;
+        self.offset += overhead + length;
+        Ok(value)
+    }
+
+    /// Reads exactly `bytes` more into the buffer, which grows only by what is really there.
+    fn fill(&mut self, bytes: u64) -> Result<(), FrameProblem> {
+        let got = self.input.by_ref().take(bytes).read_to_end(&mut self.buffer)? as u64;
+        if got == bytes {
+            return Ok(());
+        }
+        let present = self.buffer.len() as u64;
+        Err(FrameProblem::Truncated { needed: present - got + bytes, present })
+    }
+
+    fn check_header(&self) -> Result<u64, FrameProblem> {
+        let field = |from: usize| std::array::from_fn::<u8, 4, _>(|i| self.buffer[from + i]);
+        if self.buffer[..8] != MAGIC {
+            return Err(FrameProblem::Magic);
+        }
+        let (tag, found) = (field(8), u32::from_le_bytes(field(12)));
+        let Kind { tag: expected, version: known, name } = self.kind;
+        if tag != expected {
+            let found = tag.escape_ascii().to_string();
+            return Err(FrameProblem::Kind { expected: name, found });
+        }
+        if found != known {
+            return Err(FrameProblem::Version { name, known, found });
+        }
+        let length = u64::from(u32::from_le_bytes(field(16))) | u64::from(u32::from_le_bytes(field(20))) << 32;
+        if length > LONGEST_PAYLOAD as u64 {
+            return Err(FrameProblem::TooLong { length });
+        }
+        Ok(length)
+    }
+}
+
+impl<T: DeserializeOwned, R: Read> Iterator for Frames<T, R> {
+    type Item = Result<T, FrameError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.offset == self.end {
+            return None;
+        }
+        let offset = self.offset;
+        Some(self.read().map_err(|problem| {
+            self.end = self.offset;
+            FrameError { offset, problem }
+        }))
+    }
+}
+
+fn decode_payload<T: DeserializeOwned>(name: &'static str, payload: &[u8]) -> Result<T, FrameProblem> {
+    match bincode::serde::decode_from_slice::<T, _>(payload, CONFIG) {
+        Ok((value, used)) if used == payload.len() => Ok(value),
+        Ok((_, used)) => {
+            Err(FrameProblem::Payload { name, reason: format!("{} bytes are left over", payload.len() - used) })
+        }
+        Err(error) => Err(FrameProblem::Payload { name, reason: error.to_string() }),
+    }
+}
+
+#[cfg(test)]
+mod tests;

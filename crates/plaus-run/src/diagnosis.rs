@@ -1,0 +1,202 @@
+//! Whether a run has converged: the diagnostics of every scalar, the variables of the draw first.
+
+use crate::error::RunFileError;
+use crate::read::{Phase, RunOf};
+use crate::tally::Tally;
+use plaus_mcmc::diagnose::{DiagnoseError, Summary, summarize};
+use plaus_scenes::{Role, Scalar, Scene};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::fmt;
+
+/// Numbers held in memory at once while scalars are read.
+const HELD: u64 = 1 << 25;
+/// Rank-normalised R̂ above this says that the chains disagree (Vehtari et al. 2021).
+pub const MAX_RHAT: f64 = 1.01;
+/// Effective draws a chain needs for its diagnostics to be trusted (Vehtari et al. 2021).
+pub const MIN_ESS_PER_CHAIN: f64 = 100.0;
+
+/// What was found about a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct Diagnosis {
+    /// Iterations of the sampling phase, of each chain.
+    pub iterations: u64,
+    /// Draws used, of each chain: every `stride`-th.
+    pub draws: u64,
+    /// 1 where all draws are used.
+    pub stride: u64,
+    /// Per scalar, those of the draw first.
+    pub scalars: Vec<ScalarDiagnosis>,
+    /// What the records add up to.
+    pub tally: Tally,
+    /// What speaks against trusting the run.
+    pub findings: Vec<Finding>,
+}
+
+/// What was found about a scalar.
+#[derive(Debug, Clone, Serialize)]
+pub struct ScalarDiagnosis {
+    /// Which.
+    #[serde(flatten)]
+    pub scalar: Scalar,
+    /// Mean, standard deviation, errors, effective draws; `None` where `trouble` says why.
+    pub summary: Option<Summary>,
+    /// Why there is no summary.
+    pub trouble: Option<String>,
+    /// Effective draws (bulk) per 1,000 iterations.
+    pub ess_per_1000: Option<f64>,
+}
+
+/// Something that speaks against trusting a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "finding", rename_all = "snake_case")]
+pub enum Finding {
+    /// No iteration of any chain satisfied the constraint.
+    NoSatisfyingSample,
+    /// The chains disagree.
+    Rhat {
+        /// About which scalar.
+        scalar: String,
+        /// By how much.
+        rhat: f64,
+    },
+    /// Too few effective draws.
+    Ess {
+        /// Of which scalar.
+        scalar: String,
+        /// `bulk` or `tail`.
+        kind: &'static str,
+        /// How many.
+        ess: f64,
+        /// How many it takes.
+        needed: f64,
+    },
+    /// A variable of the draw never moved.
+    Stuck {
+        /// Which.
+        scalar: String,
+    },
+    /// No diagnostics could be computed.
+    Undiagnosed {
+        /// Of which scalar.
+        scalar: String,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSatisfyingSample => f.write_str("no sample satisfies the constraint"),
+            Self::Rhat { scalar, rhat } => {
+                write!(f, "{scalar}: R-hat {rhat:.4} is above {MAX_RHAT}: the chains have not come to agree")
+            }
+            Self::Ess { scalar, kind, ess, needed } => {
+                write!(
+                    f,
+                    "{scalar}: {ess:.0} effective draws ({kind}), at least {needed:.0} are needed: more iterations, or moves that mix better"
+                )
+            }
+            Self::Stuck { scalar } => write!(f, "{scalar}: never moved"),
+            Self::Undiagnosed { scalar, reason } => write!(f, "{scalar}: {reason}"),
+        }
+    }
+}
+
+impl Diagnosis {
+    /// Diagnoses the sampling phase of a run, from every draw, or, where that is more than `most` a chain, from every so-manieth.
+    ///
+    /// # Errors
+    /// [`RunFileError`] where the records are damaged.
+    pub fn of<S: Scene>(run: &RunOf<'_, S>, most: Option<u64>) -> Result<Self, RunFileError> {
+        let recorded = run.draws(Phase::Sampling);
+        let stride = most.map_or(1, |most| recorded.div_ceil(most.max(1)).max(1));
+        let iterations = run.iterations().saturating_sub(run.run().manifest().plan.warmup);
+        let mut scalars = Vec::new();
+        let all = run.scene().scalars();
+        let width = (HELD / (u64::from(run.chains()) * recorded.div_ceil(stride)).max(1)).max(1);
+        for from in (0..all.len()).step_by(usize::try_from(width).unwrap_or(usize::MAX)) {
+            let some = &all[from..all.len().min(from.saturating_add(width as usize))];
+            let columns = columns(run, from, some.len(), stride)?;
+            let diagnose = |(scalar, chains): (&Scalar, Vec<Vec<f64>>)| diagnose(scalar, &chains, iterations);
+            scalars.par_extend(some.par_iter().zip(columns).map(diagnose));
+        }
+        scalars.sort_by_key(|scalar: &ScalarDiagnosis| scalar.scalar.role != Role::Draw);
+        let tally = Tally::of(run)?;
+        let findings = findings(&scalars, &tally);
+        Ok(Self { iterations, draws: recorded.div_ceil(stride), stride, scalars, tally, findings })
+    }
+
+    /// Whether nothing speaks against the run.
+    #[must_use]
+    pub fn is_healthy(&self) -> bool {
+        self.findings.is_empty()
+    }
+}
+
+/// The values of `count` scalars from number `from` on: per scalar, per chain, per draw.
+///
+/// # Errors
+/// [`RunFileError`] where the records are damaged.
+pub fn columns<S: Scene>(
+    run: &RunOf<'_, S>,
+    from: usize,
+    count: usize,
+    stride: u64,
+) -> Result<Vec<Vec<Vec<f64>>>, RunFileError> {
+    let width = run.scene().scalars().len();
+    let chain = |chain| -> Result<Vec<Vec<f64>>, RunFileError> {
+        let mut columns = vec![Vec::new(); count];
+        let mut values = vec![0.0; width];
+        run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
+            let times = (stretch.draw + stretch.draws).div_ceil(stride) - stretch.draw.div_ceil(stride);
+            if times > 0 {
+                run.scene().write_scalars(&stretch.entry.state, &mut values);
+                for (column, &value) in columns.iter_mut().zip(&values[from..]) {
+                    column.extend(std::iter::repeat_n(value, times as usize));
+                }
+            }
+            Ok(())
+        })?;
+        Ok(columns)
+    };
+    let chains: Vec<Vec<Vec<f64>>> = (0..run.chains()).into_par_iter().map(chain).collect::<Result<_, _>>()?;
+    let mut scalars: Vec<Vec<Vec<f64>>> = vec![Vec::new(); count];
+    for chain in chains {
+        scalars.iter_mut().zip(chain).for_each(|(scalar, column)| scalar.push(column));
+    }
+    Ok(scalars)
+}
+
+fn diagnose(scalar: &Scalar, chains: &[Vec<f64>], iterations: u64) -> ScalarDiagnosis {
+    let summary: Result<Summary, DiagnoseError> = summarize(chains);
+    let thousands = iterations as f64 * chains.len() as f64 / 1000.0;
+    let ess_per_1000 = summary.as_ref().ok().map(|summary| summary.ess_bulk / thousands);
+    let trouble = summary.as_ref().err().map(ToString::to_string);
+    ScalarDiagnosis { scalar: scalar.clone(), summary: summary.ok(), trouble, ess_per_1000 }
+}
+
+fn findings(scalars: &[ScalarDiagnosis], tally: &Tally) -> Vec<Finding> {
+    let none = (!tally.is_satisfied()).then_some(Finding::NoSatisfyingSample);
+    none.into_iter().chain(scalars.iter().flat_map(against)).collect()
+}
+
+/// What speaks against one scalar.
+fn against(row: &ScalarDiagnosis) -> Vec<Finding> {
+    let scalar = || row.scalar.name.clone();
+    let Some(summary) = &row.summary else {
+        return vec![Finding::Undiagnosed { scalar: scalar(), reason: row.trouble.clone().unwrap_or_default() }];
+    };
+    if summary.sd == 0.0 {
+        // An outcome may well be the same in all samples; a variable of the draw may not.
+        let stuck = row.scalar.role == Role::Draw;
+        return stuck.then(|| Finding::Stuck { scalar: scalar() }).into_iter().collect();
+    }
+    let needed = MIN_ESS_PER_CHAIN * summary.chains as f64;
+    let rhat = summary.rhat.filter(|&rhat| rhat > MAX_RHAT).map(|rhat| Finding::Rhat { scalar: scalar(), rhat });
+    let few =
+        |(kind, ess): (&'static str, f64)| (ess < needed).then(|| Finding::Ess { scalar: scalar(), kind, ess, needed });
+    let ess = [("bulk", summary.ess_bulk), ("tail", summary.ess_tail)];
+    rhat.into_iter().chain(ess.into_iter().filter_map(few)).collect()
+}

@@ -1,0 +1,89 @@
+//! The few file operations a run is written with, behind a trait, so that tests can fill the disk or stop at any byte.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// What the writing of a run asks of a disk. Each operation may fail half done, as real ones do.
+pub trait Disk: Sync {
+    /// Adds `bytes` at the end of a file, which is made where there is none.
+    ///
+    /// # Errors
+    /// As the operating system says; part of the bytes may have been written.
+    fn append(&self, path: &Path, bytes: &[u8]) -> io::Result<()>;
+
+    /// Makes a file that holds exactly `bytes`, in place of any there was, and waits until they are on the disk.
+    ///
+    /// # Errors
+    /// As the operating system says; the file may hold part of the bytes.
+    fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()>;
+
+    /// Waits until everything written to a file, or the names in a folder, are on the disk.
+    ///
+    /// # Errors
+    /// As the operating system says.
+    fn sync(&self, path: &Path) -> io::Result<()>;
+
+    /// Renames a file or a folder in one step, in place of any file of the new name.
+    ///
+    /// # Errors
+    /// As the operating system says.
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()>;
+
+    /// Cuts a file to its first `length` bytes.
+    ///
+    /// # Errors
+    /// As the operating system says.
+    fn truncate(&self, path: &Path, length: u64) -> io::Result<()>;
+
+    /// Removes a file.
+    ///
+    /// # Errors
+    /// As the operating system says.
+    fn remove(&self, path: &Path) -> io::Result<()>;
+
+    /// Makes a folder that must not exist.
+    ///
+    /// # Errors
+    /// As the operating system says.
+    fn create_folder(&self, path: &Path) -> io::Result<()>;
+}
+
+/// The operating system's disk.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RealDisk;
+
+impl Disk for RealDisk {
+    fn append(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        OpenOptions::new().append(true).create(true).open(path)?.write_all(bytes)
+    }
+
+    fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let mut file = File::create(path)?;
+        file.write_all(bytes)?;
+        file.sync_all()
+    }
+
+    fn sync(&self, path: &Path) -> io::Result<()> {
+        if path.is_dir() && !cfg!(unix) {
+            return Ok(()); // a folder cannot be opened as a file there
+        }
+        File::open(path)?.sync_all()
+    }
+
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        fs::rename(from, to)
+    }
+
+    fn truncate(&self, path: &Path, length: u64) -> io::Result<()> {
+        OpenOptions::new().write(true).open(path)?.set_len(length)
+    }
+
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        fs::remove_file(path)
+    }
+
+    fn create_folder(&self, path: &Path) -> io::Result<()> {
+        fs::create_dir(path)
+    }
+}

@@ -1,0 +1,37 @@
+//! A table of the sampling phase: one row per chain and draw.
+//!
+//! Columns: `chain`, `draw` (from 0), `log_p`, `satisfied` (`true` or `false`), then one a scalar of the scene, in the scene's units. Numbers are the
+//! shortest that read back as the same bits; rows are ordered by chain, then draw; lines end with `\n`.
+
+use crate::error::Error;
+use crate::read::{Phase, RunOf};
+use plaus_scenes::Scene;
+use std::fmt::Write as _;
+use std::io::Write;
+
+/// Writes the table.
+///
+/// # Errors
+/// [`Error`] where the records are damaged or `out` refuses.
+pub fn write<S: Scene>(run: &RunOf<'_, S>, out: &mut dyn Write) -> Result<(), Error> {
+    let scalars = run.scene().scalars();
+    let names: Vec<&str> = scalars.iter().map(|scalar| scalar.name.as_str()).collect();
+    writeln!(out, "chain,draw,log_p,satisfied,{}", names.join(",")).map_err(Error::Output)?;
+    let mut values = vec![0.0; scalars.len()];
+    let mut rest = String::new();
+    for chain in 0..run.chains() {
+        run.walk(chain, Phase::Sampling, |stretch| -> Result<(), Error> {
+            run.scene().write_scalars(&stretch.entry.state, &mut values);
+            rest.clear();
+            let state = &stretch.entry.state;
+            // Writing to a string cannot fail.
+            let _ = write!(rest, "{:?},{}", state.log_p().value(), stretch.entry.class.is_some());
+            for value in &values {
+                let _ = write!(rest, ",{value:?}");
+            }
+            let mut draws = stretch.draw..stretch.draw + stretch.draws;
+            draws.try_for_each(|draw| writeln!(out, "{chain},{draw},{rest}")).map_err(Error::Output)
+        })?;
+    }
+    Ok(())
+}

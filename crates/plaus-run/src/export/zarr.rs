@@ -1,0 +1,214 @@
+//! A Zarr v3 folder that ArviZ reads: groups `posterior` and `sample_stats`, and `warmup_posterior` and `warmup_sample_stats` where there is a
+//! warm-up, all with dimensions (chain, draw).
+//!
+//! Chunks are raw little-endian numbers, one chain each, so that any language reads them without a library. Metadata is consolidated:
+//! `zarr.json` at the root describes every array.
+
+use crate::error::{Error, RunFileError, RunFileProblem};
+use crate::manifest::Manifest;
+use crate::read::{Phase, RunOf, StretchOf};
+use plaus_mcmc::StateOf;
+use plaus_scenes::{Scalar, Scene};
+use serde_json::{Map, Value, json};
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+/// An array of a group.
+struct Array {
+    name: String,
+    data_type: &'static str,
+    fill: Value,
+    dimensions: &'static [&'static str],
+    shape: Vec<u64>,
+    attributes: Value,
+}
+
+impl Array {
+    fn floats(name: impl Into<String>, shape: &[u64], attributes: Value) -> Self {
+        Self::new(name, "float64", json!("NaN"), shape, attributes)
+    }
+
+    fn new(name: impl Into<String>, data_type: &'static str, fill: Value, shape: &[u64], attributes: Value) -> Self {
+        Self { name: name.into(), data_type, fill, dimensions: &["chain", "draw"], shape: shape.to_vec(), attributes }
+    }
+
+    /// One chunk a chain; a coordinate is one chunk.
+    fn metadata(&self) -> Value {
+        let mut chunk = self.shape.clone();
+        if chunk.len() > 1 {
+            chunk[0] = 1;
+        }
+        json!({
+            "zarr_format": 3,
+            "node_type": "array",
+            "shape": self.shape,
+            "data_type": self.data_type,
+            "chunk_grid": { "name": "regular", "configuration": { "chunk_shape": chunk } },
+            "chunk_key_encoding": { "name": "default", "configuration": { "separator": "/" } },
+            "fill_value": self.fill,
+            "codecs": [{ "name": "bytes", "configuration": { "endian": "little" } }],
+            "attributes": self.attributes,
+            "dimension_names": self.dimensions,
+            "storage_transformers": [],
+        })
+    }
+}
+
+/// Whether a folder was made by [`write`], and may be replaced.
+#[must_use]
+pub fn is_ours(path: &Path) -> bool {
+    let root: Option<Value> = fs::read(path.join("zarr.json")).ok().and_then(|json| serde_json::from_slice(&json).ok());
+    root.is_some_and(|root| root["attributes"]["inference_library"] == "plaus")
+}
+
+/// Fills the folder `out`, which exists and is empty.
+///
+/// # Errors
+/// [`Error`] where the run has no draws, its records are damaged or the disk refuses.
+pub fn write<S: Scene>(run: &RunOf<'_, S>, out: &Path) -> Result<(), Error> {
+    if run.draws(Phase::Sampling) == 0 {
+        return Err(RunFileError::new(run.run().folder().path(), RunFileProblem::Empty).into());
+    }
+    let mut nodes = Map::new();
+    for (phase, prefix) in [(Phase::Sampling, ""), (Phase::Warmup, "warmup_")] {
+        let shape = [u64::from(run.chains()), run.draws(phase)];
+        if shape[1] == 0 {
+            continue;
+        }
+        let scalars = run.scene().scalars().iter().map(|scalar| of_scalar(scalar, &shape)).collect();
+        let groups = [("posterior", scalars), ("sample_stats", sample_stats(&shape))];
+        for (name, arrays) in &groups {
+            write_group(out, &format!("{prefix}{name}"), arrays, &shape, &mut nodes)?;
+        }
+        let names = groups.map(|(group, arrays)| (format!("{prefix}{group}"), arrays));
+        (0..run.chains()).try_for_each(|chain| write_chain(run, phase, chain, out, &names))?;
+    }
+    let consolidated = json!({ "kind": "inline", "must_understand": false, "metadata": nodes });
+    let root = json!({
+        "zarr_format": 3,
+        "node_type": "group",
+        "attributes": about(run.run().manifest()),
+        "consolidated_metadata": consolidated,
+    });
+    write_json(&out.join("zarr.json"), &root)
+}
+
+fn of_scalar(scalar: &Scalar, shape: &[u64]) -> Array {
+    // Not `units`: xarray would turn seconds into time differences.
+    Array::floats(&*scalar.name, shape, json!({ "unit": scalar.unit, "role": scalar.role }))
+}
+
+fn sample_stats(shape: &[u64]) -> Vec<Array> {
+    let about = |text: &str| json!({ "description": text });
+    vec![
+        Array::floats("lp", shape, about("log p(A), up to a constant")),
+        Array::floats("acceptance_rate", shape, about("accepted share of the proposals since the draw before")),
+        Array::new("satisfied", "bool", json!(false), shape, about("whether the draw satisfies the constraint")),
+    ]
+}
+
+/// Where the draws come from. No time of day: equal runs give equal folders.
+fn about(manifest: &Manifest) -> Value {
+    json!({
+        "inference_library": "plaus",
+        "inference_library_version": manifest.plaus,
+        "creation_library": "plaus",
+        "scene": manifest.scene,
+        "scenario": manifest.scenario.effective,
+        "scenario_hash": manifest.scenario.hash,
+        "seed": manifest.plan.seed,
+        "thin": manifest.plan.thin,
+        "exact_acceptance": manifest.exact,
+    })
+}
+
+fn write_group(
+    out: &Path,
+    group: &str,
+    arrays: &[Array],
+    shape: &[u64],
+    nodes: &mut Map<String, Value>,
+) -> Result<(), Error> {
+    let metadata = json!({ "zarr_format": 3, "node_type": "group", "attributes": {} });
+    make(&out.join(group))?;
+    write_json(&out.join(group).join("zarr.json"), &metadata)?;
+    nodes.insert(group.to_owned(), metadata);
+    for (dimension, &length) in ["chain", "draw"].iter().zip(shape) {
+        let dimensions: &'static [&'static str] = if *dimension == "chain" { &["chain"] } else { &["draw"] };
+        let mut index = Array::new(*dimension, "int64", json!(0), &[length], json!({}));
+        index.dimensions = dimensions;
+        write_array(out, group, &index, nodes)?;
+        let numbers: Vec<u8> = (0..length).flat_map(u64::to_le_bytes).collect();
+        write_bytes(&out.join(group).join(dimension).join("c").join("0"), &numbers)?;
+    }
+    arrays.iter().try_for_each(|array| write_array(out, group, array, nodes))
+}
+
+fn write_array(out: &Path, group: &str, array: &Array, nodes: &mut Map<String, Value>) -> Result<(), Error> {
+    let folder = out.join(group).join(&array.name);
+    make(&folder.join("c"))?;
+    let metadata = array.metadata();
+    write_json(&folder.join("zarr.json"), &metadata)?;
+    nodes.insert(format!("{group}/{}", array.name), metadata);
+    Ok(())
+}
+
+/// The chunks of one chain, written side by side as its records are read once.
+struct Chunks(Vec<BufWriter<File>>);
+
+impl Chunks {
+    fn create(out: &Path, groups: &[(String, Vec<Array>)], chain: u32) -> Result<Self, Error> {
+        let mut files = Vec::new();
+        for (group, array) in groups.iter().flat_map(|(group, arrays)| arrays.iter().map(move |array| (group, array))) {
+            let folder = out.join(group).join(&array.name).join("c").join(chain.to_string());
+            make(&folder)?;
+            files.push(BufWriter::new(File::create(folder.join("0")).map_err(Error::Output)?));
+        }
+        Ok(Self(files))
+    }
+
+    fn put(&mut self, index: usize, value: &[u8], times: u64) -> Result<(), Error> {
+        let file = &mut self.0[index];
+        (0..times).try_for_each(|_| file.write_all(value)).map_err(Error::Output)
+    }
+}
+
+fn write_chain<S: Scene>(
+    run: &RunOf<'_, S>,
+    phase: Phase,
+    chain: u32,
+    out: &Path,
+    groups: &[(String, Vec<Array>)],
+) -> Result<(), Error> {
+    let mut chunks = Chunks::create(out, groups, chain)?;
+    let thin = run.run().manifest().plan.thin as f64;
+    let mut values = vec![0.0; run.scene().scalars().len()];
+    run.walk(chain, phase, |stretch: StretchOf<'_, S>| -> Result<(), Error> {
+        let state: &StateOf<S> = &stretch.entry.state;
+        run.scene().write_scalars(state, &mut values);
+        let lp = state.log_p().value();
+        for (index, value) in values.iter().chain([&lp]).enumerate() {
+            chunks.put(index, &value.to_le_bytes(), stretch.draws)?;
+        }
+        let rate = f64::from(stretch.accepted) / thin;
+        chunks.put(values.len() + 1, &rate.to_le_bytes(), 1)?;
+        chunks.put(values.len() + 1, &0.0_f64.to_le_bytes(), stretch.draws - 1)?;
+        chunks.put(values.len() + 2, &[u8::from(stretch.entry.class.is_some())], stretch.draws)
+    })?;
+    chunks.0.iter_mut().try_for_each(BufWriter::flush).map_err(Error::Output)
+}
+
+fn make(path: &Path) -> Result<(), Error> {
+    fs::create_dir_all(path).map_err(Error::Output)
+}
+
+fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    fs::write(path, bytes).map_err(Error::Output)
+}
+
+fn write_json(path: &Path, value: &Value) -> Result<(), Error> {
+    let mut text = serde_json::to_vec_pretty(value).map_err(|error| Error::Output(error.into()))?;
+    text.push(b'\n');
+    write_bytes(path, &text)
+}

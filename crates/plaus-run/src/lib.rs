@@ -1,0 +1,68 @@
+//! Runs on disk: sampled, resumed, read back, diagnosed and exported.
+//!
+//! ```
+//! use plaus_run::{Folder, Phase, Recipe, Run, RunOf, RunVisitor, Sampling, Unwatched};
+//! use plaus_scenes::{Scenario, Scene};
+//! # let place = tempfile::tempdir()?;
+//! # let path = place.path().join("run");
+//!
+//! // Sample a scene into a folder.
+//! let text = "sampler = { chains = 2, warmup = 100, iterations = 900 }\nworld.ball2d = {}";
+//! let scenario = Scenario::read("ball.toml", text, &[])?;
+//! let recipe = Recipe { scenario, file: "ball.toml".into(), text: text.into(), overrides: vec![], solutions: None };
+//! let folder = Folder::new(&path);
+//! plaus_run::sample(&folder, &recipe, Sampling::new(1, &mut Unwatched))?;
+//!
+//! // Read it back, whatever its scene is.
+//! struct Satisfying;
+//! impl RunVisitor for Satisfying {
+//!     type Output = Result<u64, plaus_run::Error>;
+//!     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+//!         let mut satisfying = 0;
+//!         run.walk(0, Phase::Sampling, |stretch| -> Result<(), plaus_run::Error> {
+//!             satisfying += if stretch.entry.class.is_some() { stretch.draws } else { 0 };
+//!             Ok(())
+//!         })?;
+//!         Ok(satisfying)
+//!     }
+//! }
+//! let satisfying = Run::open(&folder)?.visit(Satisfying)??;
+//! assert!((300..900).contains(&satisfying), "{satisfying}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # A run is a folder
+//!
+//! | file | what |
+//! | --- | --- |
+//! | `manifest.json` | what the run is: scenario text and hash, version, seed, plan, flags of the acceptance rule, moves, scalars; with a checksum |
+//! | `chain-00000.records` | what the chain recorded: one [frame](codec) a block of iterations, appended |
+//! | `chain-00000.checkpoint` | where the chain can go on from: one frame, replaced |
+//! | `lock` | empty; locked by the process that writes |
+//!
+//! The bytes of a folder follow from scenario, seed, plan and version: not from the clock, the number of threads, or how often the run was killed and
+//! resumed. Records are written first, checkpoints after; a checkpoint says how long the records were, and what lies beyond that is cut off
+//! when the run goes on. So a process that dies at any moment loses at most the iterations since the last checkpoint.
+
+pub mod checkpoint;
+pub mod codec;
+pub mod diagnosis;
+pub mod disk;
+mod error;
+pub mod export;
+pub mod folder;
+pub mod manifest;
+pub mod read;
+pub mod records;
+pub mod replay;
+pub mod sample;
+mod sink;
+pub mod tally;
+
+pub use diagnosis::{Diagnosis, Finding};
+pub use error::{Error, RunFileError, RunFileProblem};
+pub use folder::Folder;
+pub use manifest::{Manifest, Recipe};
+pub use read::{Phase, Run, RunOf, RunVisitor};
+pub use sample::{Sampling, Unwatched, Watch, resume, sample};
+pub use tally::{SampleId, Tally};

@@ -1,0 +1,254 @@
+//! The manifest: what a run is, readable by people and programs.
+
+use crate::disk::Disk;
+use crate::error::{Error, RunFileError, RunFileProblem};
+use crate::folder::Folder;
+use plaus_mcmc::Plan;
+use plaus_scenes::{Role, Scenario, Scene};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+
+/// Version of the folder's format.
+pub const FORMAT: u32 = 1;
+/// Version of this program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// Longest manifest that is read, in bytes.
+const LONGEST: u64 = 64 << 20;
+/// Most iterations of all chains together between two points at which a run can stop: bounds the memory of a round.
+const LONGEST_ROUND: u64 = 1 << 22;
+
+/// What a run is. Neither the clock nor the number of threads has any part in it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// Version of plaus that made the run.
+    pub plaus: String,
+    /// The scene's name.
+    pub scene: String,
+    /// The scenario.
+    pub scenario: StoredScenario,
+    /// Keys set on the command line, as `key=value`.
+    pub overrides: Vec<String>,
+    /// Seed, chains, iterations.
+    pub plan: Plan,
+    /// The iterations planned before each time that `plaus resume --iterations` raised them.
+    pub extended_from: Vec<u64>,
+    /// Whether the chains are guaranteed to leave the target invariant.
+    pub exact: bool,
+    /// The flags of the acceptance rule.
+    pub acceptance_rule: BTreeMap<String, bool>,
+    /// Names of the moves, in order of their number in the records.
+    pub moves: Vec<String>,
+    /// The scalars of the scene.
+    pub scalars: Vec<StoredScalar>,
+}
+
+/// The scenario of a run.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoredScenario {
+    /// Name of the file it was read from, without its folder.
+    pub file: String,
+    /// Text of that file.
+    pub text: String,
+    /// Every key with the value in force, as TOML.
+    pub effective: String,
+    /// BLAKE3 of `effective`.
+    pub hash: String,
+}
+
+/// A scalar of the scene, as the manifest names it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoredScalar {
+    /// Column name.
+    pub name: String,
+    /// Unit; empty for pure numbers.
+    pub unit: String,
+    /// `draw` or `outcome`.
+    pub role: String,
+}
+
+/// What a run is made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recipe {
+    /// The scenario with all overrides in force.
+    pub scenario: Scenario,
+    /// Name of its file, without the folder.
+    pub file: String,
+    /// Text of that file.
+    pub text: String,
+    /// Keys set on the command line, as `key=value`.
+    pub overrides: Vec<String>,
+    /// Stop after that many distinct solutions.
+    pub solutions: Option<u64>,
+}
+
+/// The file: the run between a version, which is looked at first, and a checksum.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Envelope {
+    format: u32,
+    run: Manifest,
+    checksum: String,
+}
+
+#[derive(Deserialize)]
+struct Probe {
+    format: u32,
+}
+
+impl Recipe {
+    /// The plan the scenario asks for.
+    #[must_use]
+    pub fn plan(&self) -> Plan {
+        let sampler = &self.scenario.sampler;
+        let block = sampler.checkpoint_every.min(LONGEST_ROUND / u64::from(sampler.chains).max(1));
+        Plan {
+            seed: plaus_dist::Seed(sampler.seed),
+            chains: sampler.chains,
+            warmup: sampler.warmup,
+            iterations: sampler.iterations,
+            thin: sampler.thin,
+            block: block.max(1),
+            solutions: self.solutions,
+        }
+    }
+
+    /// The manifest of a run of `scene`.
+    ///
+    /// # Errors
+    /// [`Error`] where the weights of its moves make no mixture.
+    pub fn manifest<S: Scene>(&self, scene: &S) -> Result<Manifest, Error> {
+        let rules = &self.scenario.sampler.rules;
+        let effective = self.scenario.to_toml();
+        let read =
+            Scenario::read(&self.file, &effective, &[]).map_err(|error| Error::StoredScenario(error.to_string()))?;
+        if read != self.scenario {
+            return Err(Error::StoredScenario("it changes when it is written and read again".to_owned()));
+        }
+        let hash = blake3::hash(effective.as_bytes()).to_hex().to_string();
+        let scenario = StoredScenario { file: self.file.clone(), text: self.text.clone(), effective, hash };
+        Ok(Manifest {
+            plaus: VERSION.to_owned(),
+            scene: self.scenario.world.name().to_owned(),
+            scenario,
+            overrides: self.overrides.clone(),
+            plan: self.plan(),
+            extended_from: Vec::new(),
+            exact: rules.is_exact(),
+            acceptance_rule: rules.flags().into_iter().map(|(flag, on)| (flag.to_owned(), on)).collect(),
+            moves: scene.moves(rules)?.names(),
+            scalars: stored_scalars(scene),
+        })
+    }
+}
+
+fn draft(folder: &Folder) -> std::path::PathBuf {
+    folder.manifest().with_extension("json.next")
+}
+
+/// The scalars of a scene, as a manifest names them.
+pub(crate) fn stored_scalars<S: Scene>(scene: &S) -> Vec<StoredScalar> {
+    let role = |role| match role {
+        Role::Draw => "draw",
+        Role::Outcome => "outcome",
+    };
+    let store = |scalar: plaus_scenes::Scalar| StoredScalar {
+        name: scalar.name,
+        unit: scalar.unit.to_owned(),
+        role: role(scalar.role).to_owned(),
+    };
+    scene.scalars().into_iter().map(store).collect()
+}
+
+impl Manifest {
+    /// The manifest as it is stored.
+    ///
+    /// # Errors
+    /// [`RunFileProblem::Manifest`] where it cannot be written as JSON, which no manifest made here is known to do.
+    pub fn to_json(&self) -> Result<Vec<u8>, RunFileProblem> {
+        let broken = |error: serde_json::Error| RunFileProblem::Manifest(error.to_string());
+        let checksum = self.checksum().map_err(broken)?;
+        let envelope = Envelope { format: FORMAT, run: self.clone(), checksum };
+        let mut json = serde_json::to_vec_pretty(&envelope).map_err(broken)?;
+        json.push(b'\n');
+        Ok(json)
+    }
+
+    /// Reads what [`Manifest::to_json`] made.
+    ///
+    /// # Errors
+    /// [`RunFileProblem::Manifest`] where `json` is anything else, or was changed.
+    pub fn from_json(json: &[u8]) -> Result<Self, RunFileProblem> {
+        let broken = |error: serde_json::Error| RunFileProblem::Manifest(error.to_string());
+        let Probe { format } = serde_json::from_slice(json).map_err(broken)?;
+        if format != FORMAT {
+            let message = format!("it has format {format}, this plaus {VERSION} reads format {FORMAT}");
+            return Err(RunFileProblem::Manifest(message));
+        }
+        let Envelope { run, checksum, .. } = serde_json::from_slice(json).map_err(broken)?;
+        if run.checksum().map_err(broken)? != checksum {
+            return Err(RunFileProblem::Manifest(
+                "its checksum does not match: it was changed after it was written".into(),
+            ));
+        }
+        Ok(run)
+    }
+
+    /// BLAKE3 of the compact JSON, in which every whitespace and order is fixed.
+    fn checksum(&self) -> Result<String, serde_json::Error> {
+        Ok(blake3::hash(&serde_json::to_vec(self)?).to_hex().to_string())
+    }
+
+    /// Reads the manifest of a run.
+    ///
+    /// # Errors
+    /// [`RunFileError`] where there is none, or it is damaged.
+    pub fn read(folder: &Folder) -> Result<Self, RunFileError> {
+        let path = folder.manifest();
+        if folder.path().is_dir() && !path.exists() {
+            return Err(RunFileError::new(folder.path(), RunFileProblem::NoRun));
+        }
+        let mut json = Vec::new();
+        let file = File::open(&path).map_err(RunFileError::io(&path, "read"))?;
+        file.take(LONGEST).read_to_end(&mut json).map_err(RunFileError::io(&path, "read"))?;
+        Self::from_json(&json).map_err(|problem| RunFileError::new(path, problem))
+    }
+
+    /// Puts this manifest in place of the run's.
+    pub(crate) fn replace(&self, folder: &Folder, disk: &dyn Disk) -> Result<(), RunFileError> {
+        let path = folder.manifest();
+        let draft = draft(folder);
+        let json = self.to_json().map_err(|problem| RunFileError::new(&path, problem))?;
+        let written = disk.write(&draft, &json).and_then(|()| disk.rename(&draft, &path));
+        written.and_then(|()| disk.sync(folder.path())).map_err(RunFileError::io(&path, "write"))
+    }
+
+    /// Removes a manifest that never took its place.
+    pub(crate) fn clear(folder: &Folder, disk: &dyn Disk) {
+        let _ = disk.remove(&draft(folder)); // there seldom is one
+    }
+
+    /// The scenario in force.
+    ///
+    /// # Errors
+    /// [`Error::StoredScenario`] where this version cannot read it.
+    pub fn scenario(&self) -> Result<Scenario, Error> {
+        Scenario::read(&self.scenario.file, &self.scenario.effective, &[])
+            .map_err(|error| Error::StoredScenario(error.to_string()))
+    }
+
+    /// A number that the chains' files bear, so that files of different runs cannot be mixed up.
+    pub(crate) fn run_id(&self) -> u64 {
+        let hash = blake3::hash(self.scenario.effective.as_bytes());
+        hash.as_bytes()[..8].iter().fold(0, |id, &byte| id << 8 | u64::from(byte))
+    }
+
+    /// Recorded draws among the iterations before `iteration`.
+    pub(crate) fn recorded_before(&self, iteration: u64) -> u64 {
+        iteration.div_ceil(self.plan.thin.max(1))
+    }
+}

@@ -1,0 +1,272 @@
+//! Reading a run back: lazily, chain by chain, believing nothing that was not checked.
+
+use crate::checkpoint::Checkpoint;
+use crate::error::{Error, RunFileError, RunFileProblem};
+use crate::folder::Folder;
+use crate::manifest::{Manifest, stored_scalars};
+use crate::records::{self, Blocks, Extent};
+use plaus_mcmc::{Entry, Snapshot, Target};
+use plaus_scenes::{Scenario, Scene, Visitor};
+use std::ops::Range;
+
+/// A run that was found on the disk.
+#[derive(Debug, Clone)]
+pub struct Run {
+    folder: Folder,
+    manifest: Manifest,
+    scenario: Scenario,
+    salvage: bool,
+}
+
+/// Something to do with a run whose scene is known only from its manifest.
+pub trait RunVisitor {
+    /// What comes of it.
+    type Output;
+    /// Does it.
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output;
+}
+
+/// A part of a chain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Before sampling: kept out of tables and diagnostics.
+    Warmup,
+    /// What is sampled. Its recorded draws are numbered from 0.
+    Sampling,
+}
+
+/// A run of a known scene.
+pub struct RunOf<'a, S: Scene> {
+    run: &'a Run,
+    scene: S,
+    chains: Vec<ChainOf<S>>,
+}
+
+/// What is known of a chain without reading its records.
+struct ChainOf<S: Target> {
+    extent: Extent,
+    snapshot: Option<Snapshot<S::Draw, S::Outcome>>,
+}
+
+/// Consecutive draws of one phase at the same state.
+#[derive(Debug, Clone, Copy)]
+pub struct Stretch<'a, D, O> {
+    /// Number of the first of them in its phase.
+    pub draw: u64,
+    /// How many.
+    pub draws: u64,
+    /// Proposals accepted since the recorded draw before the first of them.
+    pub accepted: u32,
+    /// What was recorded.
+    pub entry: &'a Entry<D, O>,
+}
+
+/// A stretch of the draws of a scene.
+pub type StretchOf<'a, S> = Stretch<'a, <S as Target>::Draw, <S as Target>::Outcome>;
+
+impl Run {
+    /// Opens a run.
+    ///
+    /// # Errors
+    /// [`Error`] where there is none, or its manifest is damaged.
+    pub fn open(folder: &Folder) -> Result<Self, Error> {
+        let manifest = Manifest::read(folder)?;
+        let scenario = manifest.scenario()?;
+        Ok(Self { folder: folder.clone(), manifest, scenario, salvage: false })
+    }
+
+    /// The same run, of which everything before the first damage is to be read, whatever the checkpoints say.
+    #[must_use]
+    pub fn salvaged(self) -> Self {
+        Self { salvage: true, ..self }
+    }
+
+    /// Where it lies.
+    #[must_use]
+    pub fn folder(&self) -> &Folder {
+        &self.folder
+    }
+
+    /// What it is.
+    #[must_use]
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// The scenario in force.
+    #[must_use]
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// Hands the run, with its scene, to `visitor`.
+    ///
+    /// # Errors
+    /// [`Error`] where the scene cannot be built, or is not the one of the manifest, or a checkpoint is damaged.
+    pub fn visit<V: RunVisitor>(&self, visitor: V) -> Result<V::Output, Error> {
+        struct Build<'a, V>(&'a Run, V);
+        impl<V: RunVisitor> Visitor for Build<'_, V> {
+            type Output = Result<V::Output, Error>;
+            fn visit<S: Scene>(self, scene: S) -> Self::Output {
+                Ok(self.1.visit(RunOf::new(self.0, scene)?))
+            }
+        }
+        self.scenario.world.visit(Build(self, visitor))?
+    }
+}
+
+impl<'a, S: Scene> RunOf<'a, S> {
+    fn new(run: &'a Run, scene: S) -> Result<Self, Error> {
+        if stored_scalars(&scene) != run.manifest.scalars {
+            let message = "the scene's scalars are not those of the manifest".to_owned();
+            return Err(RunFileError::new(run.folder.manifest(), RunFileProblem::Differs(message)).into());
+        }
+        let open = if run.salvage { ChainOf::salvage } else { ChainOf::open };
+        let chains = (0..run.manifest.plan.chains).map(|chain| open(run, chain)).collect::<Result<_, _>>()?;
+        Ok(Self { run, scene, chains })
+    }
+
+    /// The run.
+    #[must_use]
+    pub fn run(&self) -> &'a Run {
+        self.run
+    }
+
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &S {
+        &self.scene
+    }
+
+    /// How many chains there are.
+    #[must_use]
+    pub fn chains(&self) -> u32 {
+        self.run.manifest.plan.chains
+    }
+
+    /// A chain as of its checkpoint; `None` where there is none yet, or the run is read for salvage.
+    #[must_use]
+    pub fn snapshot(&self, chain: u32) -> Option<&Snapshot<S::Draw, S::Outcome>> {
+        self.chains.get(chain as usize)?.snapshot.as_ref()
+    }
+
+    /// Iterations that every chain has done.
+    #[must_use]
+    pub fn iterations(&self) -> u64 {
+        self.chains.iter().map(|chain| chain.extent.end_iteration).min().unwrap_or(0)
+    }
+
+    /// How many draws of a phase every chain has recorded. Draws that only some chains have are not shown.
+    #[must_use]
+    pub fn draws(&self, phase: Phase) -> u64 {
+        let range = self.range(phase);
+        range.end - range.start
+    }
+
+    /// The phase among all recorded draws of a chain, numbered from the start.
+    fn range(&self, phase: Phase) -> Range<u64> {
+        let manifest = &self.run.manifest;
+        let all = manifest.recorded_before(self.iterations());
+        let warmup = manifest.recorded_before(manifest.plan.warmup).min(all);
+        match phase {
+            Phase::Warmup => 0..warmup,
+            Phase::Sampling => warmup..all,
+        }
+    }
+
+    /// The iteration a draw was recorded at.
+    #[must_use]
+    pub fn iteration_of(&self, phase: Phase, draw: u64) -> u64 {
+        (self.range(phase).start + draw) * self.run.manifest.plan.thin
+    }
+
+    /// The recorded blocks of a chain.
+    ///
+    /// # Errors
+    /// [`RunFileError`] where the records cannot be opened.
+    pub fn blocks(&self, chain: u32) -> Result<Blocks<S::Draw, S::Outcome>, RunFileError> {
+        let extent = self.chains.get(chain as usize).map(|chain| chain.extent);
+        let missing = || {
+            let message = format!("there is no chain {chain}: the chains are 0 to {}", self.chains().saturating_sub(1));
+            RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message))
+        };
+        Blocks::open(&self.run.folder.records(chain), extent.ok_or_else(missing)?)
+    }
+
+    /// Shows `look` the draws of a phase of one chain, in order.
+    ///
+    /// # Errors
+    /// [`RunFileError`] where the records are damaged, or as `look` says.
+    pub fn walk<E: From<RunFileError>>(
+        &self,
+        chain: u32,
+        phase: Phase,
+        mut look: impl FnMut(StretchOf<'_, S>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let range = self.range(phase);
+        if range.is_empty() {
+            return Ok(());
+        }
+        let mut next = 0;
+        for block in self.blocks(chain)? {
+            for entry in &block?.entries {
+                let (first, end) = (next.max(range.start), (next + entry.draws).min(range.end));
+                if first < end {
+                    let accepted = if first == next { entry.accepted } else { 0 };
+                    look(Stretch { draw: first - range.start, draws: end - first, accepted, entry })?;
+                }
+                next += entry.draws;
+            }
+            if phase == Phase::Warmup && next >= range.end {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The entry that a draw of the sampling phase belongs to.
+    ///
+    /// # Errors
+    /// [`RunFileProblem::NoSample`] where there is no such draw, or [`RunFileError`] where the records are damaged.
+    pub fn sample(&self, chain: u32, draw: u64) -> Result<Entry<S::Draw, S::Outcome>, RunFileError> {
+        let draws = self.draws(Phase::Sampling);
+        let wanted = self.range(Phase::Sampling).start + draw;
+        let mut next = 0;
+        for block in self.blocks(chain)? {
+            for entry in block?.entries {
+                next += entry.draws;
+                if wanted < next && draw < draws {
+                    return Ok(entry);
+                }
+            }
+        }
+        let message = match draws.checked_sub(1) {
+            Some(last) => format!("there is no draw {draw}: the draws of each chain are 0 to {last}"),
+            None => "there are no draws yet: the run has not passed its warm-up".to_owned(),
+        };
+        Err(RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message)))
+    }
+}
+
+impl<S: Scene> ChainOf<S> {
+    fn open(run: &Run, chain: u32) -> Result<Self, RunFileError> {
+        let (id, thin) = (run.manifest.run_id(), run.manifest.plan.thin);
+        let checkpoint = Checkpoint::read(&run.folder.checkpoint(chain), id, chain)?;
+        let (bytes, end_iteration) =
+            checkpoint.as_ref().map_or((0, 0), |c: &Checkpoint<_, _>| (c.records, c.snapshot.end_iteration));
+        let extent = Extent { run: id, chain, thin, bytes, end_iteration };
+        Ok(Self { extent, snapshot: checkpoint.map(|checkpoint| checkpoint.snapshot) })
+    }
+
+    /// Everything up to the first frame that is damaged or missing.
+    fn salvage(run: &Run, chain: u32) -> Result<Self, RunFileError> {
+        let path = run.folder.records(chain);
+        let (id, thin, plan) = (run.manifest.run_id(), run.manifest.plan.thin, run.manifest.plan);
+        let bytes = records::length(&path)?;
+        let mut extent = Extent { run: id, chain, thin, bytes, end_iteration: plan.end() };
+        let (bytes, end_iteration) =
+            if bytes == 0 { (0, 0) } else { Blocks::<S::Draw, S::Outcome>::open(&path, extent)?.intact() };
+        extent = Extent { bytes, end_iteration, ..extent };
+        Ok(Self { extent, snapshot: None })
+    }
+}

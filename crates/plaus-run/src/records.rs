@@ -1,0 +1,158 @@
+//! What a chain has recorded: one frame a block of iterations, only ever appended to.
+
+use crate::codec::{self, EncodeError, FrameError, FrameProblem, Frames, Kind};
+use crate::error::{RunFileError, RunFileProblem};
+use plaus_mcmc::{Block, Distinct, FirstOfClass};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{BufReader, ErrorKind};
+use std::path::{Path, PathBuf};
+
+const KIND: Kind = Kind::new(*b"recs", 1, "records of a chain");
+
+/// A block with the run and the chain it belongs to.
+#[derive(Serialize, Deserialize)]
+struct Stored<B> {
+    run: u64,
+    chain: u32,
+    block: B,
+}
+
+/// A block as it is stored.
+///
+/// # Errors
+/// [`EncodeError`] where it is too long.
+pub(crate) fn encode<D: Serialize, O: Serialize>(
+    run: u64,
+    chain: u32,
+    block: &Block<D, O>,
+) -> Result<Vec<u8>, EncodeError> {
+    let mut out = Vec::with_capacity(128 + 96 * block.entries.len());
+    codec::append(KIND, &Stored { run, chain, block }, &mut out)?;
+    Ok(out)
+}
+
+/// Whose records they are, and how much of them is valid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Extent {
+    pub(crate) run: u64,
+    pub(crate) chain: u32,
+    pub(crate) thin: u64,
+    /// Valid bytes, from the checkpoint.
+    pub(crate) bytes: u64,
+    /// One past the last iteration they cover.
+    pub(crate) end_iteration: u64,
+}
+
+/// The blocks of one chain, read one after the other. After an error it ends.
+pub struct Blocks<D, O> {
+    frames: Frames<Stored<Block<D, O>>, BufReader<File>>,
+    path: PathBuf,
+    extent: Extent,
+    next_iteration: u64,
+    draws: u64,
+    over: bool,
+}
+
+impl<D: DeserializeOwned, O: DeserializeOwned> Blocks<D, O> {
+    pub(crate) fn open(path: &Path, extent: Extent) -> Result<Self, RunFileError> {
+        let file = File::open(path).map_err(RunFileError::io(path, "read"))?;
+        let present = file.metadata().map_err(RunFileError::io(path, "read"))?.len();
+        let frames = Frames::new(KIND, BufReader::with_capacity(1 << 16, file), extent.bytes.min(present));
+        let over = extent.bytes == 0;
+        Ok(Self { frames, path: path.to_owned(), extent, next_iteration: 0, draws: 0, over })
+    }
+
+    fn damage(&self, offset: u64, problem: FrameProblem) -> RunFileError {
+        let source = FrameError { offset, problem };
+        RunFileError::new(&self.path, RunFileProblem::Records { source, intact: self.draws })
+    }
+
+    /// Bytes and iterations before the first damage.
+    pub(crate) fn intact(mut self) -> (u64, u64) {
+        let mut intact = (0, 0);
+        while let Some(Ok(block)) = self.next() {
+            intact = (self.frames.offset(), block.end_iteration);
+        }
+        intact
+    }
+
+    /// The end of the file, which must be where the checkpoint says.
+    fn end(&self) -> Option<RunFileError> {
+        let present = self.frames.offset();
+        let missing = present < self.extent.bytes || self.next_iteration != self.extent.end_iteration;
+        missing.then(|| self.damage(present, FrameProblem::Truncated { needed: self.extent.bytes, present }))
+    }
+
+    fn check(&self, offset: u64, stored: &Stored<Block<D, O>>) -> Result<u64, RunFileError> {
+        let Stored { run, chain, block } = stored;
+        if (*run, *chain) != (self.extent.run, self.extent.chain) {
+            let message = format!("the frame at byte {offset} belongs to chain {chain} of run {run:016x}");
+            return Err(RunFileError::new(&self.path, RunFileProblem::Mixed(message)));
+        }
+        let (first, end, thin) = (block.first_iteration, block.end_iteration, self.extent.thin);
+        let held = block.entries.iter().try_fold(0_u64, |sum, entry| sum.checked_add(entry.draws));
+        let due = end.div_ceil(thin).checked_sub(first.div_ceil(thin));
+        let whole = block.entries.iter().all(|entry| entry.draws > 0) && held.is_some() && held == due;
+        if first != self.next_iteration || end <= first || end > self.extent.end_iteration || !whole {
+            let reason =
+                format!("it covers iterations {first} to {end}, which does not follow on, or does not fit its draws");
+            return Err(self.damage(offset, FrameProblem::Payload { name: "block", reason }));
+        }
+        Ok(due.unwrap_or(0))
+    }
+}
+
+impl<D: DeserializeOwned, O: DeserializeOwned> Iterator for Blocks<D, O> {
+    type Item = Result<Block<D, O>, RunFileError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.over {
+            return None;
+        }
+        let offset = self.frames.offset();
+        let item = match self.frames.next() {
+            None => {
+                self.over = true;
+                return self.end().map(Err);
+            }
+            Some(Err(FrameError { offset, problem })) => Err(self.damage(offset, problem)),
+            Some(Ok(stored)) => self.check(offset, &stored).map(|draws| {
+                self.draws += draws;
+                self.next_iteration = stored.block.end_iteration;
+                stored.block
+            }),
+        };
+        self.over = item.is_err();
+        Some(item)
+    }
+}
+
+/// Rebuilds which classes of solutions a chain has recorded first where.
+pub(crate) fn distinct<D: DeserializeOwned, O: DeserializeOwned>(
+    path: &Path,
+    extent: Extent,
+) -> Result<Distinct, RunFileError> {
+    let mut distinct = Distinct::default();
+    for block in Blocks::<D, O>::open(path, extent)? {
+        let block = block?;
+        let mut iteration = block.first_iteration.next_multiple_of(extent.thin);
+        for entry in &block.entries {
+            if let Some(class) = entry.class {
+                distinct.note(FirstOfClass { iteration, chain: extent.chain, class });
+            }
+            iteration += entry.draws * extent.thin;
+        }
+    }
+    Ok(distinct)
+}
+
+/// Length of a file; 0 where there is none.
+pub(crate) fn length(path: &Path) -> Result<u64, RunFileError> {
+    match std::fs::metadata(path) {
+        Ok(meta) => Ok(meta.len()),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(0),
+        Err(error) => Err(RunFileError::io(path, "read")(error)),
+    }
+}

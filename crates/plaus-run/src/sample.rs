@@ -1,0 +1,206 @@
+//! Sampling into a run folder, and going on with one.
+
+use crate::checkpoint::{self, Checkpoint};
+use crate::disk::{Disk, RealDisk};
+use crate::error::{Error, RunFileError, RunFileProblem};
+use crate::folder::Folder;
+use crate::manifest::{Manifest, Recipe, VERSION, stored_scalars};
+use crate::records::{self, Extent};
+use crate::replay::evaluate_again;
+use crate::sink::{FolderSink, Place};
+use plaus_mcmc::{Control, Distinct, Ending, Progress, RunError, Start, Target};
+use plaus_scenes::{Scene, Visitor};
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// Where the chains of a scene go on from.
+type Starts<S> = Vec<Start<<S as Target>::Draw, <S as Target>::Outcome>>;
+
+/// Looks on while a run is sampled, and may stop it.
+pub trait Watch {
+    /// Called before the first round; `done` iterations of each chain are done already.
+    fn begin(&mut self, _manifest: &Manifest, _done: u64) {}
+
+    /// Called after each round; says whether to go on.
+    fn round(&mut self, progress: &Progress<'_>) -> Control;
+
+    /// Whether what was sampled since the last checkpoint is worth writing one. The final bytes do not depend on the answers; what
+    /// a killed process loses does.
+    fn checkpoint_due(&mut self) -> bool {
+        true
+    }
+
+    /// Called after a checkpoint was written.
+    fn checkpoint_done(&mut self) {}
+}
+
+/// Watches nothing: runs to the end, with a checkpoint after every round.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Unwatched;
+
+impl Watch for Unwatched {
+    fn round(&mut self, _: &Progress<'_>) -> Control {
+        Control::Continue
+    }
+}
+
+/// How to sample, beside what.
+pub struct Sampling<'a> {
+    /// Threads; 0 is one a core. Never changes results.
+    pub threads: usize,
+    /// Where to write.
+    pub disk: &'a dyn Disk,
+    /// Who looks on.
+    pub watch: &'a mut dyn Watch,
+}
+
+impl<'a> Sampling<'a> {
+    /// On the operating system's disk.
+    pub fn new(threads: usize, watch: &'a mut dyn Watch) -> Self {
+        Self { threads, disk: &RealDisk, watch }
+    }
+
+    fn pool(&self) -> Result<ThreadPool, Error> {
+        let built = ThreadPoolBuilder::new().num_threads(self.threads).build();
+        built.map_err(|error| Error::Sampling(format!("cannot start worker threads: {error}")))
+    }
+}
+
+/// Samples a new run into `folder`.
+///
+/// # Errors
+/// [`Error`] where the folder exists, the scenario makes no scene, a chain fails or the disk refuses.
+pub fn sample(folder: &Folder, recipe: &Recipe, sampling: Sampling<'_>) -> Result<Ending, Error> {
+    struct Begin<'a, 'b>(&'a Folder, &'a Recipe, Sampling<'b>);
+    impl Visitor for Begin<'_, '_> {
+        type Output = Result<Ending, Error>;
+        fn visit<S: Scene>(self, scene: S) -> Self::Output {
+            let Self(folder, recipe, sampling) = self;
+            let manifest = recipe.manifest(&scene)?;
+            let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
+            folder.create(sampling.disk, &json)?;
+            let _claim = folder.claim()?;
+            go_on(folder, &manifest, &scene, Vec::new(), sampling)
+        }
+    }
+    recipe.scenario.world.visit(Begin(folder, recipe, sampling))?
+}
+
+/// Goes on with a run from its last checkpoint, to its planned end, or up to `iterations` of the sampling phase where that is more.
+///
+/// # Errors
+/// [`Error`] where the run is damaged, made by another version or being written, or as [`sample`].
+pub fn resume(folder: &Folder, iterations: Option<u64>, sampling: Sampling<'_>) -> Result<Ending, Error> {
+    struct GoOn<'a, 'b>(&'a Folder, Manifest, Sampling<'b>);
+    impl Visitor for GoOn<'_, '_> {
+        type Output = Result<Ending, Error>;
+        fn visit<S: Scene>(self, scene: S) -> Self::Output {
+            let Self(folder, manifest, sampling) = self;
+            let starts = restore(folder, &manifest, &scene, &sampling)?;
+            go_on(folder, &manifest, &scene, starts, sampling)
+        }
+    }
+    let mut manifest = Manifest::read(folder)?;
+    let _claim = folder.claim()?;
+    if manifest.plaus != VERSION {
+        let problem = RunFileProblem::OtherVersion { made: manifest.plaus, present: VERSION };
+        return Err(RunFileError::new(folder.path(), problem).into());
+    }
+    Manifest::clear(folder, sampling.disk);
+    if let Some(wanted) = iterations {
+        extend(&mut manifest, wanted)?;
+        manifest.replace(folder, sampling.disk)?;
+    }
+    manifest.scenario()?.world.visit(GoOn(folder, manifest, sampling))?
+}
+
+fn extend(manifest: &mut Manifest, wanted: u64) -> Result<(), Error> {
+    let planned = manifest.plan.iterations;
+    if wanted < planned {
+        let message =
+            format!("{planned} iterations are planned already: a run can be made longer, not shorter than {planned}");
+        return Err(Error::Request(message));
+    }
+    if wanted > planned {
+        manifest.extended_from.push(planned);
+        manifest.plan.iterations = wanted;
+    }
+    Ok(())
+}
+
+/// The states to go on from. Cuts off what was written after the last checkpoint.
+fn restore<S: Scene>(
+    folder: &Folder,
+    manifest: &Manifest,
+    scene: &S,
+    sampling: &Sampling<'_>,
+) -> Result<Starts<S>, Error> {
+    let disk = sampling.disk;
+    if stored_scalars(scene) != manifest.scalars {
+        let message = "the scene's scalars are not those of the manifest".to_owned();
+        return Err(RunFileError::new(folder.manifest(), RunFileProblem::Differs(message)).into());
+    }
+    let (run, chains) = (manifest.run_id(), manifest.plan.chains);
+    let checkpoints = checkpoint::settle::<S::Draw, S::Outcome>(folder, disk, run, chains)?;
+    if checkpoints.is_empty() {
+        (0..chains).try_for_each(|chain| cut(folder, disk, chain, 0))?;
+    }
+    let restore = |checkpoint| restore_chain(folder, manifest, scene, disk, checkpoint);
+    sampling.pool()?.install(|| checkpoints.into_par_iter().map(restore).collect())
+}
+
+fn restore_chain<S: Scene>(
+    folder: &Folder,
+    manifest: &Manifest,
+    scene: &S,
+    disk: &dyn Disk,
+    checkpoint: Checkpoint<S::Draw, S::Outcome>,
+) -> Result<Start<S::Draw, S::Outcome>, Error> {
+    let Checkpoint { chain, records, snapshot, .. } = checkpoint;
+    evaluate_again(scene, &snapshot.state).map_err(|problem| match problem {
+        Ok(problem) => RunFileError::new(folder.checkpoint(chain), problem).into(),
+        Err(error) => error,
+    })?;
+    let path = folder.records(chain);
+    let end_iteration = snapshot.end_iteration;
+    let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes: records, end_iteration };
+    let distinct: Distinct = records::distinct::<S::Draw, S::Outcome>(&path, extent)?;
+    if snapshot.counts.len() != manifest.moves.len() {
+        let message = format!("{} moves are counted, the scene has {}", snapshot.counts.len(), manifest.moves.len());
+        return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
+    }
+    cut(folder, disk, chain, records)?;
+    Ok(Start { snapshot, distinct })
+}
+
+fn cut(folder: &Folder, disk: &dyn Disk, chain: u32, bytes: u64) -> Result<(), RunFileError> {
+    let path = folder.records(chain);
+    if records::length(&path)? > bytes {
+        disk.truncate(&path, bytes).map_err(RunFileError::io(&path, "cut"))?;
+    }
+    Ok(())
+}
+
+fn go_on<S: Scene>(
+    folder: &Folder,
+    manifest: &Manifest,
+    scene: &S,
+    starts: Starts<S>,
+    sampling: Sampling<'_>,
+) -> Result<Ending, Error> {
+    let moves = scene.moves(&manifest.scenario()?.sampler.rules)?;
+    let done = starts.first().map_or(0, |start| start.snapshot.end_iteration);
+    let lengths =
+        (0..manifest.plan.chains).map(|chain| records::length(&folder.records(chain))).collect::<Result<_, _>>()?;
+    let pool = sampling.pool()?;
+    let Sampling { threads, disk, watch } = sampling;
+    watch.begin(manifest, done);
+    let place = Place { folder, disk, run: manifest.run_id(), pool };
+    let mut sink = FolderSink::new(place, watch, lengths, done);
+    let ended = plaus_mcmc::run(scene, &moves, manifest.plan, starts, threads, &mut sink);
+    let finished = if matches!(ended, Err(RunError::Sink(_))) { Ok(()) } else { sink.checkpoint() };
+    let safe = sink.safe();
+    let ending = ended.map_err(|error| Error::of_run(error, safe))?;
+    finished.map_err(|error| Error::of_run(RunError::Sink(error), safe))?;
+    Ok(ending)
+}

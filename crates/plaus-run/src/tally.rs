@@ -1,0 +1,128 @@
+//! What the records of a run add up to.
+
+use crate::error::RunFileError;
+use crate::read::{Phase, RunOf};
+use plaus_mcmc::{Distinct, FirstOfClass, Hits, MoveCounts};
+use plaus_scenes::Scene;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// A draw of the sampling phase.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SampleId {
+    /// Its chain.
+    pub chain: u32,
+    /// Its number in the sampling phase, from 0: as in the table of `plaus export`.
+    pub draw: u64,
+}
+
+impl std::fmt::Display for SampleId {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}:{}", self.chain, self.draw)
+    }
+}
+
+impl std::str::FromStr for SampleId {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once(':').and_then(|(chain, draw)| Some((chain.parse().ok()?, draw.parse().ok()?)));
+        let (chain, draw) = parts.ok_or_else(|| format!("`{text}` names no sample: write CHAIN:DRAW, e.g. 0:17"))?;
+        Ok(Self { chain, draw })
+    }
+}
+
+/// What one chain's records add up to.
+#[derive(Debug, Clone, Serialize)]
+pub struct ChainTally {
+    /// Satisfying iterations, the first of them too.
+    pub hits: Hits,
+    /// How often each move ended how.
+    pub counts: Vec<MoveCounts>,
+    /// Draws of the sampling phase that satisfy the constraint.
+    pub satisfying_draws: u64,
+    /// Distinct solutions recorded by this chain.
+    pub distinct: u64,
+    /// The likeliest satisfying draw of the sampling phase, with its log p.
+    pub best: Option<(SampleId, f64)>,
+}
+
+/// What the records of all chains add up to.
+#[derive(Debug, Clone, Serialize)]
+pub struct Tally {
+    /// Per chain.
+    pub chains: Vec<ChainTally>,
+    /// Distinct solutions recorded by all chains together, warm-up included.
+    pub distinct: u64,
+    /// Counts of each move over all chains.
+    pub counts: Vec<MoveCounts>,
+}
+
+impl Tally {
+    /// Reads all records once.
+    ///
+    /// # Errors
+    /// [`RunFileError`] where they are damaged.
+    pub fn of<S: Scene>(run: &RunOf<'_, S>) -> Result<Self, RunFileError> {
+        let parts: Vec<(ChainTally, Distinct)> =
+            (0..run.chains()).into_par_iter().map(|chain| tally(run, chain)).collect::<Result<_, _>>()?;
+        let mut firsts: Vec<FirstOfClass> =
+            parts.iter().flat_map(|(_, distinct)| distinct.firsts().iter().copied()).collect();
+        firsts.sort_unstable();
+        let mut distinct = Distinct::default();
+        for first in firsts {
+            distinct.note(first);
+        }
+        let mut counts = vec![MoveCounts::default(); run.run().manifest().moves.len()];
+        for (chain, _) in &parts {
+            counts.iter_mut().zip(&chain.counts).for_each(|(sum, count)| sum.add(count));
+        }
+        Ok(Self { chains: parts.into_iter().map(|(chain, _)| chain).collect(), distinct: distinct.count(), counts })
+    }
+
+    /// The earliest iteration at which any chain satisfied the constraint.
+    #[must_use]
+    pub fn first_hit(&self) -> Option<u64> {
+        self.chains.iter().filter_map(|chain| chain.hits.first).min()
+    }
+
+    /// Whether any iteration of any chain satisfied the constraint.
+    #[must_use]
+    pub fn is_satisfied(&self) -> bool {
+        self.first_hit().is_some() || self.distinct > 0
+    }
+
+    /// The likeliest satisfying draw of the sampling phase.
+    #[must_use]
+    pub fn best(&self) -> Option<SampleId> {
+        let best = self.chains.iter().filter_map(|chain| chain.best);
+        best.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(sample, _)| sample)
+    }
+}
+
+fn tally<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<(ChainTally, Distinct), RunFileError> {
+    let snapshot = run.snapshot(chain);
+    let mut tally = ChainTally {
+        hits: snapshot.map(|snapshot| snapshot.hits).unwrap_or_default(),
+        counts: snapshot.map(|snapshot| snapshot.counts.clone()).unwrap_or_default(),
+        satisfying_draws: 0,
+        distinct: 0,
+        best: None,
+    };
+    let mut distinct = Distinct::default();
+    for phase in [Phase::Warmup, Phase::Sampling] {
+        run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
+            let Some(class) = stretch.entry.class else { return Ok(()) };
+            distinct.note(FirstOfClass { iteration: run.iteration_of(phase, stretch.draw), chain, class });
+            if phase == Phase::Sampling {
+                tally.satisfying_draws += stretch.draws;
+                let log_p = stretch.entry.state.log_p().value();
+                if tally.best.is_none_or(|(_, best)| log_p > best) {
+                    tally.best = Some((SampleId { chain, draw: stretch.draw }, log_p));
+                }
+            }
+            Ok(())
+        })?;
+    }
+    tally.distinct = distinct.count();
+    Ok((tally, distinct))
+}

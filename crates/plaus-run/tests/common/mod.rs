@@ -1,0 +1,115 @@
+//! What the tests of runs share.
+#![allow(dead_code)] // each test binary uses a part
+
+use plaus_mcmc::State;
+use plaus_run::disk::{Disk, RealDisk};
+use plaus_run::{Folder, Phase, Recipe, RunOf, RunVisitor};
+use plaus_scenes::{Scenario, Scene};
+use std::collections::BTreeMap;
+use std::io;
+use std::path::Path;
+use std::sync::Mutex;
+
+const TEXT: &str = "[sampler]\nseed = 11\nchains = 3\nwarmup = 100\niterations = 430\nthin = 3\ncheckpoint_every = 100\n[world.ball2d]\n";
+
+/// A small run: three chains, seven blocks, the last one short.
+pub(crate) fn recipe(solutions: Option<u64>) -> Recipe {
+    let scenario = Scenario::read("ball.toml", TEXT, &[]).unwrap();
+    Recipe { scenario, file: "ball.toml".into(), text: TEXT.into(), overrides: Vec::new(), solutions }
+}
+
+/// Every file of a run.
+pub(crate) fn bytes_of(folder: &Folder) -> BTreeMap<String, Vec<u8>> {
+    let entries = std::fs::read_dir(folder.path()).unwrap().map(Result::unwrap);
+    entries.map(|entry| (entry.file_name().into_string().unwrap(), std::fs::read(entry.path()).unwrap())).collect()
+}
+
+/// All draws of a phase, as bits: per chain, per draw, the scalars and log p. Or the first error.
+pub(crate) struct AllDraws(pub(crate) Phase);
+
+impl RunVisitor for AllDraws {
+    type Output = Result<Vec<Vec<Vec<u64>>>, String>;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+        let chain = |chain| {
+            let mut draws = Vec::new();
+            let mut values = vec![0.0; run.scene().scalars().len()];
+            let walked = run.walk(chain, self.0, |stretch| -> Result<(), plaus_run::RunFileError> {
+                let state: &State<_, _> = &stretch.entry.state;
+                run.scene().write_scalars(state, &mut values);
+                let bits: Vec<u64> =
+                    values.iter().chain([&state.log_p().value()]).map(|value| value.to_bits()).collect();
+                assert_eq!(stretch.draw, draws.len() as u64);
+                draws.extend((0..stretch.draws).map(|_| bits.clone()));
+                Ok(())
+            });
+            walked.map(|()| draws).map_err(|error| error.to_string())
+        };
+        (0..run.chains()).map(chain).collect()
+    }
+}
+
+/// A disk that has room for so many bytes, or dies after so many operations.
+pub(crate) struct FailingDisk {
+    left: Mutex<(u64, u64)>,
+    limits: (u64, u64),
+    /// Nothing works after the first failure; else only what needs room fails.
+    crash: bool,
+}
+
+impl FailingDisk {
+    pub(crate) fn new(bytes: u64, operations: u64, crash: bool) -> Self {
+        Self { left: Mutex::new((bytes, operations)), limits: (bytes, operations), crash }
+    }
+
+    /// Bytes and operations so far.
+    pub(crate) fn used(&self) -> (u64, u64) {
+        let left = self.left.lock().unwrap();
+        (self.limits.0 - left.0, self.limits.1 - left.1)
+    }
+
+    /// How many of `bytes` can still be written.
+    fn take(&self, bytes: usize) -> (usize, io::Result<()>) {
+        let mut left = self.left.lock().unwrap();
+        if left.1 == 0 && (self.crash || bytes > 0) {
+            return (0, Err(io::ErrorKind::StorageFull.into()));
+        }
+        left.1 = left.1.saturating_sub(1);
+        let granted = (bytes as u64).min(left.0);
+        left.0 -= granted;
+        if granted == bytes as u64 {
+            return (bytes, Ok(()));
+        }
+        left.1 = 0;
+        (granted as usize, Err(io::ErrorKind::StorageFull.into()))
+    }
+}
+
+impl Disk for FailingDisk {
+    fn append(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let (granted, result) = self.take(bytes.len());
+        RealDisk.append(path, &bytes[..granted]).and(result)
+    }
+    fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let (granted, result) = self.take(bytes.len());
+        std::fs::write(path, &bytes[..granted]).and(result)
+    }
+    fn sync(&self, _: &Path) -> io::Result<()> {
+        self.take(0).1
+    }
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        self.take(0).1?;
+        RealDisk.rename(from, to)
+    }
+    fn truncate(&self, path: &Path, length: u64) -> io::Result<()> {
+        self.take(0).1?;
+        RealDisk.truncate(path, length)
+    }
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        self.take(0).1?;
+        RealDisk.remove(path)
+    }
+    fn create_folder(&self, path: &Path) -> io::Result<()> {
+        self.take(0).1?;
+        RealDisk.create_folder(path)
+    }
+}

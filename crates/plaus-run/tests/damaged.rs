@@ -1,0 +1,156 @@
+//! Damaged files of a run: each either reads as before or gives an error that says where; nothing panics.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{AllDraws, bytes_of, recipe};
+use plaus_run::{Folder, Phase, Run, Sampling, Unwatched, resume, sample};
+use proptest::prelude::*;
+use std::sync::LazyLock;
+use tempfile::TempDir;
+
+type Draws = Vec<Vec<Vec<u64>>>;
+
+struct Whole {
+    place: TempDir,
+    files: Vec<(String, Vec<u8>)>,
+    draws: Draws,
+}
+
+impl Whole {
+    fn folder(&self) -> Folder {
+        Folder::new(self.place.path().join("run"))
+    }
+}
+
+static WHOLE: LazyLock<Whole> = LazyLock::new(|| {
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path().join("run"));
+    sample(&folder, &recipe(None), Sampling::new(1, &mut Unwatched)).unwrap();
+    let files = bytes_of(&folder).into_iter().filter(|(name, _)| name != "lock").collect();
+    let draws = read(&folder).unwrap();
+    Whole { place, files, draws }
+});
+
+fn read(folder: &Folder) -> Result<Draws, String> {
+    let run = Run::open(folder).map_err(|error| error.to_string())?;
+    run.visit(AllDraws(Phase::Sampling)).map_err(|error| error.to_string())?
+}
+
+/// A copy of the run with one file replaced.
+fn with(name: &str, bytes: &[u8]) -> (TempDir, Folder) {
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path().join("run"));
+    std::fs::create_dir(folder.path()).unwrap();
+    for entry in std::fs::read_dir(WHOLE.folder().path()).unwrap().map(Result::unwrap) {
+        std::fs::copy(entry.path(), folder.path().join(entry.file_name())).unwrap();
+    }
+    std::fs::write(folder.path().join(name), bytes).unwrap();
+    (place, folder)
+}
+
+/// The draws are as before or there is an error; a resumed run ends with the same files or changes none.
+fn harmless(name: &str, bytes: &[u8]) -> Result<(), TestCaseError> {
+    let (_place, folder) = with(name, bytes);
+    let damaged = bytes_of(&folder);
+    match read(&folder) {
+        Ok(draws) => prop_assert_eq!(&draws, &WHOLE.draws),
+        Err(error) => prop_assert!(error.contains(folder.path().to_str().unwrap()), "{}", error),
+    }
+    let salvaged = Run::open(&folder).map(|run| run.salvaged().visit(AllDraws(Phase::Sampling)));
+    if let Ok(Ok(Ok(draws))) = salvaged {
+        for (salvaged, whole) in draws.iter().zip(&WHOLE.draws) {
+            prop_assert_eq!(&salvaged[..], &whole[..salvaged.len()]);
+        }
+    }
+    match resume(&folder, None, Sampling::new(1, &mut Unwatched)) {
+        Ok(_) => {
+            let files = bytes_of(&folder);
+            for (name, bytes) in WHOLE.files.iter().filter(|(name, _)| name.starts_with("chain")) {
+                prop_assert_eq!(files.get(name), Some(bytes), "{}", name);
+            }
+        }
+        Err(_) => prop_assert_eq!(bytes_of(&folder), damaged),
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn flipped_bits_are_noticed(file in any::<prop::sample::Index>(), at in any::<prop::sample::Index>(), bit in 0..8) {
+        let (name, bytes) = file.get(&WHOLE.files);
+        let mut bytes = bytes.clone();
+        let at = at.index(bytes.len());
+        bytes[at] ^= 1_u8 << bit;
+        harmless(name, &bytes)?;
+        if name.starts_with("chain") {
+            let (_place, folder) = with(name, &bytes);
+            prop_assert!(read(&folder).is_err());
+        }
+    }
+
+    #[test]
+    fn cut_files_are_noticed(file in any::<prop::sample::Index>(), at in any::<prop::sample::Index>()) {
+        let (name, bytes) = file.get(&WHOLE.files);
+        let at = at.index(bytes.len());
+        harmless(name, &bytes[..at])?;
+    }
+
+    #[test]
+    fn mixed_up_bytes_are_survived(
+        file in any::<prop::sample::Index>(),
+        from in any::<prop::sample::Index>(),
+        patch in prop::collection::vec(any::<u8>(), 1..40),
+        insert in any::<bool>(),
+    ) {
+        let (name, bytes) = file.get(&WHOLE.files);
+        let at = from.index(bytes.len());
+        let rest = if insert { at } else { (at + patch.len()).min(bytes.len()) };
+        harmless(name, &[&bytes[..at], &patch[..], &bytes[rest..]].concat())?;
+    }
+
+    #[test]
+    fn swapped_files_are_noticed(a in any::<prop::sample::Index>(), b in any::<prop::sample::Index>()) {
+        let ((name, _), (_, bytes)) = (a.get(&WHOLE.files), b.get(&WHOLE.files));
+        harmless(name, bytes)?;
+    }
+}
+
+#[test]
+fn damage_is_reported_with_place_and_what_is_intact() {
+    let (name, bytes) = WHOLE.files.iter().find(|(name, _)| name == "chain-00001.records").unwrap();
+    let mut bytes = bytes.clone();
+    let last = bytes.len() - 40;
+    bytes[last] ^= 1;
+    let (_place, folder) = with(name, &bytes);
+    let error = read(&folder).unwrap_err();
+    // Blocks of 100 iterations, every third recorded: 500 iterations before the last block.
+    for part in
+        ["chain-00001.records", "at byte ", "checksum", "The 167 recorded draws of the chain before that are intact"]
+    {
+        assert!(error.contains(part), "{part} is not in: {error}");
+    }
+    let salvaged = Run::open(&folder).unwrap().salvaged().visit(AllDraws(Phase::Sampling)).unwrap().unwrap();
+    assert_eq!(salvaged[0].len(), 167 - 34);
+}
+
+#[test]
+fn a_missing_checkpoint_is_an_error_for_resume() {
+    let (_place, folder) = with("chain-00002.checkpoint", b"");
+    std::fs::remove_file(folder.checkpoint(2)).unwrap();
+    let error = resume(&folder, None, Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
+    assert!(error.contains("chain-00002.checkpoint") && error.contains("other chains have checkpoints"), "{error}");
+}
+
+#[test]
+fn a_run_of_another_version_is_not_gone_on_with() {
+    let (_place, folder) = with("lock", b"");
+    let mut manifest = plaus_run::Manifest::read(&folder).unwrap();
+    manifest.plaus = "0.0.7".into();
+    std::fs::write(folder.manifest(), manifest.to_json().unwrap()).unwrap();
+    let error = resume(&folder, None, Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
+    assert!(error.contains("made by plaus 0.0.7"), "{error}");
+}

@@ -1,0 +1,128 @@
+//! A run killed at any write, or on a full disk, goes on to the same bytes.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{FailingDisk, bytes_of, recipe};
+use plaus_run::disk::{Disk, RealDisk};
+use plaus_run::{Error, Folder, Sampling, Unwatched, Watch, resume, sample};
+
+/// Asks for checkpoints only now and then, as the clock would.
+struct Seldom(u32);
+
+impl Watch for Seldom {
+    fn round(&mut self, _: &plaus_mcmc::Progress<'_>) -> plaus_mcmc::Control {
+        plaus_mcmc::Control::Continue
+    }
+    fn checkpoint_due(&mut self) -> bool {
+        self.0 += 1;
+        self.0.is_multiple_of(3)
+    }
+}
+
+fn sample_on(disk: &dyn Disk, folder: &Folder, solutions: Option<u64>, watch: &mut dyn Watch) -> Result<(), Error> {
+    sample(folder, &recipe(solutions), Sampling { threads: 1, disk, watch }).map(|_| ())
+}
+
+/// Every number of bytes after which a process can die, in steps; and every operation.
+fn killed_everywhere(solutions: Option<u64>, crash: bool) {
+    let place = tempfile::tempdir().unwrap();
+    let whole = Folder::new(place.path().join("whole"));
+    let disk = FailingDisk::new(u64::MAX, u64::MAX, crash);
+    sample_on(&disk, &whole, solutions, &mut Unwatched).unwrap();
+    let expected = bytes_of(&whole);
+    let (bytes, operations) = disk.used();
+    assert!(bytes > 2_000 && operations > 30, "{bytes} bytes in {operations} operations prove little");
+    let limits = (0..bytes).step_by(197).map(|bytes| (bytes, u64::MAX));
+    let stops = (0..operations).map(|operations| (u64::MAX, operations));
+    for (index, (bytes, operations)) in limits.chain(stops).enumerate() {
+        let folder = Folder::new(place.path().join(format!("run{index}")));
+        let failing = FailingDisk::new(bytes, operations, crash);
+        let first: &mut dyn Watch = if index % 2 == 0 { &mut Unwatched } else { &mut Seldom(0) };
+        if sample_on(&failing, &folder, solutions, first).is_ok() {
+            continue;
+        }
+        // Die again while going on, then go on in peace.
+        if folder.path().exists() {
+            let again = FailingDisk::new(bytes / 3 + 50, operations / 2, crash);
+            let _ = resume(&folder, None, Sampling { threads: 2, disk: &again, watch: &mut Seldom(0) });
+            resume(&folder, None, Sampling { threads: 1, disk: &RealDisk, watch: &mut Unwatched }).unwrap();
+        } else {
+            sample_on(&RealDisk, &folder, solutions, &mut Unwatched).unwrap();
+        }
+        assert_eq!(bytes_of(&folder), expected, "after {bytes} bytes or {operations} operations");
+        std::fs::remove_dir_all(folder.path()).unwrap();
+    }
+}
+
+#[test]
+fn a_process_killed_anywhere_loses_nothing_final() {
+    killed_everywhere(None, true);
+}
+
+#[test]
+fn a_process_killed_anywhere_finds_the_same_solutions() {
+    killed_everywhere(Some(60), true);
+}
+
+#[test]
+fn a_full_disk_leaves_the_run_resumable() {
+    killed_everywhere(None, false);
+}
+
+#[test]
+fn a_full_disk_is_named_with_what_is_safe() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path().join("run"));
+    let disk = FailingDisk::new(20_000, u64::MAX, false);
+    let error = sample_on(&disk, &folder, None, &mut Unwatched).unwrap_err();
+    let Error::DiskFull { safe, .. } = &error else { panic!("{error}") };
+    assert!(*safe >= 100 && safe.is_multiple_of(100), "{safe}");
+    assert!(error.to_string().contains("free some space, then `plaus resume`"), "{error}");
+}
+
+#[test]
+fn threads_and_checkpoints_leave_no_trace() {
+    let place = tempfile::tempdir().unwrap();
+    let run = |threads, watch: &mut dyn Watch| {
+        let folder = Folder::new(place.path().join(format!("run{threads}")));
+        sample(&folder, &recipe(None), Sampling { threads, disk: &RealDisk, watch }).unwrap();
+        bytes_of(&folder)
+    };
+    let one = run(1, &mut Unwatched);
+    assert_eq!(run(2, &mut Seldom(0)), one);
+    assert_eq!(run(4, &mut Seldom(1)), one);
+}
+
+#[test]
+fn a_longer_run_begins_like_the_shorter() {
+    use plaus_run::{Manifest, Phase, Run};
+    let place = tempfile::tempdir().unwrap();
+    let (short, long) = (Folder::new(place.path().join("short")), Folder::new(place.path().join("long")));
+    sample(&short, &recipe(None), Sampling::new(1, &mut Unwatched)).unwrap();
+    let mut more = recipe(None);
+    more.scenario.sampler.iterations = 700;
+    sample(&long, &more, Sampling::new(1, &mut Unwatched)).unwrap();
+    resume(&short, Some(700), Sampling::new(1, &mut Unwatched)).unwrap();
+    assert_eq!(Manifest::read(&short).unwrap().extended_from, [430]);
+    let draws = |folder: &Folder| Run::open(folder).unwrap().visit(common::AllDraws(Phase::Sampling)).unwrap();
+    assert_eq!(draws(&short), draws(&long));
+    let shorter = resume(&short, Some(5), Sampling::new(1, &mut Unwatched)).unwrap_err();
+    assert!(shorter.to_string().contains("not shorter than 700"), "{shorter}");
+}
+
+#[test]
+fn two_processes_cannot_write_one_run() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path().join("run"));
+    sample(&folder, &recipe(None), Sampling::new(1, &mut Unwatched)).unwrap();
+    let claim = folder.claim().unwrap();
+    assert!(folder.is_being_written());
+    let error = resume(&folder, None, Sampling::new(1, &mut Unwatched)).unwrap_err();
+    assert!(error.to_string().contains("another process is writing"), "{error}");
+    drop(claim);
+    assert!(!folder.is_being_written());
+    let again = sample(&folder, &recipe(None), Sampling::new(1, &mut Unwatched)).unwrap_err();
+    assert!(again.to_string().contains("exists already"), "{again}");
+}

@@ -1,0 +1,122 @@
+//! Scenario keys of the 2D ball.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Most collisions a draw can hold.
+pub const MAX_COLLISIONS: u32 = 64;
+
+/// A ball bounces on a table whose surface normal is uncertain at every bounce (Chenney & Forsyth 2000, sections 3 and 5.1).
+///
+/// Lengths are in ball diameters D. The ball is a point for its collisions with the plane, as in the paper.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// How far the ball falls before its first bounce, in D. The paper's "height of 4.5 D" reads as 4.5 where the height is the
+    /// bottom's, or the ball a point, and as 4 where it is the centre's.
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
+    pub drop_height: f64,
+    /// Number of bounces before the resting place; each has a random normal.
+    #[schemars(range(min = 1, max = 64))]
+    pub collisions: u32,
+    /// Factor on the normal component of the velocity at a bounce; the paper's is 1/√2.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub restitution: f64,
+    /// Standard deviation of each normal's angle from the vertical, in degrees.
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 90.0, "x-unit" = "degree"))]
+    pub sigma_theta_deg: f64,
+    /// Where the ball should come to rest, in D from where it is dropped.
+    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "D"))]
+    pub target: f64,
+    /// Standard deviation of the constraint on the resting place, in D: smaller is stricter.
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
+    pub sigma_d: f64,
+    /// A ball that rests closer than this to the target satisfies the constraint, in D.
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
+    pub tolerance: f64,
+    /// What happens where a bounce would leave the ball moving into the table.
+    pub downward: Downward,
+    /// Which moves: "mixed", or the "paper"'s only one.
+    pub moves: Moves,
+    /// Relative weights of the moves of "mixed".
+    pub weights: Weights,
+    /// Half width of the paper's random step of an angle, in degrees.
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 180.0, "x-unit" = "degree"))]
+    pub step_deg: f64,
+    /// Two solutions are the same where all their bounces fall into the same cells of this width, in D.
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
+    pub distinct_cell: f64,
+    /// The ball's diameter in metres: fixes the size and, with gravity, the time of exported animations. No influence on what is sampled.
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1000.0, "x-unit" = "m"))]
+    pub diameter_m: f64,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            drop_height: 4.5,
+            collisions: 5,
+            restitution: std::f64::consts::FRAC_1_SQRT_2,
+            sigma_theta_deg: 10.0,
+            target: 1.0,
+            sigma_d: 0.1,
+            tolerance: 0.1,
+            downward: Downward::default(),
+            moves: Moves::default(),
+            weights: Weights::default(),
+            step_deg: 5.0,
+            distinct_cell: 0.5,
+            diameter_m: 0.1,
+        }
+    }
+}
+
+/// What happens where the reflected velocity still points into the table, or along it: the normal leans so far that the reflection does not
+/// lift the ball.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Downward {
+    /// The leftover downward component is turned upwards.
+    Mirror,
+    /// The draw has density 0.
+    Reject,
+    /// The vertical component is lost: the ball slides through its remaining bounces in place.
+    Zero,
+    /// The ball bounces as from a level table.
+    Level,
+    /// The ball goes back the way it came, slowed by the restitution.
+    #[default]
+    Back,
+}
+
+/// Which moves the chain makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Moves {
+    /// Perturb, redraw and aim, by `weights`.
+    #[default]
+    Mixed,
+    /// Perturb alone: the paper's section 5.1.2.
+    Paper,
+}
+
+/// Relative weights of the moves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Weights {
+    /// The paper's move: every angle, with probability ½, gets a uniform step.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub perturb: f64,
+    /// One angle is drawn anew from its prior.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub redraw: f64,
+    /// Some angles are drawn anew and another is solved for, so that the ball still lands near the target.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub aim: f64,
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self { perturb: 0.7, redraw: 0.1, aim: 0.2 }
+    }
+}

@@ -1,0 +1,37 @@
+//! Scenes to sample plausible animations of, and the scenario files that describe them.
+//!
+//! ```
+//! use plaus_dist::Seed;
+//! use plaus_mcmc::{Chain, Goal};
+//! use plaus_scenes::{Scenario, Scene, World, ball2d::Ball2d};
+//!
+//! // A ball bounces three times and should come to rest two diameters to the right.
+//! let text = "[world.ball2d]\ncollisions = 3\nsigma_d = 0.05";
+//! let scenario = Scenario::read("inline", text, &["target=2".into()])?;
+//! let World::Ball2d(config) = &scenario.world;
+//! let ball = Ball2d::new(config)?;
+//! let moves = ball.moves(&scenario.sampler.rules)?;
+//! let mut chain = Chain::start(&ball, &moves, Seed(scenario.sampler.seed).chain(0))?;
+//! while ball.class(chain.state()).is_none() {
+//!     chain.step()?;
+//! }
+//! let animation = ball.animate(&chain.state().draw)?;
+//! assert_eq!(animation.impacts.len(), 3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A [`Scene`] is a target with a goal, moves and animations; [`registry`] lists all there are; [`scenario`] reads the files; [`rules`] says
+//! whether acceptance is exact or as the paper prints it.
+
+pub mod animation;
+pub mod ball2d;
+pub mod registry;
+pub mod rules;
+pub mod scenario;
+pub mod scene;
+
+pub use animation::Animation;
+pub use registry::{Visitor, World};
+pub use rules::Rules;
+pub use scenario::Scenario;
+pub use scene::{ConfigError, Role, Scalar, Scene};

@@ -1,0 +1,53 @@
+//! All scenes there are. A new scene is one line here.
+
+use crate::scene::{ConfigError, Scene};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Something to do with a scene whose type is known only from the scenario file.
+pub trait Visitor {
+    /// What comes of it.
+    type Output;
+    /// Does it.
+    fn visit<S: Scene>(self, scene: S) -> Self::Output;
+}
+
+macro_rules! scenes {
+    ($($(#[$doc:meta])* $name:literal $variant:ident => $module:ident,)+) => {
+        /// The world of a scenario: which scene, and its settings.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+        pub enum World {
+            $($(#[$doc])* #[serde(rename = $name)] $variant(crate::$module::Config),)+
+        }
+
+        /// Names of all scenes, as in `[world.NAME]`.
+        pub const NAMES: &[&str] = &[$($name),+];
+
+        impl World {
+            /// The scene's name.
+            #[must_use]
+            pub fn name(&self) -> &'static str {
+                match self { $(Self::$variant(_) => $name),+ }
+            }
+
+            /// The world of a scene with all settings at their defaults.
+            #[must_use]
+            pub fn default_of(name: &str) -> Option<Self> {
+                match name { $($name => Some(Self::$variant(Default::default())),)+ _ => None }
+            }
+
+            /// Builds the scene and hands it to `visitor`.
+            ///
+            /// # Errors
+            /// [`ConfigError`] where the settings make no scene.
+            pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, ConfigError> {
+                match self { $(Self::$variant(config) => Ok(visitor.visit(crate::$module::$variant::new(config)?))),+ }
+            }
+        }
+    };
+}
+
+scenes! {
+    /// A ball bounces on a table whose surface normal is uncertain at every bounce; it should come to rest in a given place.
+    "ball2d" Ball2d => ball2d,
+}

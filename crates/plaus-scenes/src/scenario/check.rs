@@ -1,0 +1,218 @@
+//! Checks a tree against the shape of scenarios, and finds all that is wrong at once.
+
+use super::bounds::Bounds;
+use super::nearest::{any_of, nearest, shown};
+use super::problem::Problem;
+use super::shape::{Kind, Shape, join};
+use super::tree::{Data, Tree};
+use super::value;
+use std::collections::BTreeMap;
+use toml::Value;
+
+/// The values of `tree` as serde should read them, without what is wrong; and what is wrong.
+pub(super) fn check(shape: &Shape, tree: &Tree) -> (Option<Value>, Vec<Problem>) {
+    let mut check = Check { paths: shape.paths(Some(tree)), problems: Vec::new() };
+    let value = check.value(shape, tree, "");
+    (value, check.problems)
+}
+
+struct Check {
+    /// All keys there are, given which scene the tree chose.
+    paths: Vec<String>,
+    problems: Vec<Problem>,
+}
+
+impl Check {
+    /// The value of `tree`, or `None` where it is wrong as a whole.
+    fn value(&mut self, shape: &Shape, tree: &Tree, key: &str) -> Option<Value> {
+        match (&shape.kind, &tree.data) {
+            (Kind::Table(keys), Data::Table(entries)) => Some(self.table(keys, entries, tree, key)),
+            (Kind::OneOf(keys), Data::Table(entries)) => self.one_of(keys, entries, tree, key),
+            (Kind::List(item, length), Data::List(items)) => self.list(item, length, items, tree, key),
+            (_, data) => match value::read(shape, data) {
+                Ok(value) => Some(value),
+                Err(wrong) => {
+                    let problem = Problem::new(key, wrong.message).with_help(wrong.help);
+                    self.problems.push(tree.place.blame_value(problem));
+                    None
+                }
+            },
+        }
+    }
+
+    fn table(&mut self, keys: &[(String, Shape)], entries: &BTreeMap<String, Tree>, tree: &Tree, path: &str) -> Value {
+        let mut table = toml::Table::new();
+        for (name, shape) in keys {
+            let key = join(path, name);
+            match entries.get(name) {
+                Some(inner) => table.extend(self.value(shape, inner, &key).map(|value| (name.clone(), value))),
+                None if shape.default.is_none() => self.problems.push(tree.place.blame_key(missing(shape, &key))),
+                None => {}
+            }
+        }
+        for (name, inner) in entries {
+            if !keys.iter().any(|(known, _)| known == name) {
+                let problem = Problem::new(join(path, &shown(name)), format!("unknown key `{}`", shown(name)));
+                self.problems.push(inner.place.blame_key(problem.with_help(self.advice(keys, name, path))));
+            }
+        }
+        Value::Table(table)
+    }
+
+    /// Where the unknown `name` belongs, or what was meant by it, or what is known in its place.
+    fn advice(&self, keys: &[(String, Shape)], name: &str, path: &str) -> Option<String> {
+        let leaf = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
+        let elsewhere: Vec<_> = self.paths.iter().filter(|known| leaf(known) == name).collect();
+        if !elsewhere.is_empty() {
+            return Some(format!("write it as {}", any_of(elsewhere.iter().map(|known| format!("`{known}`")))));
+        }
+        if let Some(near) = nearest(name, keys.iter().map(|(known, _)| known.as_str())) {
+            return Some(format!("did you mean `{near}`?"));
+        }
+        let leaves: Vec<String> = self.paths.iter().map(|known| leaf(known)).collect();
+        if let Some(near) = nearest(name, leaves.iter().map(String::as_str)) {
+            let known = self.paths.iter().find(|known| leaf(known) == near)?;
+            return Some(format!("did you mean `{known}`?"));
+        }
+        let known = keys.iter().map(|(known, _)| known.as_str()).collect::<Vec<_>>().join(", ");
+        Some(if path.is_empty() { format!("known: {known}") } else { format!("known in [{path}]: {known}") })
+    }
+
+    /// A table that must hold exactly one of `keys`: which scene.
+    fn one_of(
+        &mut self,
+        keys: &[(String, Shape)],
+        entries: &BTreeMap<String, Tree>,
+        tree: &Tree,
+        path: &str,
+    ) -> Option<Value> {
+        let names = || keys.iter().map(|(name, _)| name.as_str());
+        for (name, inner) in entries.iter().filter(|(name, _)| !names().any(|known| known == *name)) {
+            let message = format!("unknown {path} `{}`", shown(name));
+            let near = nearest(name, names()).map(|near| format!("did you mean `{path}.{near}`? "));
+            let belongs = self.paths.iter().find(|known| known.rsplit('.').next() == Some(name) && near.is_none());
+            let belongs = belongs.map(|known| format!("did you mean `{known}`? "));
+            let help = format!("{}known: {}", near.or(belongs).unwrap_or_default(), any_of(names().map(String::from)));
+            let problem = Problem::new(join(path, &shown(name)), message).with_help(Some(help));
+            self.problems.push(inner.place.blame_key(problem));
+        }
+        let chosen: Vec<_> = keys.iter().filter_map(|(name, shape)| Some((name, shape, entries.get(name)?))).collect();
+        match *chosen {
+            [(name, shape, inner)] => {
+                let value = self.value(shape, inner, &join(path, name))?;
+                Some(Value::Table(toml::Table::from_iter([(name.clone(), value)])))
+            }
+            [] if !entries.is_empty() => None,
+            [] => {
+                let message = format!("no {path}: exactly one must be chosen");
+                self.problems
+                    .push(tree.place.blame_key(Problem::new(path, message).with_help(Some(add_one(keys, path)))));
+                None
+            }
+            [(first, ..), ..] => {
+                for (name, _, inner) in &chosen[1..] {
+                    let message = format!("a second {path} besides `{first}`: exactly one must be chosen");
+                    let help = format!("remove [{path}.{first}] or [{path}.{name}]");
+                    let problem = Problem::new(join(path, name), message).with_help(Some(help));
+                    self.problems.push(inner.place.blame_key(problem));
+                }
+                None
+            }
+        }
+    }
+
+    fn list(&mut self, item: &Shape, length: &Bounds<i128>, items: &[Tree], tree: &Tree, key: &str) -> Option<Value> {
+        if !length.contains(items.len() as i128) {
+            let message = format!("a list of {} is out of range: its length must be {}", items.len(), length.words());
+            self.problems.push(tree.place.blame_value(Problem::new(key, message)));
+        }
+        let numbered = items.iter().enumerate();
+        let values: Vec<_> = numbered.map(|(i, inner)| self.value(item, inner, &format!("{key}[{i}]"))).collect();
+        values.into_iter().collect::<Option<Vec<_>>>().map(Value::Array)
+    }
+}
+
+/// `key` must be given and is not.
+fn missing(shape: &Shape, key: &str) -> Problem {
+    match &shape.kind {
+        Kind::OneOf(keys) => {
+            Problem::new(key, format!("no {key}: exactly one must be chosen")).with_help(Some(add_one(keys, key)))
+        }
+        _ => Problem::new(key, format!("missing: {} must be given", shape.kind_in_words())),
+    }
+}
+
+fn add_one(keys: &[(String, Shape)], path: &str) -> String {
+    format!("add a table {}", any_of(keys.iter().map(|(name, _)| format!("[{path}.{name}]"))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// Two scenes, a required key, a list, and an optional word.
+    fn shape() -> Shape {
+        let number = json!({ "type": "number", "default": 1.0, "minimum": 0.0, "x-unit": "m" });
+        let schema = json!({
+            "type": "object",
+            "required": ["world"],
+            "properties": {
+                "world": {
+                    "type": "object", "minProperties": 1, "maxProperties": 1,
+                    "properties": {
+                        "ball": { "type": "object", "properties": { "size": number, "at": {
+                            "type": "array", "minItems": 2, "maxItems": 2, "items": number, "default": [1, 2],
+                        } } },
+                        "dice": { "$ref": "#/$defs/Dice" },
+                    },
+                },
+            },
+            "$defs": { "Dice": { "type": "object", "properties": {
+                "size": number,
+                "label": { "type": "string" },
+                "law": { "anyOf": [{ "enum": ["fair", "loaded"] }, { "type": "null" }], "default": null },
+            } } },
+        });
+        Shape::of_schema(&schema, &schema, 0)
+    }
+
+    fn problems(text: &str) -> Vec<String> {
+        let (tree, syntax) = Tree::parse(text);
+        assert_eq!(syntax, []);
+        check(&shape(), &tree).1.iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn exactly_one_world() {
+        let second = "world.dice: a second world besides `ball`: exactly one must be chosen; remove [world.ball] or [world.dice]";
+        assert_eq!(problems("[world.ball]\n[world.dice]\nlabel = \"d6\""), [second]);
+        let none = "world: no world: exactly one must be chosen; add a table [world.ball] or [world.dice]";
+        assert_eq!(problems(""), [none]);
+        assert_eq!(problems("world = {}"), [none]);
+        let unknown = "world.bal: unknown world `bal`; did you mean `world.ball`? known: ball or dice";
+        assert_eq!(problems("[world.bal]"), [unknown]);
+    }
+
+    #[test]
+    fn advice_stays_in_the_chosen_world() {
+        let meant = "world.ball.law: unknown key `law`; known in [world.ball]: at, size";
+        assert_eq!(problems("[world.ball]\nlaw = \"fair\""), [meant]);
+        assert_eq!(
+            problems("law = 1\n[world.dice]\nlabel = \"\""),
+            ["law: unknown key `law`; write it as `world.dice.law`"]
+        );
+    }
+
+    #[test]
+    fn required_optional_and_listed_values() {
+        assert_eq!(problems("[world.dice]"), ["world.dice.label: missing: a string must be given"]);
+        let words =
+            "world.dice.law: \"fare\" is not allowed: it must be \"fair\" or \"loaded\"; did you mean \"fair\"?";
+        assert_eq!(problems("[world.dice]\nlabel = \"\"\nlaw = \"fare\""), [words]);
+        assert_eq!(problems("[world.ball]\nat = [0, 2.5]"), [] as [&str; 0]);
+        let length = "world.ball.at: a list of 1 is out of range: its length must be from 2 to 2";
+        let item = "world.ball.at[0]: -1 is out of range: it must be at least 0 m";
+        assert_eq!(problems("[world.ball]\nat = [-1]"), [length, item]);
+    }
+}

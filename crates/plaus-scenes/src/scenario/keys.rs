@@ -1,0 +1,153 @@
+//! What each key means: for `plaus explain`, and as the comments of a new file.
+
+use super::Scenario;
+use super::overrides::{NoKey, resolve};
+use super::shape::{Kind, Shape, scenario};
+use std::fmt::Write;
+
+/// Columns of a template's comments.
+const WIDTH: usize = 100;
+
+/// What a key means.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KeyDoc {
+    /// Dotted from the root, e.g. `world.ball2d.sigma_d`.
+    pub key: String,
+    /// The kind of value, with its article: "a number", "an integer", "a boolean", "a word", "a table".
+    pub kind: String,
+    /// The default, as TOML; "unset" for a key that may be left out and then means something of its own; empty for tables.
+    pub default: String,
+    /// Allowed values, in words, e.g. "above 0 and at most 90"; empty where anything of the kind goes.
+    pub range: String,
+    /// Unit, where the value has one.
+    pub unit: Option<String>,
+    /// Meaning. Words are followed by what each means.
+    pub description: String,
+}
+
+/// All keys of all scenes that hold a value, in the order of a file; tables are not listed.
+#[must_use]
+pub fn keys() -> Vec<KeyDoc> {
+    let all = scenario().paths(None).into_iter().filter_map(|key| Some((scenario().at(&key)?, key)));
+    all.filter(|(shape, _)| !shape.is_table()).map(|(shape, key)| doc(shape, key)).collect()
+}
+
+/// What a key means, or a table. `key` is its full dotted name, or an end of it that no other key has: `sigma_d`, `weights.aim`.
+///
+/// # Errors
+/// The nearest known key, if any is near; where several end in `key`, the first of them.
+pub fn explain(key: &str) -> Result<KeyDoc, Option<String>> {
+    let all = scenario().paths(None);
+    let found = resolve(key.trim(), &all, &all).map_err(|error| match error {
+        NoKey::Unknown(nearest) => nearest,
+        NoKey::Ambiguous(keys) => keys.into_iter().next(),
+    })?;
+    scenario().at(&found).map(|shape| doc(shape, found)).ok_or(None)
+}
+
+fn doc(shape: &Shape, key: String) -> KeyDoc {
+    let mut description = shape.description.clone();
+    for (word, meaning) in meanings(shape) {
+        description += &format!("\n\"{word}\": {meaning}");
+    }
+    KeyDoc {
+        kind: shape.kind_in_words(),
+        default: if shape.is_table() { String::new() } else { default(shape).unwrap_or_else(|| "unset".into()) },
+        range: shape.range(),
+        unit: shape.unit.clone(),
+        description,
+        key,
+    }
+}
+
+/// The words that have a meaning of their own.
+fn meanings(shape: &Shape) -> impl Iterator<Item = &(String, String)> {
+    let words = if let Kind::Words(words) = &shape.kind { words.as_slice() } else { &[] };
+    words.iter().filter(|(_, meaning)| !meaning.is_empty())
+}
+
+/// The default as TOML, where there is one.
+fn default(shape: &Shape) -> Option<String> {
+    let default = shape.default.as_ref().filter(|value| !value.is_null())?;
+    let number = default.as_f64().filter(|_| matches!(shape.kind, Kind::Number(_))).map(toml::Value::Float);
+    let value = number.or_else(|| toml::Value::try_from(default).ok())?;
+    Some(value.to_string())
+}
+
+/// A commented scenario file: every key with its default, its meaning, unit and range. Reading it gives the scene's default scenario.
+#[must_use]
+pub fn template(scene: &str) -> Option<String> {
+    let given = Scenario::default_of(scene)?;
+    let (tree, _) = super::tree::Tree::parse(&given.to_toml());
+    let mut text = format!("# A scenario of `{scene}`. Every key stands here with its default, and may be left out.\n");
+    for key in scenario().paths(Some(&tree)) {
+        let Some(shape) = scenario().at(&key) else { continue };
+        if shape.is_table() {
+            header(&mut text, shape, &key);
+        } else {
+            entry(&mut text, shape, key.rsplit('.').next().unwrap_or(&key));
+        }
+    }
+    Some(text)
+}
+
+/// A table's meaning and, unless it only holds a choice of tables, its head.
+fn header(text: &mut String, shape: &Shape, key: &str) {
+    text.push('\n');
+    comment(text, &shape.description);
+    if matches!(shape.kind, Kind::Table(_)) {
+        let _ = writeln!(text, "[{key}]");
+    }
+}
+
+fn entry(text: &mut String, shape: &Shape, name: &str) {
+    text.push('\n');
+    comment(text, &shape.description);
+    if let Some(facts) = facts(shape) {
+        comment(text, &facts);
+    }
+    for (word, meaning) in meanings(shape) {
+        comment(text, &format!("\"{word}\": {meaning}"));
+    }
+    let _ = match default(shape) {
+        Some(default) => writeln!(text, "{name} = {default}"),
+        None => writeln!(text, "# {name} = {}", example(shape)),
+    };
+}
+
+/// "A number above 0 and at most 90. Unit: degree."
+fn facts(shape: &Shape) -> Option<String> {
+    let kind = match &shape.kind {
+        Kind::Number(_) => "A number",
+        Kind::Integer(_) => "An integer",
+        _ => return shape.unit.as_ref().map(|unit| format!("Unit: {unit}.")),
+    };
+    let range = shape.range();
+    let space = if range.is_empty() { "" } else { " " };
+    let unit = shape.unit.as_ref().map(|unit| format!(" Unit: {unit}.")).unwrap_or_default();
+    Some(format!("{kind}{space}{range}.{unit}"))
+}
+
+/// A value that an unset key could have.
+fn example(shape: &Shape) -> String {
+    match &shape.kind {
+        Kind::Boolean => "true".into(),
+        Kind::Words(words) => words.first().map(|(word, _)| format!("\"{word}\"")).unwrap_or_default(),
+        _ => "…".into(),
+    }
+}
+
+/// `words` as comment lines, broken between words.
+fn comment(text: &mut String, words: &str) {
+    for paragraph in words.lines() {
+        let mut line = String::from("#");
+        for word in paragraph.split_whitespace() {
+            if line.chars().count() + word.chars().count() >= WIDTH {
+                let _ = writeln!(text, "{line}");
+                line = String::from("#");
+            }
+            line = line + " " + word;
+        }
+        let _ = writeln!(text, "{line}");
+    }
+}

@@ -1,0 +1,136 @@
+//! Scenario files: TOML that says which world to sample, and how.
+
+mod bounds;
+mod check;
+mod keys;
+mod nearest;
+mod overrides;
+mod problem;
+mod schema;
+mod shape;
+mod tree;
+mod value;
+
+pub use keys::{KeyDoc, explain, keys, template};
+pub use problem::{Problem, ScenarioError, Source};
+pub use schema::schema;
+
+use crate::registry::{Visitor, World};
+use crate::rules::Rules;
+use crate::scene::{ConfigError, Scene};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use tree::Tree;
+
+/// A scenario: a world and how to sample it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// How to sample.
+    #[serde(default)]
+    pub sampler: Sampler,
+    /// What to sample: exactly one table `[world.SCENE]`.
+    pub world: World,
+}
+
+/// How to sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sampler {
+    /// Seed of all randomness. The same scenario, seed and version give the same bits.
+    /// Seeds end at 2⁶³ − 1, the largest integer that TOML promises to hold.
+    pub seed: u64,
+    /// Number of independent chains.
+    #[schemars(range(min = 1, max = 100_000))]
+    pub chains: u32,
+    /// Iterations before sampling begins: recorded, but kept out of tables and diagnostics.
+    #[schemars(range(min = 0, max = 1_000_000_000_000_u64))]
+    pub warmup: u64,
+    /// Iterations of each chain after the warm-up.
+    #[schemars(range(min = 1, max = 1_000_000_000_000_u64))]
+    pub iterations: u64,
+    /// Record every `thin`-th iteration.
+    #[schemars(range(min = 1, max = 1_000_000_000_u64))]
+    pub thin: u64,
+    /// Iterations between two checkpoints of a chain.
+    #[schemars(range(min = 1, max = 1_000_000_000_u64))]
+    pub checkpoint_every: u64,
+    /// Exact acceptance, or the paper's as printed.
+    pub rules: Rules,
+}
+
+impl Default for Sampler {
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            chains: 4,
+            warmup: 1000,
+            iterations: 10_000,
+            thin: 1,
+            checkpoint_every: 20_000,
+            rules: Rules::default(),
+        }
+    }
+}
+
+impl Scenario {
+    /// Reads a scenario: a file called `name` with the contents `text`, and `key=value` strings that override it, in order.
+    ///
+    /// An override's key is a full dotted name (`world.ball2d.sigma_d`) or an end of it that no other key of the file's world has
+    /// (`sigma_d`, `weights.aim`). Its value is TOML, else a bare string: `moves=paper`. Tables that the file lacks are made.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] with all that is wrong, each in its place. Only where the text is no TOML is nothing else looked at, and what one
+    /// key alone does not show (weights that are all zero) is found where each key by itself is right.
+    pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, ScenarioError> {
+        let fail = |problems| Err(ScenarioError::new(name, text, problems));
+        let (mut tree, syntax) = Tree::parse(text);
+        if !syntax.is_empty() {
+            return fail(syntax);
+        }
+        let shape = shape::scenario();
+        let mut problems = Vec::new();
+        for said in overrides {
+            problems.extend(overrides::apply(said, shape, &mut tree).err().map(|problem| *problem));
+        }
+        let (value, found) = check::check(shape, &tree);
+        problems.extend(found);
+        if !problems.is_empty() {
+            return fail(problems);
+        }
+        let Some(value) = value else { return fail(vec![Problem::new("", "no scenario")]) };
+        let scenario: Self = match value.try_into() {
+            Ok(scenario) => scenario,
+            Err(error) => return fail(vec![Problem::new("", error.message())]),
+        };
+        match scenario.try_building() {
+            Ok(()) => Ok(scenario),
+            Err(error) => fail(vec![problem::located(&tree, &error)]),
+        }
+    }
+
+    /// Whether the scene can be built and sampled.
+    fn try_building(&self) -> Result<(), ConfigError> {
+        struct Build<'a>(&'a Rules);
+        impl Visitor for Build<'_> {
+            type Output = Result<(), ConfigError>;
+            fn visit<S: Scene>(self, scene: S) -> Self::Output {
+                scene.moves(self.0).map(drop)
+            }
+        }
+        self.world.visit(Build(&self.sampler.rules))?
+    }
+
+    /// The whole effective scenario as TOML: every key that is set, in full precision. Reading it back gives an equal scenario.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        // Tables, numbers, booleans and strings can all be written, so this cannot fail; an empty text would be refused when read.
+        toml::to_string(self).unwrap_or_default()
+    }
+
+    /// The scenario of a scene with all settings at their defaults; `None` where there is no such scene.
+    #[must_use]
+    pub fn default_of(scene: &str) -> Option<Self> {
+        World::default_of(scene).map(|world| Self { sampler: Sampler::default(), world })
+    }
+}

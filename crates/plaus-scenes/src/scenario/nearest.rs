@@ -1,0 +1,74 @@
+//! Names near a misspelt one, and lists of names in a sentence.
+
+/// Names longer than this are not compared: nobody misspells that far, and comparing takes time in the square of the length.
+const LONGEST: usize = 64;
+
+/// The candidate nearest to `name`: at most a third of its letters differ (swapped neighbours count once, case and hyphens not at all), or it is
+/// the only one that contains `name`.
+pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> Option<&'a str> {
+    let plain = |name: &str| name.to_lowercase().replace('-', "_");
+    let sought = plain(name);
+    if sought.is_empty() || name.chars().count() > LONGEST {
+        return None;
+    }
+    let distance = |candidate: &str| strsim::damerau_levenshtein(&sought, &plain(candidate));
+    let near = |candidate: &str| sought.chars().count().max(candidate.chars().count()).div_ceil(3);
+    let measured = candidates.clone().into_iter().map(|candidate| (distance(candidate), candidate));
+    let best =
+        measured.filter(|(distance, candidate)| *distance <= near(candidate)).min_by_key(|(distance, _)| *distance);
+    best.map(|(_, candidate)| candidate).or_else(|| {
+        let mut containing = candidates.into_iter().filter(|candidate| sought.len() > 2 && candidate.contains(&sought));
+        containing.next().filter(|_| containing.next().is_none())
+    })
+}
+
+/// `a`, `a or b`, `a, b or c`.
+pub(super) fn any_of(names: impl IntoIterator<Item = String>) -> String {
+    let mut names: Vec<String> = names.into_iter().collect();
+    match (names.pop(), names.is_empty()) {
+        (None, _) => String::new(),
+        (Some(last), true) => last,
+        (Some(last), false) => format!("{} or {last}", names.join(", ")),
+    }
+}
+
+/// A name from a file as it may be shown: at most 60 characters, quoted and escaped unless it is a bare key.
+pub(super) fn shown(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    let short: String = name.chars().take(60).collect();
+    let ellipsis = if short.len() < name.len() { "…" } else { "" };
+    if !name.is_empty() && name.chars().all(bare) { short + ellipsis } else { format!("{:?}", short + ellipsis) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NAMES: [&str; 5] = ["sigma_d", "sigma_theta_deg", "seed", "drop_height", "restitution"];
+
+    #[test]
+    fn near_names_are_found_and_far_ones_are_not() {
+        for (name, expected) in [
+            ("sgima_d", Some("sigma_d")),
+            ("Sigma-D", Some("sigma_d")),
+            ("sigma_theta", Some("sigma_theta_deg")),
+            ("height", Some("drop_height")),
+            ("restitutoin", Some("restitution")),
+            ("gravity", None),
+            ("", None),
+            ("x", None),
+        ] {
+            assert_eq!(nearest(name, NAMES), expected, "{name}");
+        }
+        assert_eq!(nearest(&"x".repeat(1_000_000), NAMES), None);
+    }
+
+    #[test]
+    fn lists_read_as_sentences() {
+        assert_eq!(any_of([]), "");
+        assert_eq!(any_of(["a".into()]), "a");
+        assert_eq!(any_of(["a".into(), "b".into(), "c".into()]), "a, b or c");
+        assert_eq!(shown("a b\n"), "\"a b\\n\"");
+        assert_eq!(shown(&"k".repeat(100)).chars().count(), 61);
+    }
+}

@@ -1,0 +1,167 @@
+//! What is wrong with a scenario, and where.
+
+use super::tree::{Data, Tree};
+use crate::scene::ConfigError;
+use std::fmt;
+use std::ops::Range;
+
+/// A scenario that cannot be sampled: every problem found in it, in the order of the file.
+///
+/// [`Display`](fmt::Display) gives one line a problem: `file:line:column: key: message; help`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ScenarioError {
+    /// What the file is called.
+    pub name: String,
+    /// Its text, into which the spans point.
+    pub text: String,
+    /// At least one.
+    pub problems: Vec<Problem>,
+}
+
+/// One thing that is wrong.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// The key to blame, dotted from the root, e.g. `world.ball2d.sigma_d`; empty where the text is no TOML.
+    pub key: String,
+    /// What is wrong, with the allowed range where there is one.
+    pub message: String,
+    /// What would mend it: the nearest known name, or the place where the key belongs.
+    pub help: Option<String>,
+    /// Bytes of the text; `None` for `--set`, and for tables the file lacks.
+    pub span: Option<Range<usize>>,
+    /// Line of the span's start, from 1.
+    pub line: Option<usize>,
+    /// Column of the span's start in characters, from 1; a byte order mark takes none.
+    pub column: Option<usize>,
+    /// Who said so.
+    pub source: Source,
+}
+
+/// Where a value comes from.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Source {
+    /// The scenario file.
+    File,
+    /// An override, as given: `key=value`.
+    Override(String),
+}
+
+impl std::error::Error for ScenarioError {}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, problem) in self.problems.iter().enumerate() {
+            if index > 0 {
+                writeln!(f)?;
+            }
+            match (&problem.source, problem.line, problem.column) {
+                (Source::Override(said), _, _) => write!(f, "--set {said}: ")?,
+                (Source::File, Some(line), Some(column)) => write!(f, "{}:{line}:{column}: ", self.name)?,
+                (Source::File, ..) => write!(f, "{}: ", self.name)?,
+            }
+            write!(f, "{problem}")?;
+        }
+        Ok(())
+    }
+}
+
+/// `key: message; help`, without the place.
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.key.is_empty() {
+            write!(f, "{}: ", self.key)?;
+        }
+        f.write_str(&self.message)?;
+        match &self.help {
+            Some(help) => write!(f, "; {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Problem {
+    /// A problem without a place.
+    pub(super) fn new(key: impl Into<String>, message: impl Into<String>) -> Self {
+        Self {
+            key: key.into(),
+            message: message.into(),
+            help: None,
+            span: None,
+            line: None,
+            column: None,
+            source: Source::File,
+        }
+    }
+
+    /// The same with advice.
+    pub(super) fn with_help(self, help: Option<String>) -> Self {
+        Self { help, ..self }
+    }
+
+    /// The same at a place of the text. Lines and columns are filled in by [`ScenarioError::new`].
+    pub(super) fn at(self, source: &Source, span: Option<Range<usize>>) -> Self {
+        let span = span.filter(|_| *source == Source::File);
+        Self { source: source.clone(), span, ..self }
+    }
+}
+
+impl ScenarioError {
+    /// Gives each problem its line and column, and puts them in order: those of the file, those of what it lacks, those of overrides.
+    pub(super) fn new(name: &str, text: &str, mut problems: Vec<Problem>) -> Self {
+        for problem in &mut problems {
+            if let Some(span) = &mut problem.span {
+                *span = inside(text, span.clone());
+                let (line, column) = line_column(text, span.start);
+                (problem.line, problem.column) = (Some(line), Some(column));
+            }
+        }
+        let place = |problem: &Problem| (problem.source.clone(), problem.span.is_none(), problem.line, problem.column);
+        problems.sort_by_key(place);
+        problems.dedup();
+        Self { name: name.into(), text: text.into(), problems }
+    }
+
+    /// An error that a scene found later, blamed on its key's place in the file, or on the table that lacks the key.
+    #[must_use]
+    pub fn locate(name: &str, text: &str, error: &ConfigError) -> Self {
+        let (tree, _) = Tree::parse(text);
+        Self::new(name, text, vec![located(&tree, error)])
+    }
+
+    /// The text of a file called `name`, for [`Scenario::read`](super::Scenario::read).
+    ///
+    /// # Errors
+    /// [`ScenarioError`] where `bytes` are no UTF-8; its text is then what can be read of them.
+    pub fn decode(name: &str, bytes: Vec<u8>) -> Result<String, Self> {
+        String::from_utf8(bytes).map_err(|error| {
+            let start = error.utf8_error().valid_up_to();
+            let byte = error.as_bytes().get(start).copied().unwrap_or_default();
+            let problem = Problem::new("", format!("byte {start} (0x{byte:02x}) is no UTF-8 text"))
+                .with_help(Some("a scenario is a TOML file".into()))
+                .at(&Source::File, Some(start..start + 1));
+            Self::new(name, &String::from_utf8_lossy(error.as_bytes()), vec![problem])
+        })
+    }
+}
+
+/// A scene's complaint about a key of `tree`.
+pub(super) fn located(tree: &Tree, error: &ConfigError) -> Problem {
+    let (found, value) = tree.nearest(&error.key);
+    let problem = Problem::new(error.key.clone(), error.message.clone());
+    let is_value = found == error.key && !matches!(value.data, Data::Table(_));
+    if is_value { value.place.blame_value(problem) } else { value.place.blame_key(problem) }
+}
+
+/// The part of `span` that lies in `text`, on character boundaries.
+fn inside(text: &str, span: Range<usize>) -> Range<usize> {
+    let start = text.floor_char_boundary(span.start);
+    start..text.ceil_char_boundary(span.end.max(start))
+}
+
+/// Line and column of a byte, both from 1; columns count characters, and a byte order mark is none.
+fn line_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = &text[..offset];
+    let before = before.strip_prefix('\u{feff}').unwrap_or(before);
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+}

@@ -1,0 +1,73 @@
+//! The JSON Schema of scenario files: the one source of their types, ranges, defaults and meanings.
+
+use schemars::transform::{Transform, transform_subschemas};
+use schemars::{Schema, schema_for};
+use serde_json::{Map, Value, json};
+
+/// The JSON Schema of scenario files, draft 2020-12, for editors and for [`Scenario::read`](super::Scenario::read) alike.
+///
+/// What an enum of scenes makes by itself, a `oneOf` of objects, lets an editor say no more than "matches none"; here it is one object
+/// with an optional property a scene and `minProperties = maxProperties = 1`. Units stand in `x-unit`. Whole numbers have the bounds of their
+/// type, and never exceed 9,223,372,036,854,775,807, the largest that TOML promises to hold.
+#[must_use]
+pub fn schema() -> Value {
+    let mut schema = schema_for!(super::Scenario);
+    ForEditors.transform(&mut schema);
+    schema.to_value()
+}
+
+/// Makes every part of a schema as [`schema`] says.
+struct ForEditors;
+
+impl Transform for ForEditors {
+    fn transform(&mut self, schema: &mut Schema) {
+        transform_subschemas(self, schema);
+        if let Some(object) = schema.as_object_mut() {
+            merge_variants(object);
+            bound_by_type(object);
+        }
+    }
+}
+
+/// Turns `oneOf` objects with one property each into one object with optional properties.
+fn merge_variants(schema: &mut Map<String, Value>) {
+    let Some(variants) = schema.get("oneOf").and_then(Value::as_array) else { return };
+    let Some(properties) = variants.iter().map(only_property).collect::<Option<Map<_, _>>>() else { return };
+    schema.remove("oneOf");
+    schema.insert("type".into(), "object".into());
+    schema.insert("properties".into(), properties.into());
+    schema.insert("additionalProperties".into(), false.into());
+    schema.insert("minProperties".into(), 1.into());
+    schema.insert("maxProperties".into(), 1.into());
+}
+
+/// The property of an externally tagged variant, described by the variant.
+fn only_property(variant: &Value) -> Option<(String, Value)> {
+    let properties = variant.get("properties")?.as_object()?;
+    let (name, schema) = properties.iter().next().filter(|_| properties.len() == 1)?;
+    let mut schema = schema.as_object()?.clone();
+    if let Some(description) = variant.get("description") {
+        schema.insert("description".into(), description.clone());
+    }
+    Some((name.clone(), schema.into()))
+}
+
+/// Writes down the bounds that an integer's Rust type, and TOML, imply.
+fn bound_by_type(schema: &mut Map<String, Value>) {
+    let (least, most) = match schema.get("format").and_then(Value::as_str) {
+        Some("uint8") => (json!(0), json!(u8::MAX)),
+        Some("uint16") => (json!(0), json!(u16::MAX)),
+        Some("uint32") => (json!(0), json!(u32::MAX)),
+        Some("uint64" | "uint") => (json!(0), json!(i64::MAX)),
+        Some("int8") => (json!(i8::MIN), json!(i8::MAX)),
+        Some("int16") => (json!(i16::MIN), json!(i16::MAX)),
+        Some("int32") => (json!(i32::MIN), json!(i32::MAX)),
+        Some("int64" | "int") => (json!(i64::MIN), json!(i64::MAX)),
+        _ => return,
+    };
+    for (bound, exclusive, value) in [("minimum", "exclusiveMinimum", least), ("maximum", "exclusiveMaximum", most)] {
+        if !schema.contains_key(bound) && !schema.contains_key(exclusive) {
+            schema.insert(bound.into(), value);
+        }
+    }
+}

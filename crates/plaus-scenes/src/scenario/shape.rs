@@ -1,0 +1,244 @@
+//! The schema as the rest of this folder uses it: typed, its references resolved, its keys in the order of their definition.
+
+use super::bounds::Bounds;
+use super::schema::schema;
+use super::tree::{Data, Tree};
+use super::{Scenario, nearest};
+use crate::registry;
+use serde_json::{Map, Value};
+use std::sync::OnceLock;
+
+/// References followed below each other before a schema counts as recursive.
+const MAX_DEPTH: usize = 32;
+
+/// What may stand at a place of a scenario.
+#[derive(Debug, Clone)]
+pub(super) struct Shape {
+    /// Meaning.
+    pub(super) description: String,
+    /// Unit, where the value has one.
+    pub(super) unit: Option<String>,
+    /// `None`: must be given. `Null`: may be left out, and then means something of its own.
+    pub(super) default: Option<Value>,
+    pub(super) kind: Kind,
+}
+
+/// The kinds of values.
+#[derive(Debug, Clone)]
+pub(super) enum Kind {
+    /// Any of these keys, and no other.
+    Table(Vec<(String, Shape)>),
+    /// Exactly one of these keys, and no other.
+    OneOf(Vec<(String, Shape)>),
+    /// One of these words, each with its meaning.
+    Words(Vec<(String, String)>),
+    Integer(Bounds<i128>),
+    Number(Bounds<f64>),
+    Boolean,
+    Text,
+    /// Values of one shape, so many from first to last.
+    List(Box<Shape>, Bounds<i128>),
+    /// The schema says it in words this module does not know; left to serde.
+    Unknown,
+}
+
+/// The shape of a whole scenario.
+pub(super) fn scenario() -> &'static Shape {
+    static SHAPE: OnceLock<Shape> = OnceLock::new();
+    SHAPE.get_or_init(|| {
+        let schema = schema();
+        let mut shape = Shape::of_schema(&schema, &schema, 0);
+        let defaults = registry::NAMES.iter().filter_map(|name| Scenario::default_of(name));
+        let order: Vec<String> = defaults.flat_map(|scenario| Tree::parse(&scenario.to_toml()).0.keys()).collect();
+        shape.sort("", &order);
+        shape
+    })
+}
+
+impl Shape {
+    /// The shape a part of the schema `root` describes.
+    pub(super) fn of_schema(part: &Value, root: &Value, depth: usize) -> Self {
+        let empty = Map::new();
+        let part = part.as_object().unwrap_or(&empty);
+        let target = part.get("$ref").and_then(Value::as_str).and_then(|path| root.pointer(path.strip_prefix('#')?));
+        let inner = target.or_else(|| nullable(part)).filter(|_| depth < MAX_DEPTH);
+        let mut shape = match inner {
+            Some(inner) => Self::of_schema(inner, root, depth + 1),
+            None => {
+                Self { description: String::new(), unit: None, default: None, kind: Kind::of_schema(part, root, depth) }
+            }
+        };
+        if let Some(description) = part.get("description").and_then(Value::as_str) {
+            shape.description = paragraphs(description);
+        }
+        if let Some(unit) = part.get("x-unit").and_then(Value::as_str) {
+            shape.unit = Some(unit.into());
+        }
+        if let Some(default) = part.get("default") {
+            shape.default = Some(default.clone());
+        }
+        shape
+    }
+
+    /// The keys of a table, or of a choice of tables.
+    pub(super) fn keys(&self) -> &[(String, Self)] {
+        match &self.kind {
+            Kind::Table(keys) | Kind::OneOf(keys) => keys,
+            _ => &[],
+        }
+    }
+
+    /// Whether keys can stand in it.
+    pub(super) fn is_table(&self) -> bool {
+        matches!(self.kind, Kind::Table(_) | Kind::OneOf(_))
+    }
+
+    /// The shape of a key of it.
+    pub(super) fn get(&self, key: &str) -> Option<&Self> {
+        self.keys().iter().find(|(name, _)| name == key).map(|(_, shape)| shape)
+    }
+
+    /// The shape at a dotted key.
+    pub(super) fn at(&self, key: &str) -> Option<&Self> {
+        key.split('.').try_fold(self, Self::get)
+    }
+
+    /// All dotted keys, tables before what they hold, in order. Of a choice that `tree` has made, only what it chose.
+    pub(super) fn paths(&self, tree: Option<&Tree>) -> Vec<String> {
+        let chosen = match (&self.kind, tree.map(|tree| &tree.data)) {
+            (Kind::OneOf(keys), Some(Data::Table(given))) => {
+                let mut known = keys.iter().filter(|(name, _)| given.contains_key(name));
+                known.next().filter(|_| known.next().is_none()).map(|(name, _)| name)
+            }
+            _ => None,
+        };
+        let mut paths = Vec::new();
+        for (name, shape) in self.keys().iter().filter(|(name, _)| chosen.is_none_or(|chosen| chosen == name)) {
+            paths.push(name.clone());
+            let inner = tree.and_then(|tree| tree.get(name));
+            paths.extend(shape.paths(inner).into_iter().map(|path| format!("{name}.{path}")));
+        }
+        paths
+    }
+
+    /// The allowed values in words, without the unit: "above 0 and at most 90", "\"mixed\" or \"paper\""; empty where anything goes.
+    pub(super) fn range(&self) -> String {
+        match &self.kind {
+            Kind::Integer(bounds) => bounds.words(),
+            Kind::Number(bounds) => bounds.words(),
+            Kind::Words(words) => nearest::any_of(words.iter().map(|(word, _)| format!("\"{word}\""))),
+            Kind::Boolean => "true or false".into(),
+            Kind::List(item, _) => item.range(),
+            Kind::Table(_) | Kind::OneOf(_) | Kind::Text | Kind::Unknown => String::new(),
+        }
+    }
+
+    /// The allowed values with their unit: "above 0 and at most 90°".
+    pub(super) fn range_with_unit(&self) -> String {
+        let range = self.range();
+        match self.unit.as_deref() {
+            Some("degree") if !range.is_empty() => range + "°",
+            Some(unit) if !range.is_empty() => range + " " + unit,
+            _ => range,
+        }
+    }
+
+    /// The kind of value, with its article.
+    pub(super) fn kind_in_words(&self) -> String {
+        match &self.kind {
+            Kind::Table(_) => "a table".into(),
+            Kind::OneOf(keys) => {
+                format!("a table that holds {}", nearest::any_of(keys.iter().map(|(name, _)| name.clone())))
+            }
+            Kind::Words(_) => "a word".into(),
+            Kind::Integer(_) => "an integer".into(),
+            Kind::Number(_) => "a number".into(),
+            Kind::Boolean => "a boolean".into(),
+            Kind::Text => "a string".into(),
+            Kind::List(item, _) => format!("a list, each {}", item.kind_in_words()),
+            Kind::Unknown => "a value".into(),
+        }
+    }
+
+    /// Sorts keys as `order` has them: plain values first, as TOML must; those it lacks last.
+    fn sort(&mut self, path: &str, order: &[String]) {
+        let (Kind::Table(keys) | Kind::OneOf(keys)) = &mut self.kind else { return };
+        let position = |name: &str| order.iter().position(|key| *key == join(path, name)).unwrap_or(usize::MAX);
+        keys.sort_by_cached_key(|(name, shape)| (shape.is_table(), position(name), name.clone()));
+        for (name, shape) in keys {
+            shape.sort(&join(path, name), order);
+        }
+    }
+}
+
+impl Kind {
+    fn of_schema(part: &Map<String, Value>, root: &Value, depth: usize) -> Self {
+        let types = match part.get("type") {
+            Some(Value::Array(types)) => types.iter().filter_map(Value::as_str).collect(),
+            kind => kind.and_then(Value::as_str).into_iter().collect::<Vec<_>>(),
+        };
+        let named = types.into_iter().find(|kind| *kind != "null");
+        match named {
+            _ if depth >= MAX_DEPTH => Self::Unknown,
+            Some("object") => {
+                let keys = part.get("properties").and_then(Value::as_object).into_iter().flatten();
+                let keys = keys.map(|(name, inner)| (name.clone(), Shape::of_schema(inner, root, depth + 1))).collect();
+                if part.contains_key("minProperties") { Self::OneOf(keys) } else { Self::Table(keys) }
+            }
+            Some("integer") => Self::Integer(Bounds::of_schema(part)),
+            Some("number") => Self::Number(Bounds::of_schema(part)),
+            Some("boolean") => Self::Boolean,
+            Some("array") => match part.get("items") {
+                Some(items) => {
+                    let mut length = Map::new();
+                    for (from, to) in [("minItems", "minimum"), ("maxItems", "maximum")] {
+                        length.extend(part.get(from).map(|count| (to.to_owned(), count.clone())));
+                    }
+                    Self::List(Box::new(Shape::of_schema(items, root, depth + 1)), Bounds::of_schema(&length))
+                }
+                None => Self::Unknown,
+            },
+            _ => words(part).map_or(if named == Some("string") { Self::Text } else { Self::Unknown }, Self::Words),
+        }
+    }
+}
+
+/// The words of an `enum`, a `const`, or a `oneOf` of them.
+fn words(part: &Map<String, Value>) -> Option<Vec<(String, String)>> {
+    let meaning = part.get("description").and_then(Value::as_str).map(paragraphs).unwrap_or_default();
+    let word = |value: &Value| value.as_str().map(|word| (word.to_owned(), meaning.clone()));
+    if let Some(value) = part.get("const") {
+        return Some(vec![word(value)?]);
+    }
+    if let Some(values) = part.get("enum").and_then(Value::as_array) {
+        return values
+            .iter()
+            .filter(|value| !value.is_null())
+            .map(|value| Some((value.as_str()?.to_owned(), String::new())))
+            .collect();
+    }
+    let variants = part.get("oneOf")?.as_array()?;
+    let lists: Option<Vec<_>> = variants.iter().map(|variant| words(variant.as_object()?)).collect();
+    lists.map(|lists| lists.concat())
+}
+
+/// The other of an `anyOf` of something and null: an optional value.
+fn nullable(part: &Map<String, Value>) -> Option<&Value> {
+    let (mut null, mut rest): (Vec<_>, Vec<_>) =
+        part.get("anyOf")?.as_array()?.iter().partition(|one| one.get("type").and_then(Value::as_str) == Some("null"));
+    null.pop()?;
+    rest.pop().filter(|_| rest.is_empty())
+}
+
+/// Joins the lines of each paragraph.
+fn paragraphs(text: &str) -> String {
+    text.split("\n\n")
+        .map(|paragraph| paragraph.split_whitespace().collect::<Vec<_>>().join(" "))
+        .collect::<Vec<_>>()
+        .join("\n\n")
+}
+
+/// The dotted key of `name` in the table `path`.
+pub(super) fn join(path: &str, name: &str) -> String {
+    if path.is_empty() { name.into() } else { format!("{path}.{name}") }
+}

@@ -1,0 +1,157 @@
+//! TOML as a tree in which every value knows where it comes from.
+
+use super::problem::{Problem, Source};
+use super::shape::{join, scenario};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
+
+/// Syntax errors reported of one file: those after are mostly the echo of the first.
+const MAX_SYNTAX_PROBLEMS: usize = 10;
+
+/// A value and its origin.
+#[derive(Debug, Clone)]
+pub(super) struct Tree {
+    pub(super) place: Place,
+    pub(super) data: Data,
+}
+
+/// Where a value stands.
+#[derive(Debug, Clone)]
+pub(super) struct Place {
+    pub(super) source: Source,
+    /// Bytes of the key.
+    pub(super) key: Option<Range<usize>>,
+    /// Bytes of the value.
+    pub(super) value: Option<Range<usize>>,
+}
+
+/// A TOML value.
+#[derive(Debug, Clone)]
+pub(super) enum Data {
+    Table(BTreeMap<String, Tree>),
+    List(Vec<Tree>),
+    /// Digits with a sign, and their base.
+    Integer(String, u32),
+    Float(String),
+    Text(String),
+    Boolean(bool),
+    Datetime(String),
+}
+
+impl Place {
+    /// Said by an override, or implied by one.
+    pub(super) fn of_override(said: &str) -> Self {
+        Self { source: Source::Override(said.into()), key: None, value: None }
+    }
+
+    /// `problem`, blamed on the key.
+    pub(super) fn blame_key(&self, problem: Problem) -> Problem {
+        problem.at(&self.source, self.key.clone())
+    }
+
+    /// `problem`, blamed on the value.
+    pub(super) fn blame_value(&self, problem: Problem) -> Problem {
+        problem.at(&self.source, self.value.clone().or_else(|| self.key.clone()))
+    }
+}
+
+impl Tree {
+    /// The tree of a file, as far as it can be read, and what cannot.
+    pub(super) fn parse(text: &str) -> (Self, Vec<Problem>) {
+        let (table, errors) = DeTable::parse_recoverable(text);
+        let problems = errors.iter().take(MAX_SYNTAX_PROBLEMS).map(|error| syntax_problem(text, error)).collect();
+        let place = Place { source: Source::File, key: None, value: None };
+        (Self { data: Data::of_table(table.get_ref(), &place), place }, problems)
+    }
+
+    /// The tree of a value that an override gives.
+    pub(super) fn of_override(value: &DeValue<'_>, said: &str) -> Self {
+        let place = Place::of_override(said);
+        Self { data: Data::of_toml(value, &place), place }
+    }
+
+    /// The value of a key, where this is a table that has it.
+    pub(super) fn get(&self, key: &str) -> Option<&Self> {
+        match &self.data {
+            Data::Table(entries) => entries.get(key),
+            _ => None,
+        }
+    }
+
+    /// The value at a dotted key, or the last on the way there, with its own dotted key.
+    pub(super) fn nearest(&self, key: &str) -> (String, &Self) {
+        let (mut path, mut tree) = (String::new(), self);
+        for name in key.split('.') {
+            match tree.get(name) {
+                Some(inner) => (path, tree) = (join(&path, name), inner),
+                None => break,
+            }
+        }
+        (path, tree)
+    }
+
+    /// All dotted keys in the order of the file, tables before what they hold.
+    pub(super) fn keys(&self) -> Vec<String> {
+        let Data::Table(entries) = &self.data else { return Vec::new() };
+        let mut entries: Vec<_> = entries.iter().collect();
+        entries.sort_by_key(|(_, tree)| tree.place.key.clone().map(|span| span.start));
+        let with_inner = |(name, tree): (&String, &Self)| {
+            let inner = tree.keys().into_iter().map(|key| join(name, &key)).collect::<Vec<_>>();
+            std::iter::once(name.clone()).chain(inner)
+        };
+        entries.into_iter().flat_map(with_inner).collect()
+    }
+}
+
+impl Data {
+    /// What lists and tables hold stands where their own source says. Depth is bounded: the parser allows 80 levels.
+    fn of_toml(value: &DeValue<'_>, place: &Place) -> Self {
+        match value {
+            DeValue::String(text) => Self::Text(text.to_string()),
+            DeValue::Integer(number) => Self::Integer(number.as_str().into(), number.radix()),
+            DeValue::Float(number) => Self::Float(number.as_str().into()),
+            DeValue::Boolean(value) => Self::Boolean(*value),
+            DeValue::Datetime(value) => Self::Datetime(value.to_string()),
+            DeValue::Table(table) => Self::of_table(table, place),
+            DeValue::Array(items) => {
+                let items = items.iter().map(|item| {
+                    let place = place.inner(None, item.span());
+                    Tree { data: Self::of_toml(item.get_ref(), &place), place }
+                });
+                Self::List(items.collect())
+            }
+        }
+    }
+
+    fn of_table(table: &DeTable<'_>, place: &Place) -> Self {
+        let entries = table.iter().map(|(key, value)| {
+            let place = place.inner(Some(key.span()), value.span());
+            (key.get_ref().to_string(), Tree { data: Self::of_toml(value.get_ref(), &place), place })
+        });
+        Self::Table(entries.collect())
+    }
+}
+
+impl Place {
+    /// The place of something inside: spans of an override's value do not point into the file.
+    fn inner(&self, key: Option<Range<usize>>, value: Range<usize>) -> Self {
+        match self.source {
+            Source::File => Self { source: Source::File, key, value: Some(value) },
+            Source::Override(_) => self.clone(),
+        }
+    }
+}
+
+/// A syntax error; a duplicate key is named where its name is known.
+fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
+    let span = error.span().unwrap_or(text.len()..text.len());
+    let mut key = String::new();
+    if error.message() == "duplicate key" {
+        let name = text.get(span.clone()).unwrap_or_default().trim_matches(['"', '\'']);
+        let paths = scenario().paths(None);
+        let mut known = paths.iter().filter(|path| path.rsplit('.').next() == Some(name));
+        key = known.next().filter(|_| known.next().is_none()).cloned().unwrap_or_else(|| super::nearest::shown(name));
+    }
+    Problem::new(key, error.message()).at(&Source::File, Some(span))
+}

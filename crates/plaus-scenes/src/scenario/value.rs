@@ -1,0 +1,152 @@
+//! Single values: whether one fits its shape, and how to say that it does not.
+
+use super::bounds::{Bounded, Bounds};
+use super::nearest::nearest;
+use super::shape::{Kind, Shape};
+use super::tree::Data;
+use toml::Value;
+
+/// What is wrong with a value, wherever it stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Wrong {
+    pub(super) message: String,
+    pub(super) help: Option<String>,
+}
+
+impl Wrong {
+    fn new(message: String) -> Self {
+        Self { message, help: None }
+    }
+}
+
+/// The value as serde should read it.
+///
+/// # Errors
+/// [`Wrong`] where its type or size is not the shape's.
+pub(super) fn read(shape: &Shape, data: &Data) -> Result<Value, Wrong> {
+    match (&shape.kind, data) {
+        (Kind::Words(words), Data::Text(text)) => word(words, text, shape),
+        (Kind::Integer(bounds), Data::Integer(digits, radix)) => integer(bounds, digits, *radix, shape),
+        (Kind::Number(bounds), Data::Integer(digits, radix)) => number_of_integer(bounds, digits, *radix, shape),
+        (Kind::Number(bounds), Data::Float(digits)) => number(bounds, digits, shape),
+        (Kind::Boolean, Data::Boolean(value)) => Ok(Value::Boolean(*value)),
+        (Kind::Text, Data::Text(text)) => Ok(Value::String(text.clone())),
+        (Kind::Unknown, data) => data.to_toml(),
+        (_, data) => Err(wrong_type(shape, data)),
+    }
+}
+
+fn word(words: &[(String, String)], text: &str, shape: &Shape) -> Result<Value, Wrong> {
+    if words.iter().any(|(word, _)| word == text) {
+        return Ok(Value::String(text.into()));
+    }
+    let help =
+        nearest(text, words.iter().map(|(word, _)| word.as_str())).map(|near| format!("did you mean \"{near}\"?"));
+    Err(Wrong { message: format!("{} is not allowed: it must be {}", quoted(text), shape.range()), help })
+}
+
+fn integer(bounds: &Bounds<i128>, digits: &str, radix: u32, shape: &Shape) -> Result<Value, Wrong> {
+    let value = i128::from_str_radix(digits, radix).ok().filter(|value| bounds.contains(*value));
+    let value = value.and_then(|value| i64::try_from(value).ok());
+    value.map(Value::Integer).ok_or_else(|| out_of_range(&written(digits, radix), shape))
+}
+
+/// Integers stand for numbers too.
+fn number_of_integer(bounds: &Bounds<f64>, digits: &str, radix: u32, shape: &Shape) -> Result<Value, Wrong> {
+    let exact = i128::from_str_radix(digits, radix).ok().map(|value| value as f64);
+    let value = exact.or_else(|| digits.parse().ok().filter(|_| radix == 10));
+    let value = value.filter(|value: &f64| value.is_finite() && bounds.contains(*value));
+    value.map(Value::Float).ok_or_else(|| out_of_range(&written(digits, radix), shape))
+}
+
+fn number(bounds: &Bounds<f64>, digits: &str, shape: &Shape) -> Result<Value, Wrong> {
+    let value = digits.parse::<f64>().ok();
+    let value = value.filter(|value| value.is_finite() && bounds.contains(*value));
+    value.map(Value::Float).ok_or_else(|| out_of_range(digits, shape))
+}
+
+/// States the allowed range, with its unit.
+fn out_of_range(value: &str, shape: &Shape) -> Wrong {
+    let range = shape.range_with_unit();
+    let value = clipped(value);
+    if range.is_empty() {
+        return Wrong::new(format!("{value} is no finite number"));
+    }
+    Wrong::new(format!("{value} is out of range: it must be {range}"))
+}
+
+fn wrong_type(shape: &Shape, data: &Data) -> Wrong {
+    let mut expected = shape.kind_in_words();
+    let range = shape.range_with_unit();
+    if !range.is_empty() {
+        expected = format!("{expected}, {range}");
+    }
+    let help = match (&shape.kind, data) {
+        (Kind::Integer(bounds), Data::Float(text) | Data::Text(text)) => {
+            let whole = text.parse::<f64>().ok().filter(|value| value.fract() == 0.0 && value.abs() < 1e15);
+            whole.map(|value| value as i128).filter(|value| bounds.contains(*value)).map(Bounded::written)
+        }
+        (Kind::Number(bounds), Data::Text(text)) => {
+            let number = text.parse::<f64>().ok().filter(|value| value.is_finite() && bounds.contains(*value));
+            number.map(Bounded::written)
+        }
+        (Kind::Boolean, Data::Text(text)) => Some(text.to_lowercase()).filter(|text| text == "true" || text == "false"),
+        _ => None,
+    };
+    let help = help.map(|value| format!("write {value}"));
+    Wrong { message: format!("expected {expected}, found {}", data.in_words()), help }
+}
+
+impl Data {
+    /// The kind of value and, where short, the value.
+    fn in_words(&self) -> String {
+        match self {
+            Self::Table(_) => "a table".into(),
+            Self::List(_) => "a list".into(),
+            Self::Integer(digits, radix) => format!("the integer {}", clipped(&written(digits, *radix))),
+            Self::Float(digits) => format!("the number {}", clipped(digits)),
+            Self::Text(text) => format!("the string {}", quoted(text)),
+            Self::Boolean(value) => format!("the boolean {value}"),
+            Self::Datetime(text) => format!("the date or time {text}"),
+        }
+    }
+
+    /// As it stands, for serde to judge.
+    fn to_toml(&self) -> Result<Value, Wrong> {
+        let wrong = || Wrong::new(format!("{} cannot stand here", self.in_words()));
+        Ok(match self {
+            Self::Table(entries) => {
+                let entries = entries.iter().map(|(name, tree)| Ok((name.clone(), tree.data.to_toml()?)));
+                Value::Table(entries.collect::<Result<_, _>>()?)
+            }
+            Self::List(items) => Value::Array(items.iter().map(|item| item.data.to_toml()).collect::<Result<_, _>>()?),
+            Self::Integer(digits, radix) => Value::Integer(i64::from_str_radix(digits, *radix).map_err(|_| wrong())?),
+            Self::Float(digits) => Value::Float(digits.parse().map_err(|_| wrong())?),
+            Self::Text(text) => Value::String(text.clone()),
+            Self::Boolean(value) => Value::Boolean(*value),
+            Self::Datetime(text) => Value::Datetime(text.parse().map_err(|_| wrong())?),
+        })
+    }
+}
+
+/// An integer as TOML has it.
+fn written(digits: &str, radix: u32) -> String {
+    let prefix = match radix {
+        2 => "0b",
+        8 => "0o",
+        16 => "0x",
+        _ => "",
+    };
+    format!("{prefix}{digits}")
+}
+
+/// A string as it may be shown.
+fn quoted(text: &str) -> String {
+    format!("{:?}", clipped(text))
+}
+
+/// At most 40 characters.
+fn clipped(text: &str) -> String {
+    let short: String = text.chars().take(40).collect();
+    if short.len() < text.len() { short + "…" } else { short }
+}

@@ -1,0 +1,70 @@
+//! What a scene is: a target with a goal, moves, and a way to be looked at.
+
+use crate::animation::Animation;
+use crate::rules::Rules;
+use plaus_mcmc::{Goal, Mixture, ModelError, StateOf};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// A world to sample animations of.
+///
+/// Adding a scene takes its own folder, one line in [`crate::registry`] and a scenario file.
+pub trait Scene:
+    Goal<Draw: Serialize + DeserializeOwned, Outcome: Serialize + DeserializeOwned + PartialEq> + Sized + Send
+{
+    /// The moves this scene is sampled with, under `rules`.
+    ///
+    /// # Errors
+    /// [`ConfigError`] where the configured weights make no mixture.
+    fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError>;
+
+    /// The scalars every state has, in the order of [`Scene::write_scalars`]; the same for all states of one configuration.
+    fn scalars(&self) -> Vec<Scalar>;
+
+    /// Writes the values of [`Scene::scalars`] for `state`; `values` has as many places.
+    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]);
+
+    /// The animation of a draw, rebuilt by simulation.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the simulation fails.
+    fn animate(&self, draw: &Self::Draw) -> Result<Animation, ModelError>;
+}
+
+/// A number that every state of a scene has: a column of a table, a variable of the diagnostics.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Scalar {
+    /// Column name, `snake_case`.
+    pub name: String,
+    /// Unit, for readers; empty for pure numbers.
+    pub unit: &'static str,
+    /// Where it comes from.
+    pub role: Role,
+}
+
+/// Where a scalar comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// A random variable of the draw: its mixing says whether solutions really differ.
+    Draw,
+    /// A result of the simulation.
+    Outcome,
+}
+
+/// A configuration that no single key's range forbids, yet makes no scene.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{key}: {message}")]
+pub struct ConfigError {
+    /// The key to blame, from the root of the scenario, e.g. `world.ball2d.weights`.
+    pub key: String,
+    /// What is wrong and what would be right.
+    pub message: String,
+}
+
+impl ConfigError {
+    /// Blames `key`.
+    pub fn new(key: impl Into<String>, message: impl ToString) -> Self {
+        Self { key: key.into(), message: message.to_string() }
+    }
+}

@@ -1,0 +1,87 @@
+//! Every key of the scenario schema, read from its JSON by other code than the library's, so that the two check each other.
+
+#![allow(dead_code, reason = "each test uses its own part")]
+
+use plaus_scenes::scenario;
+use serde_json::{Map, Value};
+
+/// The scenario of the paper's figures 1 and 2.
+pub(crate) const BALL2D: &str = include_str!("../../../../scenarios/ball2d.toml");
+
+/// A key that holds a value.
+#[derive(Debug, Clone)]
+pub(crate) struct Leaf {
+    pub(crate) key: String,
+    pub(crate) schema: Map<String, Value>,
+}
+
+/// All keys that hold a value.
+pub(crate) fn leaves() -> Vec<Leaf> {
+    let root = scenario::schema();
+    let mut leaves = Vec::new();
+    collect(&root, &root, "", &mut leaves);
+    leaves
+}
+
+fn collect(root: &Value, part: &Value, key: &str, leaves: &mut Vec<Leaf>) {
+    let mut schema = part.as_object().unwrap().clone();
+    if let Some(Value::String(path)) = schema.remove("$ref") {
+        let mut target = root.pointer(&path[1..]).unwrap().as_object().unwrap().clone();
+        target.extend(schema);
+        return collect(root, &target.into(), key, leaves);
+    }
+    match schema.get("properties").and_then(Value::as_object) {
+        Some(properties) => properties.iter().for_each(|(name, inner)| {
+            let key = if key.is_empty() { name.clone() } else { format!("{key}.{name}") };
+            collect(root, inner, &key, leaves);
+        }),
+        None => leaves.push(Leaf { key: key.into(), schema }),
+    }
+}
+
+impl Leaf {
+    pub(crate) fn kind(&self) -> &str {
+        match &self.schema.get("type") {
+            Some(Value::String(kind)) => kind,
+            Some(Value::Array(kinds)) => {
+                kinds.iter().find_map(|kind| kind.as_str().filter(|kind| *kind != "null")).unwrap()
+            }
+            _ => "word",
+        }
+    }
+
+    pub(crate) fn words(&self) -> Vec<String> {
+        let variants = self.schema["oneOf"].as_array().unwrap();
+        variants.iter().map(|variant| variant["const"].as_str().unwrap().to_owned()).collect()
+    }
+
+    /// Least and greatest allowed float.
+    pub(crate) fn floats(&self) -> [f64; 2] {
+        let bound = |name: &str| self.schema.get(name).and_then(Value::as_f64);
+        let least = bound("minimum").or_else(|| bound("exclusiveMinimum").map(f64::next_up));
+        let most = bound("maximum").or_else(|| bound("exclusiveMaximum").map(f64::next_down));
+        [least, most].map(|end| end.unwrap_or_else(|| panic!("{} has an open end", self.key)))
+    }
+
+    /// Least and greatest allowed integer.
+    pub(crate) fn integers(&self) -> [i64; 2] {
+        ["minimum", "maximum"].map(|name| self.schema[name].as_i64().unwrap_or_else(|| panic!("{}: {name}", self.key)))
+    }
+
+    /// Whether a scenario's value, as JSON, is allowed.
+    pub(crate) fn allows(&self, value: &Value) -> bool {
+        match self.kind() {
+            "number" => {
+                let [least, most] = self.floats();
+                value.as_f64().is_some_and(|value| (least..=most).contains(&value))
+            }
+            "integer" => {
+                let [least, most] = self.integers();
+                value.as_i64().is_some_and(|value| (least..=most).contains(&value))
+            }
+            "boolean" => value.is_boolean() || value.is_null(),
+            "word" => self.words().iter().any(|word| value == word),
+            kind => panic!("{}: no test for {kind}", self.key),
+        }
+    }
+}

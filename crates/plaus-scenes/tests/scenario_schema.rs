@@ -1,0 +1,206 @@
+//! The schema is enforced as it stands, and what is derived from it agrees with the code.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use common::{BALL2D, Leaf, leaves};
+use plaus_scenes::Scenario;
+use plaus_scenes::registry::NAMES;
+use plaus_scenes::scenario::{self, explain, keys, template};
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+fn with(key: &str, value: &str) -> Result<Scenario, scenario::ScenarioError> {
+    let scene = key.strip_prefix("world.").and_then(|rest| rest.split('.').next()).unwrap_or(NAMES[0]);
+    Scenario::read("test.toml", &format!("[world.{scene}]"), &[format!("{key}={value}")])
+}
+
+/// The one problem of a value is with `leaf`, and states its range.
+fn refused(leaf: &Leaf, value: &str) {
+    let doc = explain(&leaf.key).unwrap();
+    let error = with(&leaf.key, value).expect_err(&format!("{}={value}", leaf.key));
+    assert_eq!(error.problems.len(), 1, "{error}");
+    assert_eq!(error.problems[0].key, leaf.key);
+    assert!(!doc.range.is_empty() && error.problems[0].message.contains(&doc.range), "{error} lacks {}", doc.range);
+}
+
+fn taken(leaf: &Leaf, value: &str) {
+    if let Err(error) = with(&leaf.key, value) {
+        panic!("{}={value} is in range, yet: {error}", leaf.key);
+    }
+}
+
+/// Every key of `keys()` is in the schema and the other way round; every number has both ends; each end is enforced to the last bit, and
+/// the scene takes what the schema allows.
+#[test]
+fn every_range_is_enforced_to_the_last_bit() {
+    let leaves = leaves();
+    let names = |keys: &mut dyn Iterator<Item = String>| keys.collect::<BTreeSet<_>>();
+    assert_eq!(
+        names(&mut leaves.iter().map(|leaf| leaf.key.clone())),
+        names(&mut keys().into_iter().map(|doc| doc.key))
+    );
+    for leaf in &leaves {
+        match leaf.kind() {
+            "number" => {
+                let [least, most] = leaf.floats();
+                [least, most].iter().for_each(|end| taken(leaf, &format!("{end:e}")));
+                let outside = [least.next_down(), most.next_up(), f64::MAX, f64::MIN, f64::NAN, f64::INFINITY];
+                outside.iter().for_each(|value| refused(leaf, &format!("{value:?}")));
+                ["1e999", "-1e999", "-inf", "true", "\"1\"", "[1.0]", "{}", "1979-05-27", "", "1,5"]
+                    .iter()
+                    .for_each(|value| refused(leaf, value));
+            }
+            "integer" => {
+                let [least, most] = leaf.integers();
+                [least, most].iter().for_each(|end| taken(leaf, &end.to_string()));
+                let outside =
+                    [i128::from(least) - 1, i128::from(most) + 1, u64::MAX.into(), i64::MIN.into(), i128::MAX];
+                outside.iter().for_each(|value| refused(leaf, &value.to_string()));
+                ["1e300", "1.0", "1.5", "nan", "0xfffffffffffffffffffffffffffffffff", "true", "1979-05-27", "four"]
+                    .iter()
+                    .for_each(|value| refused(leaf, value));
+            }
+            "boolean" => {
+                ["true", "false"].iter().for_each(|value| taken(leaf, value));
+                ["True", "1", "yes", "\"true\"", "[]"].iter().for_each(|value| refused(leaf, value));
+            }
+            "word" => {
+                leaf.words().iter().for_each(|word| taken(leaf, word));
+                ["nonsense", "\"\"", "1", "true", "[]", "{}"].iter().for_each(|value| refused(leaf, value));
+            }
+            kind => panic!("{}: this test, and perhaps the reader, knows no {kind}", leaf.key),
+        }
+    }
+}
+
+/// Other words than these would be passed over in silence.
+#[test]
+fn the_schema_uses_only_words_that_are_enforced() {
+    const KNOWN: &[&str] = &[
+        "$schema",
+        "$defs",
+        "$ref",
+        "title",
+        "description",
+        "default",
+        "format",
+        "x-unit",
+        "type",
+        "properties",
+        "additionalProperties",
+        "required",
+        "minProperties",
+        "maxProperties",
+        "minimum",
+        "maximum",
+        "exclusiveMinimum",
+        "exclusiveMaximum",
+        "enum",
+        "const",
+        "oneOf",
+        "anyOf",
+        "items",
+        "minItems",
+        "maxItems",
+    ];
+    fn walk(schema: &Value, is_names: bool) {
+        let Some(object) = schema.as_object() else { return };
+        for (name, inner) in object {
+            assert!(is_names || KNOWN.contains(&name.as_str()), "{name}");
+            match inner {
+                Value::Array(parts) => parts.iter().for_each(|part| walk(part, false)),
+                _ if name == "default" && !is_names => {}
+                inner => walk(inner, !is_names && (name == "properties" || name == "$defs")),
+            }
+        }
+        if object.get("type").and_then(Value::as_str) == Some("object") && !is_names {
+            assert_eq!(object.get("additionalProperties"), Some(&false.into()), "open table: {schema}");
+        }
+    }
+    walk(&scenario::schema(), false);
+}
+
+#[test]
+fn the_world_is_one_object_with_a_property_a_scene() {
+    let schema = scenario::schema();
+    let world = &schema["$defs"]["World"];
+    assert_eq!((&world["minProperties"], &world["maxProperties"]), (&1.into(), &1.into()));
+    let names: Vec<_> = world["properties"].as_object().unwrap().keys().map(String::as_str).collect();
+    let mut expected = NAMES.to_vec();
+    expected.sort_unstable();
+    assert_eq!(names, expected);
+    assert!(world.get("oneOf").is_none() && world.get("required").is_none());
+    assert_eq!(schema["$defs"]["Sampler"]["properties"]["seed"]["maximum"], i64::MAX);
+}
+
+#[test]
+fn defaults_of_schema_template_and_code_agree() {
+    for name in NAMES {
+        let default = Scenario::default_of(name).unwrap();
+        assert_eq!(Scenario::read("minimal", &format!("[world.{name}]"), &[]).unwrap(), default);
+        assert_eq!(Scenario::read("template", &template(name).unwrap(), &[]).unwrap(), default);
+        let values = serde_json::to_value(&default).unwrap();
+        for leaf in leaves() {
+            let pointer = format!("/{}", leaf.key.replace('.', "/"));
+            if let Some(value) = values.pointer(&pointer) {
+                assert_eq!(leaf.schema.get("default"), Some(value), "{}", leaf.key);
+                assert!(leaf.allows(value), "{}", leaf.key);
+            }
+        }
+    }
+    assert!(Scenario::default_of("nonsense").is_none() && template("nonsense").is_none());
+}
+
+/// Every key stands in the template, in its table, with its meaning, unit and range above it.
+#[test]
+fn templates_say_all_about_every_key() {
+    for name in NAMES {
+        let text = template(name).unwrap();
+        assert!(text.lines().all(|line| line.chars().count() <= 101), "{text}");
+        let flat = text.replace("\n#", "");
+        for doc in keys().iter().filter(|doc| !doc.key.starts_with("world.") || doc.key.contains(&format!(".{name}.")))
+        {
+            let leaf = doc.key.rsplit('.').next().unwrap();
+            let meaning = doc.description.lines().next().unwrap();
+            assert!(flat.contains(meaning), "{}: {meaning}", doc.key);
+            let line = format!("\n{leaf} = {}\n", doc.default);
+            assert!(text.contains(&line) || text.contains(&format!("\n# {leaf} = ")), "{line}");
+            if doc.kind == "a number" || doc.kind == "an integer" {
+                assert!(flat.to_lowercase().contains(&format!("{} {}.", doc.kind, doc.range)), "{}", doc.key);
+            }
+            assert!(doc.unit.iter().all(|unit| text.contains(&format!("Unit: {unit}."))));
+        }
+        // Optional keys show a value that would be taken.
+        let optional =
+            text.lines().filter(|line| line.starts_with("# ") && line.contains(" = ")).map(|line| &line[2..]);
+        for line in optional {
+            Scenario::read("template", &text, &[line.into()]).unwrap_or_else(|error| panic!("{line}: {error}"));
+        }
+    }
+}
+
+#[test]
+fn the_paper_s_scenario_is_the_default_one() {
+    let read = Scenario::read("ball2d.toml", BALL2D, &[]).unwrap();
+    assert_eq!(read, Scenario::default_of("ball2d").unwrap());
+}
+
+#[test]
+fn keys_are_explained_by_full_name_or_unique_end() {
+    let doc = explain("world.ball2d.sigma_theta_deg").unwrap();
+    assert_eq!(explain("sigma_theta_deg"), Ok(doc.clone()));
+    assert_eq!((doc.kind.as_str(), doc.default.as_str(), doc.range.as_str()), ("a number", "10.0", "from 1e-9 to 90"));
+    assert_eq!(doc.unit.as_deref(), Some("degree"));
+    assert_eq!(explain("downward").unwrap().default, "\"back\"");
+    assert!(explain("downward").unwrap().description.contains("\n\"level\": The ball bounces as from a level table."));
+    assert_eq!(explain("symmetric_redraws").unwrap().default, "unset");
+    assert_eq!(explain("weights").unwrap().kind, "a table");
+    assert_eq!(explain("weights.aim").unwrap().key, "world.ball2d.weights.aim");
+    assert_eq!(explain("sigma_teta_deg"), Err(Some("world.ball2d.sigma_theta_deg".into())));
+    assert_eq!(explain("sampler.sede"), Err(Some("sampler.seed".into())));
+    assert_eq!(explain("gravity"), Err(None));
+    assert_eq!(explain(""), Err(None));
+    assert!(keys().iter().all(|doc| !doc.description.is_empty()));
+}

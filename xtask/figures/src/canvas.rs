@@ -1,0 +1,150 @@
+//! A figure as SVG and PNG, with its font inside.
+//!
+//! plotters rounds coordinates to whole pixels, so figures are drawn [`FINE`] times as large as they are shown.
+
+use crate::Result;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use resvg::{tiny_skia, usvg};
+use std::path::Path;
+use std::sync::Arc;
+
+/// What figures are drawn on.
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Units of the drawing in a pixel of the SVG.
+const FINE: i32 = 8;
+/// Pixels of the PNG in a pixel of the SVG.
+const DENSE: f32 = 2.0;
+/// plotters divides font sizes by this before it writes them.
+const FONT_UNIT: f64 = 1.24;
+
+const FAMILY: &str = "DejaVu Sans";
+const REGULAR: &[u8] = include_bytes!("../assets/DejaVuSans.subset.ttf");
+const BOLD: &[u8] = include_bytes!("../assets/DejaVuSans-Bold.subset.ttf");
+
+/// Colours that the colour-blind can tell apart (Okabe & Ito 2008), the same thing in the same colour in all figures.
+pub(crate) mod colour {
+    use plotters::style::RGBColor;
+    pub(crate) const INK: RGBColor = RGBColor(40, 40, 40);
+    pub(crate) const FAINT: RGBColor = RGBColor(130, 130, 130);
+    pub(crate) const GRID: RGBColor = RGBColor(228, 228, 228);
+    pub(crate) const GROUND: RGBColor = RGBColor(236, 232, 226);
+    pub(crate) const TARGET: RGBColor = RGBColor(0, 158, 115);
+    pub(crate) const NORMAL: RGBColor = RGBColor(204, 41, 41);
+    pub(crate) const PATH: RGBColor = RGBColor(0, 92, 158);
+    /// The paper's move.
+    pub(crate) const PAPER: RGBColor = RGBColor(204, 96, 0);
+    /// The default moves.
+    pub(crate) const OURS: RGBColor = RGBColor(0, 114, 178);
+}
+
+/// A length of `pixels` in units of the drawing.
+pub(crate) fn px(pixels: f64) -> i32 {
+    (pixels * f64::from(FINE)).round() as i32
+}
+
+/// A line of `pixels` width.
+pub(crate) fn pen(colour: RGBColor, pixels: f64) -> ShapeStyle {
+    ShapeStyle { color: colour.into(), filled: false, stroke_width: px(pixels) as u32 }
+}
+
+/// Text of `pixels` height.
+pub(crate) fn text(pixels: f64, colour: RGBColor) -> TextStyle<'static> {
+    (FAMILY, f64::from(px(pixels)) * FONT_UNIT).into_font().color(&colour)
+}
+
+/// Bold text.
+pub(crate) fn bold(pixels: f64, colour: RGBColor) -> TextStyle<'static> {
+    (FAMILY, f64::from(px(pixels)) * FONT_UNIT).into_font().style(FontStyle::Bold).color(&colour)
+}
+
+/// Writes `words` at `at`, in pixels from the corner of `area`; `align` is where of the words `at` is.
+pub(crate) fn write(area: &Area<'_>, words: &str, style: &TextStyle<'_>, align: HPos, at: (f64, f64)) -> Result<()> {
+    let style = style.pos(plotters::style::text_anchor::Pos::new(align, VPos::Center));
+    area.draw(&Text::new(words.to_owned(), (px(at.0), px(at.1)), style)).map_err(|error| error.to_string())?;
+    Ok(())
+}
+
+pub(crate) use plotters::style::text_anchor::{HPos, VPos};
+
+/// Draws a figure of `size` pixels and saves it as `name.svg` and `name.png`.
+pub(crate) fn save(
+    folder: &Path,
+    name: &str,
+    size: (u32, u32),
+    draw: impl FnOnce(&Area<'_>) -> Result<()>,
+) -> Result<()> {
+    let mut svg = String::new();
+    let fine = FINE as u32;
+    {
+        let area = SVGBackend::with_string(&mut svg, (size.0 * fine, size.1 * fine)).into_drawing_area();
+        area.fill(&WHITE).map_err(|error| error.to_string())?;
+        draw(&area)?;
+        area.present().map_err(|error| error.to_string())?;
+    }
+    let svg = finish(&svg, size)?;
+    let save = |ending: &str, bytes: &[u8]| {
+        let path = folder.join(format!("{name}.{ending}"));
+        std::fs::write(&path, bytes).map_err(|error| format!("{}: {error}", path.display()))
+    };
+    save("svg", svg.as_bytes())?;
+    save("png", &png(&svg)?)?;
+    Ok(())
+}
+
+/// The drawing at its size, with the font inside and a fallback after it.
+fn finish(svg: &str, size: (u32, u32)) -> Result<String> {
+    let fine = FINE as u32;
+    let large = format!(r#"width="{}" height="{}""#, size.0 * fine, size.1 * fine);
+    let shown = format!(r#"width="{}" height="{}""#, size.0, size.1);
+    let end = svg.find('>').ok_or("plotters wrote no SVG")? + 1;
+    let head = svg[..end].replacen(&large, &shown, 1);
+    let face = |weight: &str, font: &[u8]| {
+        format!(
+            "@font-face{{font-family:\"{FAMILY}\";font-weight:{weight};src:url(data:font/ttf;base64,{}) format(\"truetype\")}}\n",
+            base64(font)
+        )
+    };
+    let style = format!("\n<style>\n{}{}</style>", face("normal", REGULAR), face("bold", BOLD));
+    let body = svg[end..]
+        .replace(&format!("font-family=\"{FAMILY}\""), &format!("font-family=\"'{FAMILY}', Verdana, sans-serif\""));
+    Ok(head + &style + &body)
+}
+
+fn png(svg: &str) -> Result<Vec<u8>> {
+    let mut fonts = usvg::fontdb::Database::new();
+    fonts.load_font_data(REGULAR.to_vec());
+    fonts.load_font_data(BOLD.to_vec());
+    fonts.set_sans_serif_family(FAMILY);
+    let options = usvg::Options { fontdb: Arc::new(fonts), font_family: FAMILY.to_owned(), ..Default::default() };
+    let tree = usvg::Tree::from_str(svg, &options)?;
+    let size = tree.size().to_int_size();
+    let (width, height) = ((size.width() as f32 * DENSE) as u32, (size.height() as f32 * DENSE) as u32);
+    let mut image = tiny_skia::Pixmap::new(width, height).ok_or("a figure without pixels")?;
+    resvg::render(&tree, tiny_skia::Transform::from_scale(DENSE, DENSE), &mut image.as_mut());
+    Ok(image.encode_png()?)
+}
+
+/// RFC 4648.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let word = group.iter().enumerate().fold(0_u32, |word, (i, &byte)| word | u32::from(byte) << (16 - 8 * i));
+        for place in 0..4 {
+            let letter = LETTERS[(word >> (18 - 6 * place)) as usize & 63];
+            text.push(if place <= group.len() { char::from(letter) } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        let vectors = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|word| super::base64(word.as_bytes()));
+        assert_eq!(vectors, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
+    }
+}

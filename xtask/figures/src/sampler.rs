@@ -1,0 +1,100 @@
+//! Chains of a scene, as columns of numbers.
+
+use crate::Result;
+use plaus_dist::Seed;
+use plaus_mcmc::{Chain, Mixture, MoveCounts, StateOf};
+use plaus_scenes::{Rules, Scene};
+use rayon::prelude::*;
+
+/// A scene with the moves it is sampled with, exactly.
+pub(crate) struct Sampler<S: Scene> {
+    pub(crate) scene: S,
+    moves: Mixture<S>,
+}
+
+/// Scalars of several chains.
+pub(crate) struct Traces {
+    /// By scalar, then chain, then iteration.
+    pub(crate) columns: Vec<Vec<Vec<f64>>>,
+    /// Accepted share of all iterations after the warm-up.
+    pub(crate) acceptance: f64,
+}
+
+/// How long, from which seed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Length {
+    pub(crate) seed: u64,
+    pub(crate) chains: u64,
+    pub(crate) warmup: u64,
+    pub(crate) iterations: u64,
+}
+
+impl<S: Scene> Sampler<S> {
+    pub(crate) fn new(scene: S) -> Result<Self> {
+        let moves = scene.moves(&Rules::exact())?;
+        Ok(Self { scene, moves })
+    }
+
+    /// The states of iterations 0 .. `count` of one chain, the first being its start.
+    pub(crate) fn states(&self, seed: u64, chain: u64, count: u64) -> Result<Vec<StateOf<S>>> {
+        let mut chain = Chain::start(&self.scene, &self.moves, Seed(seed).chain(chain))?;
+        let mut states = vec![chain.state().clone()];
+        for _ in 1..count {
+            chain.step()?;
+            states.push(chain.state().clone());
+        }
+        Ok(states)
+    }
+
+    /// The scalars of the indices `wanted`.
+    pub(crate) fn traces(&self, length: Length, wanted: &[usize]) -> Result<Traces> {
+        let chains = (0..length.chains).into_par_iter().map(|chain| self.trace(length, chain, wanted));
+        let chains = chains.collect::<Result<Vec<_>>>()?;
+        let mut columns = vec![Vec::new(); wanted.len()];
+        let mut counts = MoveCounts::default();
+        for (scalars, counted) in chains {
+            counts.add(&counted);
+            for (column, scalar) in columns.iter_mut().zip(scalars) {
+                column.push(scalar);
+            }
+        }
+        Ok(Traces { columns, acceptance: counts.acceptance() })
+    }
+
+    fn trace(&self, length: Length, chain: u64, wanted: &[usize]) -> Result<(Vec<Vec<f64>>, MoveCounts)> {
+        let streams = Seed(length.seed).chain(chain);
+        let mut chain = Chain::start(&self.scene, &self.moves, streams)?;
+        for _ in 0..length.warmup {
+            chain.step()?;
+        }
+        let fresh = vec![MoveCounts::default(); chain.counts().len()];
+        let mut chain = Chain::resume(&self.scene, &self.moves, streams, length.warmup, chain.state().clone(), fresh);
+        let mut values = vec![0.0; self.scene.scalars().len()];
+        let mut columns = vec![Vec::with_capacity(length.iterations as usize); wanted.len()];
+        for _ in 0..length.iterations {
+            chain.step()?;
+            self.scene.write_scalars(chain.state(), &mut values);
+            for (column, &index) in columns.iter_mut().zip(wanted) {
+                column.push(values[index]);
+            }
+        }
+        let mut counts = MoveCounts::default();
+        chain.counts().iter().for_each(|counted| counts.add(counted));
+        Ok((columns, counts))
+    }
+
+    /// For each of `chains` chains the first iteration that satisfies the constraint; `None` where none up to `limit` does.
+    pub(crate) fn first_hits(&self, seed: u64, chains: u64, limit: u64) -> Result<Vec<Option<u64>>> {
+        let first = |chain| -> Result<Option<u64>> {
+            let mut chain = Chain::start(&self.scene, &self.moves, Seed(seed).chain(chain))?;
+            while self.scene.class(chain.state()).is_none() {
+                if chain.iteration() == limit {
+                    return Ok(None);
+                }
+                chain.step()?;
+            }
+            Ok(Some(chain.iteration()))
+        };
+        (0..chains).into_par_iter().map(first).collect()
+    }
+}

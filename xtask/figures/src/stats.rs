@@ -1,0 +1,132 @@
+//! Numbers with their errors.
+
+use crate::report::significant;
+use plaus_dist::math::square;
+use plaus_mcmc::diagnose::{DiagnoseError, ess_bulk, mcse_mean};
+
+/// A number and its standard error.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Estimate {
+    pub(crate) value: f64,
+    pub(crate) error: f64,
+}
+
+impl Estimate {
+    /// The share of draws of which `is` holds, over chains that depend on themselves.
+    pub(crate) fn share(chains: &[Vec<f64>], is: impl Fn(f64) -> bool) -> Result<Self, DiagnoseError> {
+        let flags: Vec<Vec<f64>> =
+            chains.iter().map(|chain| chain.iter().map(|&x| f64::from(is(x))).collect()).collect();
+        let count: usize = flags.iter().map(Vec::len).sum();
+        let value = flags.iter().flatten().sum::<f64>() / count as f64;
+        Ok(Self { value, error: mcse_mean(&flags)? })
+    }
+
+    /// A share of independent cases.
+    pub(crate) fn of(count: usize, cases: usize) -> Self {
+        let value = count as f64 / cases as f64;
+        Self { value, error: (value * (1.0 - value) / cases as f64).sqrt() }
+    }
+
+    /// How many standard errors apart two are.
+    pub(crate) fn z(self, other: Self) -> f64 {
+        (self.value - other.value) / (square(self.error) + square(other.error)).sqrt()
+    }
+
+    /// Rounded to the second digit of the error.
+    pub(crate) fn shown(self) -> String {
+        let error = significant(self.error, 2);
+        let decimals = error.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+        if self.error == 0.0 { self.value.to_string() } else { format!("{:.decimals$} ± {error}", self.value) }
+    }
+}
+
+/// Iteration numbers of independent chains, some of which may never have come.
+#[derive(Debug)]
+pub(crate) struct Quantiles {
+    /// In order; those that never came are last.
+    sorted: Vec<Option<u64>>,
+}
+
+impl Quantiles {
+    pub(crate) fn new(mut values: Vec<Option<u64>>) -> Self {
+        values.sort_by_key(|value| value.unwrap_or(u64::MAX));
+        Self { sorted: values }
+    }
+
+    /// How many came.
+    pub(crate) fn found(&self) -> u64 {
+        self.sorted.iter().flatten().count() as u64
+    }
+
+    /// The smallest number by which a share `q` had come.
+    pub(crate) fn value(&self, q: f64) -> Option<u64> {
+        self.rank(q * self.sorted.len() as f64)
+    }
+
+    fn rank(&self, rank: f64) -> Option<u64> {
+        let index = (rank.ceil().max(1.0) as usize - 1).min(self.sorted.len() - 1);
+        self.sorted[index]
+    }
+
+    /// The same with its 95% interval, from order statistics.
+    pub(crate) fn at(&self, q: f64) -> String {
+        let n = self.sorted.len() as f64;
+        let spread = 1.96 * (n * q * (1.0 - q)).sqrt();
+        let shown = |value: Option<u64>| value.map_or("never".to_owned(), crate::report::thousands);
+        let [value, low, high] = [n * q, n * q - spread, n * q + spread].map(|rank| shown(self.rank(rank)));
+        if low == high { value } else { format!("{value} [{low}, {high}]") }
+    }
+
+    /// The share that had come by `iteration`.
+    pub(crate) fn share_by(&self, iteration: u64) -> Estimate {
+        let count = self.sorted.iter().flatten().filter(|&&value| value <= iteration).count();
+        Estimate::of(count, self.sorted.len())
+    }
+}
+
+/// Effective draws per 1,000 iterations.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ess {
+    pub(crate) value: f64,
+    /// The same from either half of the chains alone: what the value is worth.
+    halves: [f64; 2],
+}
+
+impl Ess {
+    pub(crate) fn per_1000(chains: &[Vec<f64>]) -> Result<Self, DiagnoseError> {
+        let of = |chains: &[Vec<f64>]| -> Result<f64, DiagnoseError> {
+            let iterations: usize = chains.iter().map(Vec::len).sum();
+            Ok(ess_bulk(chains)? * 1000.0 / iterations as f64)
+        };
+        let (first, second) = chains.split_at(chains.len() / 2);
+        let halves = [of(first)?, of(second)?];
+        Ok(Self { value: of(chains)?, halves })
+    }
+
+    /// Two digits, with the range of the halves where it differs.
+    pub(crate) fn shown(self) -> String {
+        let [a, b] = self.halves;
+        let [value, low, high] = [self.value, a.min(b), a.max(b)].map(|ess| significant(ess, 2));
+        if low == high { value } else { format!("{value} ({low}–{high})") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_rounded_with_their_values() {
+        let shown = |value, error| Estimate { value, error }.shown();
+        assert_eq!(shown(0.683_12, 0.000_61), "0.68312 ± 0.00061");
+        assert_eq!(shown(0.683_12, 0.012), "0.683 ± 0.012");
+        assert_eq!(shown(1.0, 0.0), "1");
+    }
+
+    #[test]
+    fn quantiles_count_those_that_never_came() {
+        let hits = Quantiles::new(vec![Some(5), None, Some(1), Some(3)]);
+        assert_eq!([hits.value(0.5), hits.value(0.75), hits.value(1.0)], [Some(3), Some(5), None]);
+        assert_eq!((hits.found(), hits.share_by(3).value), (3, 0.5));
+    }
+}

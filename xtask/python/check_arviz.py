@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""Reads an exported run with ArviZ and compares it with what plaus itself says.
+
+Makes a virtual environment of its own (Python 3.11 or newer, with venv and pip), so nothing needs to be installed beforehand.
+Exit codes: 0 agreed, 1 disagreed, 77 the packages could not be installed.
+"""
+
+import argparse
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+# The newest that go together on Python 3.11.
+REQUIREMENTS = [
+    "arviz==0.23.4",
+    "xarray==2026.9.0",
+    "zarr==3.1.6",
+    "numpy==2.4.6",
+    "pandas==3.1.1",
+    "scipy==1.17.1",
+    "matplotlib==3.11.2",
+]
+NO_REGISTRY = 77
+
+
+def environment(folder: Path) -> Path:
+    """The environment's Python, with everything installed."""
+    python = folder / "bin" / "python"
+    stamp = folder / "installed.txt"
+    wanted = "\n".join(REQUIREMENTS)
+    if stamp.exists() and stamp.read_text() == wanted and python.exists():
+        return python
+    print(f"installing {', '.join(REQUIREMENTS)} into {folder}", flush=True)
+    made = subprocess.run([sys.executable, "-m", "venv", "--clear", str(folder)])
+    if made.returncode != 0:
+        print("python3 -m venv failed", flush=True)
+        sys.exit(NO_REGISTRY)
+    pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *REQUIREMENTS]
+    if subprocess.run(pip).returncode != 0:
+        print("pip could not install them: is the package registry out of reach?", flush=True)
+        sys.exit(NO_REGISTRY)
+    stamp.write_text(wanted)
+    return python
+
+
+class Comparison:
+    """Counts what was compared, and remembers what disagreed."""
+
+    def __init__(self):
+        self.compared = 0
+        self.wrong = []
+
+    def equal(self, what, found, expected):
+        self.compared += 1
+        if found != expected:
+            self.wrong.append(f"{what}: {found!r}, expected {expected!r}")
+
+    def close(self, what, found, expected, relative):
+        self.compared += 1
+        near = found == expected or (found is not None and expected is not None and math.isclose(found, expected, rel_tol=relative))
+        if not near:
+            self.wrong.append(f"{what}: ArviZ {found!r}, plaus {expected!r}")
+
+
+def read_csv(path: Path):
+    """Columns by name, chain by chain."""
+    columns = {}
+    with open(path, newline="") as file:
+        for row in csv.DictReader(file):
+            for name, value in row.items():
+                columns.setdefault(name, {}).setdefault(int(row["chain"]), []).append(value)
+    return columns
+
+
+def check(arguments) -> int:
+    import arviz as az
+    import numpy as np
+    import xarray as xr
+
+    data = az.from_datatree(xr.open_datatree(arguments.zarr, engine="zarr"))
+    table = read_csv(arguments.csv)
+    diagnosis = json.loads(arguments.diagnose.read_text())
+    comparison = Comparison()
+
+    scalars = [row["name"] for row in diagnosis["scalars"]]
+    chains, draws = len(table["chain"]), len(table["chain"][0])
+    for group in ["posterior", "sample_stats", "warmup_posterior", "warmup_sample_stats"]:
+        comparison.equal(f"group {group}", group in data.groups(), True)
+    comparison.equal("variables", sorted(data.posterior.data_vars), sorted(scalars))
+    for name in scalars:
+        comparison.equal(f"dimensions of {name}", data.posterior[name].dims, ("chain", "draw"))
+        comparison.equal(f"shape of {name}", data.posterior[name].shape, (chains, draws))
+    comparison.equal("chain numbers", data.posterior["chain"].values.tolist(), list(range(chains)))
+    comparison.equal("draw numbers", data.posterior["draw"].values.tolist(), list(range(draws)))
+
+    def same(group, variable, column, read):
+        expected = np.array([[read(text) for text in table[column][chain]] for chain in range(chains)])
+        comparison.equal(f"{column}, bit for bit", np.array_equal(group[variable].values, expected), True)
+
+    for name in scalars:
+        same(data.posterior, name, name, float)
+    same(data.sample_stats, "lp", "log_p", float)
+    same(data.sample_stats, "satisfied", "satisfied", lambda text: text == "true")
+
+    summary = az.summary(data, round_to="none")
+    for row in diagnosis["scalars"]:
+        name, ours = row["name"], row["summary"]
+        theirs = summary.loc[name]
+        for field, column in [("mean", "mean"), ("sd", "sd"), ("ess_bulk", "ess_bulk"), ("ess_tail", "ess_tail"), ("rhat", "r_hat")]:
+            # plaus may have read every n-th draw of a long run, which this run is not.
+            comparison.close(f"{field} of {name}", float(theirs[column]), ours[field], 1e-6)
+
+    for line in comparison.wrong:
+        print(f"DIFFERS {line}")
+    print(f"ArviZ {az.__version__}, xarray {xr.__version__}: {chains} chains of {draws} draws, {len(scalars)} scalars; ", end="")
+    print(f"{comparison.compared - len(comparison.wrong)} comparisons agree, {len(comparison.wrong)} differ")
+    return 1 if comparison.wrong else 0
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--venv", type=Path, help="folder of the virtual environment, made where it is missing")
+    parser.add_argument("--zarr", type=Path, required=True)
+    parser.add_argument("--csv", type=Path, required=True)
+    parser.add_argument("--diagnose", type=Path, required=True, help="output of `plaus diagnose --json`")
+    arguments = parser.parse_args()
+    if arguments.venv is None:
+        return check(arguments)
+    python = environment(arguments.venv)
+    rest = ["--zarr", arguments.zarr, "--csv", arguments.csv, "--diagnose", arguments.diagnose]
+    return subprocess.run([python, __file__, *map(os.fspath, rest)]).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())

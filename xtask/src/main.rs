@@ -1,0 +1,55 @@
+//! Chores of the project. `cargo xtask` without arguments lists them.
+
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "chores talk to the person at the terminal")]
+
+mod arviz;
+mod command;
+mod golden;
+mod steps;
+mod test;
+
+use command::{Failure, cargo};
+use std::process::ExitCode;
+
+const USAGE: &str = "\
+usage: cargo xtask CHORE
+
+  test                 everything that must pass: what CI runs
+  ci                   the same
+  reproduce-figures [--out FOLDER] [--quick]
+                       the paper's figures and claims, sampled anew, into out/figures
+  golden               compare golden traces with fresh runs
+  golden --bless       make golden traces anew
+  tradeoff [...]       compare with peers: cargo run --release -p plaus-tradeoff
+  bench [...]          cargo bench";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match arguments.split_first() {
+        Some((&("test" | "ci"), [])) => test::run(),
+        Some((&"reproduce-figures", rest)) => figures(rest),
+        Some((&"golden", rest)) => golden::run(rest),
+        Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),
+        Some((&"bench", rest)) => cargo(&["bench"]).args(rest).run(),
+        Some((&("help" | "-h" | "--help"), _)) => {
+            println!("{USAGE}");
+            return ExitCode::SUCCESS;
+        }
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure(message)) => {
+            eprintln!("cargo xtask: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn figures(arguments: &[&str]) -> Result<(), Failure> {
+    cargo(&["run", "--release", "--package", "plaus-figures", "--"]).args(arguments).run()
+}

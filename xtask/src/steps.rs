@@ -1,0 +1,89 @@
+//! Steps run one after the other, each with its duration; the first that fails is the last.
+
+use crate::command::{Command, Failure};
+use std::time::Instant;
+
+/// What became of a step that did not fail.
+#[derive(Debug)]
+pub(crate) enum Done {
+    Passed,
+    /// Could not be run here, and need not be: why.
+    Skipped(String),
+}
+
+/// Something that must pass.
+pub(crate) struct Step {
+    name: &'static str,
+    work: Box<dyn FnOnce() -> Result<Done, Failure>>,
+}
+
+impl Step {
+    pub(crate) fn new(name: &'static str, work: impl FnOnce() -> Result<Done, Failure> + 'static) -> Self {
+        Self { name, work: Box::new(work) }
+    }
+
+    /// A step that is one command.
+    pub(crate) fn command(name: &'static str, command: Command) -> Self {
+        Self::new(name, move || {
+            println!("$ {}", command.shown());
+            command.run().map(|()| Done::Passed)
+        })
+    }
+}
+
+/// Runs `steps`, and says at the end how many passed.
+pub(crate) fn run(steps: Vec<Step>) -> Result<(), Failure> {
+    let count = steps.len();
+    let mut passed = 0;
+    let mut skipped = Vec::new();
+    let mut durations = Vec::new();
+    let begun = now();
+    let mut failed = None;
+    for (number, Step { name, work }) in (1..).zip(steps) {
+        println!("\n=== step {number} of {count}: {name}");
+        let start = now();
+        let done = work();
+        let seconds = start.elapsed().as_secs_f64();
+        durations.push((name, seconds));
+        match done {
+            Ok(Done::Passed) => {
+                println!("=== {name}: passed in {seconds:.1} s");
+                passed += 1;
+            }
+            Ok(Done::Skipped(why)) => {
+                println!("=== {name}: SKIPPED, {why}");
+                skipped.push(name);
+            }
+            Err(Failure(why)) => {
+                println!("=== {name}: FAILED after {seconds:.1} s: {why}");
+                failed = Some((number, name));
+                break;
+            }
+        }
+    }
+    println!("\n=== durations");
+    for (name, seconds) in &durations {
+        println!("{seconds:8.1} s  {name}");
+    }
+    println!("{:8.1} s  in all", begun.elapsed().as_secs_f64());
+    let mut closing = format!("steps: {passed} passed, {} failed", usize::from(failed.is_some()));
+    if !skipped.is_empty() {
+        closing.push_str(&format!(", {} skipped ({})", skipped.len(), skipped.join(", ")));
+    }
+    if let Some((number, _)) = failed {
+        closing.push_str(&format!(", {} not run", count - number));
+    }
+    println!("{closing}");
+    match failed {
+        Some((_, name)) => Err(Failure(format!("the step `{name}` failed; its output is above"))),
+        None => Ok(()),
+    }
+}
+
+#[allow(
+    clippy::disallowed_methods,
+    reason = "how long a chore takes is for the person who waits, no result depends on it"
+)]
+fn now() -> Instant {
+    Instant::now()
+}
