@@ -15,8 +15,10 @@ pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip
     let grid = scenery.grid();
     let mut cell = grid.cell_of(path.x);
     let mut from = 0.0;
+    // A coordinate that moves with its acceleration never turns again. Knowing that, rounding cannot send the walk to and fro.
+    let mut onward = [0.0; 3];
     loop {
-        let (leaves, next) = exit(scenery, cell, path, from, limit);
+        let (leaves, next) = exit(scenery, cell, path, from, limit, &onward);
         let stop = leaves.min(limit);
         let items = grid.items(cell);
         if !items.is_empty() {
@@ -29,7 +31,11 @@ pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip
             }
         }
         match next {
-            Some(neighbour) if leaves < limit => (cell, from) = (neighbour, leaves),
+            Some((axis, way)) if leaves < limit => {
+                cell[axis] = if way > 0.0 { cell[axis] + 1 } else { cell[axis] - 1 };
+                onward[axis] = if path.a[axis] * way >= 0.0 { way } else { 0.0 };
+                from = leaves;
+            }
             _ => return best,
         }
     }
@@ -58,24 +64,22 @@ fn consider(
     }
 }
 
-/// When a centre leaves a cell after `from`, and into which neighbour; infinite and none where it stays until `limit`.
+/// When a centre leaves a cell after `from`, along which axis and which way; infinite and none where it stays until `limit`.
 #[inline]
-fn exit(scenery: &Scenery, cell: [usize; 3], path: &Parabola, from: f64, limit: f64) -> (f64, Option<[usize; 3]>) {
+fn exit(scenery: &Scenery, cell: [usize; 3], path: &Parabola, from: f64, limit: f64, onward: &[f64; 3]) -> (f64, Option<(usize, f64)>) {
     let (low, high) = scenery.grid().walls(cell);
     let (x, v) = (path.after(from), path.velocity_after(from));
     let mut best = (f64::INFINITY, None);
     for k in 0..3 {
-        for (wall, sign) in [(low[k], 1.0), (high[k], -1.0)] {
-            if !wall.is_finite() {
+        for (wall, way) in [(low[k], -1.0), (high[k], 1.0)] {
+            if !wall.is_finite() || onward[k] == -way {
                 continue;
             }
-            let c = [sign * (x[k] - wall), sign * v[k], sign * 0.5 * path.a[k]];
+            let c = [way * (wall - x[k]), -way * v[k], -way * 0.5 * path.a[k]];
             if let Some(dt) = fall_of_quadratic(c, limit - from)
                 && from + dt < best.0
             {
-                let mut next = cell;
-                next[k] = if sign > 0.0 { cell[k] - 1 } else { cell[k] + 1 };
-                best = (from + dt, Some(next));
+                best = (from + dt, Some((k, way)));
             }
         }
     }

@@ -245,6 +245,10 @@ impl Mesh {
         &self.around_vertex[v as usize]
     }
 
+    pub(crate) fn edges_at_vertex(&self, v: u32) -> &[u32] {
+        &self.edges_at_vertex[v as usize]
+    }
+
     pub(crate) fn edge_between(&self, a: u32, b: u32) -> Option<u32> {
         self.edges_at_vertex[a as usize].iter().copied().find(|&e| self.edges[e as usize].ends.contains(&b))
     }
