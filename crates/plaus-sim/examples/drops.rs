@@ -83,7 +83,7 @@ impl Tally {
                 self.not_at_rest += 1;
                 continue;
             }
-            let linked = state.links().iter().any(|l| l.contains(&(k as u32)));
+            let linked = state.links().of(k as u32).next().is_some();
             if x.z < bins.height {
                 self.in_bins += 1;
             } else if linked {

@@ -5,7 +5,8 @@ use super::step::MarbleScratch;
 use super::{Marbles, step};
 use crate::detect;
 use crate::material::Law;
-use crate::mechanics::{Impact, Link, Mechanics, Other};
+use crate::links::Links;
+use crate::mechanics::{Impact, Mechanics, Other};
 use crate::resolve::{Touch, sphere_impact};
 use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
@@ -155,7 +156,7 @@ impl Mechanics for Marbles {
         body.contacts()
     }
 
-    fn settle(&self, members: &[u32], bodies: &mut [Marble], links: &mut Vec<Link>, scratch: &mut MarbleScratch) {
+    fn settle(&self, members: &[u32], bodies: &mut [Marble], links: &mut Links, scratch: &mut MarbleScratch) {
         step::settle(self, members, bodies, links, scratch);
     }
 }

@@ -8,7 +8,7 @@ use super::Marbles;
 use super::body::{Ending, Marble, Phase};
 use super::closed;
 use super::solve::{Contact, Member, With};
-use crate::mechanics::Link;
+use crate::links::{Link, Links};
 use crate::scenery::Surface;
 use glam::DVec3;
 
@@ -38,12 +38,12 @@ const GAP: f64 = 1e-7;
 const APPROACH: f64 = 1e-9;
 
 /// Decides how a group of marbles goes on.
-pub(super) fn settle(world: &Marbles, members: &[u32], bodies: &mut [Marble], links: &mut Vec<Link>, scratch: &mut MarbleScratch) {
+pub(super) fn settle(world: &Marbles, members: &[u32], bodies: &mut [Marble], links: &mut Links, scratch: &mut MarbleScratch) {
     for &k in members {
         follow_contacts(world, k as usize, &mut bodies[k as usize]);
     }
     if !links.is_empty() {
-        links.retain(|&link| !members.contains(&link[0]) || link_lasts(world, link, bodies));
+        links.retain(|link| members.binary_search(&link[0]).is_err() || link_lasts(world, link, bodies));
     }
     if let [only] = *members {
         let (index, body) = (only as usize, &mut bodies[only as usize]);
@@ -116,7 +116,7 @@ fn across(world: &Marbles, f: u32, side: usize) -> Surface {
 }
 
 impl MarbleScratch {
-    fn gather(&mut self, world: &Marbles, indices: &[u32], bodies: &[Marble], links: &[Link]) {
+    fn gather(&mut self, world: &Marbles, indices: &[u32], bodies: &[Marble], links: &Links) {
         self.members.clear();
         for &k in indices {
             let (s, b) = (&world.specs[k as usize], &bodies[k as usize]);
@@ -152,9 +152,12 @@ impl MarbleScratch {
                 self.members[a].is_held = true;
                 self.contacts.push(Contact::new(a, With::Surface(surface), *world.surface_law(index as usize, surface), normal));
             }
+            if links.is_empty() {
+                continue;
+            }
             for b in 0..a {
                 let other = self.members[b].index;
-                if !links.is_empty() && links.contains(&[index.min(other), index.max(other)]) {
+                if links.contains(index, other) {
                     let law = *world.pair_law(index as usize, other as usize);
                     let normal = (self.members[a].start - self.members[b].start).normalize_or(DVec3::Z);
                     (self.members[a].is_held, self.members[b].is_held) = (true, true);
