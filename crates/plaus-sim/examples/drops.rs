@@ -67,6 +67,9 @@ struct Tally {
     unsupported: usize,
     out_of_events: usize,
     events: u64,
+    impacts: u64,
+    expiries: u64,
+    stale: u64,
     micros: Vec<f64>,
 }
 
@@ -120,7 +123,11 @@ fn main() {
         let begin = Instant::now();
         let outcome = world.run(&mut state, &mut scratch, 1e9, &mut ());
         tally.micros.push(begin.elapsed().as_secs_f64() * 1e6);
-        tally.events += state.counts().events;
+        let counts = state.counts();
+        tally.events += counts.events;
+        tally.impacts += counts.impacts;
+        tally.expiries += counts.expiries;
+        tally.stale += counts.stale;
         tally.out_of_events += usize::from(!matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached));
         tally.judge(&bins, &world, &state, run);
         let mut watch = Watch { bins: &bins, last: vec![None; count], tunnelled: 0 };
@@ -141,5 +148,6 @@ fn main() {
         tally.in_bins, tally.on_ridges, tally.on_marbles, tally.unsupported, tally.not_at_rest
     );
     println!("ms per run: median {:.4}, 10% {:.4}, 90% {:.4}, worst {:.4}", at(0.5), at(0.1), at(0.9), at(1.0));
+    println!("impacts per run {:.1}, expiries {:.1}, stale {:.1}", tally.impacts as f64 / runs as f64, tally.expiries as f64 / runs as f64, tally.stale as f64 / runs as f64);
     println!("events per run {:.1}, ns per event {:.0}", tally.events as f64 / runs as f64, total * 1000.0 / tally.events as f64);
 }

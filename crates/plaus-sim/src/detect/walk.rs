@@ -4,6 +4,7 @@ use super::sphere::sphere_surface;
 use crate::motion::Parabola;
 use crate::roots::fall_of_quadratic;
 use crate::scenery::{Scenery, Surface};
+use glam::DVec3;
 
 /// First surface that a sphere touches while approaching it, within `until` seconds of the motion's clock. Surfaces in `skip` (its lasting contacts) do not count.
 pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip: &[Surface], until: f64) -> Option<(f64, Surface)> {
@@ -18,11 +19,14 @@ pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip
     // A coordinate that moves with its acceleration never turns again. Knowing that, rounding cannot send the walk to and fro.
     let mut onward = [0.0; 3];
     loop {
-        let (leaves, next) = exit(scenery, cell, path, from, limit, &onward);
+        let (low, high) = grid.walls(cell);
+        let way = path.bounds(from, limit);
+        let stays = way.min.cmpgt(low).all() && way.max.cmplt(high).all();
+        let (leaves, next) = if stays { (f64::INFINITY, None) } else { exit((low, high), path, from, limit, &onward) };
         let stop = leaves.min(limit);
         let items = grid.items(cell);
         if !items.is_empty() {
-            let swept = path.bounds(from, stop).grown(radius * (1.0 + 1e-9));
+            let swept = if stays { way } else { path.bounds(from, stop) }.grown(radius * (1.0 + 1e-9));
             for &item in items {
                 if scenery.bounds(item).meets(&swept) {
                     // A hit within this cell bounds the rest of the search, here and beyond.
@@ -66,8 +70,7 @@ fn consider(
 
 /// When a centre leaves a cell after `from`, along which axis and which way; infinite and none where it stays until `limit`.
 #[inline]
-fn exit(scenery: &Scenery, cell: [usize; 3], path: &Parabola, from: f64, limit: f64, onward: &[f64; 3]) -> (f64, Option<(usize, f64)>) {
-    let (low, high) = scenery.grid().walls(cell);
+fn exit((low, high): (DVec3, DVec3), path: &Parabola, from: f64, limit: f64, onward: &[f64; 3]) -> (f64, Option<(usize, f64)>) {
     let (x, v) = (path.after(from), path.velocity_after(from));
     let mut best = (f64::INFINITY, None);
     for k in 0..3 {
