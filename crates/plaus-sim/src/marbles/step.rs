@@ -19,11 +19,14 @@ pub struct MarbleScratch {
     contacts: Vec<Contact>,
 }
 
-/// Passes over normals and impulses within a step: the first predicts the end, the second uses it.
-const PASSES: usize = 2;
+/// Sweeps of the pass that only predicts where a step ends.
+const PREDICT: u32 = 3;
 
 /// Most corrections of position per step; more than two are rare outside piles.
 const CORRECTIONS: usize = 12;
+
+/// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half, so that little is still to come.
+const CREEP: f64 = 0.03;
 
 /// Overlap over the radius that needs no further correction. Default 1e-10.
 const CORRECTED: f64 = 1e-10;
@@ -31,11 +34,9 @@ const CORRECTED: f64 = 1e-10;
 /// Separating speed over `√(g r)` plus the body's own that never ends a contact. Default 1e-9: far above rounding, far below any motion.
 const KEEP: f64 = 1e-9;
 
-/// Gap over the radius at which a contact ends. Default 1e-7: corrections of position leave less, and a fall from there is unseen.
-const GAP: f64 = 1e-7;
-
-/// Approach over `√(g r)` along a lasting contact that a step may start with. Default 1e-9: a step then starts into the surface by less than 1e-9 radii.
-const APPROACH: f64 = 1e-9;
+/// Approach along a lasting contact that a step may start with, over the speed at which contacts settle. Default 0.02: a path then dips into the surface by less than
+/// 1e-4 radii at the standard preset.
+const APPROACH: f64 = 0.02;
 
 /// Decides how a group of marbles goes on.
 pub(super) fn settle(world: &Marbles, members: &[u32], bodies: &mut [Marble], links: &mut Links, scratch: &mut MarbleScratch) {
@@ -88,7 +89,7 @@ fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) {
         let foot = world.scenery.foot(surface, x);
         let most = world.settle_speed(scale, world.surface_law(index, surface)).max(KEEP * (scale + v.length()));
         if std::env::var("DBGC").is_ok() { eprintln!("    {old:?} -> {surface:?} speed {:e} most {most:e} gap {:e} n {}", v.dot(foot.normal), foot.distance-radius, foot.normal); }
-        (v.dot(foot.normal) <= most && foot.distance - radius <= GAP * radius).then_some(surface)
+        (v.dot(foot.normal) <= most && foot.distance - radius <= world.unseen * radius).then_some(surface)
     });
 }
 
@@ -99,7 +100,7 @@ fn link_lasts(world: &Marbles, [i, j]: Link, bodies: &[Marble]) -> bool {
     let (distance, reach) = (offset.length(), world.specs[i].radius + world.specs[j].radius);
     let scale = world.speed_scale(i).min(world.speed_scale(j));
     let most = world.settle_speed(scale, world.pair_law(i, j)).max(KEEP * (scale + v.length()));
-    v.dot(offset) <= most * distance && distance - reach <= GAP * reach
+    v.dot(offset) <= most * distance && distance - reach <= world.unseen * reach
 }
 
 /// What lies beyond a side of a triangle: its neighbour where they are level, else the edge.
@@ -175,12 +176,13 @@ impl MarbleScratch {
                 With::Surface(_) => DVec3::ZERO,
                 With::Member(b) => self.members[b].start_v,
             };
-            -(a.start_v - other).dot(c.first) > APPROACH * (world.strength * a.radius).sqrt()
+            -(a.start_v - other).dot(c.first) > APPROACH * world.accuracy.settle * (world.strength * a.radius).sqrt()
         };
         if !self.contacts.iter().any(approaches) {
             return;
         }
-        self.sweep(world, self.step_length(world));
+        let enough = world.accuracy.sweep_tolerance * world.strength * self.step_length(world);
+        self.sweep(world.accuracy.sweeps, enough, |_| false);
         self.clear();
         for m in &mut self.members {
             (m.start_v, m.start_w) = (m.v, m.w);
@@ -223,10 +225,10 @@ impl MarbleScratch {
         for m in &mut self.members {
             (m.v, m.w, m.x) = (world.gravity * h, DVec3::ZERO, m.start);
         }
-        self.sweep(world, h);
+        let left = world.accuracy.rest_residual * world.strength * h;
+        let holds = self.sweep(world.accuracy.sweeps, CREEP * left, |m| m.v.length().max(m.w.length() * m.radius) <= left);
         self.clear();
-        let left = self.members.iter().map(|m| m.v.length().max(m.w.length() * m.radius)).fold(0.0, f64::max);
-        if left > world.accuracy.rest_residual * world.strength * h {
+        if !holds {
             return false;
         }
         for m in &self.members {
@@ -237,18 +239,18 @@ impl MarbleScratch {
         true
     }
 
-    /// Solves all contacts for members whose velocities are free of them, starting from the impulses that the contacts hold.
-    fn sweep(&mut self, world: &Marbles, h: f64) {
+    /// Solves all contacts for members whose velocities are free of them, starting from the impulses that the contacts hold, until a sweep
+    /// changes no velocity by more than `enough`, all members are `good`, or `most` sweeps are done. Whether they are good.
+    fn sweep(&mut self, most: u32, enough: f64, good: impl Fn(&Member) -> bool) -> bool {
         if let [only] = &mut self.contacts[..] {
             only.clear();
             only.solve(&mut self.members);
-            return;
+            return self.members.iter().all(good);
         }
         for c in &self.contacts {
             c.apply(&mut self.members);
         }
-        let enough = world.accuracy.sweep_tolerance * world.strength * h;
-        for _ in 0..world.accuracy.sweeps {
+        for _ in 0..most {
             // Up and down again: the lowest contacts come last, so that nothing is left moving into the scenery.
             let mut change: f64 = 0.0;
             for c in &mut self.contacts {
@@ -257,10 +259,14 @@ impl MarbleScratch {
             for c in self.contacts.iter_mut().rev() {
                 change = change.max(c.solve(&mut self.members));
             }
+            if self.members.iter().all(&good) {
+                return true;
+            }
             if change <= enough {
                 break;
             }
         }
+        false
     }
 
     fn clear(&mut self) {
@@ -300,7 +306,7 @@ impl MarbleScratch {
             let pull = if body.phase == Phase::Step { body.path.a } else { DVec3::ZERO };
             m.x = m.start + (m.start_v + pull * (0.5 * h)) * h;
         }
-        for _ in 0..PASSES {
+        for most in [PREDICT, world.accuracy.sweeps] {
             for c in &mut self.contacts {
                 let x = self.members[c.a].x;
                 c.last = match c.with {
@@ -311,7 +317,7 @@ impl MarbleScratch {
             for m in &mut self.members {
                 (m.v, m.w) = (m.start_v + world.gravity * h, m.start_w);
             }
-            self.sweep(world, h);
+            self.sweep(most, world.accuracy.sweep_tolerance * world.strength * h, |_| false);
             for m in &mut self.members {
                 m.x = m.start + (m.start_v + m.v) * (0.5 * h);
             }
