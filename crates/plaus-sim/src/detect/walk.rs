@@ -14,6 +14,8 @@ pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip
         consider(scenery, Surface::Plane(k), path, radius, skip, 0.0, &mut limit, &mut best);
     }
     let grid = scenery.grid();
+    // A little more than the radius, so that rounding cannot hide what touches.
+    let near = radius * radius * (1.0 + 1e-9);
     let mut cell = grid.cell_of(path.x);
     let mut from = 0.0;
     // A coordinate that moves with its acceleration never turns again. Knowing that, rounding cannot send the walk to and fro.
@@ -26,9 +28,9 @@ pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip
         let stop = leaves.min(limit);
         let items = grid.items(cell);
         if !items.is_empty() {
-            let swept = if stays { way } else { path.bounds(from, stop) }.grown(radius * (1.0 + 1e-9));
+            let swept = if stays { way } else { path.bounds(from, stop) };
             for &item in items {
-                if scenery.bounds(item).meets(&swept) {
+                if scenery.bounds(item).distance_squared(&swept) <= near {
                     // A hit within this cell bounds the rest of the search, here and beyond.
                     consider(scenery, scenery.surface(item), path, radius, skip, from, &mut limit, &mut best);
                 }

@@ -280,6 +280,17 @@ impl Mesh {
         })
     }
 
+    /// Whether a ball of radius up to `reach` whose centre is in a box can touch a face: not where the box is all behind it or all beyond reach.
+    pub(crate) fn face_may_touch(&self, f: usize, centres: &Aabb, reach: f64) -> bool {
+        let face = &self.faces[f];
+        if self.margin_of(&face.corners) > 0.0 || !centres.min.is_finite() || !centres.max.is_finite() {
+            return true;
+        }
+        let middle = face.normal.dot(0.5 * (centres.min + centres.max)) - face.offset;
+        let half = face.normal.abs().dot(0.5 * (centres.max - centres.min));
+        middle + half >= 0.0 && middle - half <= reach * (1.0 + 1e-6)
+    }
+
     fn edge_may_count(&self, e: usize) -> bool {
         let edge = &self.edges[e];
         edge.active || edge.faces.iter().flatten().any(|&f| self.margin_of(&self.faces[f as usize].corners) > 0.0)

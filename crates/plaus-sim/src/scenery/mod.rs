@@ -81,7 +81,8 @@ impl Scenery {
         }
         let caps = domes.iter().map(Dome::bounds);
         let reaches: Vec<Aabb> = mesh.face_reaches().chain(caps).chain(mesh.edge_reaches()).chain(mesh.vertex_reaches()).collect();
-        let grid = Grid::new(&reaches, reach);
+        let faces = mesh.faces.len();
+        let grid = Grid::new(&reaches, reach, |item, centres| item as usize >= faces || mesh.face_may_touch(item as usize, centres, reach));
         let faces = (0..mesh.faces.len()).map(|f| mesh.face_bounds(f));
         let edges = (0..mesh.edges.len()).map(|e| mesh.edge_bounds(e));
         let vertices = (0..mesh.vertices.len()).map(|v| mesh.vertex_bounds(v));
