@@ -37,7 +37,7 @@ impl Observer<Marbles> for Watch<'_> {
     fn motion(&mut self, index: usize, body: &Marble) {
         let (x, r) = (body.path.x, self.bins.marble);
         let (width, breadth) = self.bins.extent();
-        let inside = x.z > r * (1.0 - 1e-4) && x.x > 0.0 && x.y > 0.0 && x.x < width && x.y < breadth;
+        let inside = x.z > r * (1.0 - 1e-3) && x.x > 0.0 && x.y > 0.0 && x.x < width && x.y < breadth;
         let clear = self.last[index].is_none_or(|path| self.is_clear(&path, body.path.t));
         self.tunnelled += usize::from(!inside || !clear);
         self.last[index] = Some(body.path);
@@ -110,6 +110,7 @@ fn main() {
     let preset = Preset::ALL.into_iter().find(|p| p.name() == name).unwrap();
     let count: usize = args.next().map_or(10, |a| a.parse().unwrap());
     let interval: f64 = args.next().map_or(0.1, |a| a.parse().unwrap());
+    let only_time = args.next().is_some_and(|a| a == "time");
     let bins = Bins::default();
     let mut world = bins.world(count, Accuracy { events: 1000, ..Accuracy::preset(preset) }, interval * count as f64 + 1.0).unwrap();
     let mut scratch = Scratch::default();
@@ -129,8 +130,11 @@ fn main() {
         tally.expiries += counts.expiries;
         tally.stale += counts.stale;
         tally.out_of_events += usize::from(!matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached));
-        tally.judge(&bins, &world, &state, run);
+        if only_time {
+            continue;
+        }
         let mut watch = Watch { bins: &bins, last: vec![None; count], tunnelled: 0 };
+        tally.judge(&bins, &world, &state, run);
         let mut again = world.state(&starts).unwrap();
         world.run(&mut again, &mut scratch, 1e9, &mut watch);
         tally.tunnelled += watch.tunnelled;

@@ -78,7 +78,7 @@ impl Accuracy {
         match preset {
             Preset::Draft => Self {
                 settle: 1e-1,
-                step: 0.4,
+                step: 0.7,
                 sweeps: 20,
                 sweep_tolerance: 1e-2,
                 rest_speed: 5e-2,
@@ -89,7 +89,7 @@ impl Accuracy {
             },
             Preset::Standard => Self {
                 settle: 3e-2,
-                step: 0.25,
+                step: 0.4,
                 sweeps: 60,
                 sweep_tolerance: 3e-3,
                 rest_speed: 3e-2,
@@ -100,7 +100,7 @@ impl Accuracy {
             },
             Preset::Fine => Self {
                 settle: 3e-3,
-                step: 0.06,
+                step: 0.1,
                 sweeps: 500,
                 sweep_tolerance: 1e-6,
                 rest_speed: 3e-3,

@@ -25,17 +25,18 @@ pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip
         let way = path.bounds(from, limit);
         let stays = way.min.cmpgt(low).all() && way.max.cmplt(high).all();
         let (leaves, next) = if stays { (f64::INFINITY, None) } else { exit((low, high), path, from, limit, &onward) };
-        let stop = leaves.min(limit);
+        let mut stop = leaves.min(limit);
         let items = grid.items(cell);
         if !items.is_empty() {
             let swept = if stays { way } else { path.bounds(from, stop) };
             for &item in items {
                 if scenery.bounds(item).distance_squared(&swept) <= near {
-                    // A hit within this cell bounds the rest of the search, here and beyond.
-                    consider(scenery, scenery.surface(item), path, radius, skip, from, &mut limit, &mut best);
+                    // A hit within this cell bounds the rest of the search, here and beyond; what is hit beyond it is listed there.
+                    consider(scenery, scenery.surface(item), path, radius, skip, from, &mut stop, &mut best);
                 }
             }
         }
+        limit = best.map_or(limit, |(time, _)| limit.min(time));
         match next {
             Some((axis, way)) if leaves < limit => {
                 cell[axis] = if way > 0.0 { cell[axis] + 1 } else { cell[axis] - 1 };

@@ -28,6 +28,9 @@ const CORRECTIONS: usize = 12;
 /// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half, so that little is still to come.
 const CREEP: f64 = 0.03;
 
+/// Overlap over the radius that rest may keep. Default 2e-5.
+const OVERLAP: f64 = 2e-5;
+
 /// Overlap over the radius that needs no further correction. Default 1e-10.
 const CORRECTED: f64 = 1e-10;
 
@@ -88,7 +91,6 @@ fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) {
         let surface = if surface != old && before.contacts().contains(&surface) { old } else { surface };
         let foot = world.scenery.foot(surface, x);
         let most = world.settle_speed(scale, world.surface_law(index, surface)).max(KEEP * (scale + v.length()));
-        if std::env::var("DBGC").is_ok() { eprintln!("    {old:?} -> {surface:?} speed {:e} most {most:e} gap {:e} n {}", v.dot(foot.normal), foot.distance-radius, foot.normal); }
         (v.dot(foot.normal) <= most && foot.distance - radius <= world.unseen * radius).then_some(surface)
     });
 }
@@ -209,13 +211,25 @@ impl MarbleScratch {
         world.accuracy.step * shortest
     }
 
+    /// Whether anything overlaps by more than rest may keep: then a step comes first, which puts it back.
+    fn overlaps(&self, world: &Marbles) -> bool {
+        self.contacts.iter().any(|c| {
+            let m = &self.members[c.a];
+            let (distance, reach) = match c.with {
+                With::Surface(s) => (world.scenery.foot(s, m.start).distance, m.radius),
+                With::Member(b) => ((m.start - self.members[b].start).length(), m.radius + self.members[b].radius),
+            };
+            reach - distance > OVERLAP * reach
+        })
+    }
+
     /// Rest, where everything is slow and the contacts can hold everything still.
     fn try_rest(&mut self, world: &Marbles, bodies: &mut [Marble]) -> bool {
         let slow = self.members.iter().all(|m| {
             let limit = world.accuracy.rest_speed * (world.strength * m.radius).sqrt();
             m.start_v.length() <= limit && m.start_w.length() * m.radius <= limit
         });
-        if !slow || self.contacts.is_empty() {
+        if !slow || self.contacts.is_empty() || self.overlaps(world) {
             return false;
         }
         let h = self.step_length(world);
