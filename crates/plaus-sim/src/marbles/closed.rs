@@ -177,7 +177,7 @@ impl Plane {
         body.spin_rate = motion.spin_rate;
         body.normal = self.normal;
         body.drill = self.drill();
-        body.expiry = body.path.t + motion.lasts;
+        body.expiry = (body.path.t + motion.lasts).min(f64::MAX);
         body.ending = motion.ending;
         if motion.phase == Phase::Rest {
             (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);

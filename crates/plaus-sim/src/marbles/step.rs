@@ -23,7 +23,7 @@ pub struct MarbleScratch {
 const PREDICT: u32 = 3;
 
 /// Most corrections of position per step; more than two are rare outside piles.
-const CORRECTIONS: usize = 12;
+const CORRECTIONS: usize = 40;
 
 /// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half, so that little is still to come.
 const CREEP: f64 = 0.03;
@@ -31,8 +31,8 @@ const CREEP: f64 = 0.03;
 /// Overlap over the radius that rest may keep. Default 2e-5.
 const OVERLAP: f64 = 2e-5;
 
-/// Overlap over the radius that needs no further correction. Default 1e-10.
-const CORRECTED: f64 = 1e-10;
+/// Overlap over the radius that needs no further correction. Default 1e-6.
+const CORRECTED: f64 = 1e-6;
 
 /// Separating speed over `√(g r)` plus the body's own that never ends a contact. Default 1e-9: far above rounding, far below any motion.
 const KEEP: f64 = 1e-9;

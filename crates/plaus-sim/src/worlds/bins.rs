@@ -90,6 +90,16 @@ impl Bins {
         DVec3::new(i as f64 * self.side, j as f64 * self.side, self.height)
     }
 
+    /// Offsets of all ridge vertices, about normal (a sum of uniforms) with `sigma` metres per axis; `uniform` gives numbers in [0, 1).
+    pub fn perturbed(&self, sigma: f64, mut uniform: impl FnMut() -> f64) -> Vec<(u32, DVec3)> {
+        (0..self.crossings())
+            .map(|k| {
+                let sum = (0..4).map(|_| DVec3::new(uniform(), uniform(), uniform())).fold(DVec3::splat(-2.0), |a, b| a + b);
+                (k as u32, self.crossing(k) + sum * (sigma * 3.0_f64.sqrt()))
+            })
+            .collect()
+    }
+
     /// The partitions' surface. Vertices `0..crossings()` are the ridge at the crossings; then four shoulder corners and four foot corners of each crossing.
     ///
     /// # Errors
