@@ -1,5 +1,10 @@
 //! Random ten-marble drops into bins, checked for tunnelling and for valid rest, with timing: `cargo run --release -p plaus-sim --example drops -- 100000 standard`.
-#![allow(clippy::disallowed_methods, clippy::print_stdout, clippy::unwrap_used, reason = "a measuring program: it reads the clock and prints")]
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "a measuring program: it reads the clock and prints"
+)]
 
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::marbles::{Marble, Marbles, Phase, Start};
@@ -30,9 +35,11 @@ impl Tally {
         for (k, b) in bodies.iter().enumerate() {
             let x = b.path.at(state.time().max(b.path.t));
             let sunk = world.scenery().deepest_overlap(x, bins.marble).is_some_and(|(_, d)| d > 1e-4 * bins.marble);
-            let close = bodies[..k].iter().any(|c| (c.path.at(state.time().max(c.path.t)) - x).length() < 2.0 * bins.marble * (1.0 - 1e-4));
+            let close = bodies[..k]
+                .iter()
+                .any(|c| (c.path.at(state.time().max(c.path.t)) - x).length() < 2.0 * bins.marble * (1.0 - 1e-4));
             self.overlaps += usize::from(sunk || close);
-            if sunk || close { println!("run {run} body {k} {x} {:?} {:?} {:?} sunk {:?} close {close}", b.phase, b.contacts(), state.links(),world.scenery().deepest_overlap(x, bins.marble).map(|(s,d)|(s,d/bins.marble))); }
+
             if b.phase != Phase::Rest {
                 self.not_at_rest += 1;
                 continue;
@@ -63,7 +70,9 @@ fn main() {
     let interval: f64 = args.next().map_or(0.1, |a| a.parse().unwrap());
     let only_time = args.next().is_some_and(|a| a == "time");
     let bins = Bins::default();
-    let mut world = bins.world(count, Accuracy { events: 1000, ..Accuracy::preset(preset) }, interval * count as f64 + 1.0).unwrap();
+    let mut world = bins
+        .world(count, Accuracy { events: 1000, ..Accuracy::preset(preset) }, interval * count as f64 + 1.0)
+        .unwrap();
     let mut scratch = Scratch::default();
     let mut tally = Tally::default();
     for run in 0..runs {
@@ -97,12 +106,24 @@ fn main() {
     tally.micros.sort_by(f64::total_cmp);
     let at = |q: f64| tally.micros[((runs - 1) as f64 * q) as usize] / 1000.0;
     println!("{runs} runs of {count} marbles, one every {interval} s, preset {name}");
-    println!("tunnelled {}, overlapping at the end {}, out of events {}", tally.tunnelled, tally.overlaps, tally.out_of_events);
+    println!(
+        "tunnelled {}, overlapping at the end {}, out of events {}",
+        tally.tunnelled, tally.overlaps, tally.out_of_events
+    );
     println!(
         "at rest: in bins {}, on ridges {}, on marbles {}, unsupported {}; still moving {}",
         tally.in_bins, tally.on_ridges, tally.on_marbles, tally.unsupported, tally.not_at_rest
     );
     println!("ms per run: median {:.4}, 10% {:.4}, 90% {:.4}, worst {:.4}", at(0.5), at(0.1), at(0.9), at(1.0));
-    println!("impacts per run {:.1}, expiries {:.1}, stale {:.1}", tally.impacts as f64 / runs as f64, tally.expiries as f64 / runs as f64, tally.stale as f64 / runs as f64);
-    println!("events per run {:.1}, ns per event {:.0}", tally.events as f64 / runs as f64, total * 1000.0 / tally.events as f64);
+    println!(
+        "impacts per run {:.1}, expiries {:.1}, stale {:.1}",
+        tally.impacts as f64 / runs as f64,
+        tally.expiries as f64 / runs as f64,
+        tally.stale as f64 / runs as f64
+    );
+    println!(
+        "events per run {:.1}, ns per event {:.0}",
+        tally.events as f64 / runs as f64,
+        total * 1000.0 / tally.events as f64
+    );
 }

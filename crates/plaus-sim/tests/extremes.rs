@@ -13,7 +13,10 @@ struct Finite;
 
 impl Observer<plaus_sim::marbles::Marbles> for Finite {
     fn motion(&mut self, k: usize, b: &plaus_sim::marbles::Marble) {
-        assert!(b.path.x.is_finite() && b.path.v.is_finite() && b.path.a.is_finite() && b.spin.is_finite(), "ball {k}: {b:?}");
+        assert!(
+            b.path.x.is_finite() && b.path.v.is_finite() && b.path.a.is_finite() && b.spin.is_finite(),
+            "ball {k}: {b:?}"
+        );
     }
 }
 
@@ -23,10 +26,17 @@ fn check(world: World, starts: &[Start]) -> State<plaus_sim::marbles::Marble> {
     let mut state = world.state(starts).unwrap();
     let kinetic = |s: &Start, k: usize| {
         let spec = &world.specs()[k];
-        spec.mass * (0.5 * (s.velocity.length_squared() + spec.gyration * spec.radius * spec.radius * s.spin.length_squared()) - world.gravity().dot(s.position))
+        spec.mass
+            * (0.5
+                * (s.velocity.length_squared() + spec.gyration * spec.radius * spec.radius * s.spin.length_squared())
+                - world.gravity().dot(s.position))
     };
     let before: f64 = starts.iter().enumerate().map(|(k, s)| kinetic(s, k)).sum();
-    let scale: f64 = starts.iter().enumerate().map(|(k, s)| kinetic(s, k).abs() + world.specs()[k].mass * G * world.specs()[k].radius).sum();
+    let scale: f64 = starts
+        .iter()
+        .enumerate()
+        .map(|(k, s)| kinetic(s, k).abs() + world.specs()[k].mass * G * world.specs()[k].radius)
+        .sum();
     let outcome = world.run(&mut state, &mut Scratch::default(), 4.0, &mut Finite);
     assert!(matches!(outcome, Outcome::TimeReached | Outcome::AllAtRest), "{outcome:?} {:?}", state.counts());
     let after = total_energy(&world, &run(&world, starts, 4.0).0);
@@ -71,7 +81,14 @@ fn radii_from_a_tenth_of_a_millimetre_to_a_hundred_metres() {
         check(standard(vec![MarbleSpec::solid(r, 1.0, M); 3], Law::new(0.3, 0.5)), &three(r));
     }
     let mixed = [1e-4, 1.0, 1e2].map(|r| MarbleSpec::solid(r, r * r * r, M)).to_vec();
-    check(standard(mixed, Law::new(0.3, 0.5)), &[Start::at_rest(DVec3::new(-102.0, 0.0, 1.0)), Start::at_rest(DVec3::new(104.0, 0.0, 2.0)), Start::at_rest(DVec3::Z * 101.0)]);
+    check(
+        standard(mixed, Law::new(0.3, 0.5)),
+        &[
+            Start::at_rest(DVec3::new(-102.0, 0.0, 1.0)),
+            Start::at_rest(DVec3::new(104.0, 0.0, 2.0)),
+            Start::at_rest(DVec3::Z * 101.0),
+        ],
+    );
 }
 
 #[test]
@@ -81,7 +98,15 @@ fn speeds_up_to_a_kilometre_per_second() {
         for (p, n) in [(DVec3::X, -DVec3::X), (-DVec3::X, DVec3::X), (DVec3::Y, -DVec3::Y), (-DVec3::Y, DVec3::Y)] {
             world.planes.push(Plane::new(p, n, M).unwrap());
         }
-        let starts: Vec<Start> = three(0.1).iter().enumerate().map(|(k, s)| Start { velocity: DVec3::new(speed, 0.3 * speed, -0.1 * speed * k as f64), spin: DVec3::ONE * speed, ..*s }).collect();
+        let starts: Vec<Start> = three(0.1)
+            .iter()
+            .enumerate()
+            .map(|(k, s)| Start {
+                velocity: DVec3::new(speed, 0.3 * speed, -0.1 * speed * k as f64),
+                spin: DVec3::ONE * speed,
+                ..*s
+            })
+            .collect();
         check(world, &starts);
     }
 }
@@ -95,7 +120,9 @@ fn exact_grazing_and_exactly_simultaneous_collisions() {
     let state = check(world, &grazing);
     assert!((state.bodies()[0].path.v - DVec3::X).length() < 1e-9);
     // Four balls hit a fifth from four sides at once, and the floor in the same instant.
-    let starts: Vec<Start> = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.0, 0.0)].map(|(x, y)| moving(DVec3::new(x, y, 0.25), DVec3::new(-x, -y, 0.0), DVec3::ZERO)).to_vec();
+    let starts: Vec<Start> = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.0, 0.0)]
+        .map(|(x, y)| moving(DVec3::new(x, y, 0.25), DVec3::new(-x, -y, 0.0), DVec3::ZERO))
+        .to_vec();
     for e in [0.0, 0.5, 1.0] {
         check(standard(vec![unit_ball(); 5], Law::new(0.0, e)), &starts);
     }
@@ -107,14 +134,25 @@ fn a_ball_in_the_middle_of_a_row_is_hit_again_and_again() {
     let mut world = standard(vec![unit_ball(); 5], Law::new(0.0, 0.5));
     world.planes.push(Plane::new(-DVec3::X, DVec3::X, M).unwrap());
     world.planes.push(Plane::new(3.0 * DVec3::X, -DVec3::X, M).unwrap());
-    let starts: Vec<Start> = (0..5).map(|k| moving(DVec3::new(0.5 * f64::from(k), 0.0, 0.25), DVec3::X * if k == 0 { 5.0 } else { 0.0 }, DVec3::ZERO)).collect();
+    let starts: Vec<Start> = (0..5)
+        .map(|k| {
+            moving(DVec3::new(0.5 * f64::from(k), 0.0, 0.25), DVec3::X * if k == 0 { 5.0 } else { 0.0 }, DVec3::ZERO)
+        })
+        .collect();
     check(world, &starts);
 }
 
 /// A roof with its ridge along x at height 1, or a groove: sides at 45 degrees.
 fn fold(up: f64) -> Mesh {
     let y = 2.0;
-    let v = [(-4.0, 0.0, 1.0), (4.0, 0.0, 1.0), (4.0, y, 1.0 - up * y), (-4.0, y, 1.0 - up * y), (4.0, -y, 1.0 - up * y), (-4.0, -y, 1.0 - up * y)];
+    let v = [
+        (-4.0, 0.0, 1.0),
+        (4.0, 0.0, 1.0),
+        (4.0, y, 1.0 - up * y),
+        (-4.0, y, 1.0 - up * y),
+        (4.0, -y, 1.0 - up * y),
+        (-4.0, -y, 1.0 - up * y),
+    ];
     let t = [[0, 1, 2], [0, 2, 3], [1, 0, 5], [1, 5, 4]].map(|t| (t, M));
     Mesh::new(v.map(|(x, y, z)| DVec3::new(x, y, z)).to_vec(), &t, 0.0).unwrap()
 }
@@ -134,7 +172,16 @@ fn a_ball_on_an_edge_and_in_a_groove() {
 #[test]
 fn a_ball_over_a_groove_narrower_than_itself_rests_on_both_edges() {
     // Two ledges with a gap of 0.3 between them: a ball of radius 0.25 hangs between the edges.
-    let ledge = |s: f64| [(-2.0, 0.15 * s, 1.0), (2.0, 0.15 * s, 1.0), (2.0, 2.0 * s, 1.0), (-2.0, 2.0 * s, 1.0), (-2.0, 0.15 * s, 0.0), (2.0, 0.15 * s, 0.0)];
+    let ledge = |s: f64| {
+        [
+            (-2.0, 0.15 * s, 1.0),
+            (2.0, 0.15 * s, 1.0),
+            (2.0, 2.0 * s, 1.0),
+            (-2.0, 2.0 * s, 1.0),
+            (-2.0, 0.15 * s, 0.0),
+            (2.0, 0.15 * s, 0.0),
+        ]
+    };
     let v: Vec<DVec3> = ledge(1.0).into_iter().chain(ledge(-1.0)).map(|(x, y, z)| DVec3::new(x, y, z)).collect();
     let t = [[0, 1, 2], [0, 2, 3], [1, 0, 4], [1, 4, 5], [7, 6, 9], [7, 9, 8], [6, 7, 11], [6, 11, 10]].map(|t| (t, M));
     let mut world = standard(vec![unit_ball()], Law::new(0.5, 0.5).with_resistance(0.01, 0.01));
@@ -151,6 +198,14 @@ fn no_body_and_five_hundred() {
     assert_eq!(state.counts().events, 0);
     let mut world = standard(vec![MarbleSpec::solid(0.1, 1.0, M); 500], Law::new(0.0, 1.0));
     world.duration = 1.0;
-    let starts: Vec<Start> = (0..500).map(|k| moving(DVec3::new(f64::from(k % 25), f64::from(k / 25), 1.0) * 0.3, DVec3::new(f64::from(k % 7) - 3.0, f64::from(k % 5) - 2.0, 0.0), DVec3::ZERO)).collect();
+    let starts: Vec<Start> = (0..500)
+        .map(|k| {
+            moving(
+                DVec3::new(f64::from(k % 25), f64::from(k / 25), 1.0) * 0.3,
+                DVec3::new(f64::from(k % 7) - 3.0, f64::from(k % 5) - 2.0, 0.0),
+                DVec3::ZERO,
+            )
+        })
+        .collect();
     check(world, &starts);
 }

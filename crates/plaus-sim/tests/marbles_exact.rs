@@ -9,7 +9,11 @@ use plaus_sim::trace::Trace;
 use plaus_sim::{Accuracy, Law, Outcome, Preset, Scratch};
 
 fn relative(found: f64, exact: f64, tolerance: f64) {
-    assert!((found - exact).abs() <= tolerance * exact.abs(), "{found} for {exact}: off by {:e}", (found - exact).abs() / exact.abs());
+    assert!(
+        (found - exact).abs() <= tolerance * exact.abs(),
+        "{found} for {exact}: off by {:e}",
+        (found - exact).abs() / exact.abs()
+    );
 }
 
 #[test]
@@ -24,7 +28,9 @@ fn vertical_bounce_ends_at_the_geometric_limit() {
     assert_eq!(outcome, Outcome::AllAtRest);
     let end = trace.impacts.last().unwrap().time;
     relative(end, (2.0 * h / G).sqrt() * (1.0 + e) / (1.0 - e), 1e-12);
-    let path: f64 = trace.impacts.iter().skip(1).zip(&trace.impacts).map(|(_, a)| e * a.approach * e * a.approach / G).sum::<f64>() + h;
+    let path: f64 =
+        trace.impacts.iter().skip(1).zip(&trace.impacts).map(|(_, a)| e * a.approach * e * a.approach / G).sum::<f64>()
+            + h;
     relative(path, h * (1.0 + e * e) / (1.0 - e * e), 1e-12);
 }
 
@@ -168,7 +174,8 @@ fn forty_nine_elastic_balls_keep_their_energy() {
     let mut world = World::new(specs, Law::new(0.0, 1.0)).floor();
     world.duration = 20.0;
     let world = world.build();
-    let starts: Vec<Start> = (0..49).map(|k| Start::at_rest(DVec3::new(f64::from(k % 7), f64::from(k / 7), 5.0))).collect();
+    let starts: Vec<Start> =
+        (0..49).map(|k| Start::at_rest(DVec3::new(f64::from(k % 7), f64::from(k / 7), 5.0))).collect();
     let (at, outcome, _) = run(&world, &starts, 20.0);
     assert_eq!(outcome, Outcome::TimeReached);
     relative(total_energy(&world, &at), 49.0 * 10.0 * G * 5.0, 1e-12);

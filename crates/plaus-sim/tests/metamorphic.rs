@@ -17,7 +17,8 @@ fn garden(scale: f64, order: &[usize]) -> (Marbles, Vec<Start>) {
     let planes = vec![plane(DVec3::ZERO, DVec3::Z), plane(-3.0 * DVec3::X, DVec3::X), plane(3.0 * DVec3::X, -DVec3::X)];
     let clip = Aabb { min: DVec3::new(0.2, -2.0, -1.0) * scale, max: DVec3::new(3.0, 2.0, 1.0) * scale };
     let bowl = Dome::new(DVec3::new(1.2, 0.1, 2.0) * scale, 2.0 * scale, true, clip, M).unwrap();
-    let corners = [(-1.5, -0.5, 0.0), (0.0, -0.5, 0.0), (-0.75, 0.75, 0.0), (-0.75, 0.0, 0.5)].map(|(x, y, z)| DVec3::new(x, y, z) * scale);
+    let corners = [(-1.5, -0.5, 0.0), (0.0, -0.5, 0.0), (-0.75, 0.75, 0.0), (-0.75, 0.0, 0.5)]
+        .map(|(x, y, z)| DVec3::new(x, y, z) * scale);
     let sides = [[0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1]].map(|t| (t, M));
     let mesh = Mesh::new(corners.to_vec(), &sides, 0.0).unwrap();
     let world = MarbleWorld {
@@ -92,7 +93,15 @@ fn elastic_frictionless_runs_go_back() {
     }
     let world = world.build();
     let x = [-1.2, -0.5, 0.3, 1.1];
-    let starts: Vec<Start> = (0..4).map(|k| moving(DVec3::new(x[k], 0.02 * k as f64, 1.0 + 0.3 * k as f64), DVec3::new(0.5 - 0.3 * k as f64, 0.0, 0.0), DVec3::ZERO)).collect();
+    let starts: Vec<Start> = (0..4)
+        .map(|k| {
+            moving(
+                DVec3::new(x[k], 0.02 * k as f64, 1.0 + 0.3 * k as f64),
+                DVec3::new(0.5 - 0.3 * k as f64, 0.0, 0.0),
+                DVec3::ZERO,
+            )
+        })
+        .collect();
     let (there, outcome, state) = run(&world, &starts, 2.0);
     assert_eq!(outcome, Outcome::TimeReached);
     assert!(state.counts().impacts >= 8, "{:?}", state.counts());

@@ -55,7 +55,8 @@ fn a_later_start_can_be_exchanged_in_a_saved_beginning() {
 fn an_observer_stops_a_run() {
     let (world, starts) = pile();
     let mut state = world.state(&starts).unwrap();
-    let outcome = world.run(&mut state, &mut Scratch::default(), 3.0, &mut While(|s: &State<Marble>| s.counts().impacts < 10));
+    let outcome =
+        world.run(&mut state, &mut Scratch::default(), 3.0, &mut While(|s: &State<Marble>| s.counts().impacts < 10));
     assert_eq!(outcome, Outcome::Stopped);
     assert_eq!(state.counts().impacts, 10);
     world.run(&mut state, &mut Scratch::default(), 3.0, &mut ());
@@ -89,7 +90,13 @@ fn specs(radius: f64, mass: f64) -> Result<Marbles, WorldError> {
     Marbles::new(MarbleWorld {
         specs: vec![unit_ball(), MarbleSpec::solid(radius, mass, M)],
         laws: Laws::uniform(Law::new(0.1, 0.5)).unwrap(),
-        scenery: Scenery::new(vec![Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap()], Mesh::new(Vec::new(), &[], 0.0).unwrap(), Vec::new(), 1.0).unwrap(),
+        scenery: Scenery::new(
+            vec![Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap()],
+            Mesh::new(Vec::new(), &[], 0.0).unwrap(),
+            Vec::new(),
+            1.0,
+        )
+        .unwrap(),
         gravity: DVec3::new(0.0, 0.0, -G),
         accuracy: Accuracy::preset(Preset::Draft),
         duration: 1.0,
@@ -105,15 +112,27 @@ fn bad_input_is_named_before_any_stepping() {
     assert!(matches!(Laws::uniform(Law::new(0.1, 1.5)), Err(WorldError::BadLaw { field: "restitution", .. })));
     assert!(matches!(Plane::new(DVec3::ZERO, DVec3::ZERO, M), Err(WorldError::BadSurface { .. })));
     let corners = vec![DVec3::ZERO, DVec3::X, 2.0 * DVec3::X, DVec3::Y];
-    assert!(matches!(Mesh::new(corners.clone(), &[([0, 1, 3], M), ([0, 1, 2], M)], 0.0), Err(WorldError::DegenerateTriangle { triangle: 1, .. } | WorldError::BadEdge { triangle: 1, .. })));
-    assert!(matches!(Mesh::new(corners.clone(), &[([0, 2, 1], M)], 0.0), Err(WorldError::DegenerateTriangle { triangle: 0, .. })));
-    assert!(matches!(Mesh::new(corners, &[([0, 1, 9], Material(0))], 0.0), Err(WorldError::UnknownVertex { triangle: 0, vertex: 9, .. })));
+    assert!(matches!(
+        Mesh::new(corners.clone(), &[([0, 1, 3], M), ([0, 1, 2], M)], 0.0),
+        Err(WorldError::DegenerateTriangle { triangle: 1, .. } | WorldError::BadEdge { triangle: 1, .. })
+    ));
+    assert!(matches!(
+        Mesh::new(corners.clone(), &[([0, 2, 1], M)], 0.0),
+        Err(WorldError::DegenerateTriangle { triangle: 0, .. })
+    ));
+    assert!(matches!(
+        Mesh::new(corners, &[([0, 1, 9], Material(0))], 0.0),
+        Err(WorldError::UnknownVertex { triangle: 0, vertex: 9, .. })
+    ));
     let world = specs(0.25, 1.0).unwrap();
     let at = |x: f64, z: f64| Start::at_rest(DVec3::new(x, 0.0, z));
     assert!(matches!(world.state(&[at(0.0, 1.0)]), Err(WorldError::WrongState { state: 1, world: 2 })));
     assert!(matches!(world.state(&[at(0.0, 1.0), at(0.4, 1.0)]), Err(WorldError::BodiesOverlap { a: 0, b: 1, .. })));
     assert!(matches!(world.state(&[at(0.0, 1.0), at(1.0, 0.2)]), Err(WorldError::OverlapsScenery { body: 1, .. })));
-    assert!(matches!(world.state(&[at(0.0, 1.0), at(f64::NAN, 1.0)]), Err(WorldError::BadBody { body: 1, field: "position", .. })));
+    assert!(matches!(
+        world.state(&[at(0.0, 1.0), at(f64::NAN, 1.0)]),
+        Err(WorldError::BadBody { body: 1, field: "position", .. })
+    ));
     assert_eq!(world.state(&[at(0.0, 1.0), at(1.0, 1.0)]).unwrap().bodies()[0].phase, Phase::Waiting);
 }
 

@@ -7,7 +7,13 @@ use crate::scenery::{Scenery, Surface};
 use glam::DVec3;
 
 /// First surface that a sphere touches while approaching it, within `until` seconds of the motion's clock. Surfaces in `skip` (its lasting contacts) do not count.
-pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip: &[Surface], until: f64) -> Option<(f64, Surface)> {
+pub(crate) fn next_surface(
+    scenery: &Scenery,
+    path: &Parabola,
+    radius: f64,
+    skip: &[Surface],
+    until: f64,
+) -> Option<(f64, Surface)> {
     let mut best = None;
     let mut limit = until;
     for k in 0..scenery.planes().len() as u32 {
@@ -73,7 +79,13 @@ fn consider(
 
 /// When a centre leaves a cell after `from`, along which axis and which way; infinite and none where it stays until `limit`.
 #[inline]
-fn exit((low, high): (DVec3, DVec3), path: &Parabola, from: f64, limit: f64, onward: &[f64; 3]) -> (f64, Option<(usize, f64)>) {
+fn exit(
+    (low, high): (DVec3, DVec3),
+    path: &Parabola,
+    from: f64,
+    limit: f64,
+    onward: &[f64; 3],
+) -> (f64, Option<(usize, f64)>) {
     let (x, v) = (path.after(from), path.velocity_after(from));
     let mut best = (f64::INFINITY, None);
     for k in 0..3 {

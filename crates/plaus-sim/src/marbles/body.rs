@@ -65,7 +65,12 @@ impl Start {
             }
         }
         if !(self.time >= 0.0 && self.time.is_finite()) {
-            return Err(WorldError::BadBody { body, field: "start time", value: self.time, expected: "a finite time ≥ 0" });
+            return Err(WorldError::BadBody {
+                body,
+                field: "start time",
+                value: self.time,
+                expected: "a finite time ≥ 0",
+            });
         }
         Ok(())
     }

@@ -4,8 +4,8 @@ use super::body::{Marble, Phase};
 use super::step::MarbleScratch;
 use super::{Marbles, step};
 use crate::detect;
-use crate::material::Law;
 use crate::links::Links;
+use crate::material::Law;
 use crate::mechanics::{Impact, Mechanics, Other};
 use crate::resolve::{Touch, sphere_impact};
 use crate::scenery::{Aabb, Surface};
@@ -32,7 +32,8 @@ impl Marbles {
 
     /// Whether an impact is the begin of lasting contact: its rebound would be unseen, or its approach is lost in rounding.
     fn lasts(&self, scale: f64, law: &Law, approach: f64, speed: f64, rattles: bool) -> bool {
-        rattles && law.restitution < 1.0 || law.restitution * approach <= self.settle_speed(scale, law).max(GRAZE * speed)
+        rattles && law.restitution < 1.0
+            || law.restitution * approach <= self.settle_speed(scale, law).max(GRAZE * speed)
     }
 
     pub(crate) fn surface_law(&self, index: usize, surface: Surface) -> &Law {
@@ -89,7 +90,11 @@ impl Mechanics for Marbles {
     }
 
     fn is_finite(&self, body: &Marble) -> bool {
-        body.path.x.is_finite() && body.path.v.is_finite() && body.path.a.is_finite() && body.spin.is_finite() && !body.expiry.is_nan()
+        body.path.x.is_finite()
+            && body.path.v.is_finite()
+            && body.path.a.is_finite()
+            && body.spin.is_finite()
+            && !body.expiry.is_nan()
     }
 
     #[inline]
@@ -108,7 +113,13 @@ impl Mechanics for Marbles {
         if matches!(body.phase, Phase::Rest | Phase::Spin) {
             return None;
         }
-        let found = detect::next_surface(&self.scenery, &body.path, self.specs[index].radius, body.contacts(), until - body.path.t)?;
+        let found = detect::next_surface(
+            &self.scenery,
+            &body.path,
+            self.specs[index].radius,
+            body.contacts(),
+            until - body.path.t,
+        )?;
         Some((body.path.t + found.0, found.1))
     }
 
@@ -135,7 +146,16 @@ impl Mechanics for Marbles {
         body.note_impact(self.rattle(index));
         let point = body.path.x - foot.normal * self.specs[index].radius;
         let other = Other::Surface(surface);
-        Some(Impact { time: body.path.t, body: index, other, point, normal: foot.normal, impulse: impulse.on_first, approach, lasting })
+        Some(Impact {
+            time: body.path.t,
+            body: index,
+            other,
+            point,
+            normal: foot.normal,
+            impulse: impulse.on_first,
+            approach,
+            lasting,
+        })
     }
 
     fn hit_body(&self, [i, j]: [usize; 2], [a, b]: [&mut Marble; 2], linked: bool) -> Option<Impact> {

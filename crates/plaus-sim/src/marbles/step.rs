@@ -42,7 +42,13 @@ const KEEP: f64 = 1e-9;
 const APPROACH: f64 = 0.02;
 
 /// Decides how a group of marbles goes on.
-pub(super) fn settle(world: &Marbles, members: &[u32], bodies: &mut [Marble], links: &mut Links, scratch: &mut MarbleScratch) {
+pub(super) fn settle(
+    world: &Marbles,
+    members: &[u32],
+    bodies: &mut [Marble],
+    links: &mut Links,
+    scratch: &mut MarbleScratch,
+) {
     for &k in members {
         follow_contacts(world, k as usize, &mut bodies[k as usize]);
     }
@@ -153,7 +159,12 @@ impl MarbleScratch {
             for &surface in bodies[index as usize].contacts() {
                 let normal = world.scenery.foot(surface, self.members[a].start).normal;
                 self.members[a].is_held = true;
-                self.contacts.push(Contact::new(a, With::Surface(surface), *world.surface_law(index as usize, surface), normal));
+                self.contacts.push(Contact::new(
+                    a,
+                    With::Surface(surface),
+                    *world.surface_law(index as usize, surface),
+                    normal,
+                ));
             }
             if links.is_empty() {
                 continue;
@@ -201,10 +212,18 @@ impl MarbleScratch {
             let (scale, speed) = match c.with {
                 With::Surface(s) => {
                     let curvature = world.scenery.foot(s, m.start).curvature_radius;
-                    let scale = if curvature < 0.0 { -curvature - m.radius } else if curvature.is_finite() { curvature + m.radius } else { m.radius };
+                    let scale = if curvature < 0.0 {
+                        -curvature - m.radius
+                    } else if curvature.is_finite() {
+                        curvature + m.radius
+                    } else {
+                        m.radius
+                    };
                     (scale, m.start_v.length())
                 }
-                With::Member(b) => (0.5 * (m.radius + self.members[b].radius), (m.start_v - self.members[b].start_v).length()),
+                With::Member(b) => {
+                    (0.5 * (m.radius + self.members[b].radius), (m.start_v - self.members[b].start_v).length())
+                }
             };
             shortest = shortest.min((scale / world.strength).sqrt()).min(scale / speed);
         }
@@ -240,7 +259,8 @@ impl MarbleScratch {
             (m.v, m.w, m.x) = (world.gravity * h, DVec3::ZERO, m.start);
         }
         let left = world.accuracy.rest_residual * world.strength * h;
-        let holds = self.sweep(world.accuracy.sweeps, CREEP * left, |m| m.v.length().max(m.w.length() * m.radius) <= left);
+        let holds =
+            self.sweep(world.accuracy.sweeps, CREEP * left, |m| m.v.length().max(m.w.length() * m.radius) <= left);
         self.clear();
         if !holds {
             return false;
@@ -353,7 +373,10 @@ impl MarbleScratch {
                     With::Member(b) => {
                         let offset = m.x - self.members[b].x;
                         let distance = offset.length();
-                        (m.radius + self.members[b].radius - distance, if distance > 0.0 { offset / distance } else { c.last })
+                        (
+                            m.radius + self.members[b].radius - distance,
+                            if distance > 0.0 { offset / distance } else { c.last },
+                        )
                     }
                 };
                 if missing <= 0.0 && (round > 0 || c.load == 0.0) {
@@ -378,9 +401,11 @@ impl MarbleScratch {
 
     /// Takes back what discretisation added: a group's energy never grows.
     fn guard_energy(&mut self, world: &Marbles) {
-        let kinetic = |m: &Member, v: DVec3, w: DVec3| 0.5 * (m.mass * v.length_squared() + m.inertia * w.length_squared());
+        let kinetic =
+            |m: &Member, v: DVec3, w: DVec3| 0.5 * (m.mass * v.length_squared() + m.inertia * w.length_squared());
         let held = || self.members.iter().filter(|m| m.is_held);
-        let before: f64 = held().map(|m| kinetic(m, m.start_v, m.start_w) + m.mass * world.gravity.dot(m.x - m.start)).sum();
+        let before: f64 =
+            held().map(|m| kinetic(m, m.start_v, m.start_w) + m.mass * world.gravity.dot(m.x - m.start)).sum();
         let after: f64 = held().map(|m| kinetic(m, m.v, m.w)).sum();
         if after > before {
             let part = if before > 0.0 { (before / after).sqrt() } else { 0.0 };

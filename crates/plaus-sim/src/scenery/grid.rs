@@ -51,7 +51,9 @@ impl Grid {
                     for x in low[0]..=high[0] {
                         let (min, max) = self.walls([x, y, z]);
                         let cell = Aabb { min, max };
-                        if cell.distance_squared(b) <= reach * reach && may_touch(k as u32, &cell.grown(1e-6 * self.size)) {
+                        if cell.distance_squared(b) <= reach * reach
+                            && may_touch(k as u32, &cell.grown(1e-6 * self.size))
+                        {
                             pairs.push((self.index([x, y, z]) as u32, k as u32));
                         }
                     }
@@ -88,7 +90,13 @@ impl Grid {
     #[inline]
     pub(crate) fn walls(&self, cell: [usize; 3]) -> (DVec3, DVec3) {
         let low = |k: usize| if cell[k] == 0 { f64::NEG_INFINITY } else { self.origin[k] + cell[k] as f64 * self.size };
-        let high = |k: usize| if cell[k] + 1 == self.counts[k] { f64::INFINITY } else { self.origin[k] + (cell[k] + 1) as f64 * self.size };
+        let high = |k: usize| {
+            if cell[k] + 1 == self.counts[k] {
+                f64::INFINITY
+            } else {
+                self.origin[k] + (cell[k] + 1) as f64 * self.size
+            }
+        };
         (DVec3::new(low(0), low(1), low(2)), DVec3::new(high(0), high(1), high(2)))
     }
 }
