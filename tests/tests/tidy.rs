@@ -8,11 +8,13 @@ use std::path::{Path, PathBuf};
 /// What each of our packages may use of the others. The chain knows no bodies; the simulator knows no chain.
 const EDGES: &[(&str, &[&str])] = &[
     ("plaus-dist", &[]),
+    ("plaus-sim", &["plaus-dist"]),
     ("plaus-mcmc", &["plaus-dist"]),
-    ("plaus-scenes", &["plaus-dist", "plaus-mcmc"]),
+    ("plaus-scenes", &["plaus-dist", "plaus-mcmc", "plaus-sim"]),
     ("plaus-run", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
     ("plaus-cli", &["plaus-dist", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
     ("plaus-figures", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
+    ("plaus-tradeoff", &["plaus-dist", "plaus-figures", "plaus-sim"]),
     ("plaus-tests", &[]),
     ("xtask", &[]),
 ];

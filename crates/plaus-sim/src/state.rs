@@ -1,0 +1,114 @@
+//! The mutable half of a simulation. It can be cloned or serialised at any pause and resumed to the same bits.
+
+use crate::links::Links;
+use crate::mechanics::Mechanics;
+use crate::queue::{Event, Happening};
+use crate::scenery::Aabb;
+use serde::{Deserialize, Serialize};
+
+/// How much work a run did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Counts {
+    /// Events taken from the queue.
+    pub events: u64,
+    /// Impacts resolved.
+    pub impacts: u64,
+    /// Closed forms that ended by themselves, steps of contact groups among them.
+    pub expiries: u64,
+    /// Stale events.
+    pub stale: u64,
+}
+
+/// Bodies with their motions, lasting contacts between them, and the queue.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct State<B> {
+    /// Time up to which everything has happened.
+    pub(crate) time: f64,
+    pub(crate) bodies: Vec<B>,
+    pub(crate) links: Links,
+    pub(crate) events: Vec<Event>,
+    pub(crate) generations: Vec<u32>,
+    pub(crate) boxes: Vec<Aabb>,
+    pub(crate) counts: Counts,
+    /// Whether the first predictions have been made.
+    pub(crate) started: bool,
+}
+
+impl<B: Clone> Clone for State<B> {
+    fn clone(&self) -> Self {
+        Self {
+            time: self.time,
+            bodies: self.bodies.clone(),
+            links: self.links.clone(),
+            events: self.events.clone(),
+            generations: self.generations.clone(),
+            boxes: self.boxes.clone(),
+            counts: self.counts,
+            started: self.started,
+        }
+    }
+
+    /// Copies without allocating where there is room: how a scene goes back to a saved beginning.
+    fn clone_from(&mut self, source: &Self) {
+        self.time = source.time;
+        self.bodies.clone_from(&source.bodies);
+        self.links.clone_from(&source.links);
+        self.events.clone_from(&source.events);
+        self.generations.clone_from(&source.generations);
+        self.boxes.clone_from(&source.boxes);
+        self.counts = source.counts;
+        self.started = source.started;
+    }
+}
+
+impl<B> State<B> {
+    /// A state of bodies that have not been looked at yet.
+    pub(crate) fn new(bodies: Vec<B>) -> Self {
+        let n = bodies.len();
+        Self {
+            time: 0.0,
+            bodies,
+            links: Links::default(),
+            events: vec![Event { time: 0.0, happening: Happening::End }; n],
+            generations: vec![0; n],
+            boxes: vec![Aabb::around([glam::DVec3::ZERO]); n],
+            counts: Counts::default(),
+            started: false,
+        }
+    }
+
+    /// Time up to which everything has happened, in s.
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The bodies, each at its own clock.
+    #[must_use]
+    pub fn bodies(&self) -> &[B] {
+        &self.bodies
+    }
+
+    /// Pairs of bodies in lasting contact.
+    #[must_use]
+    pub fn links(&self) -> &Links {
+        &self.links
+    }
+
+    /// Work done so far.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Replaces a body that nothing has looked at yet, so that no other body's events change.
+    pub(crate) fn replace_unreleased(&mut self, index: usize, body: B, release: f64) {
+        self.bodies[index] = body;
+        self.events[index] = Event { time: release, happening: Happening::Expiry };
+    }
+
+    /// Whether every body is at rest.
+    pub(crate) fn all_resting<M: Mechanics<Body = B>>(&self, mechanics: &M) -> bool {
+        self.bodies.iter().all(|b| mechanics.is_resting(b))
+    }
+}
