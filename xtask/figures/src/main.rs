@@ -14,8 +14,11 @@ use plaus_figures::{Result, canvas, lines, plot, report};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+/// Adds the figures of a scene and its rows of the report.
+type Make = fn(&mut Work) -> Result<()>;
+
 /// Scenes with figures: name, and what adds them.
-const SCENES: &[(&str, fn(&mut Work) -> Result<()>)] = &[("ball2d", ball2d::make)];
+const SCENES: &[(&str, Make)] = &[("ball2d", ball2d::make)];
 
 const USAGE: &str = "usage: cargo xtask reproduce-figures [--out FOLDER] [--quick]\n\n\
     --out FOLDER   where the files go, out/figures by default; files of the same names are replaced\n\
