@@ -1,0 +1,154 @@
+//! How exact a simulation is: one knob over all tolerances, and the one place where each is named.
+//!
+//! | tolerance | unit | draft | standard | fine | reference | usual range | danger | source |
+//! | --- | --- | --- | --- | --- | --- | --- | --- | --- |
+//! | `settle` | √(g·size) | 3e-2 | 1e-2 | 1e-3 | 1e-6 | 1e-6–1e-1 | large: bounces end early, visibly; small: many more impacts before rest | bounces of relative height `settle²/2` are unseen; convergence: `cargo xtask tradeoff` |
+//! | `step` | √(ρ/g), ρ/speed | 0.5 | 0.25 | 0.06 | 0.01 | 0.002–0.5 | large: lasting contact drifts in phase, error ∝ step² | second-order scheme, phase error ≈ step²/24 per radian |
+//! | `sweeps` | count | 50 | 200 | 1000 | 5000 | 20–10⁴ | small: stacks sink or creep | Gauss–Seidel; each sweep carries the load one body further |
+//! | `sweep_tolerance` | g·step | 1e-3 | 1e-4 | 1e-8 | 1e-12 | 1e-12–1e-2 | as `sweeps` | residual at which sweeps end |
+//! | `rest_speed` | √(g·size) | 2e-2 | 1e-2 | 1e-3 | 1e-5 | 1e-6–5e-2 | large: a slow body on its way to fall is stopped; supported statically or not is always tested first | energy of `rest_speed²/2` of a body height |
+//! | `rest_residual` | g·step | 1e-2 | 1e-2 | 1e-3 | 1e-6 | 1e-8–1e-1 | large: slopes steeper than friction allows hold bodies | what a static solution may leave unbalanced |
+//! | `slip_turn` | rad | 0.2 | 0.1 | 0.03 | 0.01 | 0.005–0.3 | large: direction of friction within an impact is off, error ∝ turn² | Darboux–Keller midpoint steps |
+//! | `gap` | body size | 1e-4 | 1e-5 | 1e-6 | 1e-8 | 1e-9–1e-3 | large: bodies float; small: more steps of conservative advancement | first contact of turning bodies; spheres need none |
+//! | `events` | count per body | 2e4 | 5e4 | 2e5 | 2e6 | 1e3–1e7 | small: long runs end as `OutOfEvents` | a guard, never reached by the test bed |
+//!
+//! Every length is in units of a body's own size and every time in units of `√(size/g)`, so no tolerance is absolute: the same world at another scale
+//! gives the same bits up to the scale.
+
+use crate::error::WorldError;
+use serde::{Deserialize, Serialize};
+
+/// A named point of the scale between fast and exact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Preset {
+    /// For looking for ideas: contact is coarse.
+    Draft,
+    /// The default: outcome distributions agree with the reference within sampling noise (see `cargo xtask tradeoff`).
+    Standard,
+    /// Trajectories agree with the reference to about a thousandth of a radius until chaos separates them.
+    Fine,
+    /// What the others are measured against.
+    Reference,
+}
+
+impl Preset {
+    /// All presets, fastest first.
+    pub const ALL: [Self; 4] = [Self::Draft, Self::Standard, Self::Fine, Self::Reference];
+
+    /// Its name in scenario files and tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Draft => "draft",
+            Self::Standard => "standard",
+            Self::Fine => "fine",
+            Self::Reference => "reference",
+        }
+    }
+}
+
+/// All tolerances; see the table of this module.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Accuracy {
+    /// Rebound speed below which a contact lasts, over `√(g·size)·(1 − e)`.
+    pub settle: f64,
+    /// Length of a step of lasting contact, over the contact's own time scales.
+    pub step: f64,
+    /// Most Gauss–Seidel sweeps per step.
+    pub sweeps: u32,
+    /// Velocity change over `g·step` at which sweeps end.
+    pub sweep_tolerance: f64,
+    /// Speed over `√(g·size)` below which static support is tested.
+    pub rest_speed: f64,
+    /// Velocity over `g·step` that a static solution may leave.
+    pub rest_residual: f64,
+    /// Largest turn of the slip within one step of an impact, in radians.
+    pub slip_turn: f64,
+    /// Gap at which turning bodies touch, over their size.
+    pub gap: f64,
+    /// Most events per body; a run that needs more ends as [`Outcome::OutOfEvents`](crate::Outcome).
+    pub events: u64,
+}
+
+impl Accuracy {
+    /// The tolerances of a preset.
+    #[must_use]
+    pub const fn preset(preset: Preset) -> Self {
+        match preset {
+            Preset::Draft => Self {
+                settle: 3e-2,
+                step: 0.5,
+                sweeps: 50,
+                sweep_tolerance: 1e-3,
+                rest_speed: 2e-2,
+                rest_residual: 1e-2,
+                slip_turn: 0.2,
+                gap: 1e-4,
+                events: 20_000,
+            },
+            Preset::Standard => Self {
+                settle: 1e-2,
+                step: 0.25,
+                sweeps: 200,
+                sweep_tolerance: 1e-4,
+                rest_speed: 1e-2,
+                rest_residual: 1e-2,
+                slip_turn: 0.1,
+                gap: 1e-5,
+                events: 50_000,
+            },
+            Preset::Fine => Self {
+                settle: 1e-3,
+                step: 0.06,
+                sweeps: 1000,
+                sweep_tolerance: 1e-8,
+                rest_speed: 1e-3,
+                rest_residual: 1e-3,
+                slip_turn: 0.03,
+                gap: 1e-6,
+                events: 200_000,
+            },
+            Preset::Reference => Self {
+                settle: 1e-6,
+                step: 0.01,
+                sweeps: 5000,
+                sweep_tolerance: 1e-12,
+                rest_speed: 1e-5,
+                rest_residual: 1e-6,
+                slip_turn: 0.01,
+                gap: 1e-8,
+                events: 2_000_000,
+            },
+        }
+    }
+
+    /// Checks every tolerance.
+    ///
+    /// # Errors
+    /// [`WorldError::BadNumber`] naming the first that is not positive and finite.
+    pub fn check(&self) -> Result<(), WorldError> {
+        let named = [
+            ("settle", self.settle),
+            ("step", self.step),
+            ("sweeps", f64::from(self.sweeps)),
+            ("sweep_tolerance", self.sweep_tolerance),
+            ("rest_speed", self.rest_speed),
+            ("rest_residual", self.rest_residual),
+            ("slip_turn", self.slip_turn),
+            ("gap", self.gap),
+        ];
+        for (field, value) in named {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(WorldError::BadNumber { field, value, expected: "a positive tolerance" });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Default for Accuracy {
+    fn default() -> Self {
+        Self::preset(Preset::Standard)
+    }
+}

@@ -1,0 +1,69 @@
+//! One sphere on a parabola and one surface.
+
+use crate::motion::Parabola;
+use crate::roots::{fall_of_quadratic, falls_of_quartic, squared_distance};
+use crate::scenery::{Scenery, Surface};
+
+/// How far a contact point may lie outside a face and still count as on it, in radii. Closes the cracks that rounding leaves between faces that share a flat
+/// or concave edge. Default 1e-9; danger: much larger values catch balls on the invisible continuation of a face.
+const SEAM: f64 = 1e-9;
+
+/// First time in `[from, until]` seconds after the motion's clock at which a sphere touches a surface while approaching it.
+#[inline]
+pub(crate) fn sphere_surface(scenery: &Scenery, surface: Surface, path: &Parabola, radius: f64, from: f64, until: f64) -> Option<f64> {
+    match surface {
+        Surface::Plane(k) => {
+            let plane = &scenery.planes()[k as usize];
+            flat(plane.normal, plane.offset + radius, path, from, until)
+        }
+        Surface::Face(k) => {
+            let face = &scenery.mesh().faces[k as usize];
+            // Behind the face's plane all along: it cannot be touched from there.
+            let time = flat(face.normal, face.offset + radius, path, from, until)?;
+            let x = path.after(time);
+            let height = face.normal.dot(x) - face.offset;
+            (height > 0.0 && face.inside(x - face.normal * height) >= -SEAM * radius).then_some(time)
+        }
+        Surface::Dome(k) => dome(scenery, k, path, radius, from, until),
+        Surface::Edge(k) => edge(scenery, k, path, radius, from, until),
+        Surface::Vertex(k) => {
+            if !scenery.mesh().vertex_active[k as usize] {
+                return None;
+            }
+            let c = squared_distance(path.x - scenery.mesh().vertices[k as usize], path.v, path.a, radius);
+            falls_of_quartic(&c, from, until, |_| true)
+        }
+    }
+}
+
+#[inline]
+fn flat(normal: glam::DVec3, offset: f64, path: &Parabola, from: f64, until: f64) -> Option<f64> {
+    let (x, v) = (path.after(from), path.velocity_after(from));
+    let c = [normal.dot(x) - offset, normal.dot(v), 0.5 * normal.dot(path.a)];
+    fall_of_quadratic(c, until - from).map(|dt| from + dt)
+}
+
+fn dome(scenery: &Scenery, k: u32, path: &Parabola, radius: f64, from: f64, until: f64) -> Option<f64> {
+    let dome = &scenery.domes()[k as usize];
+    let gap = if dome.hollow { dome.radius - radius } else { dome.radius + radius };
+    let mut c = squared_distance(path.x - dome.centre, path.v, path.a, gap);
+    if dome.hollow {
+        c = c.map(|x| -x);
+    }
+    falls_of_quartic(&c, from, until, |t| dome.foot(path.after(t)).is_some())
+}
+
+fn edge(scenery: &Scenery, k: u32, path: &Parabola, radius: f64, from: f64, until: f64) -> Option<f64> {
+    let edge = &scenery.mesh().edges[k as usize];
+    if !edge.active {
+        return None;
+    }
+    let d = edge.direction;
+    let across = |u: glam::DVec3| u - d * d.dot(u);
+    let offset = path.x - edge.origin;
+    let c = squared_distance(across(offset), across(path.v), across(path.a), radius);
+    falls_of_quartic(&c, from, until, |t| {
+        let along = d.dot(path.after(t) - edge.origin);
+        (0.0..=edge.length).contains(&along)
+    })
+}

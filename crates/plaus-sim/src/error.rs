@@ -1,0 +1,138 @@
+//! What can be wrong with a world before any stepping. Running out of events is no error but an [`Outcome`](crate::Outcome).
+
+/// A world or a state that cannot be simulated, with the body, triangle or surface at fault.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WorldError {
+    /// A number of a body is NaN, infinite, or out of range.
+    #[error("body {body}: {field} is {value}, expected {expected}")]
+    BadBody {
+        /// Index of the body.
+        body: usize,
+        /// Which number.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// A coefficient of a pair law is NaN or out of range.
+    #[error("law between materials {a} and {b}: {field} is {value}, out of its range")]
+    BadLaw {
+        /// First material.
+        a: u16,
+        /// Second material.
+        b: u16,
+        /// Which coefficient.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A material without a law.
+    #[error("material {material} is not in the table of {known} materials")]
+    UnknownMaterial {
+        /// The material named.
+        material: u16,
+        /// How many there are.
+        known: u16,
+    },
+    /// Two bodies overlap at the start.
+    #[error("bodies {a} and {b} overlap by {depth} m at the start")]
+    BodiesOverlap {
+        /// The lower index.
+        a: usize,
+        /// The higher index.
+        b: usize,
+        /// Penetration in metres.
+        depth: f64,
+    },
+    /// A body overlaps the scenery at the start.
+    #[error("body {body} overlaps {surface} by {depth} m at the start")]
+    OverlapsScenery {
+        /// Index of the body.
+        body: usize,
+        /// Which surface.
+        surface: String,
+        /// Penetration in metres.
+        depth: f64,
+    },
+    /// A triangle with no area, or with a corner that is NaN or infinite.
+    #[error("triangle {triangle} is degenerate (area {area} m²)")]
+    DegenerateTriangle {
+        /// Index of the triangle.
+        triangle: usize,
+        /// Its area in m².
+        area: f64,
+    },
+    /// A triangle names a vertex that the mesh lacks.
+    #[error("triangle {triangle} names vertex {vertex}, but the mesh has {vertices}")]
+    UnknownVertex {
+        /// Index of the triangle.
+        triangle: usize,
+        /// The vertex named.
+        vertex: usize,
+        /// How many there are.
+        vertices: usize,
+    },
+    /// Two triangles run along an edge in the same direction, or more than two share it.
+    #[error("edge {from}–{to} of triangle {triangle} is shared by triangles that disagree on which side is outside, or by more than two")]
+    BadEdge {
+        /// Index of the later triangle.
+        triangle: usize,
+        /// First vertex of the edge.
+        from: usize,
+        /// Second vertex of the edge.
+        to: usize,
+    },
+    /// A vertex was moved farther than the margin that its mesh was made with.
+    #[error("vertex {vertex} moved {distance} m from where the mesh was made, more than its margin {margin} m")]
+    MovedTooFar {
+        /// Index of the vertex.
+        vertex: usize,
+        /// How far, in metres.
+        distance: f64,
+        /// The margin in metres.
+        margin: f64,
+    },
+    /// A number of a plane, dome or spline surface is NaN, infinite, or out of range.
+    #[error("{surface}: {field} is {value}, expected {expected}")]
+    BadSurface {
+        /// Which surface.
+        surface: String,
+        /// Which number.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// A field over a surface gave a value that is not finite.
+    #[error("control point ({i}, {j}) of the field \"{field}\" is {value}")]
+    BadControlPoint {
+        /// Which field.
+        field: &'static str,
+        /// First index.
+        i: i64,
+        /// Second index.
+        j: i64,
+        /// The value given.
+        value: f64,
+    },
+    /// A number of the world as a whole or of its accuracy is out of range.
+    #[error("{field} is {value}, expected {expected}")]
+    BadNumber {
+        /// Which number.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// A state that was made for another world.
+    #[error("the state has {state} bodies, the world {world}")]
+    WrongState {
+        /// Bodies of the state.
+        state: usize,
+        /// Bodies of the world.
+        world: usize,
+    },
+}

@@ -1,0 +1,153 @@
+//! Marbles as the event loop sees them.
+
+use super::body::{Marble, Phase};
+use super::step::MarbleScratch;
+use super::{Marbles, step};
+use crate::detect;
+use crate::material::Law;
+use crate::mechanics::{Impact, Link, Mechanics, Other};
+use crate::resolve::{Touch, sphere_impact};
+use crate::scenery::{Aabb, Surface};
+use glam::DVec3;
+
+impl Marbles {
+    #[inline]
+    pub(crate) fn touch(&self, index: usize, body: &Marble) -> Touch {
+        let s = &self.specs[index];
+        Touch { v: body.path.v, w: body.spin, inverse_mass: 1.0 / s.mass, radius: s.radius, gyration: s.gyration }
+    }
+
+    /// Rebound speed up to which a contact lasts.
+    #[inline]
+    pub(crate) fn settle_speed(&self, scale: f64, law: &Law) -> f64 {
+        self.accuracy.settle * (1.0 - law.restitution) * scale
+    }
+
+    pub(crate) fn surface_law(&self, index: usize, surface: Surface) -> &Law {
+        self.laws.of(self.specs[index].material, self.scenery.material(surface))
+    }
+
+    pub(crate) fn pair_law(&self, i: usize, j: usize) -> &Law {
+        self.laws.of(self.specs[i].material, self.specs[j].material)
+    }
+}
+
+/// The same law without rebound.
+fn plastic(law: &Law) -> Law {
+    Law { restitution: 0.0, ..*law }
+}
+
+impl Mechanics for Marbles {
+    type Body = Marble;
+    type Scratch = MarbleScratch;
+
+    fn len(&self) -> usize {
+        self.specs.len()
+    }
+
+    fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    fn event_budget(&self) -> u64 {
+        self.accuracy.events * self.specs.len() as u64
+    }
+
+    #[inline]
+    fn clock(&self, body: &Marble) -> f64 {
+        body.path.t
+    }
+
+    #[inline]
+    fn expiry(&self, body: &Marble) -> f64 {
+        body.expiry
+    }
+
+    #[inline]
+    fn is_present(&self, body: &Marble) -> bool {
+        body.phase != Phase::Waiting
+    }
+
+    #[inline]
+    fn is_resting(&self, body: &Marble) -> bool {
+        body.phase == Phase::Rest
+    }
+
+    fn is_finite(&self, body: &Marble) -> bool {
+        body.path.x.is_finite() && body.path.v.is_finite() && body.path.a.is_finite() && body.spin.is_finite() && !body.expiry.is_nan()
+    }
+
+    #[inline]
+    fn advance(&self, _index: usize, body: &mut Marble, time: f64) {
+        body.advance(time);
+    }
+
+    #[inline]
+    fn swept(&self, index: usize, body: &Marble, from: f64, until: f64) -> Aabb {
+        // Grown a little beyond the radius, so that rounding cannot hide a touching pair.
+        body.path.bounds(from - body.path.t, until - body.path.t).grown(self.specs[index].radius * (1.0 + 1e-9))
+    }
+
+    #[inline]
+    fn first_surface(&self, index: usize, body: &Marble, until: f64) -> Option<(f64, Surface)> {
+        if matches!(body.phase, Phase::Rest | Phase::Spin) {
+            return None;
+        }
+        let found = detect::next_surface(&self.scenery, &body.path, self.specs[index].radius, body.contacts(), until - body.path.t)?;
+        Some((body.path.t + found.0, found.1))
+    }
+
+    #[inline]
+    fn first_meeting(&self, [i, j]: [usize; 2], [a, b]: [&Marble; 2], from: f64, until: f64) -> Option<f64> {
+        detect::sphere_pair(&a.path, &b.path, self.specs[i].radius + self.specs[j].radius, from, until)
+    }
+
+    fn hit_surface(&self, index: usize, body: &mut Marble, surface: Surface) -> Option<Impact> {
+        let foot = self.scenery.foot(surface, body.path.x);
+        let approach = -body.path.v.dot(foot.normal);
+        let law = self.surface_law(index, surface);
+        let settles = law.restitution * approach <= self.settle_speed(self.speed_scale(index), law);
+        let known = body.contacts().contains(&surface);
+        // A new contact whose approach is lost in rounding is taken as one that lasts: settling decides what becomes of it.
+        if known && (settles || approach <= 0.0) {
+            return None;
+        }
+        let lasting = settles && body.add_contact(surface);
+        let mut touch = self.touch(index, body);
+        let law = if lasting { plastic(law) } else { *law };
+        let impulse = sphere_impact(&mut touch, &mut Touch::fixed(), foot.normal, &law);
+        (body.path.v, body.spin) = (touch.v, touch.w);
+        let point = body.path.x - foot.normal * self.specs[index].radius;
+        let other = Other::Surface(surface);
+        Some(Impact { time: body.path.t, body: index, other, point, normal: foot.normal, impulse: impulse.on_first, approach, lasting })
+    }
+
+    fn hit_body(&self, [i, j]: [usize; 2], [a, b]: [&mut Marble; 2], linked: bool) -> Option<Impact> {
+        let offset = a.path.x - b.path.x;
+        let distance = offset.length();
+        let normal = if distance > 0.0 { offset / distance } else { DVec3::Z };
+        let approach = -(a.path.v - b.path.v).dot(normal);
+        let law = self.pair_law(i, j);
+        let scale = self.speed_scale(i).min(self.speed_scale(j));
+        let lasting = law.restitution * approach <= self.settle_speed(scale, law);
+        if linked && (lasting || approach <= 0.0) {
+            return None;
+        }
+        let (mut first, mut second) = (self.touch(i, a), self.touch(j, b));
+        let used = if lasting { plastic(law) } else { *law };
+        let impulse = sphere_impact(&mut first, &mut second, normal, &used);
+        (a.path.v, a.spin, b.path.v, b.spin) = (first.v, first.w, second.v, second.w);
+        let point = b.path.x + normal * self.specs[j].radius;
+        let other = Other::Body(j);
+        Some(Impact { time: a.path.t, body: i, other, point, normal, impulse: impulse.on_first, approach, lasting })
+    }
+
+    #[inline]
+    fn contacts<'b>(&self, body: &'b Marble) -> &'b [Surface] {
+        body.contacts()
+    }
+
+    fn settle(&self, members: &[u32], bodies: &mut [Marble], links: &mut Vec<Link>, scratch: &mut MarbleScratch) {
+        step::settle(self, members, bodies, links, scratch);
+    }
+}

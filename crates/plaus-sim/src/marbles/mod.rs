@@ -1,0 +1,185 @@
+//! Worlds of spheres among static scenery: no orientation, no shape, exact first times of contact.
+
+mod body;
+mod closed;
+mod mechanics;
+mod solve;
+mod step;
+
+pub use body::{Marble, MarbleSpec, Phase, Start};
+
+use crate::accuracy::Accuracy;
+use crate::error::WorldError;
+use crate::material::Laws;
+use crate::scenery::Scenery;
+use crate::simulate::{Outcome, Scratch, simulate};
+use crate::state::State;
+use crate::trace::Observer;
+use glam::DVec3;
+
+/// An immutable world of marbles.
+#[derive(Debug, Clone)]
+pub struct Marbles {
+    pub(crate) specs: Vec<MarbleSpec>,
+    pub(crate) laws: Laws,
+    pub(crate) scenery: Scenery,
+    pub(crate) gravity: DVec3,
+    pub(crate) strength: f64,
+    pub(crate) accuracy: Accuracy,
+    pub(crate) duration: f64,
+}
+
+/// What a world is made from.
+#[derive(Debug, Clone)]
+pub struct MarbleWorld {
+    /// The marbles.
+    pub specs: Vec<MarbleSpec>,
+    /// What happens where materials touch.
+    pub laws: Laws,
+    /// What does not move.
+    pub scenery: Scenery,
+    /// Gravity in m/s².
+    pub gravity: DVec3,
+    /// All tolerances.
+    pub accuracy: Accuracy,
+    /// When a run is over at the latest, in s.
+    pub duration: f64,
+}
+
+impl Marbles {
+    /// Checks a world.
+    ///
+    /// # Errors
+    /// [`WorldError`] naming the body, surface or number at fault.
+    pub fn new(world: MarbleWorld) -> Result<Self, WorldError> {
+        let MarbleWorld { specs, laws, scenery, gravity, accuracy, duration } = world;
+        accuracy.check()?;
+        if !gravity.is_finite() {
+            return Err(WorldError::BadNumber { field: "gravity", value: f64::NAN, expected: "finite components" });
+        }
+        if !(duration > 0.0 && duration.is_finite()) {
+            return Err(WorldError::BadNumber { field: "duration", value: duration, expected: "a positive, finite time" });
+        }
+        for (k, spec) in specs.iter().enumerate() {
+            spec.check(k)?;
+            laws.require(spec.material)?;
+            if spec.radius > scenery.reach() {
+                return Err(WorldError::BadBody { body: k, field: "radius", value: spec.radius, expected: "at most the scenery's reach" });
+            }
+            if let Some(d) = scenery.domes().iter().find(|d| d.hollow && d.radius <= spec.radius) {
+                return Err(WorldError::BadBody {
+                    body: k,
+                    field: "radius",
+                    value: spec.radius,
+                    expected: if d.radius > 0.0 { "less than that of every bowl" } else { "positive" },
+                });
+            }
+        }
+        for plane in scenery.planes() {
+            laws.require(plane.material)?;
+        }
+        for dome in scenery.domes() {
+            laws.require(dome.material)?;
+        }
+        for face in &scenery.mesh().faces {
+            laws.require(face.material)?;
+        }
+        Ok(Self { specs, laws, scenery, gravity, strength: gravity.length(), accuracy, duration })
+    }
+
+    /// The marbles' specifications.
+    #[must_use]
+    pub fn specs(&self) -> &[MarbleSpec] {
+        &self.specs
+    }
+
+    /// The scenery.
+    #[must_use]
+    pub fn scenery(&self) -> &Scenery {
+        &self.scenery
+    }
+
+    /// Gravity in m/s².
+    #[must_use]
+    pub fn gravity(&self) -> DVec3 {
+        self.gravity
+    }
+
+    /// Moves mesh vertices (see [`crate::scenery::Mesh::move_vertices`]); states of this world stay valid only if they have not started.
+    ///
+    /// # Errors
+    /// As [`crate::scenery::Mesh::move_vertices`].
+    pub fn move_vertices(&mut self, moved: &[(u32, DVec3)]) -> Result<(), WorldError> {
+        self.scenery.move_vertices(moved)
+    }
+
+    /// A state in which every marble waits for its release.
+    ///
+    /// # Errors
+    /// [`WorldError`] naming the marble whose start is not finite, or that overlaps another one released at the same time or the scenery.
+    pub fn state(&self, starts: &[Start]) -> Result<State<Marble>, WorldError> {
+        if starts.len() != self.specs.len() {
+            return Err(WorldError::WrongState { state: starts.len(), world: self.specs.len() });
+        }
+        for (k, start) in starts.iter().enumerate() {
+            self.check_start(k, start)?;
+            for (j, other) in starts[..k].iter().enumerate() {
+                let reach = self.specs[j].radius + self.specs[k].radius;
+                let depth = reach - (start.position - other.position).length();
+                if start.time == other.time && depth > OVERLAP * reach {
+                    return Err(WorldError::BodiesOverlap { a: j, b: k, depth });
+                }
+            }
+        }
+        Ok(State::new(starts.iter().map(Marble::waiting).collect()))
+    }
+
+    fn check_start(&self, k: usize, start: &Start) -> Result<(), WorldError> {
+        start.check(k)?;
+        let radius = self.specs[k].radius;
+        match self.scenery.deepest_overlap(start.position, radius) {
+            Some((surface, depth)) if depth > OVERLAP * radius => {
+                Err(WorldError::OverlapsScenery { body: k, surface: surface.to_string(), depth })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Gives a marble that is still waiting another start; everything else keeps its bits, so a saved beginning serves many continuations.
+    ///
+    /// # Errors
+    /// [`WorldError`] where the start is bad, or where the marble has been released or the new release lies in the state's past.
+    pub fn restart(&self, state: &mut State<Marble>, index: usize, start: &Start) -> Result<(), WorldError> {
+        self.check_start(index, start)?;
+        let released = state.bodies()[index].phase != Phase::Waiting;
+        if released || start.time < state.time() {
+            return Err(WorldError::BadBody { body: index, field: "start time", value: start.time, expected: "a release still to come" });
+        }
+        state.replace_unreleased(index, Marble::waiting(start), start.time.min(self.duration));
+        Ok(())
+    }
+
+    /// Runs a state until `until` seconds, the end of the world's duration, rest, or the observer's stop.
+    pub fn run(&self, state: &mut State<Marble>, scratch: &mut Scratch<MarbleScratch>, until: f64, observer: &mut impl Observer<Self>) -> Outcome {
+        simulate(self, state, scratch, until, observer)
+    }
+
+    /// Kinetic plus potential energy of one marble at its own clock, in J.
+    #[must_use]
+    pub fn energy(&self, index: usize, body: &Marble) -> f64 {
+        let s = &self.specs[index];
+        let turning = s.gyration * s.radius * s.radius * body.spin.length_squared();
+        s.mass * (0.5 * (body.path.v.length_squared() + turning) - self.gravity.dot(body.path.x))
+    }
+
+    /// Speed in m/s that a fall over one radius gives, up to √2: the scale of all speeds of a marble.
+    #[inline]
+    pub(crate) fn speed_scale(&self, index: usize) -> f64 {
+        (self.strength * self.specs[index].radius).sqrt()
+    }
+}
+
+/// Overlap at the start that counts as touching, over the radius. Default 1e-9; danger: larger values start bodies inside each other.
+const OVERLAP: f64 = 1e-9;
+
+pub use step::MarbleScratch;

@@ -1,0 +1,122 @@
+//! What happens where two materials touch: a law per unordered pair of materials.
+
+use crate::error::WorldError;
+use serde::{Deserialize, Serialize};
+
+/// A material: an index into the world's [`Laws`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Material(pub u16);
+
+/// The constitutive numbers of one pair of materials. All are dimensionless.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Law {
+    /// Coulomb's coefficient, static and kinetic alike; in [0, ∞).
+    pub friction: f64,
+    /// Restitution of the normal motion; in [0, 1]. Newton's ratio for spheres, Stronge's energetic ratio for other bodies (the two agree for spheres).
+    pub restitution: f64,
+    /// Restitution of the tangential motion of a sphere; in [0, 1]. 0 sticks (the usual case), 1 is Garwin's super-ball.
+    pub tangential: f64,
+    /// Rolling resistance: the resisting torque is at most this × normal force × radius; in [0, ∞). Glass on wood: 0.001–0.02.
+    pub rolling: f64,
+    /// Resistance to spinning about the normal: torque = this × normal force × radius; in [0, ∞).
+    pub spinning: f64,
+}
+
+impl Law {
+    /// Coulomb friction and restitution, no resistance to rolling or spinning.
+    #[must_use]
+    pub const fn new(friction: f64, restitution: f64) -> Self {
+        Self { friction, restitution, tangential: 0.0, rolling: 0.0, spinning: 0.0 }
+    }
+
+    /// The same law with resistance to rolling and to spinning.
+    #[must_use]
+    pub const fn with_resistance(self, rolling: f64, spinning: f64) -> Self {
+        Self { rolling, spinning, ..self }
+    }
+
+    /// The same law with tangential restitution.
+    #[must_use]
+    pub const fn with_tangential(self, tangential: f64) -> Self {
+        Self { tangential, ..self }
+    }
+
+    fn check(&self) -> Result<(), (&'static str, f64)> {
+        let non_negative = [("friction", self.friction), ("rolling", self.rolling), ("spinning", self.spinning)];
+        let unit = [("restitution", self.restitution), ("tangential", self.tangential)];
+        for (name, value) in non_negative {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err((name, value));
+            }
+        }
+        for (name, value) in unit {
+            if !(0.0..=1.0).contains(&value) {
+                return Err((name, value));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The table of laws: one for each unordered pair of materials.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Laws {
+    materials: u16,
+    table: Vec<Law>,
+}
+
+impl Laws {
+    /// A world of one material only.
+    ///
+    /// # Errors
+    /// [`WorldError::BadLaw`] where a number is out of its range or NaN.
+    pub fn uniform(law: Law) -> Result<Self, WorldError> {
+        Self::new(1, law)
+    }
+
+    /// A table for `materials` materials, all pairs with the law `default`.
+    ///
+    /// # Errors
+    /// [`WorldError::BadLaw`] where a number is out of its range or NaN.
+    pub fn new(materials: u16, default: Law) -> Result<Self, WorldError> {
+        let mut laws = Self { materials, table: vec![default; usize::from(materials) * usize::from(materials)] };
+        if materials > 0 {
+            laws.set(Material(0), Material(0), default)?;
+        }
+        Ok(laws)
+    }
+
+    /// Gives one unordered pair its own law.
+    ///
+    /// # Errors
+    /// [`WorldError::BadLaw`] where a number is out of its range or NaN, [`WorldError::UnknownMaterial`] where the table lacks a material.
+    pub fn set(&mut self, a: Material, b: Material, law: Law) -> Result<(), WorldError> {
+        self.require(a)?;
+        self.require(b)?;
+        law.check().map_err(|(field, value)| WorldError::BadLaw { a: a.0, b: b.0, field, value })?;
+        let n = usize::from(self.materials);
+        self.table[usize::from(a.0) * n + usize::from(b.0)] = law;
+        self.table[usize::from(b.0) * n + usize::from(a.0)] = law;
+        Ok(())
+    }
+
+    /// Checks that the table has a material.
+    ///
+    /// # Errors
+    /// [`WorldError::UnknownMaterial`] where it has not.
+    pub fn require(&self, material: Material) -> Result<(), WorldError> {
+        if material.0 < self.materials {
+            Ok(())
+        } else {
+            Err(WorldError::UnknownMaterial { material: material.0, known: self.materials })
+        }
+    }
+
+    /// The law of a pair.
+    #[inline]
+    #[must_use]
+    pub fn of(&self, a: Material, b: Material) -> &Law {
+        &self.table[usize::from(a.0) * usize::from(self.materials) + usize::from(b.0)]
+    }
+}

@@ -1,0 +1,88 @@
+//! The seam between the event loop and the kinds of bodies: what a kind must be able to say about its bodies.
+//!
+//! The loop is compiled once per kind, so a world of marbles holds no orientation, no shape and no code for turning bodies.
+
+use crate::scenery::{Aabb, Surface};
+use glam::DVec3;
+
+/// What one impact did, for traces and observers.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Impact {
+    /// When, in s.
+    pub time: f64,
+    /// The body that was hit; the lower index of two.
+    pub body: usize,
+    /// What it hit.
+    pub other: Other,
+    /// Where, in m.
+    pub point: DVec3,
+    /// Unit normal towards `body`.
+    pub normal: DVec3,
+    /// Impulse on `body` in N s.
+    pub impulse: DVec3,
+    /// Normal relative speed before, in m/s.
+    pub approach: f64,
+    /// Whether the contact lasts from here on.
+    pub lasting: bool,
+}
+
+/// The partner of an impact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Other {
+    /// Another body, by index.
+    Body(usize),
+    /// The scenery.
+    Surface(Surface),
+}
+
+/// A pair of bodies in lasting contact, lower index first.
+pub type Link = [u32; 2];
+
+/// A kind of bodies and the scenery that they live in. Everything here is immutable; bodies are passed in.
+pub trait Mechanics {
+    /// The moving state of one body, with the closed form of its current motion.
+    type Body: Clone + std::fmt::Debug;
+    /// Work space for [`Mechanics::settle`], kept between calls.
+    type Scratch: Default;
+
+    /// How many bodies there are.
+    fn len(&self) -> usize;
+    /// Whether there are none.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+    /// When the world's run is over, in s.
+    fn duration(&self) -> f64;
+    /// Most events of a run.
+    fn event_budget(&self) -> u64;
+
+    /// The body's own clock.
+    fn clock(&self, body: &Self::Body) -> f64;
+    /// Time at which the closed form ends by itself; infinite where it does not.
+    fn expiry(&self, body: &Self::Body) -> f64;
+    /// Whether the body takes part: not before it is released.
+    fn is_present(&self, body: &Self::Body) -> bool;
+    /// Whether the body is at rest until something hits it.
+    fn is_resting(&self, body: &Self::Body) -> bool;
+    /// Whether all numbers are finite.
+    fn is_finite(&self, body: &Self::Body) -> bool;
+    /// Moves a body along its closed form to `time`, its new clock.
+    fn advance(&self, index: usize, body: &mut Self::Body, time: f64);
+
+    /// A box around the body from `from` to `until`.
+    fn swept(&self, index: usize, body: &Self::Body, from: f64, until: f64) -> Aabb;
+    /// First surface touched while approaching, not after `until`.
+    fn first_surface(&self, index: usize, body: &Self::Body, until: f64) -> Option<(f64, Surface)>;
+    /// First time in `[from, until]` at which two bodies touch while approaching.
+    fn first_meeting(&self, pair: [usize; 2], bodies: [&Self::Body; 2], from: f64, until: f64) -> Option<f64>;
+
+    /// Collides a body with a surface, both at the body's clock; records the contact where it lasts.
+    fn hit_surface(&self, index: usize, body: &mut Self::Body, surface: Surface) -> Option<Impact>;
+    /// Collides two bodies; `lasting` of the result says whether they are to be linked. `linked` says whether they are already.
+    fn hit_body(&self, pair: [usize; 2], bodies: [&mut Self::Body; 2], linked: bool) -> Option<Impact>;
+    /// The lasting surface contacts of a body.
+    fn contacts<'b>(&self, body: &'b Self::Body) -> &'b [Surface];
+    /// Decides what a group of bodies in lasting contact with each other (`links` among `members`, all clocks equal) does next: gives each a closed form. Drops
+    /// contacts and links that have ended.
+    fn settle(&self, members: &[u32], bodies: &mut [Self::Body], links: &mut Vec<Link>, scratch: &mut Self::Scratch);
+}

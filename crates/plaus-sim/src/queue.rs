@@ -1,0 +1,131 @@
+//! The event queue: one slot per body, holding its earliest event, under a tournament tree.
+//!
+//! An event that a change elsewhere has made stale is recognised by the partner's generation when it comes up; the body is then looked at anew. That
+//! loses nothing, since everything later of that body was left out only because the stale event came first.
+
+use crate::scenery::Surface;
+use serde::{Deserialize, Serialize};
+
+/// What happens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Happening {
+    /// The run's end; nothing before it.
+    End,
+    /// The closed form of the motion ends.
+    Expiry,
+    /// The body touches a surface.
+    Surface(Surface),
+    /// The body touches another, which had this generation when the event was found.
+    Body {
+        /// The other's index.
+        other: u32,
+        /// Its generation then.
+        generation: u32,
+    },
+}
+
+/// When and what.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// In s.
+    pub time: f64,
+    /// What happens then.
+    pub happening: Happening,
+}
+
+impl Event {
+    /// Order of execution: time, then the lower and the higher index of those involved, so that ties never depend on bookkeeping.
+    #[inline]
+    fn key(&self, body: u32) -> (f64, u32, u32) {
+        match self.happening {
+            Happening::Body { other, .. } => (self.time, body.min(other), body.max(other)),
+            _ => (self.time, body, body),
+        }
+    }
+
+    /// Whether this event of `body` comes before `other` of `rival`.
+    #[inline]
+    #[must_use]
+    pub fn precedes(&self, body: u32, other: &Self, rival: u32) -> bool {
+        self.key(body) < other.key(rival)
+    }
+}
+
+/// A complete binary tree whose inner nodes name the body with the earlier event.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Tournament {
+    leaves: usize,
+    winners: Vec<u32>,
+}
+
+impl Tournament {
+    /// Plays all matches anew.
+    pub(crate) fn rebuild(&mut self, events: &[Event]) {
+        self.leaves = events.len().next_power_of_two().max(1);
+        self.winners.clear();
+        self.winners.resize(2 * self.leaves, NOBODY);
+        for k in 0..events.len() {
+            self.winners[self.leaves + k] = k as u32;
+        }
+        for node in (1..self.leaves).rev() {
+            self.play(node, events);
+        }
+    }
+
+    /// Plays the matches of one body anew.
+    #[inline]
+    pub(crate) fn update(&mut self, body: usize, events: &[Event]) {
+        let mut node = (self.leaves + body) / 2;
+        while node >= 1 {
+            self.play(node, events);
+            node /= 2;
+        }
+    }
+
+    #[inline]
+    fn play(&mut self, node: usize, events: &[Event]) {
+        let (a, b) = (self.winners[2 * node], self.winners[2 * node + 1]);
+        let a_wins = b == NOBODY || (a != NOBODY && !events[b as usize].precedes(b, &events[a as usize], a));
+        self.winners[node] = if a_wins { a } else { b };
+    }
+
+    /// The body whose event comes first, if there are bodies.
+    #[inline]
+    pub(crate) fn first(&self) -> Option<usize> {
+        let winner = if self.leaves == 1 { *self.winners.get(1)? } else { self.winners[1] };
+        (winner != NOBODY).then_some(winner as usize)
+    }
+}
+
+const NOBODY: u32 = u32::MAX;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The tree against a plainly scanned list, through random updates.
+        #[test]
+        fn first_is_the_least(times in prop::collection::vec(0_u8..6, 1..40), updates in prop::collection::vec((0_usize..40, 0_u8..6), 0..60)) {
+            let event = |t: u8| Event { time: f64::from(t), happening: Happening::Expiry };
+            let mut events: Vec<Event> = times.iter().map(|&t| event(t)).collect();
+            let mut tree = Tournament::default();
+            tree.rebuild(&events);
+            for (k, t) in updates {
+                let k = k % events.len();
+                events[k] = event(t);
+                tree.update(k, &events);
+                let scanned = (0..events.len()).min_by(|&a, &b| events[a].time.total_cmp(&events[b].time).then(a.cmp(&b)));
+                prop_assert_eq!(tree.first(), scanned);
+            }
+        }
+    }
+
+    #[test]
+    fn nobody_comes_first_in_an_empty_world() {
+        let mut tree = Tournament::default();
+        tree.rebuild(&[]);
+        assert_eq!(tree.first(), None);
+    }
+}

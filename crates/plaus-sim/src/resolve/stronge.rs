@@ -1,0 +1,252 @@
+//! Impact of bodies with lever arms: Stronge's energetic restitution, integrated over the normal impulse after Darboux and Keller.
+//!
+//! With `K` the inverse inertia seen at the contact, velocities change as `du/dp = K (−μ û, 1)` while the contact slips in direction `û`. Slip may
+//! stop, stay stuck (if the friction that would hold it is inside the cone) or turn. The normal work `W = ∫ u_n dp` decides the end:
+//! the impact is over when the fraction `e²` of the energy of compression has come back. Newton's rule gains energy under friction, Poisson's may too; this one
+//! cannot, because normal work is −(1−e²) of the compression's and friction only takes.
+//!
+//! Sources: Keller, "Impact with friction", J. Appl. Mech. 53 (1986); Stronge, *Impact Mechanics* (2000), ch. 4; Darboux (1880).
+//! Deviation: where the slip turns while it shrinks (three dimensions), the path is followed by midpoint steps that turn it by at most
+//! `turn` radians each; slip that keeps its direction (every planar impact) is followed exactly.
+
+use glam::{DMat3, DVec2, DVec3};
+use plaus_dist::math;
+
+/// Inverse inertia at a contact, in a frame whose z axis is the normal (1/kg): velocity change per impulse. Symmetric and positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactMatrix(pub DMat3);
+
+impl ContactMatrix {
+    fn tangential(&self, f: DVec2) -> DVec2 {
+        let m = &self.0;
+        DVec2::new(m.x_axis.x * f.x + m.y_axis.x * f.y, m.x_axis.y * f.x + m.y_axis.y * f.y)
+    }
+
+    fn coupling(&self) -> DVec2 {
+        DVec2::new(self.0.z_axis.x, self.0.z_axis.y)
+    }
+
+    /// `du/dp` under the friction force `f` per unit normal force.
+    fn rate(&self, f: DVec2) -> (DVec2, f64) {
+        (self.tangential(f) + self.coupling(), self.0.z_axis.z + self.coupling().dot(f))
+    }
+
+    /// The friction per unit normal force that keeps a stuck contact stuck.
+    fn holding(&self) -> DVec2 {
+        let (m, c) = (&self.0, self.coupling());
+        let det = m.x_axis.x * m.y_axis.y - m.y_axis.x * m.x_axis.y;
+        -DVec2::new(m.y_axis.y * c.x - m.y_axis.x * c.y, m.x_axis.x * c.y - m.x_axis.y * c.x) / det
+    }
+
+    /// The direction in which a contact that cannot stick starts to slip: where the slip's change points along the slip.
+    fn escape(&self, friction: f64) -> DVec2 {
+        const SECTORS: usize = 32;
+        let rate_in = |angle: f64| {
+            let (s, c) = math::sin_cos(angle);
+            let u = DVec2::new(c, s);
+            let (slip, _) = self.rate(-u * friction);
+            (u, u.perp_dot(slip), u.dot(slip))
+        };
+        let width = std::f64::consts::TAU / SECTORS as f64;
+        let mut best = (f64::NEG_INFINITY, DVec2::X);
+        for k in 0..SECTORS {
+            let (mut low, mut high) = (k as f64 * width, (k + 1) as f64 * width);
+            let at_low = rate_in(low).1;
+            if (at_low > 0.0) == (rate_in(high).1 > 0.0) {
+                continue;
+            }
+            for _ in 0..52 {
+                let middle = 0.5 * (low + high);
+                if (rate_in(middle).1 > 0.0) == (at_low > 0.0) { low = middle } else { high = middle }
+            }
+            let (u, _, outward) = rate_in(0.5 * (low + high));
+            if outward > best.0 {
+                best = (outward, u);
+            }
+        }
+        best.1
+    }
+}
+
+/// Impulse (in the contact's frame) that ends an impact with relative velocity `u` (z is the normal part, negative for approach).
+///
+/// `turn` is the largest angle in radians by which the slip may turn within one integration step.
+#[must_use]
+pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: f64, turn: f64) -> DVec3 {
+    let mut path = Path { slip: DVec2::new(u.x, u.y), normal: u.z, work: 0.0, impulse: DVec3::ZERO };
+    if u.z >= 0.0 {
+        return path.impulse;
+    }
+    let tiny = f64::EPSILON * u.length();
+    let mut target = None;
+    for _ in 0..MOST_STEPS {
+        let stuck = path.slip.length() <= tiny;
+        let (force, longest) = path.friction(k, friction, turn, stuck);
+        let (slip_rate, normal_rate) = k.rate(force);
+        let end = path.until_end(normal_rate, target);
+        let step = if end <= longest { end } else { longest };
+        if !step.is_finite() {
+            break;
+        }
+        path.take(step, force, slip_rate, normal_rate, stuck || (step == longest && longest.is_finite() && path.stops(slip_rate, step)));
+        if step == end {
+            match target {
+                None => target = Some(path.work * (1.0 - restitution * restitution)),
+                Some(_) => break,
+            }
+            if restitution == 0.0 {
+                break;
+            }
+        }
+    }
+    path.impulse
+}
+
+/// A slip that turns needs π / `turn` steps or so; the bound only guards against our own mistakes.
+const MOST_STEPS: usize = 4096;
+
+struct Path {
+    slip: DVec2,
+    normal: f64,
+    work: f64,
+    impulse: DVec3,
+}
+
+impl Path {
+    /// Friction force per unit normal force, and the longest step over which it may be taken as constant.
+    fn friction(&self, k: &ContactMatrix, friction: f64, turn: f64, stuck: bool) -> (DVec2, f64) {
+        if friction == 0.0 {
+            return (DVec2::ZERO, f64::INFINITY);
+        }
+        if stuck {
+            let holding = k.holding();
+            if holding.length() <= friction {
+                return (holding, f64::INFINITY);
+            }
+            return (-k.escape(friction) * friction, f64::INFINITY);
+        }
+        let speed = self.slip.length();
+        let u = self.slip / speed;
+        let (rate, _) = k.rate(-u * friction);
+        let (along, across) = (u.dot(rate), u.perp_dot(rate).abs());
+        let stop = if along < 0.0 { -speed / along } else { f64::INFINITY };
+        if across <= 1e-12 * rate.length() {
+            return (-u * friction, stop);
+        }
+        let step = (turn * speed / across).min(0.5 * stop);
+        // Midpoint: the direction half a step ahead stands for the whole step.
+        let middle = self.slip + rate * (0.5 * step);
+        let u = middle / middle.length();
+        let (rate, _) = k.rate(-u * friction);
+        let along = u.dot(rate);
+        let closing = along < 0.0 && u.perp_dot(rate).abs() * self.slip.length() <= turn * 1e-3 * self.slip.length() * -along;
+        let stop = -self.slip.dot(rate) / rate.length_squared();
+        (-u * friction, if closing && stop > 0.0 { stop } else { step })
+    }
+
+    /// Whether a step ends with the slip gone up to what the integration can resolve.
+    fn stops(&self, rate: DVec2, step: f64) -> bool {
+        (self.slip + rate * step).length() <= 1e-3 * self.slip.length()
+    }
+
+    /// Normal impulse until compression ends (no target yet) or until the work reaches its target.
+    fn until_end(&self, rate: f64, target: Option<f64>) -> f64 {
+        match target {
+            None if rate > 0.0 => -self.normal / rate,
+            None => f64::INFINITY,
+            Some(work) => {
+                // W + u p + r p²/2 = target, with u ≥ 0: the positive root in the form that does not cancel.
+                let missing = work - self.work;
+                let discriminant = self.normal * self.normal + 2.0 * rate * missing;
+                if missing <= 0.0 {
+                    return 0.0;
+                }
+                if discriminant < 0.0 { f64::INFINITY } else { 2.0 * missing / (self.normal + discriminant.sqrt()) }
+            }
+        }
+    }
+
+    fn take(&mut self, step: f64, force: DVec2, slip_rate: DVec2, normal_rate: f64, stuck: bool) {
+        self.work += step * (self.normal + 0.5 * normal_rate * step);
+        self.normal += normal_rate * step;
+        let holds = stuck && (slip_rate.length_squared() <= 1e-24 * (1.0 + force.length_squared()) * normal_rate * normal_rate || self.stops(slip_rate, step));
+        self.slip = if holds { DVec2::ZERO } else { self.slip + slip_rate * step };
+        self.impulse += DVec3::new(force.x, force.y, 1.0) * step;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const TURN: f64 = 0.05;
+
+    /// The rod of the regression vectors: planar, so the second tangential direction is decoupled.
+    fn rod() -> ContactMatrix {
+        ContactMatrix(DMat3::from_cols(DVec3::new(2.5, 0.0, -1.5), DVec3::new(0.0, 1.0, 0.0), DVec3::new(-1.5, 0.0, 2.5)))
+    }
+
+    fn after(k: &ContactMatrix, u: DVec3, e: f64, mu: f64) -> (DVec3, f64) {
+        let impulse = stronge_impulse(k, u, e, mu, TURN);
+        let next = u + k.0 * impulse;
+        // ΔE = J · (u + u')/2, exact for rigid bodies.
+        (next, impulse.dot(u + next) * 0.5)
+    }
+
+    #[test]
+    fn rod_that_comes_to_stick() {
+        let (u, energy) = after(&rod(), DVec3::new(0.5, 0.0, -1.0), 1.0, 1.0);
+        assert!((u.z - 0.741_619_848_709_566_6).abs() < 1e-12, "{u}");
+        assert!((energy + 1.0 / 32.0).abs() < 1e-12, "{energy}");
+    }
+
+    #[test]
+    fn rod_whose_slip_reverses() {
+        let (u, energy) = after(&rod(), DVec3::new(0.5, 0.0, -1.0), 0.8, 0.5);
+        assert!((u.x + 0.148_118).abs() < 1e-6 && (u.z - 0.627_734).abs() < 1e-6, "{u}");
+        assert!(energy < 0.0);
+    }
+
+    #[test]
+    fn a_sphere_agrees_with_the_closed_form() {
+        // K of a solid sphere of unit mass against the ground: 7/2 across, 1 along.
+        let k = ContactMatrix(DMat3::from_diagonal(DVec3::new(3.5, 3.5, 1.0)));
+        let (stick, _) = after(&k, DVec3::new(0.3, 0.4, -2.0), 0.5, 1.0);
+        assert!(stick.truncate().length() < 1e-15 && (stick.z - 1.0).abs() < 1e-15);
+        let (slip, _) = after(&k, DVec3::new(3.0, 4.0, -2.0), 0.5, 0.1);
+        let left = 5.0 - 3.5 * 0.1 * 3.0;
+        assert!((slip - DVec3::new(0.6 * left, 0.8 * left, 1.0)).length() < 1e-14);
+    }
+
+    #[test]
+    fn finer_turns_converge() {
+        let k = ContactMatrix(DMat3::from_cols(DVec3::new(4.0, 1.0, -1.0), DVec3::new(1.0, 2.0, 0.7), DVec3::new(-1.0, 0.7, 1.5)));
+        let u = DVec3::new(1.0, -0.8, -1.0);
+        let exact = stronge_impulse(&k, u, 0.7, 0.3, 1e-3);
+        let errors: Vec<f64> = [0.2, 0.1, 0.05].iter().map(|&turn| (stronge_impulse(&k, u, 0.7, 0.3, turn) - exact).length()).collect();
+        assert!(errors[2] < 1e-3 && errors[2] < errors[0], "{errors:?}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+        /// For every inertia, lever arm, friction and restitution: energy does not grow, the bodies separate, and the impulse lies in the cone.
+        #[test]
+        fn energy_never_grows(
+            inertia in prop::array::uniform3(0.05..20.0_f64), r in prop::array::uniform3(-1.0..1.0_f64), u in prop::array::uniform3(-3.0..3.0_f64),
+            e in 0.0..=1.0_f64, mu in 0.0..3.0_f64,
+        ) {
+            let r = DVec3::from(r);
+            let cross = DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0));
+            let k = ContactMatrix(DMat3::IDENTITY - cross * DMat3::from_diagonal(DVec3::from(inertia)) * cross);
+            let u = DVec3::new(u[0], u[1], -u[2].abs() - 1e-3);
+            let impulse = stronge_impulse(&k, u, e, mu, TURN);
+            let next = u + k.0 * impulse;
+            let energy = impulse.dot(u + next) * 0.5;
+            let scale = impulse.length() * u.length();
+            prop_assert!(energy <= 1e-12 * scale, "{energy} of {scale}");
+            prop_assert!(next.z >= -1e-9 * u.length(), "{next}");
+            prop_assert!(impulse.truncate().length() <= mu * impulse.z * (1.0 + 1e-9) + 1e-12 * scale);
+        }
+    }
+}

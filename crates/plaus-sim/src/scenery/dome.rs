@@ -1,0 +1,64 @@
+//! Spherical caps: bowls (the ball is inside the sphere) and domes (it is outside).
+
+use crate::error::WorldError;
+use crate::material::Material;
+use crate::scenery::Aabb;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// The part of a sphere's surface that lies inside a box.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Dome {
+    /// Centre of the sphere.
+    pub centre: DVec3,
+    /// Its radius in m.
+    pub radius: f64,
+    /// Whether bodies touch it from inside (a bowl).
+    pub hollow: bool,
+    /// Only contact points in this box count.
+    pub clip: Aabb,
+    /// What it is made of.
+    pub material: Material,
+}
+
+impl Dome {
+    /// A cap.
+    ///
+    /// # Errors
+    /// [`WorldError::BadSurface`] where the radius is not positive or a number is not finite.
+    pub fn new(centre: DVec3, radius: f64, hollow: bool, clip: Aabb, material: Material) -> Result<Self, WorldError> {
+        let bad = |field, value, expected| WorldError::BadSurface { surface: "dome".into(), field, value, expected };
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(bad("radius", radius, "a positive length"));
+        }
+        if !centre.is_finite() || !clip.min.is_finite() || !clip.max.is_finite() {
+            return Err(bad("centre or clip", f64::NAN, "finite coordinates"));
+        }
+        Ok(Self { centre, radius, hollow, clip, material })
+    }
+
+    /// Unit normal towards a body's centre `x`, and the distance of `x` from the surface (positive outside the solid).
+    #[inline]
+    #[must_use]
+    pub fn normal_and_distance(&self, x: DVec3) -> (DVec3, f64) {
+        let offset = x - self.centre;
+        let length = offset.length();
+        let outward = if length > 0.0 { offset / length } else { DVec3::Z };
+        if self.hollow { (-outward, self.radius - length) } else { (outward, length - self.radius) }
+    }
+
+    /// The surface point nearest to `x`, where it counts.
+    #[inline]
+    #[must_use]
+    pub fn foot(&self, x: DVec3) -> Option<DVec3> {
+        let (normal, distance) = self.normal_and_distance(x);
+        let point = x - normal * distance;
+        self.clip.contains(point).then_some(point)
+    }
+
+    /// A box around the surface: of the clip box, the slab that a cap opening along ±z can reach.
+    pub(crate) fn bounds(&self) -> Aabb {
+        let ball = Aabb { min: self.centre - self.radius, max: self.centre + self.radius };
+        Aabb { min: self.clip.min.max(ball.min), max: self.clip.max.min(ball.max) }
+    }
+}

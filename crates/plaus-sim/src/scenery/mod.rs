@@ -1,0 +1,205 @@
+//! What does not move: planes, a triangle mesh, bowls and domes, with a broad phase for the bounded ones.
+
+mod aabb;
+mod dome;
+mod grid;
+mod mesh;
+mod plane;
+mod track;
+
+pub use aabb::Aabb;
+pub use dome::Dome;
+pub use mesh::Mesh;
+pub use plane::Plane;
+
+pub(crate) use grid::Grid;
+
+use crate::error::WorldError;
+use crate::material::Material;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A part of the scenery that a body can touch: an index into the planes, faces, edges, vertices or domes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Surface {
+    /// A plane.
+    Plane(u32),
+    /// The inside of a triangle.
+    Face(u32),
+    /// A bowl or dome.
+    Dome(u32),
+    /// An edge of the mesh.
+    Edge(u32),
+    /// A vertex of the mesh.
+    Vertex(u32),
+}
+
+impl fmt::Display for Surface {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Plane(k) => write!(f, "plane {k}"),
+            Self::Face(k) => write!(f, "triangle {k}"),
+            Self::Dome(k) => write!(f, "dome {k}"),
+            Self::Edge(k) => write!(f, "mesh edge {k}"),
+            Self::Vertex(k) => write!(f, "vertex {k}"),
+        }
+    }
+}
+
+/// Where a ball's centre stands to a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Foot {
+    /// Unit vector from the surface to the centre.
+    pub normal: DVec3,
+    /// Distance of the centre from the surface in m.
+    pub distance: f64,
+    /// Radius of curvature of the surface towards the ball: +∞ flat, 0 an edge or vertex, negative a bowl's radius.
+    pub curvature_radius: f64,
+}
+
+/// All scenery of a world.
+#[derive(Debug, Clone)]
+pub struct Scenery {
+    planes: Vec<Plane>,
+    mesh: Mesh,
+    domes: Vec<Dome>,
+    /// Of faces, domes, edges, vertices in this order.
+    boxes: Vec<Aabb>,
+    grid: Grid,
+    reach: f64,
+}
+
+impl Scenery {
+    /// Scenery for balls of radius up to `reach`.
+    ///
+    /// # Errors
+    /// [`WorldError::BadNumber`] where `reach` is not positive.
+    pub fn new(planes: Vec<Plane>, mesh: Mesh, domes: Vec<Dome>, reach: f64) -> Result<Self, WorldError> {
+        if !(reach > 0.0 && reach.is_finite()) {
+            return Err(WorldError::BadNumber { field: "largest radius", value: reach, expected: "a positive length" });
+        }
+        let margin = mesh.margin();
+        let faces = (0..mesh.faces.len()).map(|f| mesh.face_bounds(f).grown(margin));
+        let edges = mesh.edges.iter().map(|e| {
+            // An edge that can never become convex is left out of every cell.
+            if margin == 0.0 && !e.active { Aabb::EMPTY } else { Aabb::around(e.ends.map(|v| mesh.vertices[v as usize])).grown(margin) }
+        });
+        let vertices = mesh.vertices.iter().zip(&mesh.vertex_active).map(|(&v, &active)| {
+            if margin == 0.0 && !active { Aabb::EMPTY } else { Aabb { min: v, max: v }.grown(margin) }
+        });
+        let boxes: Vec<Aabb> = faces.chain(domes.iter().map(Dome::bounds)).chain(edges).chain(vertices).collect();
+        let grid = Grid::new(&boxes, reach);
+        Ok(Self { planes, mesh, domes, boxes, grid, reach })
+    }
+
+    /// Scenery without anything in it.
+    ///
+    /// # Errors
+    /// Never in fact; the mesh of nothing is a mesh.
+    pub fn empty() -> Result<Self, WorldError> {
+        Self::new(Vec::new(), Mesh::new(Vec::new(), &[], 0.0)?, Vec::new(), 1.0)
+    }
+
+    /// The same scenery with some mesh vertices moved (see [`Mesh::move_vertices`]).
+    ///
+    /// # Errors
+    /// As [`Mesh::move_vertices`].
+    pub fn move_vertices(&mut self, moved: &[(u32, DVec3)]) -> Result<(), WorldError> {
+        self.mesh.move_vertices(moved)
+    }
+
+    /// The planes.
+    #[must_use]
+    pub fn planes(&self) -> &[Plane] {
+        &self.planes
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The domes.
+    #[must_use]
+    pub fn domes(&self) -> &[Dome] {
+        &self.domes
+    }
+
+    /// Largest ball radius that the broad phase allows for.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    pub(crate) fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    #[inline]
+    pub(crate) fn bounds(&self, item: u32) -> &Aabb {
+        &self.boxes[item as usize]
+    }
+
+    /// What an item of the broad phase is.
+    #[inline]
+    pub(crate) fn surface(&self, item: u32) -> Surface {
+        let (faces, domes, edges) = (self.mesh.faces.len() as u32, self.domes.len() as u32, self.mesh.edges.len() as u32);
+        if item < faces {
+            Surface::Face(item)
+        } else if item < faces + domes {
+            Surface::Dome(item - faces)
+        } else if item < faces + domes + edges {
+            Surface::Edge(item - faces - domes)
+        } else {
+            Surface::Vertex(item - faces - domes - edges)
+        }
+    }
+
+    /// What a surface is made of; edges and vertices take the material of their first face.
+    #[inline]
+    #[must_use]
+    pub fn material(&self, surface: Surface) -> Material {
+        match surface {
+            Surface::Plane(k) => self.planes[k as usize].material,
+            Surface::Dome(k) => self.domes[k as usize].material,
+            Surface::Face(k) => self.mesh.faces[k as usize].material,
+            Surface::Edge(k) => self.mesh.edges[k as usize].faces[0].map_or(Material(0), |f| self.mesh.faces[f as usize].material),
+            Surface::Vertex(k) => self.mesh.around_vertex(k).first().map_or(Material(0), |&f| self.mesh.faces[f as usize].material),
+        }
+    }
+
+    /// Where a ball's centre stands to a surface.
+    #[inline]
+    #[must_use]
+    pub fn foot(&self, surface: Surface, x: DVec3) -> Foot {
+        match surface {
+            Surface::Plane(k) => {
+                let plane = &self.planes[k as usize];
+                Foot { normal: plane.normal, distance: plane.distance(x), curvature_radius: f64::INFINITY }
+            }
+            Surface::Face(k) => {
+                let face = &self.mesh.faces[k as usize];
+                Foot { normal: face.normal, distance: face.normal.dot(x) - face.offset, curvature_radius: f64::INFINITY }
+            }
+            Surface::Dome(k) => {
+                let dome = &self.domes[k as usize];
+                let (normal, distance) = dome.normal_and_distance(x);
+                Foot { normal, distance, curvature_radius: if dome.hollow { -dome.radius } else { dome.radius } }
+            }
+            Surface::Edge(k) => {
+                let edge = &self.mesh.edges[k as usize];
+                let offset = x - edge.origin;
+                sharp(offset - edge.direction * edge.direction.dot(offset))
+            }
+            Surface::Vertex(k) => sharp(x - self.mesh.vertices[k as usize]),
+        }
+    }
+}
+
+fn sharp(offset: DVec3) -> Foot {
+    let distance = offset.length();
+    let normal = if distance > 0.0 { offset / distance } else { DVec3::Z };
+    Foot { normal, distance, curvature_radius: 0.0 }
+}

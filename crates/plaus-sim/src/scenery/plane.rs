@@ -1,0 +1,43 @@
+//! Infinite planes: everything behind one is solid.
+
+use crate::error::WorldError;
+use crate::material::Material;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// The half space `normal · x < offset` is solid.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Plane {
+    /// Unit normal out of the solid.
+    pub normal: DVec3,
+    /// Distance of the plane from the origin along the normal, in m.
+    pub offset: f64,
+    /// What it is made of.
+    pub material: Material,
+}
+
+impl Plane {
+    /// The plane through `point` with `normal` (of any length) out of the solid.
+    ///
+    /// # Errors
+    /// [`WorldError::BadSurface`] where the normal has no direction or a number is not finite.
+    pub fn new(point: DVec3, normal: DVec3, material: Material) -> Result<Self, WorldError> {
+        let bad = |field, value, expected| WorldError::BadSurface { surface: "plane".into(), field, value, expected };
+        let length = normal.length();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(bad("normal", length, "a vector of finite, non-zero length"));
+        }
+        if !point.is_finite() {
+            return Err(bad("point", f64::NAN, "finite coordinates"));
+        }
+        let normal = normal / length;
+        Ok(Self { normal, offset: normal.dot(point), material })
+    }
+
+    /// Distance of a point from the plane, negative inside the solid.
+    #[inline]
+    #[must_use]
+    pub fn distance(&self, x: DVec3) -> f64 {
+        self.normal.dot(x) - self.offset
+    }
+}

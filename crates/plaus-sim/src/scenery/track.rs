@@ -1,0 +1,122 @@
+//! Following a lasting contact over a mesh: from a face to its edge, from there to the next face.
+
+use super::{Scenery, Surface};
+use glam::DVec3;
+
+impl Scenery {
+    /// The surface that a ball in contact with `surface` touches now, its centre being at `x`: the same as long as the foot of the perpendicular stays on it, else
+    /// the nearest face, edge or vertex around. `None` where a dome has been left.
+    pub(crate) fn track(&self, surface: Surface, x: DVec3) -> Option<Surface> {
+        match surface {
+            Surface::Plane(_) => Some(surface),
+            Surface::Dome(k) => self.domes[k as usize].foot(x).map(|_| surface),
+            Surface::Face(k) => {
+                let face = &self.mesh.faces[k as usize];
+                let foot = x - face.normal * (face.normal.dot(x) - face.offset);
+                if face.inside(foot) >= 0.0 { Some(surface) } else { self.nearest(face.corners, x) }
+            }
+            Surface::Edge(k) => self.nearest_around_edge(k, x),
+            Surface::Vertex(k) => self.nearest([k; 3], x),
+        }
+    }
+
+    fn nearest_around_edge(&self, edge: u32, x: DVec3) -> Option<Surface> {
+        let [a, b] = self.mesh.edges[edge as usize].ends;
+        self.nearest([a, b, b], x)
+    }
+
+    /// Nearest feature of the triangles around some vertices; the lowest triangle where several are equally near.
+    fn nearest(&self, vertices: [u32; 3], x: DVec3) -> Option<Surface> {
+        let mut best: Option<(f64, Surface)> = None;
+        for v in vertices {
+            for &f in self.mesh.around_vertex(v) {
+                let (squared, surface) = self.nearest_on(f, x);
+                let better = best.is_none_or(|(d, s)| squared < d || (squared == d && surface < s));
+                if better {
+                    best = Some((squared, surface));
+                }
+            }
+        }
+        best.map(|(_, s)| s)
+    }
+
+    /// Squared distance of `x` from a triangle and the part of it that is nearest. Behind a face counts as far: its solid is there.
+    fn nearest_on(&self, f: u32, x: DVec3) -> (f64, Surface) {
+        let face = &self.mesh.faces[f as usize];
+        let height = face.normal.dot(x) - face.offset;
+        let foot = x - face.normal * height;
+        if face.inside(foot) >= 0.0 {
+            let squared = if height >= 0.0 { height * height } else { f64::INFINITY };
+            return (squared, Surface::Face(f));
+        }
+        let mut best = (f64::INFINITY, Surface::Face(f));
+        for side in 0..3 {
+            let (a, b) = (face.corners[side], face.corners[(side + 1) % 3]);
+            let (p, q) = (self.mesh.vertices[a as usize], self.mesh.vertices[b as usize]);
+            let along = q - p;
+            let part = (x - p).dot(along) / along.length_squared();
+            let (squared, surface) = if part <= 0.0 {
+                ((x - p).length_squared(), Surface::Vertex(a))
+            } else if part >= 1.0 {
+                ((x - q).length_squared(), Surface::Vertex(b))
+            } else {
+                let Some(e) = self.mesh.edge_between(a, b) else { continue };
+                ((x - p - along * part).length_squared(), Surface::Edge(e))
+            };
+            if squared < best.0 {
+                best = (squared, surface);
+            }
+        }
+        best
+    }
+
+    /// Deepest overlap of a ball with the scenery: a surface and the depth in m, if any. For checking worlds and results, not for stepping.
+    #[must_use]
+    pub fn deepest_overlap(&self, x: DVec3, radius: f64) -> Option<(Surface, f64)> {
+        let mut worst: Option<(Surface, f64)> = None;
+        let mut note = |surface, depth: f64| {
+            if depth > 0.0 && worst.is_none_or(|(_, d)| depth > d) {
+                worst = Some((surface, depth));
+            }
+        };
+        for (k, plane) in self.planes.iter().enumerate() {
+            note(Surface::Plane(k as u32), radius - plane.distance(x));
+        }
+        for &item in self.grid.items(self.grid.cell_of(x)) {
+            match self.surface(item) {
+                Surface::Face(f) => {
+                    let (squared, surface) = self.nearest_on(f, x);
+                    // Behind a face, but nearer to it than to its back: the centre itself is inside the solid.
+                    let face = &self.mesh.faces[f as usize];
+                    let height = face.normal.dot(x) - face.offset;
+                    if squared.is_finite() {
+                        note(surface, radius - squared.sqrt());
+                    } else if height > -radius && face.inside(x - face.normal * height) > 0.0 && !self.is_shielded(f, x, -height) {
+                        note(surface, radius - height);
+                    }
+                }
+                Surface::Dome(k) => {
+                    let dome = &self.domes[k as usize];
+                    if dome.foot(x).is_some() {
+                        note(Surface::Dome(k), radius - dome.normal_and_distance(x).1);
+                    }
+                }
+                _ => {}
+            }
+        }
+        worst
+    }
+
+    /// Whether another face that looks the other way lies in front of `x` nearer than `depth`: then `x` is outside, beyond a thin wall.
+    fn is_shielded(&self, f: u32, x: DVec3, depth: f64) -> bool {
+        let behind = self.mesh.faces[f as usize].normal;
+        self.grid.items(self.grid.cell_of(x)).iter().any(|&item| match self.surface(item) {
+            Surface::Face(g) if g != f => {
+                let face = &self.mesh.faces[g as usize];
+                let height = face.normal.dot(x) - face.offset;
+                face.normal.dot(behind) < 0.0 && height >= 0.0 && height < depth && face.inside(x - face.normal * height) >= 0.0
+            }
+            _ => false,
+        })
+    }
+}

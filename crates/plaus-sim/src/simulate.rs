@@ -1,0 +1,282 @@
+//! The loop: take the earliest event, bring the bodies it concerns to its time, resolve it, let the groups they belong to settle, and look ahead again.
+//!
+//! Nothing else moves. A body far from others is touched only at its own events.
+
+use crate::mechanics::{Impact, Mechanics};
+use crate::queue::{Event, Happening, Tournament};
+use crate::state::State;
+use crate::trace::Observer;
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Outcome {
+    /// The time asked for was reached.
+    TimeReached,
+    /// Every body is at rest: nothing will ever happen again.
+    AllAtRest,
+    /// The observer said that it need not go on.
+    Stopped,
+    /// The event budget was spent. The state is the one at that time.
+    OutOfEvents,
+    /// A body's motion is no longer finite. The state is kept as it is, for replay.
+    NotFinite {
+        /// Index of the body.
+        body: usize,
+    },
+}
+
+/// Reusable work space. Make one per thread and keep it.
+#[derive(Debug, Default)]
+pub struct Scratch<S> {
+    queue: Tournament,
+    concerned: Vec<u32>,
+    group: Vec<u32>,
+    worklist: Vec<Meeting>,
+    settle: S,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Meeting {
+    Surface(u32, crate::scenery::Surface),
+    Bodies(u32, u32),
+}
+
+/// Runs until `until` (at most the world's duration) or until the run is over earlier, and says how it ended.
+pub fn simulate<M: Mechanics>(
+    mechanics: &M,
+    state: &mut State<M::Body>,
+    scratch: &mut Scratch<M::Scratch>,
+    until: f64,
+    observer: &mut impl Observer<M>,
+) -> Outcome {
+    let mut run = Run { mechanics, state, scratch, observer };
+    let until = until.min(mechanics.duration());
+    if let Some(outcome) = run.start() {
+        return outcome;
+    }
+    while let Some(body) = run.scratch.queue.first() {
+        let event = run.state.events[body];
+        if event.time > until || event.happening == Happening::End {
+            break;
+        }
+        run.state.time = event.time;
+        run.state.counts.events += 1;
+        run.bring_to(body as u32, &event);
+        run.resolve(body as u32, &event);
+        run.settle();
+        if let Some(outcome) = run.look_ahead().or_else(|| run.is_over()) {
+            return outcome;
+        }
+    }
+    run.state.time = until.max(run.state.time);
+    if run.state.all_resting(mechanics) { Outcome::AllAtRest } else { Outcome::TimeReached }
+}
+
+struct Run<'r, M: Mechanics, O> {
+    mechanics: &'r M,
+    state: &'r mut State<M::Body>,
+    scratch: &'r mut Scratch<M::Scratch>,
+    observer: &'r mut O,
+}
+
+/// Most impacts resolved within one event before the rest of them is left to the queue: ten per contact of a body with eight.
+const MOST_AT_ONCE: usize = 80;
+
+impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
+    /// Looks at every body for the first time, or restores the queue of a state that was paused.
+    fn start(&mut self) -> Option<Outcome> {
+        if self.state.started {
+            self.scratch.queue.rebuild(&self.state.events);
+            return None;
+        }
+        self.state.started = true;
+        let n = self.state.bodies.len() as u32;
+        self.scratch.concerned.clear();
+        self.scratch.concerned.extend(0..n);
+        for k in 0..n as usize {
+            self.observer.motion(k, &self.state.bodies[k]);
+        }
+        self.scratch.queue.rebuild(&self.state.events);
+        self.look_ahead()
+    }
+
+    /// Brings the bodies of an event, and all that are in lasting contact with them, to its time.
+    fn bring_to(&mut self, body: u32, event: &Event) {
+        self.scratch.concerned.clear();
+        self.state.group(body, &mut self.scratch.concerned);
+        if let Happening::Body { other, generation } = event.happening
+            && generation == self.state.generations[other as usize]
+            && !self.scratch.concerned.contains(&other)
+        {
+            self.state.group(other, &mut self.scratch.concerned);
+        }
+        let is_stale = matches!(event.happening, Happening::Body { other, generation } if generation != self.state.generations[other as usize]);
+        if is_stale {
+            // Its motion goes on as it is; it is only looked at anew.
+            self.scratch.concerned.clear();
+            return;
+        }
+        for &k in &self.scratch.concerned {
+            self.mechanics.advance(k as usize, &mut self.state.bodies[k as usize], event.time);
+        }
+    }
+
+    /// Resolves the event's impact and those it causes at once through lasting contacts, pair by pair.
+    fn resolve(&mut self, body: u32, event: &Event) {
+        self.scratch.worklist.clear();
+        match event.happening {
+            Happening::Surface(surface) => self.scratch.worklist.push(Meeting::Surface(body, surface)),
+            Happening::Body { other, generation } if generation == self.state.generations[other as usize] => {
+                self.scratch.worklist.push(Meeting::Bodies(body.min(other), body.max(other)));
+            }
+            Happening::Body { .. } => self.state.counts.stale += 1,
+            Happening::Expiry | Happening::End => self.state.counts.expiries += 1,
+        }
+        let mut next = 0;
+        while next < self.scratch.worklist.len() && next < MOST_AT_ONCE {
+            let meeting = self.scratch.worklist[next];
+            next += 1;
+            if let Some(impact) = self.collide(meeting) {
+                self.state.counts.impacts += 1;
+                self.observer.impact(&impact);
+                self.add_neighbours(meeting);
+            }
+        }
+    }
+
+    fn collide(&mut self, meeting: Meeting) -> Option<Impact> {
+        match meeting {
+            Meeting::Surface(k, surface) => self.mechanics.hit_surface(k as usize, &mut self.state.bodies[k as usize], surface),
+            Meeting::Bodies(i, j) => {
+                let linked = self.state.are_linked(i, j);
+                let (low, high) = self.state.bodies.split_at_mut(j as usize);
+                let impact = self.mechanics.hit_body([i as usize, j as usize], [&mut low[i as usize], &mut high[0]], linked)?;
+                if impact.lasting {
+                    self.state.links.push([i, j]);
+                    self.state.links.sort_unstable();
+                }
+                Some(impact)
+            }
+        }
+    }
+
+    /// After an impact, the lasting contacts of those involved may have become approaching: they are next.
+    fn add_neighbours(&mut self, meeting: Meeting) {
+        let (a, b) = match meeting {
+            Meeting::Surface(k, _) => (k, None),
+            Meeting::Bodies(i, j) => (i, Some(j)),
+        };
+        for k in std::iter::once(a).chain(b) {
+            for &s in self.mechanics.contacts(&self.state.bodies[k as usize]) {
+                if !matches!(meeting, Meeting::Surface(m, t) if m == k && t == s) {
+                    self.scratch.worklist.push(Meeting::Surface(k, s));
+                }
+            }
+            for &[i, j] in &self.state.links {
+                if (i == k || j == k) && !matches!(meeting, Meeting::Bodies(p, q) if p == i && q == j) {
+                    self.scratch.worklist.push(Meeting::Bodies(i, j));
+                }
+            }
+        }
+    }
+
+    /// Gives every concerned body its next closed form, group by group.
+    fn settle(&mut self) {
+        let mut done = 0;
+        while done < self.scratch.concerned.len() {
+            let seed = self.scratch.concerned[done];
+            done += 1;
+            self.scratch.group.clear();
+            self.state.group(seed, &mut self.scratch.group);
+            if self.scratch.group[0] != seed {
+                continue;
+            }
+            self.mechanics.settle(&self.scratch.group, &mut self.state.bodies, &mut self.state.links, &mut self.scratch.settle);
+        }
+        for &k in &self.scratch.concerned {
+            self.state.generations[k as usize] = self.state.generations[k as usize].wrapping_add(1);
+            self.observer.motion(k as usize, &self.state.bodies[k as usize]);
+        }
+    }
+
+    /// Finds the next event of each concerned body; of the body of a stale event where none is concerned.
+    fn look_ahead(&mut self) -> Option<Outcome> {
+        if self.scratch.concerned.is_empty() {
+            self.scratch.concerned.extend(self.scratch.queue.first().map(|k| k as u32));
+        }
+        for k in 0..self.scratch.concerned.len() {
+            let body = self.scratch.concerned[k] as usize;
+            if !self.mechanics.is_finite(&self.state.bodies[body]) {
+                return Some(Outcome::NotFinite { body });
+            }
+            self.surfaces(body);
+        }
+        for k in 0..self.scratch.concerned.len() {
+            let body = self.scratch.concerned[k] as usize;
+            self.meetings(body);
+            self.scratch.queue.update(body, &self.state.events);
+        }
+        None
+    }
+
+    /// The first event of a body alone: the end of its closed form or a surface.
+    fn surfaces(&mut self, k: usize) {
+        let body = &self.state.bodies[k];
+        let (expiry, end) = (self.mechanics.expiry(body), self.mechanics.duration());
+        let mut event =
+            if expiry <= end { Event { time: expiry, happening: Happening::Expiry } } else { Event { time: end, happening: Happening::End } };
+        if self.mechanics.is_present(body)
+            && let Some((time, surface)) = self.mechanics.first_surface(k, body, event.time)
+        {
+            event = Event { time, happening: Happening::Surface(surface) };
+        }
+        self.state.boxes[k] = self.mechanics.swept(k, body, self.mechanics.clock(body).max(self.state.time), event.time);
+        self.state.events[k] = event;
+    }
+
+    /// Whether another body comes first.
+    fn meetings(&mut self, k: usize) {
+        let body = &self.state.bodies[k];
+        if !self.mechanics.is_present(body) {
+            return;
+        }
+        let mut event = self.state.events[k];
+        for (j, other) in self.state.bodies.iter().enumerate() {
+            if j == k || !self.state.boxes[j].meets(&self.state.boxes[k]) || !self.mechanics.is_present(other) {
+                continue;
+            }
+            if self.state.are_linked(j as u32, k as u32) {
+                continue;
+            }
+            let from = self.state.time.max(self.mechanics.clock(other)).max(self.mechanics.clock(body));
+            let until = event.time.min(self.state.events[j].time);
+            let (pair, both) = if k < j { ([k, j], [body, other]) } else { ([j, k], [other, body]) };
+            if let Some(time) = self.mechanics.first_meeting(pair, both, from, until) {
+                let found = Event { time, happening: Happening::Body { other: j as u32, generation: self.state.generations[j] } };
+                if found.precedes(k as u32, &event, k as u32) {
+                    event = found;
+                }
+            }
+        }
+        self.state.events[k] = event;
+        if let Happening::Body { other, .. } = event.happening {
+            let back = Event { time: event.time, happening: Happening::Body { other: k as u32, generation: self.state.generations[k] } };
+            if back.precedes(other, &self.state.events[other as usize], other) {
+                self.state.events[other as usize] = back;
+                self.scratch.queue.update(other as usize, &self.state.events);
+            }
+        }
+    }
+
+    fn is_over(&mut self) -> Option<Outcome> {
+        if !self.observer.proceed(self.state) {
+            return Some(Outcome::Stopped);
+        }
+        if self.state.counts.events >= self.mechanics.event_budget() {
+            return Some(Outcome::OutOfEvents);
+        }
+        let all = self.scratch.concerned.iter().all(|&k| self.mechanics.is_resting(&self.state.bodies[k as usize]))
+            && self.state.all_resting(self.mechanics);
+        all.then_some(Outcome::AllAtRest)
+    }
+}

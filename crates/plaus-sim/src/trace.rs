@@ -1,0 +1,108 @@
+//! What a simulation tells whoever listens: impacts, new motions, and a question after each event. Nobody listens by default, and then it costs nothing.
+
+use crate::mechanics::{Impact, Mechanics};
+use crate::state::State;
+
+/// A listener. Every method has an empty default, which the compiler removes.
+pub trait Observer<M: Mechanics> {
+    /// An impact was resolved.
+    #[inline]
+    fn impact(&mut self, _impact: &Impact) {}
+    /// A body has a new closed form, valid from its clock on.
+    #[inline]
+    fn motion(&mut self, _index: usize, _body: &M::Body) {}
+    /// Whether to go on, asked after each event. The state is consistent; each body stands at its own clock.
+    #[inline]
+    fn proceed(&mut self, _state: &State<M::Body>) -> bool {
+        true
+    }
+}
+
+/// Nobody listens.
+impl<M: Mechanics> Observer<M> for () {}
+
+/// Early exit: stops when the predicate on the evolving state says false.
+pub struct While<F>(pub F);
+
+impl<M: Mechanics, F: FnMut(&State<M::Body>) -> bool> Observer<M> for While<F> {
+    #[inline]
+    fn proceed(&mut self, state: &State<M::Body>) -> bool {
+        (self.0)(state)
+    }
+}
+
+/// A recording: every closed form of every body and every impact. Any frame rate can be drawn from it exactly.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Trace<B> {
+    /// Per body, its motions in order of their clocks.
+    pub motions: Vec<Vec<B>>,
+    /// All impacts in the order in which they were resolved.
+    pub impacts: Vec<Impact>,
+}
+
+impl<B> Default for Trace<B> {
+    fn default() -> Self {
+        Self { motions: Vec::new(), impacts: Vec::new() }
+    }
+}
+
+impl<B: Clone> Trace<B> {
+    /// The motion of a body that is valid at `time`, if it has been recorded. `clock` gives the clock of a motion.
+    pub fn motion_at(&self, index: usize, time: f64, clock: impl Fn(&B) -> f64) -> Option<&B> {
+        let motions = self.motions.get(index)?;
+        let after = motions.partition_point(|b| clock(b) <= time);
+        motions.get(after.checked_sub(1)?)
+    }
+
+    /// The body moved along its recorded motion to `time`.
+    pub fn body_at<M: Mechanics<Body = B>>(&self, mechanics: &M, index: usize, time: f64) -> Option<B> {
+        let mut body = self.motion_at(index, time, |b| mechanics.clock(b))?.clone();
+        mechanics.advance(index, &mut body, time);
+        Some(body)
+    }
+}
+
+impl<M: Mechanics> Observer<M> for Trace<M::Body> {
+    fn impact(&mut self, impact: &Impact) {
+        self.impacts.push(*impact);
+    }
+
+    fn motion(&mut self, index: usize, body: &M::Body) {
+        if self.motions.len() <= index {
+            self.motions.resize_with(index + 1, Vec::new);
+        }
+        self.motions[index].push(body.clone());
+    }
+}
+
+/// Two listeners at once.
+impl<M: Mechanics, A: Observer<M>, B: Observer<M>> Observer<M> for (A, B) {
+    fn impact(&mut self, impact: &Impact) {
+        self.0.impact(impact);
+        self.1.impact(impact);
+    }
+
+    fn motion(&mut self, index: usize, body: &M::Body) {
+        self.0.motion(index, body);
+        self.1.motion(index, body);
+    }
+
+    fn proceed(&mut self, state: &State<M::Body>) -> bool {
+        self.0.proceed(state) && self.1.proceed(state)
+    }
+}
+
+/// A listener that is lent.
+impl<M: Mechanics, O: Observer<M>> Observer<M> for &mut O {
+    fn impact(&mut self, impact: &Impact) {
+        (**self).impact(impact);
+    }
+
+    fn motion(&mut self, index: usize, body: &M::Body) {
+        (**self).motion(index, body);
+    }
+
+    fn proceed(&mut self, state: &State<M::Body>) -> bool {
+        (**self).proceed(state)
+    }
+}

@@ -1,0 +1,5 @@
+//! Plain worlds of the shapes that the scenes have, for tests, benchmarks and the trade-off study. The scenes build their own.
+
+mod bins;
+
+pub use bins::{Bins, drops};
