@@ -4,27 +4,43 @@
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::marbles::{Marble, Marbles, Phase, Start};
+use plaus_sim::motion::Parabola;
+use plaus_sim::roots::roots_of_quadratic;
 use plaus_sim::trace::Observer;
 use plaus_sim::worlds::{Bins, drops};
 use plaus_sim::{Accuracy, Outcome, Preset, Scratch, State};
 use std::time::Instant;
 
-/// Watches every motion: below the ridges no marble may change its bin, leave the box or sink through the floor.
+/// Watches every motion: a marble may cross the middle of a partition only above it, and stays in the box and above the floor.
 struct Watch<'b> {
     bins: &'b Bins,
-    last: Vec<Option<(usize, usize)>>,
+    last: Vec<Option<Parabola>>,
     tunnelled: usize,
+}
+
+impl Watch<'_> {
+    /// Whether the way of a centre between two times crosses no middle plane of a partition below its ridge.
+    fn is_clear(&self, path: &Parabola, until: f64) -> bool {
+        let clear = self.bins.height - 2.0 * self.bins.margin + 0.9 * self.bins.marble;
+        (0..2).all(|axis| {
+            let lines = 1..[self.bins.columns, self.bins.rows][axis];
+            lines.into_iter().all(|line| {
+                let c = [path.x[axis] - line as f64 * self.bins.side, path.v[axis], 0.5 * path.a[axis]];
+                let times = roots_of_quadratic(c).into_iter().flatten();
+                times.into_iter().all(|dt| dt < 0.0 || path.t + dt > until || path.after(dt).z > clear)
+            })
+        })
+    }
 }
 
 impl Observer<Marbles> for Watch<'_> {
     fn motion(&mut self, index: usize, body: &Marble) {
-        let x = body.path.x;
-        let below = x.z < self.bins.height - 2.0 * self.bins.margin;
-        let now = self.bins.bin_of(x);
-        if now.is_none() || x.z < self.bins.marble - 1e-9 || (below && self.last[index].is_some_and(|b| Some(b) != now)) {
-            self.tunnelled += 1;
-        }
-        self.last[index] = if below { now } else { None };
+        let (x, r) = (body.path.x, self.bins.marble);
+        let (width, breadth) = self.bins.extent();
+        let inside = x.z > r * (1.0 - 1e-4) && x.x > 0.0 && x.y > 0.0 && x.x < width && x.y < breadth;
+        let clear = self.last[index].is_none_or(|path| self.is_clear(&path, body.path.t));
+        self.tunnelled += usize::from(!inside || !clear);
+        self.last[index] = Some(body.path);
     }
 }
 
@@ -51,22 +67,26 @@ struct Tally {
     unsupported: usize,
     out_of_events: usize,
     events: u64,
+    impacts: u64,
+    expiries: u64,
+    stale: u64,
     micros: Vec<f64>,
 }
 
 impl Tally {
-    fn judge(&mut self, bins: &Bins, world: &Marbles, state: &State<Marble>) {
+    fn judge(&mut self, bins: &Bins, world: &Marbles, state: &State<Marble>, run: usize) {
         let bodies = state.bodies();
         for (k, b) in bodies.iter().enumerate() {
             let x = b.path.at(state.time().max(b.path.t));
             let sunk = world.scenery().deepest_overlap(x, bins.marble).is_some_and(|(_, d)| d > 1e-4 * bins.marble);
             let close = bodies[..k].iter().any(|c| (c.path.at(state.time().max(c.path.t)) - x).length() < 2.0 * bins.marble * (1.0 - 1e-4));
             self.overlaps += usize::from(sunk || close);
+            if sunk || close { println!("run {run} body {k} {x} {:?} {:?} {:?} sunk {:?} close {close}", b.phase, b.contacts(), state.links(),world.scenery().deepest_overlap(x, bins.marble).map(|(s,d)|(s,d/bins.marble))); }
             if b.phase != Phase::Rest {
                 self.not_at_rest += 1;
                 continue;
             }
-            let linked = state.links().iter().any(|l| l.contains(&(k as u32)));
+            let linked = state.links().of(k as u32).next().is_some();
             if x.z < bins.height {
                 self.in_bins += 1;
             } else if linked {
@@ -103,9 +123,13 @@ fn main() {
         let begin = Instant::now();
         let outcome = world.run(&mut state, &mut scratch, 1e9, &mut ());
         tally.micros.push(begin.elapsed().as_secs_f64() * 1e6);
-        tally.events += state.counts().events;
+        let counts = state.counts();
+        tally.events += counts.events;
+        tally.impacts += counts.impacts;
+        tally.expiries += counts.expiries;
+        tally.stale += counts.stale;
         tally.out_of_events += usize::from(!matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached));
-        tally.judge(&bins, &world, &state);
+        tally.judge(&bins, &world, &state, run);
         let mut watch = Watch { bins: &bins, last: vec![None; count], tunnelled: 0 };
         let mut again = world.state(&starts).unwrap();
         world.run(&mut again, &mut scratch, 1e9, &mut watch);
@@ -124,5 +148,6 @@ fn main() {
         tally.in_bins, tally.on_ridges, tally.on_marbles, tally.unsupported, tally.not_at_rest
     );
     println!("ms per run: median {:.4}, 10% {:.4}, 90% {:.4}, worst {:.4}", at(0.5), at(0.1), at(0.9), at(1.0));
+    println!("impacts per run {:.1}, expiries {:.1}, stale {:.1}", tally.impacts as f64 / runs as f64, tally.expiries as f64 / runs as f64, tally.stale as f64 / runs as f64);
     println!("events per run {:.1}, ns per event {:.0}", tally.events as f64 / runs as f64, total * 1000.0 / tally.events as f64);
 }

@@ -2,6 +2,7 @@
 pub mod accuracy;
 mod detect;
 pub mod error;
+pub mod links;
 pub mod marbles;
 pub mod material;
 pub mod mechanics;

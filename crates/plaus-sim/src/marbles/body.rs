@@ -104,7 +104,7 @@ pub(crate) enum Ending {
 }
 
 /// Most surfaces that one marble can be in lasting contact with; further ones it bounces off.
-pub(crate) const MOST_CONTACTS: usize = 6;
+pub(crate) const MOST_CONTACTS: usize = 8;
 
 /// A marble's state: a parabola, a spin that changes linearly, and its lasting contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -5,7 +5,8 @@ use super::step::MarbleScratch;
 use super::{Marbles, step};
 use crate::detect;
 use crate::material::Law;
-use crate::mechanics::{Impact, Link, Mechanics, Other};
+use crate::links::Links;
+use crate::mechanics::{Impact, Mechanics, Other};
 use crate::resolve::{Touch, sphere_impact};
 use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
@@ -23,6 +24,11 @@ impl Marbles {
         self.accuracy.settle * (1.0 - law.restitution) * scale
     }
 
+    /// Whether an impact is the begin of lasting contact: its rebound would be unseen, or its approach is lost in rounding.
+    fn lasts(&self, scale: f64, law: &Law, approach: f64, speed: f64) -> bool {
+        law.restitution * approach <= self.settle_speed(scale, law).max(GRAZE * speed)
+    }
+
     pub(crate) fn surface_law(&self, index: usize, surface: Surface) -> &Law {
         self.laws.of(self.specs[index].material, self.scenery.material(surface))
     }
@@ -31,6 +37,9 @@ impl Marbles {
         self.laws.of(self.specs[i].material, self.specs[j].material)
     }
 }
+
+/// Approach over the relative speed that is lost in rounding. Dimensionless; default 1e-12, a few thousand rounding errors.
+const GRAZE: f64 = 1e-12;
 
 /// The same law without rebound.
 fn plastic(law: &Law) -> Law {
@@ -106,7 +115,7 @@ impl Mechanics for Marbles {
         let foot = self.scenery.foot(surface, body.path.x);
         let approach = -body.path.v.dot(foot.normal);
         let law = self.surface_law(index, surface);
-        let settles = law.restitution * approach <= self.settle_speed(self.speed_scale(index), law);
+        let settles = self.lasts(self.speed_scale(index), law, approach, body.path.v.length());
         let known = body.contacts().contains(&surface);
         // A new contact whose approach is lost in rounding is taken as one that lasts: settling decides what becomes of it.
         if known && (settles || approach <= 0.0) {
@@ -129,7 +138,7 @@ impl Mechanics for Marbles {
         let approach = -(a.path.v - b.path.v).dot(normal);
         let law = self.pair_law(i, j);
         let scale = self.speed_scale(i).min(self.speed_scale(j));
-        let lasting = law.restitution * approach <= self.settle_speed(scale, law);
+        let lasting = self.lasts(scale, law, approach, (a.path.v - b.path.v).length());
         if linked && (lasting || approach <= 0.0) {
             return None;
         }
@@ -147,7 +156,7 @@ impl Mechanics for Marbles {
         body.contacts()
     }
 
-    fn settle(&self, members: &[u32], bodies: &mut [Marble], links: &mut Vec<Link>, scratch: &mut MarbleScratch) {
+    fn settle(&self, members: &[u32], bodies: &mut [Marble], links: &mut Links, scratch: &mut MarbleScratch) {
         step::settle(self, members, bodies, links, scratch);
     }
 }

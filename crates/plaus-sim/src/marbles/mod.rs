@@ -25,6 +25,8 @@ pub struct Marbles {
     pub(crate) scenery: Scenery,
     pub(crate) gravity: DVec3,
     pub(crate) strength: f64,
+    /// Gap over the radius at which a lasting contact ends: the height of a bounce that settles.
+    pub(crate) unseen: f64,
     pub(crate) accuracy: Accuracy,
     pub(crate) duration: f64,
 }
@@ -84,7 +86,7 @@ impl Marbles {
         for face in &scenery.mesh().faces {
             laws.require(face.material)?;
         }
-        Ok(Self { specs, laws, scenery, gravity, strength: gravity.length(), accuracy, duration })
+        Ok(Self { specs, laws, scenery, gravity, strength: gravity.length(), unseen: (0.5 * accuracy.settle * accuracy.settle).max(ROUNDING), accuracy, duration })
     }
 
     /// The marbles' specifications.
@@ -178,6 +180,9 @@ impl Marbles {
         (self.strength * self.specs[index].radius).sqrt()
     }
 }
+
+/// Gap over the radius that is never seen. Default 1e-9.
+const ROUNDING: f64 = 1e-9;
 
 /// Overlap at the start that counts as touching, over the radius. Default 1e-9; danger: larger values start bodies inside each other.
 const OVERLAP: f64 = 1e-9;

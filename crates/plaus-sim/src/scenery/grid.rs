@@ -8,6 +8,9 @@ use glam::DVec3;
 /// Most cells along one axis; bounds memory at about 2 million cells.
 const MOST_CELLS: f64 = 128.0;
 
+/// Side of a cell over the mean side of a grown box. Default 0.25: smaller cells list less each but are crossed more often.
+const CELL: f64 = 0.25;
+
 /// Lists of features per cell.
 #[derive(Debug, Clone)]
 pub(crate) struct Grid {
@@ -23,17 +26,16 @@ impl Grid {
     /// A grid over boxes, which are grown by `reach`.
     pub(crate) fn new(boxes: &[Aabb], reach: f64) -> Self {
         let boxes: Vec<Aabb> = boxes.iter().map(|b| b.grown(reach)).collect();
-        let all = boxes.iter().fold(Aabb::EMPTY, |a, b| a.union(*b));
-        let extent = if boxes.is_empty() { DVec3::ZERO } else { all.max - all.min };
+        let listed = || boxes.iter().filter(|b| b.min.x <= b.max.x);
+        let all = listed().fold(Aabb::EMPTY, |a, b| a.union(*b));
+        let count = listed().count();
+        let extent = if count == 0 { DVec3::ZERO } else { all.max - all.min };
         let widest = extent.max_element();
-        let mean = boxes.iter().map(|b| (b.max - b.min).max_element()).sum::<f64>() / (boxes.len().max(1) as f64);
-        // A quarter of a typical grown box: smaller cells list less each but are crossed more often.
-        let size = (0.25 * mean).max(widest / MOST_CELLS).max(f64::MIN_POSITIVE);
+        let mean = listed().map(|b| (b.max - b.min).max_element()).sum::<f64>() / (count.max(1) as f64);
+        let size = (CELL * mean).max(widest / MOST_CELLS).max(f64::MIN_POSITIVE);
         let counts = extent.to_array().map(|e| ((e / size).ceil()).clamp(1.0, MOST_CELLS) as usize);
-        let mut grid = Self { origin: all.min, inverse: 1.0 / size, size, counts, starts: Vec::new(), items: Vec::new() };
-        if boxes.is_empty() {
-            grid.origin = DVec3::ZERO;
-        }
+        let origin = if count == 0 { DVec3::ZERO } else { all.min };
+        let mut grid = Self { origin, inverse: 1.0 / size, size, counts, starts: Vec::new(), items: Vec::new() };
         grid.fill(&boxes);
         grid
     }
@@ -60,6 +62,9 @@ impl Grid {
     }
 
     fn each_cell(&self, b: &Aabb, mut visit: impl FnMut(usize)) {
+        if b.min.x > b.max.x {
+            return;
+        }
         let (low, high) = (self.cell_of(b.min), self.cell_of(b.max));
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
@@ -96,10 +101,5 @@ impl Grid {
         let low = |k: usize| if cell[k] == 0 { f64::NEG_INFINITY } else { self.origin[k] + cell[k] as f64 * self.size };
         let high = |k: usize| if cell[k] + 1 == self.counts[k] { f64::INFINITY } else { self.origin[k] + (cell[k] + 1) as f64 * self.size };
         (DVec3::new(low(0), low(1), low(2)), DVec3::new(high(0), high(1), high(2)))
-    }
-
-    /// How many cells there are along each axis.
-    pub(crate) fn counts(&self) -> [usize; 3] {
-        self.counts
     }
 }

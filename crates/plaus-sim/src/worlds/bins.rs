@@ -137,7 +137,8 @@ impl Bins {
             }
         }
         let all: Vec<_> = triangles.into_iter().chain(caps).map(|t| (t, Material(1))).collect();
-        Mesh::new(vertices, &all, self.margin)
+        let margins = (0..vertices.len()).map(|v| if v < crossings { self.margin } else { 0.0 }).collect();
+        Mesh::with_margins(vertices, &all, margins)
     }
 
     /// The scenery: partitions, bowls and the walls of the box.
