@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 const EDGES: &[(&str, &[&str])] = &[
     ("plaus-dist", &[]),
     ("plaus-mcmc", &["plaus-dist"]),
-    ("plaus-scenes", &["plaus-dist", "plaus-mcmc"]),
+    ("plaus-sim", &["plaus-dist"]),
+    ("plaus-scenes", &["plaus-dist", "plaus-mcmc", "plaus-sim"]),
     ("plaus-run", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
     ("plaus-cli", &["plaus-dist", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
     ("plaus-figures", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),

@@ -1,7 +1,11 @@
 //! How long words take: time an iteration, to the first full word, and distinct full words a minute, over some seeds.
 //!
 //!     cargo run --release -p plaus-scenes --example spelling_times -- scenarios/spelling-hi.toml 20 20000 [key=value ...]
-#![allow(clippy::disallowed_methods, clippy::print_stdout, reason = "a measuring program: it reads the clock and prints")]
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stdout,
+    reason = "a measuring program: it reads the clock and prints"
+)]
 
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal, Mixture, MoveCounts, SolutionClass};
@@ -67,15 +71,29 @@ fn main() -> Result<()> {
     println!("{iterations} iterations: median {:.2} s, worst {:.2} s", quantile(&whole, 0.5), quantile(&whole, 1.0));
     for (what, values) in [("s", &first), ("iterations", &when)] {
         let at = |q| quantile(values, q);
-        println!("first full word, {what}: median {:.4}, 90% {:.4}, 95% {:.4}, worst {:.4}", at(0.5), at(0.9), at(0.95), at(1.0));
+        println!(
+            "first full word, {what}: median {:.4}, 90% {:.4}, 95% {:.4}, worst {:.4}",
+            at(0.5),
+            at(0.9),
+            at(0.95),
+            at(1.0)
+        );
     }
-    println!("full iterations: median {:.3}; distinct full words a minute: median {:.0}, least {:.0}", quantile(&share, 0.5), quantile(&distinct, 0.5), quantile(&distinct, 0.0));
+    println!(
+        "full iterations: median {:.3}; distinct full words a minute: median {:.0}, least {:.0}",
+        quantile(&share, 0.5),
+        quantile(&distinct, 0.5),
+        quantile(&distinct, 0.0)
+    );
     for (index, name) in moves.names().iter().enumerate() {
         let mut all = MoveCounts::default();
         runs.iter().for_each(|run| all.add(&run.counts[index]));
         println!(
             "  {name:<16} made {:>8}, stayed {:>7}, early {:>7}, accepted {:.3}",
-            all.made(), all.stayed, all.rejected_early, all.acceptance()
+            all.made(),
+            all.stayed,
+            all.rejected_early,
+            all.acceptance()
         );
     }
     Ok(())

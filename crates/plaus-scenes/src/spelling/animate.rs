@@ -20,7 +20,10 @@ pub(super) fn animate(arena: &Arena, draw: &Drops) -> Result<Animation, ModelErr
                 velocity: upright(piece.path.v),
                 acceleration: upright(piece.path.a),
             };
-            tracks.push((fall.members[member], Track { name: name(member), pieces: way.pieces.iter().map(piece).collect() }));
+            tracks.push((
+                fall.members[member],
+                Track { name: name(member), pieces: way.pieces.iter().map(piece).collect() },
+            ));
         }
         impacts.extend(hits.iter().map(|hit| Impact {
             time: hit.time,

@@ -169,18 +169,23 @@ fn check(config: &Config) -> Result<(), ConfigError> {
     let fail = |key: &str, message: String| Err(ConfigError::new(format!("world.spelling.{key}"), message));
     if config.sigma_mm > 0.25 * size.partition_mm {
         let most = 0.25 * size.partition_mm;
-        return fail("sigma_mm", format!("{} mm is more than a quarter of the partitions' thickness, {most} mm", config.sigma_mm));
+        return fail(
+            "sigma_mm",
+            format!("{} mm is more than a quarter of the partitions' thickness, {most} mm", config.sigma_mm),
+        );
     }
     let room = size.bin_mm - size.partition_mm - 2.0 * longest_offset(config);
     if 2.0 * radius > room {
-        let message = format!("a ball of radius {radius} mm does not fit a bin: it must be at most {:.3} mm", 0.5 * room);
+        let message =
+            format!("a ball of radius {radius} mm does not fit a bin: it must be at most {:.3} mm", 0.5 * room);
         return fail("ball_radius_mm", message);
     }
     // In its bin, a ball must lie lower than on the partitions.
     let half = 0.5 * size.bin_mm;
     if size.floor_radius_mm <= radius.max(half * std::f64::consts::SQRT_2) {
         let least = radius.max(half * std::f64::consts::SQRT_2);
-        let message = format!("{} mm is no bowl under a whole bin: it must be more than {least:.3} mm", size.floor_radius_mm);
+        let message =
+            format!("{} mm is no bowl under a whole bin: it must be more than {least:.3} mm", size.floor_radius_mm);
         return fail("box.floor_radius_mm", message);
     }
     let rim = size.floor_radius_mm - (size.floor_radius_mm * size.floor_radius_mm - 2.0 * half * half).sqrt();
@@ -193,7 +198,8 @@ fn check(config: &Config) -> Result<(), ConfigError> {
     }
     let least = size.partition_height_mm + radius + longest_offset(config);
     if config.drop_height_mm <= least {
-        let message = format!("{} mm is not above the partitions: it must be more than {least:.3} mm", config.drop_height_mm);
+        let message =
+            format!("{} mm is not above the partitions: it must be more than {least:.3} mm", config.drop_height_mm);
         return fail("drop_height_mm", message);
     }
     if config.balls_touch {

@@ -16,7 +16,7 @@ pub const MOST_ROWS: u32 = 16;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// The word: letters A to Z, digits, spaces and . - + ! ? = * of a small built-in font. Case does not matter.
+    /// The word: letters A to Z, digits, spaces and `.-+!?=*` of a small built-in font. Case does not matter.
     pub text: String,
     /// A picture in place of a word: one line a row of bins, where `#`, `X`, `x`, `1` or `*` is a bin to fill and `.`, `_`, `0`, `-` or a space one
     /// to leave empty. Empty: `text` counts.
@@ -32,7 +32,8 @@ pub struct Config {
     /// Balls at most, of which each may be dropped or not. 0: as many as there are bins to fill, as in the paper; fewer can't spell the word.
     #[schemars(range(min = 0, max = 1024))]
     pub balls: u32,
-    /// ln λ, the reward in nats for each filled bin. The paper's: 5 for HI, 7.25 for ACM.
+    /// ln λ, the reward in nats for each filled bin. The paper's: 5 for HI, 7.25 for ACM. The more bins, the more ways there are to fill a few less, and
+    /// the larger it must be.
     #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat"))]
     pub ln_lambda: f64,
     /// What is counted.
@@ -206,13 +207,7 @@ pub struct Dimensions {
 
 impl Default for Dimensions {
     fn default() -> Self {
-        Self {
-            bin_mm: 20.0,
-            partition_mm: 2.0,
-            partition_height_mm: 12.0,
-            floor_radius_mm: 40.0,
-            depth_mm: 36.0,
-        }
+        Self { bin_mm: 20.0, partition_mm: 2.0, partition_height_mm: 12.0, floor_radius_mm: 40.0, depth_mm: 36.0 }
     }
 }
 

@@ -89,7 +89,10 @@ impl Fall {
             Outcome::OutOfEvents => false,
             Outcome::Stopped => return Err(ModelError::new("a simulation stopped although nobody asked it to")),
             Outcome::NotFinite { body } => {
-                let message = format!("the motion of ball {} is not finite; it was dropped at {}", members[body], starts[body].position);
+                let message = format!(
+                    "the motion of ball {} is not finite; it was dropped at {}",
+                    members[body], starts[body].position
+                );
                 return Err(ModelError::new(message));
             }
         };

@@ -61,8 +61,8 @@ impl Spelling {
         let arena = Arena::new(config, &word, balls)?;
         let goal = Gibbs::from_ln_lambda(config.ln_lambda).map_err(|error| blame("ln_lambda")(&error))?;
         let offsets = (arena.vertices().len(), config.sigma_mm, arena::longest_offset(config));
-        let prior = Prior::new(offsets, balls, arena::rectangle(config, &word)?)
-            .map_err(|error| blame("sigma_mm")(&error))?;
+        let prior =
+            Prior::new(offsets, balls, arena::rectangle(config, &word)?).map_err(|error| blame("sigma_mm")(&error))?;
         Ok(Self { config: config.clone(), word, prior, goal, arena, savings: Savings::ALL })
     }
 

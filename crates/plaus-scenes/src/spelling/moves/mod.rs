@@ -26,8 +26,7 @@ use plaus_mcmc::Move;
 /// All moves with their weights.
 pub(super) fn all(config: &Config, weights: &Weights, rules: &Rules) -> Vec<(f64, Box<dyn Move<Spelling>>)> {
     let steps = &config.steps;
-    let change_all =
-        ChangeAll { symmetric: rules.symmetric_redraws(), radial_offsets: rules.radial_offsets() };
+    let change_all = ChangeAll { symmetric: rules.symmetric_redraws(), radial_offsets: rules.radial_offsets() };
     vec![
         (weights.change_all, Box::new(change_all)),
         (weights.change_vertices, Box::new(ChangeVertices { chance: steps.vertex_chance, sd: steps.vertex_mm })),

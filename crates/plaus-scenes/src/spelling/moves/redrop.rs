@@ -45,7 +45,13 @@ impl Redrop {
     }
 
     /// The way back, from `to` to `from`.
-    fn back(self, target: &Spelling, from: &Drops, to: &StateOf<Spelling>, ball: usize) -> Result<LogRatio, ModelError> {
+    fn back(
+        self,
+        target: &Spelling,
+        from: &Drops,
+        to: &StateOf<Spelling>,
+        ball: usize,
+    ) -> Result<LogRatio, ModelError> {
         Ok(match from.balls.get(ball).copied().flatten() {
             Some(position) => LogRatio::new(self.log_q(target, to, ball, position))?,
             None => LogRatio::ZERO,
