@@ -1,6 +1,8 @@
 //! Golden traces: short chains, iteration by iteration, bit for bit. They hold on every machine, compiler and optimisation level; a mismatch means that runs
 //! of earlier versions no longer have the same bits. `cargo xtask golden --bless` makes them anew.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Verdict};
 use plaus_run::codec::{Kind, decode, encode};

@@ -3,10 +3,13 @@
 use crate::failure::Failure;
 use std::io::{self, IsTerminal, Write};
 
-/// Writes to stdout and flushes.
+/// Writes to stdout and flushes. A reader who has gone has seen enough: how the command ends does not depend on it.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(Failure::of_output)
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::of_output(error)),
+        _ => Ok(()),
+    }
 }
 
 /// Writes a line to stdout.

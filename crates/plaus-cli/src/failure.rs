@@ -6,6 +6,9 @@ use plaus_scenes::scenario::{Problem, ScenarioError, Source};
 use std::io;
 use std::process::ExitCode;
 
+/// Problems of one scenario that are shown; the others are counted.
+const SHOWN_PROBLEMS: usize = 20;
+
 /// How a command ended that did what it could.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
@@ -66,6 +69,19 @@ impl Failure {
         }
     }
 
+    /// The same, where keys set by flags of their own are named as such: pairs of an override and the flag as it was given.
+    pub(crate) fn naming(mut self, flags: &[(String, String)]) -> Self {
+        if let Self::Scenario(error) = &mut self {
+            for problem in &mut error.problems {
+                let Source::Override(said) = &mut problem.source else { continue };
+                if let Some((_, flag)) = flags.iter().find(|(key, _)| key == said) {
+                    said.clone_from(flag);
+                }
+            }
+        }
+        self
+    }
+
     /// Tells the user; gives the exit code.
     pub(crate) fn report(&self) -> ExitCode {
         match self {
@@ -80,14 +96,20 @@ impl Failure {
 /// All problems of a scenario, each with its line shown.
 fn render(error: &ScenarioError, coloured: bool) -> String {
     let renderer = if coloured { Renderer::styled() } else { Renderer::plain() };
-    let shown = error.problems.iter().map(|problem| render_one(error, problem, &renderer));
-    shown.collect::<Vec<_>>().join("\n")
+    let shown = error.problems.iter().take(SHOWN_PROBLEMS).map(|problem| render_one(error, problem, &renderer));
+    let mut text = shown.collect::<Vec<_>>().join("\n");
+    if let Some(more) = error.problems.len().checked_sub(SHOWN_PROBLEMS).filter(|&more| more > 0) {
+        let last = Group::with_title(Level::ERROR.primary_title(format!("and {more} more problems in {}", error.name)));
+        text += &format!("\n{}", renderer.render(&[last]));
+    }
+    text
 }
 
 fn render_one(error: &ScenarioError, problem: &Problem, renderer: &Renderer) -> String {
     let title = match &problem.source {
         Source::File if problem.key.is_empty() => problem.message.clone(),
         Source::File => format!("{}: {}", problem.key, problem.message),
+        Source::Override(flag) if flag.starts_with("--") => format!("{flag}: {}", problem.message),
         Source::Override(said) => format!("--set {said}: {}", problem.message),
     };
     let mut group = Group::with_title(Level::ERROR.primary_title(title));

@@ -1,24 +1,53 @@
-//! Ctrl-C, and what schedulers send: the first asks for a checkpoint and an end, the second ends at once.
+//! Ctrl-C, and what schedulers send before they kill: the first asks for a checkpoint and an end, the second ends at once.
 
 use crate::failure::Failure;
+use signal_hook::consts::signal;
+use signal_hook::flag;
+use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
 /// Exit code of an interrupted run.
 pub(crate) const EXIT: u8 = 130;
 
-static ASKED: AtomicBool = AtomicBool::new(false);
+static ASKED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
 /// From now on an interrupt is noted instead of ending the process.
 pub(crate) fn listen() -> Result<(), Failure> {
-    ctrlc::set_handler(|| {
-        if ASKED.swap(true, Ordering::SeqCst) {
-            std::process::exit(i32::from(EXIT));
-        }
-    })
-    .map_err(|error| Failure::Message(format!("cannot listen for interrupts: {error}")))
+    let asked = ASKED.get_or_init(Arc::default);
+    let register = |signal| -> io::Result<()> {
+        // Handlers run in this order: only the second signal finds the flag set.
+        flag::register_conditional_shutdown(signal, i32::from(EXIT), Arc::clone(asked))?;
+        flag::register(signal, Arc::clone(asked)).map(|_| ())
+    };
+    let registered = signals().into_iter().try_for_each(register);
+    registered.map_err(|error| Failure::Message(format!("cannot listen for interrupts: {error}")))
 }
 
 /// Whether an interrupt came.
 pub(crate) fn asked() -> bool {
-    ASKED.load(Ordering::SeqCst)
+    ASKED.get().is_some_and(|asked| asked.load(Ordering::SeqCst))
+}
+
+#[cfg(unix)]
+fn signals() -> Vec<i32> {
+    let mut signals = vec![signal::SIGINT, signal::SIGTERM];
+    if !is_ignored(signal::SIGHUP) {
+        signals.push(signal::SIGHUP);
+    }
+    signals
+}
+
+#[cfg(not(unix))]
+fn signals() -> Vec<i32> {
+    vec![signal::SIGINT, signal::SIGTERM]
+}
+
+/// Whether whoever started the process had it ignore a signal, as `nohup` does with the end of the terminal; `false` where that cannot be told.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    mask >> (signal - 1) & 1 == 1
 }

@@ -7,6 +7,7 @@ use crate::table::{grouped, percent, rate};
 use plaus_mcmc::{Control, Hits, MoveCounts, Progress};
 use plaus_run::{Manifest, Watch};
 use serde_json::{Value, json};
+use std::rc::Rc;
 use std::time::Duration;
 
 /// Chains shown on a terminal; the others are summed up.
@@ -40,13 +41,15 @@ pub(crate) struct Monitor {
     verbose: bool,
     limit: Option<Duration>,
     clock: Stopwatch,
-    manifest: Option<Manifest>,
+    /// Seconds the sampling took, once it is over.
+    took: Option<f64>,
+    manifest: Option<Rc<Manifest>>,
     begun_at: u64,
     done: u64,
     shown: Option<Stopwatch>,
     drawn: usize,
     checkpoint: Stopwatch,
-    /// Seconds between checkpoints: at least one, and more where writing one takes long.
+    /// Seconds to the next checkpoint: few before the first, then at least one, and more where writing one takes long.
     pause: f64,
     writing: Option<Stopwatch>,
     stop: Option<Stop>,
@@ -60,13 +63,14 @@ impl Monitor {
             verbose,
             limit,
             clock: Stopwatch::start(),
+            took: None,
             manifest: None,
             begun_at: 0,
             done: 0,
             shown: None,
             drawn: 0,
             checkpoint: Stopwatch::start(),
-            pause: 1.0,
+            pause: 0.2,
             writing: None,
             stop: None,
         }
@@ -82,9 +86,9 @@ impl Monitor {
         self.done
     }
 
-    /// Seconds since the run began, or went on.
+    /// Seconds since the run began, or went on, until it ended.
     pub(crate) fn seconds(&self) -> f64 {
-        self.clock.seconds()
+        self.took.unwrap_or_else(|| self.clock.seconds())
     }
 
     /// Iterations of all chains together, per second.
@@ -103,17 +107,16 @@ impl Monitor {
         if self.shown.map_or(self.seconds(), |shown| shown.seconds()) < every {
             return;
         }
-        let Some(manifest) = self.manifest.take() else { return };
+        let Some(manifest) = self.manifest.clone() else { return };
         match self.style {
             Style::Live => self.draw(&manifest, progress),
             Style::Json => self.print_json(&manifest, progress),
             _ => {
-                console::note_line(&self.headline(&manifest, progress));
+                console::note_line(&self.headlines(&manifest, progress).join("  "));
                 let chains = if self.verbose { self.chain_lines(&manifest, progress) } else { Vec::new() };
                 chains.iter().for_each(|line| console::note_line(line));
             }
         }
-        self.manifest = Some(manifest);
         self.shown = Some(Stopwatch::start());
     }
 
@@ -122,32 +125,31 @@ impl Monitor {
         left * self.seconds() / (self.done - self.begun_at) as f64
     }
 
-    fn headline(&self, manifest: &Manifest, progress: &Progress<'_>) -> String {
+    /// How far the run is, and what it has found.
+    fn headlines(&self, manifest: &Manifest, progress: &Progress<'_>) -> [String; 2] {
         let end = manifest.plan.end();
-        let wanted = manifest.plan.solutions.map(|wanted| format!(" of {wanted}")).unwrap_or_default();
-        format!(
-            "{} {:>3.0}%  iteration {} of {}  {}  hits {}  distinct {}{wanted}  ETA {}",
+        let wanted = manifest.plan.solutions.map(|wanted| format!(" of {}", grouped(wanted))).unwrap_or_default();
+        let far = format!(
+            "{} {:>3.0}%  iteration {} of {}  {}  ETA {}",
             manifest.scene,
             100.0 * self.done as f64 / end as f64,
             grouped(self.done),
             grouped(end),
             rate(self.rate()),
-            percent(share_of_hits(&progress.chains, self.done)),
-            grouped(progress.distinct.count()),
             in_words(self.eta(manifest)),
-        )
+        );
+        let hits = percent(share_of_hits(&progress.chains, self.done));
+        [far, format!("hits {hits}  distinct {}{wanted}", grouped(progress.distinct.count()))]
     }
 
     fn chain_lines(&self, manifest: &Manifest, progress: &Progress<'_>) -> Vec<String> {
         let speed = rate(self.rate() / f64::from(manifest.plan.chains));
         let line = |(chain, (counts, hits)): (usize, &(&[MoveCounts], Hits))| {
             let moves = manifest.moves.iter().zip(*counts);
-            let accepted = moves.map(|(name, count)| format!("{name} {}", percent(count.acceptance())));
+            let accepted: Vec<_> =
+                moves.map(|(name, count)| format!("{name} {}", percent(count.acceptance()))).collect();
             let hit = percent(hits.count as f64 / self.done as f64);
-            format!(
-                "  chain {chain:<3} {speed:>10}  hits {hit:>6}  accepted: {}",
-                accepted.collect::<Vec<_>>().join("  ")
-            )
+            format!("  chain {chain:<2}  {speed}  hits {hit}  accepted: {}", accepted.join("  "))
         };
         let mut lines: Vec<String> = progress.chains.iter().enumerate().take(SHOWN_CHAINS).map(line).collect();
         if let Some(more) = progress.chains.len().checked_sub(SHOWN_CHAINS).filter(|&more| more > 0) {
@@ -158,10 +160,11 @@ impl Monitor {
 
     /// Draws the block in place of the one before.
     fn draw(&mut self, manifest: &Manifest, progress: &Progress<'_>) {
-        let mut lines = vec![self.headline(manifest, progress)];
+        let mut lines = self.headlines(manifest, progress).to_vec();
         lines.extend(self.chain_lines(manifest, progress));
         let text: String = lines.iter().map(|line| format!("\x1b[2K{line}\n")).collect();
-        console::note(&format!("{}{text}", self.up()));
+        // Without wrapping meanwhile: a line is a row, however narrow the terminal.
+        console::note(&format!("\x1b[?7l{}{text}\x1b[?7h", self.up()));
         self.drawn = lines.len();
     }
 
@@ -169,8 +172,9 @@ impl Monitor {
         if self.drawn > 0 { format!("\x1b[{}A", self.drawn) } else { String::new() }
     }
 
-    /// Takes the block away, so that what follows stands in its place.
-    pub(crate) fn clear(&mut self) {
+    /// Stops the clock and takes the block away, so that what follows stands in its place.
+    pub(crate) fn finish(&mut self) {
+        self.took = Some(self.seconds());
         if self.drawn > 0 {
             console::note(&format!("{}\x1b[J", self.up()));
             self.drawn = 0;
@@ -215,7 +219,7 @@ impl Watch for Monitor {
         self.clock = Stopwatch::start();
         self.checkpoint = self.clock;
         (self.begun_at, self.done) = (done, done);
-        self.manifest = Some(manifest.clone());
+        self.manifest = Some(Rc::new(manifest.clone()));
     }
 
     fn round(&mut self, progress: &Progress<'_>) -> Control {

@@ -24,14 +24,14 @@ pub(crate) fn diagnose(run: &Run, most: Option<u64>) -> Result<Diagnosis, plaus_
 /// The line that says what a run is; the seed is always in it.
 pub(crate) fn headline(manifest: &Manifest) -> String {
     let plan = &manifest.plan;
-    let thin = if plan.thin > 1 { format!(", every {}th recorded", plan.thin) } else { String::new() };
+    let thin = if plan.thin > 1 { format!(", one in {} recorded", plan.thin) } else { String::new() };
     let rule = if manifest.exact { "exact" } else { "not exact" };
     format!(
-        "{} ({}): seed {}, {} chains of {} iterations after {} of warm-up{thin}, {rule} acceptance",
+        "{} ({}): seed {}, {} of {} iterations after {} of warm-up{thin}, {rule} acceptance",
         manifest.scene,
         manifest.scenario.file,
         plan.seed,
-        plan.chains,
+        if plan.chains == 1 { "1 chain".to_owned() } else { format!("{} chains", plan.chains) },
         grouped(plan.iterations),
         grouped(plan.warmup),
     )
@@ -102,7 +102,7 @@ pub(crate) fn move_table(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
 }
 
 /// First hit, share of satisfying draws, distinct solutions.
-pub(crate) fn solutions(diagnosis: &Diagnosis, recorded: u64) -> String {
+pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let tally = &diagnosis.tally;
     let firsts: Vec<u64> = tally.chains.iter().filter_map(|chain| chain.hits.first).collect();
     let (Some(first), Some(last)) = (firsts.iter().min(), firsts.iter().max()) else {
@@ -113,7 +113,7 @@ pub(crate) fn solutions(diagnosis: &Diagnosis, recorded: u64) -> String {
         never => format!("{never} of {} chains never", tally.chains.len()),
     };
     let satisfying: u64 = tally.chains.iter().map(|chain| chain.satisfying_draws).sum();
-    let share = satisfying as f64 / (recorded * tally.chains.len() as u64) as f64;
+    let share = satisfying as f64 / (diagnosis.recorded * tally.chains.len() as u64) as f64;
     let note =
         if share.is_finite() { format!("{} of the sampled draws satisfy; ", percent(share)) } else { String::new() };
     format!("first hit at iteration {}, {all}\n{note}{} distinct solutions\n", grouped(*first), grouped(tally.distinct))
@@ -138,6 +138,7 @@ pub(crate) fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
         "exact_acceptance": manifest.exact,
         "scenario_hash": manifest.scenario.hash,
         "iterations": diagnosis.iterations,
+        "recorded_draws": diagnosis.recorded,
         "draws": diagnosis.draws,
         "stride": diagnosis.stride,
         "scalars": diagnosis.scalars,

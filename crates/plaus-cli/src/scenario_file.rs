@@ -5,6 +5,8 @@ use plaus_run::Recipe;
 use plaus_scenes::Scenario;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::ScenarioError;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// Longest scenario file that is read, in bytes.
@@ -15,15 +17,16 @@ const LONGEST: u64 = 16 << 20;
 pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) -> Result<Recipe, Failure> {
     let shown = path.display().to_string();
     let refuse = |what: String| Failure::Message(format!("{shown}: {what}"));
-    let meta = std::fs::metadata(path).map_err(|error| {
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes));
+    read.map_err(|error| {
         let known = NAMES.contains(&shown.as_str());
         let advice = if known { format!("; `plaus new {shown} {shown}.toml` writes one") } else { String::new() };
         refuse(format!("cannot read the scenario: {error}{advice}"))
     })?;
-    if meta.len() > LONGEST {
-        return Err(refuse(format!("{} bytes are too many for a scenario", meta.len())));
+    if bytes.len() as u64 > LONGEST {
+        return Err(refuse(format!("longer than {LONGEST} bytes, which no scenario is")));
     }
-    let bytes = std::fs::read(path).map_err(|error| refuse(format!("cannot read the scenario: {error}")))?;
     let text = ScenarioError::decode(&shown, bytes)?;
     let scenario = Scenario::read(&shown, &text, &overrides)?;
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();

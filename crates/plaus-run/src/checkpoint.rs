@@ -11,7 +11,7 @@ use crate::folder::Folder;
 use plaus_mcmc::Snapshot;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use std::fs;
+use std::fs::File;
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -36,11 +36,11 @@ impl<D: Serialize + DeserializeOwned, O: Serialize + DeserializeOwned> Checkpoin
     /// # Errors
     /// [`RunFileError`] where it is damaged or belongs elsewhere.
     pub fn read(path: &Path, run: u64, chain: u32) -> Result<Option<Self>, RunFileError> {
-        let bytes = match fs::read(path) {
+        let file = match File::open(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            read => read.map_err(RunFileError::io(path, "read"))?,
+            file => file.map_err(RunFileError::io(path, "read"))?,
         };
-        let found: Self = codec::decode(KIND, &bytes)
+        let found: Self = codec::decode_file(KIND, file)
             .map_err(|source| RunFileError::new(path, RunFileProblem::Checkpoint { source }))?;
         let mixed = |what: String| RunFileError::new(path, RunFileProblem::Mixed(what));
         if found.run != run {

@@ -26,10 +26,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod error;
+
+pub use error::{EncodeError, FrameError, FrameProblem};
+
 use bincode::config::{Configuration, Limit, LittleEndian, Varint};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::io::{self, Read};
+use std::fs::File;
+use std::io::Read;
 use std::marker::PhantomData;
 
 const MAGIC: [u8; 8] = *b"\x89plaus\r\n";
@@ -55,92 +60,6 @@ impl Kind {
     pub const fn new(tag: [u8; 4], version: u32, name: &'static str) -> Self {
         Self { tag, version, name }
     }
-}
-
-/// A value that cannot be stored.
-#[derive(Debug, thiserror::Error)]
-pub enum EncodeError {
-    /// The payload is too long for one frame.
-    #[error(
-        "{bytes} bytes in one frame, at most {LONGEST_PAYLOAD} are possible: a smaller `checkpoint_every` makes smaller frames"
-    )]
-    TooLong {
-        /// Its length.
-        bytes: usize,
-    },
-    /// The value's own serialisation failed.
-    #[error("cannot be stored: {0}")]
-    Value(String),
-}
-
-/// A frame that cannot be read.
-#[derive(Debug, thiserror::Error)]
-#[error("at byte {offset}: {problem}")]
-pub struct FrameError {
-    /// Where in the file the frame begins.
-    pub offset: u64,
-    /// What is wrong with it.
-    pub problem: FrameProblem,
-}
-
-/// What is wrong with a frame.
-#[derive(Debug, thiserror::Error)]
-pub enum FrameProblem {
-    /// The file cannot be read.
-    #[error("cannot read: {0}")]
-    Io(#[from] io::Error),
-    /// It does not begin like a frame.
-    #[error("no frame of plaus begins here")]
-    Magic,
-    /// It holds something else.
-    #[error("expected {expected}, found a frame of kind `{found}`")]
-    Kind {
-        /// What was asked for.
-        expected: &'static str,
-        /// The tag that is there.
-        found: String,
-    },
-    /// Another version of plaus wrote it.
-    #[error("format version {found} of {name}; this plaus reads version {known}")]
-    Version {
-        /// What it holds.
-        name: &'static str,
-        /// The version this build reads.
-        known: u32,
-        /// The version that is there.
-        found: u32,
-    },
-    /// The file ends inside the frame.
-    #[error("the file ends inside this frame: {present} bytes are there, {needed} are needed")]
-    Truncated {
-        /// Length of the frame.
-        needed: u64,
-        /// What is there of it.
-        present: u64,
-    },
-    /// The length is absurd.
-    #[error("a payload of {length} bytes is claimed, at most {LONGEST_PAYLOAD} are possible")]
-    TooLong {
-        /// The claim.
-        length: u64,
-    },
-    /// Something changed since it was written.
-    #[error("the checksum does not match: bytes were changed after they were written")]
-    Checksum,
-    /// The checksum is right, but the payload is no such value.
-    #[error("the payload is no {name}: {reason}")]
-    Payload {
-        /// What it should be.
-        name: &'static str,
-        /// Why it is not.
-        reason: String,
-    },
-    /// Bytes follow where nothing should.
-    #[error("{bytes} unexpected bytes follow")]
-    Trailing {
-        /// How many.
-        bytes: u64,
-    },
 }
 
 /// Appends a frame that holds `value` to `out`. On an error `out` is as before.
@@ -188,8 +107,20 @@ pub fn encode<T: Serialize + ?Sized>(kind: Kind, value: &T) -> Result<Vec<u8>, E
 /// # Errors
 /// [`FrameError`] where `bytes` are anything but one whole frame of `kind`.
 pub fn decode<T: DeserializeOwned>(kind: Kind, bytes: &[u8]) -> Result<T, FrameError> {
-    let length = bytes.len() as u64;
-    let mut frames = Frames::<T, _>::new(kind, bytes, length);
+    decode_from(kind, bytes, bytes.len() as u64)
+}
+
+/// The value of a file of one frame, of which no more is read than the frame claims.
+///
+/// # Errors
+/// As [`decode`], and where the operating system refuses.
+pub fn decode_file<T: DeserializeOwned>(kind: Kind, file: File) -> Result<T, FrameError> {
+    let length = file.metadata().map_err(|error| FrameError { offset: 0, problem: error.into() })?.len();
+    decode_from(kind, file, length)
+}
+
+fn decode_from<T: DeserializeOwned>(kind: Kind, input: impl Read, length: u64) -> Result<T, FrameError> {
+    let mut frames = Frames::<T, _>::new(kind, input, length);
     let truncated = FrameProblem::Truncated { needed: (HEADER + TRAILER) as u64, present: length };
     let value = frames.next().unwrap_or(Err(FrameError { offset: 0, problem: truncated }))?;
     match length - frames.offset {

@@ -21,6 +21,8 @@ pub const MIN_ESS_PER_CHAIN: f64 = 100.0;
 pub struct Diagnosis {
     /// Iterations of the sampling phase, of each chain.
     pub iterations: u64,
+    /// Draws recorded in the sampling phase, of each chain.
+    pub recorded: u64,
     /// Draws used, of each chain: every `stride`-th.
     pub draws: u64,
     /// 1 where all draws are used.
@@ -125,7 +127,7 @@ impl Diagnosis {
         scalars.sort_by_key(|scalar: &ScalarDiagnosis| scalar.scalar.role != Role::Draw);
         let tally = Tally::of(run)?;
         let findings = findings(&scalars, &tally);
-        Ok(Self { iterations, draws: recorded.div_ceil(stride), stride, scalars, tally, findings })
+        Ok(Self { iterations, recorded, draws: recorded.div_ceil(stride), stride, scalars, tally, findings })
     }
 
     /// Whether nothing speaks against the run.

@@ -65,10 +65,11 @@ impl Disk for RealDisk {
     }
 
     fn sync(&self, path: &Path) -> io::Result<()> {
-        if path.is_dir() && !cfg!(unix) {
-            return Ok(()); // a folder cannot be opened as a file there
+        match path.is_dir() {
+            true if cfg!(unix) => File::open(path)?.sync_all(),
+            true => Ok(()), // a folder cannot be opened as a file there
+            false => OpenOptions::new().append(true).open(path)?.sync_all(),
         }
-        File::open(path)?.sync_all()
     }
 
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {

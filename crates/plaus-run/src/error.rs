@@ -36,6 +36,9 @@ pub enum RunFileProblem {
     /// Something that no export makes.
     #[error("exists already and was not made by such an export: it is not replaced, not even by `--force`")]
     NotOurs,
+    /// Nothing is there.
+    #[error("there is no such run")]
+    Missing,
     /// A folder that is no run.
     #[error("is no run: it has no manifest.json")]
     NoRun,
@@ -44,7 +47,7 @@ pub enum RunFileProblem {
     Locked,
     /// The manifest cannot be believed.
     #[error(
-        "the manifest cannot be read: {0}. The records of the chains are not touched by this: the same scenario, seed and version of plaus sample the same run again"
+        "the manifest cannot be read: {0}. Without it the records of the chains cannot be read either; the same scenario, seed and version of plaus sample the same run again"
     )]
     Manifest(String),
     /// Another version of plaus made the run.
@@ -57,7 +60,7 @@ pub enum RunFileProblem {
     },
     /// A frame of the records is damaged.
     #[error(
-        "{source}. The {intact} recorded draws of the chain before that are intact; the same scenario and seed sample all of them again"
+        "{source}. The {intact} recorded draws of the chain before that are intact: `plaus export --salvage` reads what all chains have; the same scenario and seed sample all of them again"
     )]
     Records {
         /// What and where.
@@ -67,7 +70,7 @@ pub enum RunFileProblem {
     },
     /// A checkpoint is damaged.
     #[error(
-        "{source}. The chain's records are not touched by this, but the run cannot go on from here; the same scenario and seed sample it again"
+        "{source}. The run cannot go on from here, but the chain's records are not touched by this: `plaus export --salvage` reads them; the same scenario and seed sample the run again"
     )]
     Checkpoint {
         /// What and where.
@@ -106,7 +109,8 @@ impl RunFileError {
     #[must_use]
     pub fn is_disk_full(&self) -> bool {
         let RunFileProblem::Io { source, .. } = &self.problem else { return false };
-        matches!(source.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::WriteZero)
+        use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull, WriteZero};
+        matches!(source.kind(), StorageFull | QuotaExceeded | FileTooLarge | WriteZero)
     }
 }
 
@@ -121,6 +125,14 @@ pub enum Error {
         "{source}. The run is safe up to iteration {safe}: free some space, then `plaus resume` goes on from there"
     )]
     DiskFull {
+        /// What failed.
+        source: RunFileError,
+        /// Iterations 0 up to here, exclusive, are kept.
+        safe: u64,
+    },
+    /// The run could not be written on. It is as it was at its last checkpoint.
+    #[error("{source}. The run is safe up to iteration {safe}: once that is mended, `plaus resume` goes on from there")]
+    BrokenOff {
         /// What failed.
         source: RunFileError,
         /// Iterations 0 up to here, exclusive, are kept.
@@ -151,7 +163,7 @@ impl Error {
     pub(crate) fn of_run(error: RunError<RunFileError>, safe: u64) -> Self {
         match error {
             RunError::Sink(source) if source.is_disk_full() => Self::DiskFull { source, safe },
-            RunError::Sink(source) => Self::File(source),
+            RunError::Sink(source) => Self::BrokenOff { source, safe },
             other => Self::Sampling(format!("{other}. The run keeps the first {safe} iterations of each chain")),
         }
     }

@@ -61,7 +61,10 @@ impl Folder {
         let parent = parent_of(&self.0);
         fs::create_dir_all(&parent).map_err(RunFileError::io(&parent, "make the folder"))?;
         let draft = Self(draft_of(&self.0));
-        let made = draft.fill(disk, manifest).and_then(|()| {
+        // A draft that is there already is another process's: not ours to fill, nor to remove.
+        disk.create_folder(&draft.0).map_err(RunFileError::io(&draft.0, "make the folder"))?;
+        let filled = draft.fill(disk, manifest).map_err(|error| RunFileError::new(&self.0, error.problem));
+        let made = filled.and_then(|()| {
             let done = disk.rename(&draft.0, &self.0);
             done.and_then(|()| disk.sync(&parent)).map_err(RunFileError::io(&self.0, "make the run"))
         });
@@ -72,7 +75,6 @@ impl Folder {
     }
 
     fn fill(&self, disk: &dyn Disk, manifest: &[u8]) -> Result<(), RunFileError> {
-        disk.create_folder(&self.0).map_err(RunFileError::io(&self.0, "make the folder"))?;
         for (path, bytes) in [(self.lock(), &b""[..]), (self.manifest(), manifest)] {
             disk.write(&path, bytes).map_err(RunFileError::io(&path, "write"))?;
         }

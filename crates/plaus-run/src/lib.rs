@@ -64,5 +64,5 @@ pub use error::{Error, RunFileError, RunFileProblem};
 pub use folder::Folder;
 pub use manifest::{Manifest, Recipe};
 pub use read::{Phase, Run, RunOf, RunVisitor};
-pub use sample::{Sampling, Unwatched, Watch, resume, sample};
+pub use sample::{More, Sampling, Unwatched, Watch, resume, sample};
 pub use tally::{SampleId, Tally};

@@ -8,7 +8,7 @@ use plaus_scenes::{Role, Scenario, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 
 /// Version of the folder's format.
 pub const FORMAT: u32 = 1;
@@ -104,17 +104,7 @@ impl Recipe {
     /// The plan the scenario asks for.
     #[must_use]
     pub fn plan(&self) -> Plan {
-        let sampler = &self.scenario.sampler;
-        let block = sampler.checkpoint_every.min(LONGEST_ROUND / u64::from(sampler.chains).max(1));
-        Plan {
-            seed: plaus_dist::Seed(sampler.seed),
-            chains: sampler.chains,
-            warmup: sampler.warmup,
-            iterations: sampler.iterations,
-            thin: sampler.thin,
-            block: block.max(1),
-            solutions: self.solutions,
-        }
+        plan(&self.scenario, self.solutions)
     }
 
     /// The manifest of a run of `scene`.
@@ -143,6 +133,20 @@ impl Recipe {
             moves: scene.moves(rules)?.names(),
             scalars: stored_scalars(scene),
         })
+    }
+}
+
+fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
+    let sampler = &scenario.sampler;
+    let block = sampler.checkpoint_every.min(LONGEST_ROUND / u64::from(sampler.chains).max(1));
+    Plan {
+        seed: plaus_dist::Seed(sampler.seed),
+        chains: sampler.chains,
+        warmup: sampler.warmup,
+        iterations: sampler.iterations,
+        thin: sampler.thin,
+        block: block.max(1),
+        solutions,
     }
 }
 
@@ -209,11 +213,13 @@ impl Manifest {
     /// [`RunFileError`] where there is none, or it is damaged.
     pub fn read(folder: &Folder) -> Result<Self, RunFileError> {
         let path = folder.manifest();
-        if folder.path().is_dir() && !path.exists() {
-            return Err(RunFileError::new(folder.path(), RunFileProblem::NoRun));
-        }
         let mut json = Vec::new();
-        let file = File::open(&path).map_err(RunFileError::io(&path, "read"))?;
+        let file = File::open(&path).map_err(|error| match error.kind() {
+            ErrorKind::NotFound if folder.path().is_dir() => RunFileError::new(folder.path(), RunFileProblem::NoRun),
+            ErrorKind::NotFound => RunFileError::new(folder.path(), RunFileProblem::Missing),
+            ErrorKind::NotADirectory => RunFileError::new(folder.path(), RunFileProblem::NoRun),
+            _ => RunFileError::io(&path, "read")(error),
+        })?;
         file.take(LONGEST).read_to_end(&mut json).map_err(RunFileError::io(&path, "read"))?;
         Self::from_json(&json).map_err(|problem| RunFileError::new(path, problem))
     }
@@ -235,10 +241,21 @@ impl Manifest {
     /// The scenario in force.
     ///
     /// # Errors
-    /// [`Error::StoredScenario`] where this version cannot read it.
+    /// [`Error::StoredScenario`] where this version cannot read it, or the plan is not what follows from it.
     pub fn scenario(&self) -> Result<Scenario, Error> {
-        Scenario::read(&self.scenario.file, &self.scenario.effective, &[])
-            .map_err(|error| Error::StoredScenario(error.to_string()))
+        let scenario = Scenario::read(&self.scenario.file, &self.scenario.effective, &[])
+            .map_err(|error| Error::StoredScenario(error.to_string()))?;
+        let mut planned = plan(&scenario, self.plan.solutions);
+        let first = self.extended_from.first().copied().unwrap_or(self.plan.iterations);
+        let longer = self.plan.iterations >= first && self.plan.end() < 1 << 48;
+        if first != planned.iterations || !longer {
+            return Err(Error::StoredScenario("it plans other iterations than the run".to_owned()));
+        }
+        planned.iterations = self.plan.iterations;
+        if planned != self.plan || self.scene != scenario.world.name() {
+            return Err(Error::StoredScenario("it is not the one of the run's plan".to_owned()));
+        }
+        Ok(scenario)
     }
 
     /// A number that the chains' files bear, so that files of different runs cannot be mixed up.

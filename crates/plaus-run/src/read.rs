@@ -229,14 +229,17 @@ impl<'a, S: Scene> RunOf<'a, S> {
     /// # Errors
     /// [`RunFileProblem::NoSample`] where there is no such draw, or [`RunFileError`] where the records are damaged.
     pub fn sample(&self, chain: u32, draw: u64) -> Result<Entry<S::Draw, S::Outcome>, RunFileError> {
+        let blocks = self.blocks(chain)?;
         let draws = self.draws(Phase::Sampling);
-        let wanted = self.range(Phase::Sampling).start + draw;
-        let mut next = 0;
-        for block in self.blocks(chain)? {
-            for entry in block?.entries {
-                next += entry.draws;
-                if wanted < next && draw < draws {
-                    return Ok(entry);
+        if draw < draws {
+            let wanted = self.range(Phase::Sampling).start + draw;
+            let mut next = 0;
+            for block in blocks {
+                for entry in block?.entries {
+                    next += entry.draws;
+                    if wanted < next {
+                        return Ok(entry);
+                    }
                 }
             }
         }

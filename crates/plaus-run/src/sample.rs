@@ -9,7 +9,7 @@ use crate::records::{self, Extent};
 use crate::replay::evaluate_again;
 use crate::sink::{FolderSink, Place};
 use plaus_mcmc::{Control, Distinct, Ending, Progress, RunError, Start, Target};
-use plaus_scenes::{Scene, Visitor};
+use plaus_scenes::{Scenario, Scene, Visitor};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -86,11 +86,20 @@ pub fn sample(folder: &Folder, recipe: &Recipe, sampling: Sampling<'_>) -> Resul
     recipe.scenario.world.visit(Begin(folder, recipe, sampling))?
 }
 
-/// Goes on with a run from its last checkpoint, to its planned end, or up to `iterations` of the sampling phase where that is more.
+/// What a run is asked for beyond its plan.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct More {
+    /// Iterations of the sampling phase, in all.
+    pub iterations: Option<u64>,
+    /// Distinct solutions, in all, after which to stop.
+    pub solutions: Option<u64>,
+}
+
+/// Goes on with a run from its last checkpoint, to its planned end or as far as `more` says.
 ///
 /// # Errors
-/// [`Error`] where the run is damaged, made by another version or being written, or as [`sample`].
-pub fn resume(folder: &Folder, iterations: Option<u64>, sampling: Sampling<'_>) -> Result<Ending, Error> {
+/// [`Error`] where the run is damaged, made by another version or being written, `more` is less than planned, or as [`sample`].
+pub fn resume(folder: &Folder, more: More, sampling: Sampling<'_>) -> Result<Ending, Error> {
     struct GoOn<'a, 'b>(&'a Folder, Manifest, Sampling<'b>);
     impl Visitor for GoOn<'_, '_> {
         type Output = Result<Ending, Error>;
@@ -100,32 +109,48 @@ pub fn resume(folder: &Folder, iterations: Option<u64>, sampling: Sampling<'_>) 
             go_on(folder, &manifest, &scene, starts, sampling)
         }
     }
-    let mut manifest = Manifest::read(folder)?;
+    Manifest::read(folder)?; // what is no run gets no lock file
     let _claim = folder.claim()?;
+    let mut manifest = Manifest::read(folder)?; // nobody else changes it from here on
     if manifest.plaus != VERSION {
         let problem = RunFileProblem::OtherVersion { made: manifest.plaus, present: VERSION };
         return Err(RunFileError::new(folder.path(), problem).into());
     }
     Manifest::clear(folder, sampling.disk);
-    if let Some(wanted) = iterations {
-        extend(&mut manifest, wanted)?;
+    let scenario = manifest.scenario()?;
+    if extend(&mut manifest, &scenario, more)? {
         manifest.replace(folder, sampling.disk)?;
     }
-    manifest.scenario()?.world.visit(GoOn(folder, manifest, sampling))?
+    scenario.world.visit(GoOn(folder, manifest, sampling))?
 }
 
-fn extend(manifest: &mut Manifest, wanted: u64) -> Result<(), Error> {
-    let planned = manifest.plan.iterations;
-    if wanted < planned {
-        let message =
-            format!("{planned} iterations are planned already: a run can be made longer, not shorter than {planned}");
-        return Err(Error::Request(message));
-    }
-    if wanted > planned {
+/// Writes `more` into the plan; says whether that changes it.
+fn extend(manifest: &mut Manifest, scenario: &Scenario, more: More) -> Result<bool, Error> {
+    let before = manifest.plan;
+    if let Some(wanted) = more.iterations.filter(|&wanted| wanted != before.iterations) {
+        let planned = before.iterations;
+        if wanted < planned {
+            let message = format!(
+                "{planned} iterations are planned already: a run can be made longer, not shorter than {planned}"
+            );
+            return Err(Error::Request(message));
+        }
+        Scenario::read(&manifest.scenario.file, &scenario.to_toml(), &[format!("sampler.iterations={wanted}")])
+            .map_err(|error| {
+                let why = error.problems.first().map(|problem| problem.message.as_str()).unwrap_or_default();
+                Error::Request(format!("a run cannot have that many iterations: {why}"))
+            })?;
         manifest.extended_from.push(planned);
         manifest.plan.iterations = wanted;
     }
-    Ok(())
+    if let Some(wanted) = more.solutions {
+        if let Some(planned) = before.solutions.filter(|&planned| wanted < planned) {
+            let message = format!("{planned} distinct solutions are looked for already: ask for {planned} or more");
+            return Err(Error::Request(message));
+        }
+        manifest.plan.solutions = Some(wanted);
+    }
+    Ok(manifest.plan != before)
 }
 
 /// The states to go on from. Cuts off what was written after the last checkpoint.

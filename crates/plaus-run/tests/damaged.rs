@@ -5,7 +5,7 @@
 mod common;
 
 use common::{AllDraws, bytes_of, recipe};
-use plaus_run::{Folder, Phase, Run, Sampling, Unwatched, resume, sample};
+use plaus_run::{Folder, More, Phase, Run, Sampling, Unwatched, resume, sample};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 use tempfile::TempDir;
@@ -64,7 +64,7 @@ fn harmless(name: &str, bytes: &[u8]) -> Result<(), TestCaseError> {
             prop_assert_eq!(&salvaged[..], &whole[..salvaged.len()]);
         }
     }
-    match resume(&folder, None, Sampling::new(1, &mut Unwatched)) {
+    match resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)) {
         Ok(_) => {
             let files = bytes_of(&folder);
             for (name, bytes) in WHOLE.files.iter().filter(|(name, _)| name.starts_with("chain")) {
@@ -141,7 +141,7 @@ fn damage_is_reported_with_place_and_what_is_intact() {
 fn a_missing_checkpoint_is_an_error_for_resume() {
     let (_place, folder) = with("chain-00002.checkpoint", b"");
     std::fs::remove_file(folder.checkpoint(2)).unwrap();
-    let error = resume(&folder, None, Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
+    let error = resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
     assert!(error.contains("chain-00002.checkpoint") && error.contains("other chains have checkpoints"), "{error}");
 }
 
@@ -151,6 +151,6 @@ fn a_run_of_another_version_is_not_gone_on_with() {
     let mut manifest = plaus_run::Manifest::read(&folder).unwrap();
     manifest.plaus = "0.0.7".into();
     std::fs::write(folder.manifest(), manifest.to_json().unwrap()).unwrap();
-    let error = resume(&folder, None, Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
+    let error = resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
     assert!(error.contains("made by plaus 0.0.7"), "{error}");
 }

@@ -6,7 +6,7 @@ mod common;
 
 use common::{FailingDisk, bytes_of, recipe};
 use plaus_run::disk::{Disk, RealDisk};
-use plaus_run::{Error, Folder, Sampling, Unwatched, Watch, resume, sample};
+use plaus_run::{Error, Folder, More, Sampling, Unwatched, Watch, resume, sample};
 
 /// Asks for checkpoints only now and then, as the clock would.
 struct Seldom(u32);
@@ -46,8 +46,8 @@ fn killed_everywhere(solutions: Option<u64>, crash: bool) {
         // Die again while going on, then go on in peace.
         if folder.path().exists() {
             let again = FailingDisk::new(bytes / 3 + 50, operations / 2, crash);
-            let _ = resume(&folder, None, Sampling { threads: 2, disk: &again, watch: &mut Seldom(0) });
-            resume(&folder, None, Sampling { threads: 1, disk: &RealDisk, watch: &mut Unwatched }).unwrap();
+            let _ = resume(&folder, More::default(), Sampling { threads: 2, disk: &again, watch: &mut Seldom(0) });
+            resume(&folder, More::default(), Sampling { threads: 1, disk: &RealDisk, watch: &mut Unwatched }).unwrap();
         } else {
             sample_on(&RealDisk, &folder, solutions, &mut Unwatched).unwrap();
         }
@@ -104,11 +104,12 @@ fn a_longer_run_begins_like_the_shorter() {
     let mut more = recipe(None);
     more.scenario.sampler.iterations = 700;
     sample(&long, &more, Sampling::new(1, &mut Unwatched)).unwrap();
-    resume(&short, Some(700), Sampling::new(1, &mut Unwatched)).unwrap();
+    resume(&short, More { iterations: Some(700), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap();
     assert_eq!(Manifest::read(&short).unwrap().extended_from, [430]);
     let draws = |folder: &Folder| Run::open(folder).unwrap().visit(common::AllDraws(Phase::Sampling)).unwrap();
     assert_eq!(draws(&short), draws(&long));
-    let shorter = resume(&short, Some(5), Sampling::new(1, &mut Unwatched)).unwrap_err();
+    let shorter =
+        resume(&short, More { iterations: Some(5), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap_err();
     assert!(shorter.to_string().contains("not shorter than 700"), "{shorter}");
 }
 
@@ -119,7 +120,7 @@ fn two_processes_cannot_write_one_run() {
     sample(&folder, &recipe(None), Sampling::new(1, &mut Unwatched)).unwrap();
     let claim = folder.claim().unwrap();
     assert!(folder.is_being_written());
-    let error = resume(&folder, None, Sampling::new(1, &mut Unwatched)).unwrap_err();
+    let error = resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap_err();
     assert!(error.to_string().contains("another process is writing"), "{error}");
     drop(claim);
     assert!(!folder.is_being_written());

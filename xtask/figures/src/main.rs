@@ -19,8 +19,11 @@ use std::process::ExitCode;
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
-/// Scenes with figures: name, and what adds them.
-const SCENES: &[(&str, fn(&mut Work) -> Result<()>)] = &[("ball2d", ball2d::make)];
+/// Adds a scene's figures and rows of the report.
+type Make = fn(&mut Work) -> Result<()>;
+
+/// Scenes with figures.
+const SCENES: &[(&str, Make)] = &[("ball2d", ball2d::make)];
 
 const USAGE: &str = "usage: cargo xtask reproduce-figures [--out FOLDER] [--quick]\n\n\
     --out FOLDER   where the files go, out/figures by default; files of the same names are replaced\n\

@@ -50,7 +50,7 @@ impl RunVisitor for &Args {
                 csv::write(&run, &mut out)?;
                 out.flush().map_err(Error::Output)
             }
-            (Format::Csv, false) => output::file(&self.out, self.force, |out| csv::write(&run, out)),
+            (Format::Csv, false) => output::file(&self.out, self.force, csv::is_ours, |out| csv::write(&run, out)),
             (Format::Zarr, true) => Err(Error::Request("a Zarr export is a folder: name one by --out PATH".to_owned())),
             (Format::Zarr, false) => output::folder(&self.out, self.force, zarr::is_ours, |out| zarr::write(&run, out)),
         }

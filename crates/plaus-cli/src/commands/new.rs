@@ -1,11 +1,12 @@
 //! `plaus new`
 
+use super::sample::quoted;
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario;
 use std::fs::File;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Which scene, and where to.
@@ -24,10 +25,16 @@ impl Args {
         match self.file.filter(|file| file != Path::new("-")) {
             None => console::print(&text)?,
             Some(file) => {
-                let refuse = |error| Failure::Message(format!("{}: cannot write: {error}", file.display()));
+                let refuse = |error: io::Error| {
+                    let advice = match error.kind() {
+                        io::ErrorKind::AlreadyExists => "exists already; choose another name".to_owned(),
+                        _ => format!("cannot write: {error}"),
+                    };
+                    Failure::Message(format!("{}: {advice}", file.display()))
+                };
                 let mut out = File::create_new(&file).map_err(refuse)?;
                 out.write_all(text.as_bytes()).map_err(refuse)?;
-                console::note_line(&format!("wrote {0}; next: plaus sample {0} --out run", file.display()));
+                console::note_line(&format!("wrote {0}; next: plaus sample {0} --out run", quoted(&file)));
             }
         }
         Ok(Outcome::Done)

@@ -2,7 +2,7 @@
 
 use super::sample::Watching;
 use crate::failure::{Failure, Outcome};
-use plaus_run::Folder;
+use plaus_run::{Folder, More};
 use std::path::PathBuf;
 
 /// Which run.
@@ -11,8 +11,11 @@ pub(crate) struct Args {
     /// Folder of the run
     run: PathBuf,
     /// Make the run longer: iterations of each chain after the warm-up, in all
-    #[arg(long)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     iterations: Option<u64>,
+    /// Look for more: stop once so many distinct solutions are recorded, those before included
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    solutions: Option<u64>,
     #[command(flatten)]
     watching: Watching,
 }
@@ -20,6 +23,7 @@ pub(crate) struct Args {
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let folder = Folder::new(&self.run);
-        self.watching.watch(&folder, |sampling| Ok(plaus_run::resume(&folder, self.iterations, sampling)?))
+        let more = More { iterations: self.iterations, solutions: self.solutions };
+        self.watching.watch(&folder, |sampling| Ok(plaus_run::resume(&folder, more, sampling)?))
     }
 }

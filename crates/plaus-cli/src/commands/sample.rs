@@ -8,7 +8,7 @@ use crate::progress::{Monitor, Stop, Style};
 use crate::report;
 use crate::scenario_file;
 use crate::table::{grouped, rate};
-use plaus_mcmc::Ending;
+use plaus_mcmc::{Ending, Plan};
 use plaus_run::{Diagnosis, Error, Folder, Manifest, Run, Sampling};
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::json;
@@ -27,22 +27,22 @@ pub(crate) struct Args {
     #[arg(long, value_name = "RUN")]
     out: PathBuf,
     /// Seed of all randomness
-    #[arg(long)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Number of independent chains
-    #[arg(long)]
+    #[arg(long, value_name = "C", allow_negative_numbers = true)]
     chains: Option<u64>,
     /// Iterations of each chain after the warm-up
-    #[arg(long)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     iterations: Option<u64>,
     /// Iterations before sampling begins
-    #[arg(long)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     warmup: Option<u64>,
     /// Record every so-manieth iteration
-    #[arg(long)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     thin: Option<u64>,
     /// Stop once so many distinct satisfying solutions are recorded
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     solutions: Option<u64>,
     /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -55,10 +55,10 @@ pub(crate) struct Args {
 #[derive(clap::Args)]
 pub(crate) struct Watching {
     /// Threads; 0 is one a core. Results never depend on it
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, value_name = "T", default_value_t = 0, allow_negative_numbers = true)]
     threads: usize,
     /// Stop after this time, e.g. 60s, 1.5m or 2h; the run can be resumed
-    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
+    #[arg(long, value_name = "TIME", value_parser = parse_duration, allow_hyphen_values = true)]
     max_time: Option<Duration>,
     /// Print progress and the summary as JSON lines
     #[arg(long)]
@@ -80,9 +80,14 @@ impl Args {
             ("warmup", self.warmup),
             ("thin", self.thin),
         ];
-        let given = flags.into_iter().filter_map(|(key, value)| Some(format!("sampler.{key}={}", value?)));
-        self.overrides.extend(given);
-        let recipe = scenario_file::read(&self.scenario, self.overrides, self.solutions)?;
+        let given = flags.into_iter().filter_map(|(key, value)| {
+            let value = value?;
+            Some((format!("sampler.{key}={value}"), format!("--{key} {value}")))
+        });
+        let given: Vec<(String, String)> = given.collect();
+        self.overrides.extend(given.iter().map(|(key, _)| key.clone()));
+        let recipe = scenario_file::read(&self.scenario, self.overrides, self.solutions);
+        let recipe = recipe.map_err(|failure| failure.naming(&given))?;
         let folder = Folder::new(&self.out);
         self.watching.watch(&folder, |sampling| {
             plaus_run::sample(&folder, &recipe, sampling).map_err(|error| match error {
@@ -115,7 +120,7 @@ impl Watching {
         let mut monitor = Monitor::new(self.style(), self.verbose, self.max_time);
         let mut opening = Opening { watching: self, monitor: &mut monitor, folder };
         let ended = sampling(Sampling::new(self.threads, &mut opening));
-        monitor.clear();
+        monitor.finish();
         self.sum_up(folder, &monitor, ended?)
     }
 
@@ -174,13 +179,13 @@ impl Watching {
         } else if !self.quiet {
             console::print(&summary(&run, &diagnosis, monitor, ending))?;
         }
-        let missing = plan.solutions.filter(|&wanted| ending == Ending::Complete && diagnosis.tally.distinct < wanted);
+        let missing = plan.solutions.filter(|&wanted| diagnosis.tally.distinct < wanted);
         if let Some(wanted) = missing {
             let found = diagnosis.tally.distinct;
+            let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };
             console::note_line(&format!(
-                "only {found} of the {wanted} distinct solutions were found; go on: plaus resume {} --iterations {}",
-                quoted(path),
-                10 * plan.iterations
+                "only {found} of the {wanted} distinct solutions were found; go on: plaus resume {}{more}",
+                quoted(path)
             ));
         }
         if !diagnosis.tally.is_satisfied() {
@@ -237,11 +242,10 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     };
     let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
     let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
-    let recorded = diagnosis.iterations / plan.thin;
-    text += &report::solutions(diagnosis, recorded);
+    text += &report::solutions(diagnosis);
     text += &format!("\n{}", report::scalar_table(diagnosis));
     if diagnosis.stride > 1 {
-        text += &format!("(from every {}th draw; `plaus diagnose` uses all)\n", diagnosis.stride);
+        text += &format!("(from one draw in {}; `plaus diagnose` uses all)\n", diagnosis.stride);
     }
     match diagnosis.findings.as_slice() {
         [] => {}
@@ -254,12 +258,20 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     if let Some(best) = diagnosis.tally.best() {
         text += &format!("  plaus replay {path} --sample {best}\n");
     }
-    if ending == Ending::Stopped {
-        text += &format!("  plaus resume {path}\n");
-    } else if !diagnosis.is_healthy() {
-        text += &format!("  plaus resume {path} --iterations {}\n", 10 * plan.iterations);
+    match ending {
+        Ending::Stopped => text += &format!("  plaus resume {path}\n"),
+        Ending::Complete if !diagnosis.is_healthy() => text += &format!("  plaus resume {path}{}\n", longer(&plan)),
+        Ending::EnoughSolutions => {
+            text += &format!("  plaus resume {path} --solutions {}\n", plan.solutions.unwrap_or(1).saturating_mul(2));
+        }
+        Ending::Complete => {}
     }
     text
+}
+
+/// What makes a run that has ended ten times as long.
+fn longer(plan: &Plan) -> String {
+    format!(" --iterations {}", plan.iterations.saturating_mul(10))
 }
 
 /// A path as a shell takes it.

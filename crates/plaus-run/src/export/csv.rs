@@ -7,7 +7,20 @@ use crate::error::Error;
 use crate::read::{Phase, RunOf};
 use plaus_scenes::Scene;
 use std::fmt::Write as _;
-use std::io::Write;
+use std::fs::File;
+use std::io::{Read, Write};
+use std::path::Path;
+
+const HEAD: &str = "chain,draw,log_p,satisfied,";
+
+/// Whether a file was made by [`write()`], and may be replaced.
+#[must_use]
+pub fn is_ours(path: &Path) -> bool {
+    let mut start = [0; HEAD.len()];
+    path.is_file()
+        && File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok()
+        && start == HEAD.as_bytes()
+}
 
 /// Writes the table.
 ///
@@ -16,7 +29,7 @@ use std::io::Write;
 pub fn write<S: Scene>(run: &RunOf<'_, S>, out: &mut dyn Write) -> Result<(), Error> {
     let scalars = run.scene().scalars();
     let names: Vec<&str> = scalars.iter().map(|scalar| scalar.name.as_str()).collect();
-    writeln!(out, "chain,draw,log_p,satisfied,{}", names.join(",")).map_err(Error::Output)?;
+    writeln!(out, "{HEAD}{}", names.join(",")).map_err(Error::Output)?;
     let mut values = vec![0.0; scalars.len()];
     let mut rest = String::new();
     for chain in 0..run.chains() {

@@ -6,18 +6,19 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Makes the file `out` by `write`. Replaces a file there was only with `force`.
+/// Makes the file `out` by `write`. Replaces a file there was only with `force`, and only where `is_ours` says that it was made here.
 ///
 /// # Errors
 /// As `write`, or [`RunFileError`] where something stands in the way or the disk refuses.
 pub fn file<E: From<RunFileError>>(
     out: &Path,
     force: bool,
+    is_ours: impl Fn(&Path) -> bool,
     write: impl FnOnce(&mut dyn Write) -> Result<(), E>,
 ) -> Result<(), E> {
-    refuse(out, force, Path::is_file)?;
+    refuse(out, force, is_ours)?;
     let draft = draft_of(out);
-    let made = File::create(&draft).map_err(RunFileError::io(out, "write")).map_err(E::from).and_then(|file| {
+    let made = File::create_new(&draft).map_err(RunFileError::io(out, "write")).map_err(E::from).and_then(|file| {
         let mut writer = BufWriter::with_capacity(1 << 16, file);
         write(&mut writer)?;
         let file = writer.into_inner().map_err(|error| RunFileError::io(out, "write")(error.into_error()))?;
@@ -67,7 +68,12 @@ fn swap(draft: &Path, out: &Path) -> Result<(), RunFileError> {
     if replaced {
         fs::rename(out, &old).map_err(RunFileError::io(out, "replace"))?;
     }
-    fs::rename(draft, out).map_err(RunFileError::io(out, "write"))?;
+    if let Err(error) = fs::rename(draft, out) {
+        if replaced {
+            let _ = fs::rename(&old, out); // best effort: the first error is the one to report
+        }
+        return Err(RunFileError::io(out, "write")(error));
+    }
     if replaced {
         fs::remove_dir_all(&old).map_err(RunFileError::io(&old, "remove"))?;
     }

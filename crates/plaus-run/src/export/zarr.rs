@@ -55,7 +55,7 @@ impl Array {
     }
 }
 
-/// Whether a folder was made by [`write`], and may be replaced.
+/// Whether a folder was made by [`write()`], and may be replaced.
 #[must_use]
 pub fn is_ours(path: &Path) -> bool {
     let root: Option<Value> = fs::read(path.join("zarr.json")).ok().and_then(|json| serde_json::from_slice(&json).ok());

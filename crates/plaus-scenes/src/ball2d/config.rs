@@ -117,6 +117,6 @@ pub struct Weights {
 
 impl Default for Weights {
     fn default() -> Self {
-        Self { perturb: 0.7, redraw: 0.1, aim: 0.2 }
+        Self { perturb: 0.75, redraw: 0.1, aim: 0.15 }
     }
 }

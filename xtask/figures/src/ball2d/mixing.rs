@@ -125,7 +125,7 @@ fn correlations(area: &Area<'_>, shown: &[Shown]) -> Result<()> {
         ("x, default moves", 1, true),
     ];
     for (row, (words, which, dash)) in (0_u8..).zip(entries) {
-        let y = 56.0 + 21.0 * f64::from(row);
+        let y = 44.0 + 18.0 * f64::from(row);
         let parts: &[(f64, f64)] =
             if dash { &[(0.0, 5.0), (9.0, 14.0), (18.0, 23.0), (27.0, 30.0)] } else { &[(0.0, 30.0)] };
         for (from, to) in parts {
@@ -138,14 +138,14 @@ fn correlations(area: &Area<'_>, shown: &[Shown]) -> Result<()> {
 }
 
 fn bars(area: &Area<'_>, shown: &[Shown]) -> Result<()> {
-    const LOW: f64 = -1.3;
+    const LOW: f64 = -3.0;
     let mut chart: Chart<'_> = Axes {
         title: "Effective samples per 1,000 iterations",
         x: -0.6..5.6,
         y: LOW..3.0,
         x_label: "variable",
         y_label: "ESS per 1,000 (log scale)",
-        ticks: (13, 5),
+        ticks: (13, 7),
         x_text: &|x| {
             if (x - x.round()).abs() < 1e-9 {
                 NAMES.get(x.round() as usize).map_or_else(String::new, |name| (*name).to_owned())
