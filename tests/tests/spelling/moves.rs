@@ -13,7 +13,7 @@ use plaus_scenes::{Rules, Scene};
 const SAMPLES: u64 = 20_000;
 
 /// One step of `kernel` alone from draws of the prior, with the constraint switched off.
-pub fn free(scene: &Spelling, kernel: AnyMove) -> OneStepReport {
+pub(crate) fn free(scene: &Spelling, kernel: AnyMove) -> OneStepReport {
     // λ = 1: every outcome is as good as any other.
     assert!(scene.config().ln_lambda == 0.0);
     let toy = Straight(scene);
@@ -23,7 +23,7 @@ pub fn free(scene: &Spelling, kernel: AnyMove) -> OneStepReport {
 }
 
 /// One step of `kernel` alone from exact draws with the constraint on.
-pub fn constrained(scene: &Spelling, kernel: AnyMove) -> OneStepReport {
+pub(crate) fn constrained(scene: &Spelling, kernel: AnyMove) -> OneStepReport {
     let toy = Straight(scene);
     let moves = lend::<Straight>(Mixture::of(kernel)).unwrap();
     let plan = OneStep { samples: SAMPLES, ..OneStep::default() };

@@ -8,12 +8,12 @@ use plaus_scenes::spelling::{
     BirthDeath, ChangeAll, ChangeBall, ChangeVertices, Config, Drops, Redrop, Rest, Spelling, Swap, Toggle, Vertices,
 };
 
-pub type AnyMove = Box<dyn Move<Spelling>>;
-pub type Letters = State<Drops, Rest>;
+pub(crate) type AnyMove = Box<dyn Move<Spelling>>;
+pub(crate) type Letters = State<Drops, Rest>;
 
 /// A ball lands in the bin below it, moved by the first vertex's offset; where another one lies there already, in the next bin, and past the last one in none. So
 /// outcomes depend on offsets, on the order of balls, and on all balls before.
-pub struct Straight<'a>(pub &'a Spelling);
+pub(crate) struct Straight<'a>(pub &'a Spelling);
 
 impl Target for Straight<'_> {
     type Draw = Drops;
@@ -69,14 +69,14 @@ impl View for Straight<'_> {
     }
 }
 
-pub fn scene(change: impl FnOnce(&mut Config)) -> Spelling {
+pub(crate) fn scene(change: impl FnOnce(&mut Config)) -> Spelling {
     let mut config = Config::default();
     change(&mut config);
     Spelling::new(&config).unwrap()
 }
 
 /// Four balls for four of 5 × 4 bins, among 12 random vertices.
-pub fn small(ln_lambda: f64) -> Spelling {
+pub(crate) fn small(ln_lambda: f64) -> Spelling {
     scene(|config| {
         config.bitmap = "##.\n.##".into();
         config.vertices = Vertices::Interior;
@@ -87,7 +87,7 @@ pub fn small(ln_lambda: f64) -> Spelling {
 }
 
 /// Every move there is, with settings that make each of its ways likely.
-pub fn all_moves() -> Vec<AnyMove> {
+pub(crate) fn all_moves() -> Vec<AnyMove> {
     vec![
         Box::new(ChangeAll::default()),
         Box::new(ChangeVertices { chance: 0.2, sd: 0.2 }),
@@ -100,7 +100,7 @@ pub fn all_moves() -> Vec<AnyMove> {
 }
 
 /// What must keep its law: how many balls are dropped, where two of them are, some offsets, and what became of the balls.
-pub fn statistics(scene: &Spelling) -> Vec<Statistic<'_, Drops, Rest>> {
+pub(crate) fn statistics(scene: &Spelling) -> Vec<Statistic<'_, Drops, Rest>> {
     let coordinate = |ball: usize, axis: usize| {
         let value = move |state: &Letters| state.draw.balls[ball].map_or(-1.0, |position| position[axis]);
         Statistic::new(format!("ball {ball}, axis {axis}"), value)
