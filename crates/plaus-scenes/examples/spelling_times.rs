@@ -1,18 +1,16 @@
-//! How long words take: time an iteration, to the first full word, and distinct full words a minute, over some seeds.
+//! How long words take: time an iteration, to the first full word, and distinct full words a minute, over some seeds. Times are those of one core.
 //!
 //!     cargo run --release -p plaus-scenes --example spelling_times -- scenarios/spelling-hi.toml 20 20000 [key=value ...]
-#![allow(
-    clippy::disallowed_methods,
-    clippy::print_stdout,
-    reason = "a measuring program: it reads the clock and prints"
-)]
+#![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
+
+mod shared;
 
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal, Mixture, MoveCounts, SolutionClass};
 use plaus_scenes::spelling::{Savings, Spelling};
 use plaus_scenes::{Scenario, Scene, World};
+use shared::seconds;
 use std::collections::BTreeSet;
-use std::time::Instant;
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -27,17 +25,17 @@ struct Run {
 }
 
 fn run(scene: &Spelling, moves: &Mixture<Spelling>, seed: u64, iterations: u64) -> Result<Run> {
-    let begin = Instant::now();
+    let begin = seconds();
     let mut chain = Chain::start(scene, moves, Seed(seed).chain(0))?;
     let mut run = Run::default();
     for iteration in 1..=iterations {
         chain.step()?;
         let Some(class) = scene.class(chain.state()) else { continue };
-        run.first.get_or_insert_with(|| (iteration, begin.elapsed().as_secs_f64()));
+        run.first.get_or_insert_with(|| (iteration, seconds() - begin));
         run.full += 1;
         run.classes.insert(class);
     }
-    run.seconds = begin.elapsed().as_secs_f64();
+    run.seconds = seconds() - begin;
     run.counts = chain.counts().to_vec();
     Ok(run)
 }
