@@ -2,15 +2,16 @@
 //!
 //! | tolerance | unit | draft | standard | fine | reference | usual range | danger | source |
 //! | --- | --- | --- | --- | --- | --- | --- | --- | --- |
-//! | `settle` | √(g·size) | 3e-2 | 1e-2 | 1e-3 | 1e-6 | 1e-6–1e-1 | large: bounces end early, visibly; small: many more impacts before rest | bounces of relative height `settle²/2` are unseen; convergence: `cargo xtask tradeoff` |
-//! | `step` | √(ρ/g), ρ/speed | 0.5 | 0.25 | 0.06 | 0.01 | 0.002–0.5 | large: lasting contact drifts in phase, error ∝ step² | second-order scheme, phase error ≈ step²/24 per radian |
-//! | `sweeps` | count | 50 | 200 | 1000 | 5000 | 20–10⁴ | small: stacks sink or creep | Gauss–Seidel; each sweep carries the load one body further |
-//! | `sweep_tolerance` | g·step | 1e-3 | 1e-4 | 1e-8 | 1e-12 | 1e-12–1e-2 | as `sweeps` | residual at which sweeps end |
-//! | `rest_speed` | √(g·size) | 2e-2 | 1e-2 | 1e-3 | 1e-5 | 1e-6–5e-2 | large: a slow body on its way to fall is stopped; supported statically or not is always tested first | energy of `rest_speed²/2` of a body height |
-//! | `rest_residual` | g·step | 1e-2 | 1e-2 | 1e-3 | 1e-6 | 1e-8–1e-1 | large: slopes steeper than friction allows hold bodies | what a static solution may leave unbalanced |
+//! | `settle` | √(g·size) | 1e-1 | 3e-2 | 3e-3 | 1e-6 | 1e-6–1e-1 | large: bounces end early, visibly; small: many more impacts before rest | bounces of relative height `settle²/2` are unseen; convergence: `cargo xtask tradeoff` |
+//! | `rattle` | √(size/g) | 1e-3 | 1e-4 | 1e-6 | 1e-9 | 1e-9–1e-2 | large: quick successions of true bounces lose energy; small: a heavy ball on a light one needs millions of events | the t_c model of Luding & McNamara, Granular Matter 1 (1998), after forty in a row |
+//! | `step` | √(ρ/g), ρ/speed | 0.7 | 0.4 | 0.1 | 0.01 | 0.002–0.7 | large: lasting contact drifts in phase, error ∝ step² | second-order scheme, phase error ≈ step²/24 per radian |
+//! | `sweeps` | count | 20 | 60 | 500 | 5000 | 20–10⁴ | small: stacks sink or creep | Gauss–Seidel; each sweep carries the load one body further |
+//! | `sweep_tolerance` | g·step | 1e-2 | 3e-3 | 1e-6 | 1e-12 | 1e-12–1e-2 | as `sweeps` | change at which sweeps end; each halves what is left |
+//! | `rest_speed` | √(g·size) | 5e-2 | 3e-2 | 3e-3 | 1e-5 | 1e-6–5e-2 | large: a slow body on its way to fall is stopped; static support is always tested first | energy of `rest_speed²/2` of a body height |
+//! | `rest_residual` | g·step | 2e-2 | 1e-2 | 1e-3 | 1e-6 | 1e-8–1e-1 | large: slopes steeper than friction allows hold bodies | what a static solution may leave unbalanced |
 //! | `slip_turn` | rad | 0.2 | 0.1 | 0.03 | 0.01 | 0.005–0.3 | large: direction of friction within an impact is off, error ∝ turn² | Darboux–Keller midpoint steps |
 //! | `gap` | body size | 1e-4 | 1e-5 | 1e-6 | 1e-8 | 1e-9–1e-3 | large: bodies float; small: more steps of conservative advancement | first contact of turning bodies; spheres need none |
-//! | `events` | count per body | 2e4 | 5e4 | 2e5 | 2e6 | 1e3–1e7 | small: long runs end as `OutOfEvents` | a guard, never reached by the test bed |
+//! | `events` | count per body | 2e3 | 5e3 | 5e4 | 5e5 | 1e2–1e7 | small: long runs end as `OutOfEvents` | a guard; ten marbles need about 40 each |
 //!
 //! Every length is in units of a body's own size and every time in units of `√(size/g)`, so no tolerance is absolute: the same world at another scale
 //! gives the same bits up to the scale.
@@ -53,6 +54,8 @@ impl Preset {
 pub struct Accuracy {
     /// Rebound speed below which a contact lasts, over `√(g·size)·(1 − e)`.
     pub settle: f64,
+    /// Time between impacts, over `√(size/g)`, within which many impacts in a row become plastic.
+    pub rattle: f64,
     /// Length of a step of lasting contact, over the contact's own time scales.
     pub step: f64,
     /// Most Gauss–Seidel sweeps per step.
@@ -78,7 +81,8 @@ impl Accuracy {
         match preset {
             Preset::Draft => Self {
                 settle: 1e-1,
-                step: 0.4,
+                rattle: 1e-3,
+                step: 0.7,
                 sweeps: 20,
                 sweep_tolerance: 1e-2,
                 rest_speed: 5e-2,
@@ -89,7 +93,8 @@ impl Accuracy {
             },
             Preset::Standard => Self {
                 settle: 3e-2,
-                step: 0.25,
+                rattle: 1e-4,
+                step: 0.4,
                 sweeps: 60,
                 sweep_tolerance: 3e-3,
                 rest_speed: 3e-2,
@@ -100,7 +105,8 @@ impl Accuracy {
             },
             Preset::Fine => Self {
                 settle: 3e-3,
-                step: 0.06,
+                rattle: 1e-6,
+                step: 0.1,
                 sweeps: 500,
                 sweep_tolerance: 1e-6,
                 rest_speed: 3e-3,
@@ -111,6 +117,7 @@ impl Accuracy {
             },
             Preset::Reference => Self {
                 settle: 1e-6,
+                rattle: 1e-9,
                 step: 0.01,
                 sweeps: 5000,
                 sweep_tolerance: 1e-12,
@@ -130,6 +137,7 @@ impl Accuracy {
     pub fn check(&self) -> Result<(), WorldError> {
         let named = [
             ("settle", self.settle),
+            ("rattle", self.rattle),
             ("step", self.step),
             ("sweeps", f64::from(self.sweeps)),
             ("sweep_tolerance", self.sweep_tolerance),

@@ -183,11 +183,14 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
 
     fn collide(&mut self, meeting: Meeting) -> Option<Impact> {
         match meeting {
-            Meeting::Surface(k, surface) => self.mechanics.hit_surface(k as usize, &mut self.state.bodies[k as usize], surface),
+            Meeting::Surface(k, surface) => {
+                self.mechanics.hit_surface(k as usize, &mut self.state.bodies[k as usize], surface)
+            }
             Meeting::Bodies(i, j) => {
                 let linked = self.state.links.contains(i, j);
                 let (low, high) = self.state.bodies.split_at_mut(j as usize);
-                let impact = self.mechanics.hit_body([i as usize, j as usize], [&mut low[i as usize], &mut high[0]], linked)?;
+                let impact =
+                    self.mechanics.hit_body([i as usize, j as usize], [&mut low[i as usize], &mut high[0]], linked)?;
                 if impact.lasting {
                     self.state.links.insert(i, j);
                 }
@@ -258,14 +261,18 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     fn surfaces(&mut self, k: usize) {
         let body = &self.state.bodies[k];
         let (expiry, end) = (self.mechanics.expiry(body), self.mechanics.duration());
-        let mut event =
-            if expiry <= end { Event { time: expiry, happening: Happening::Expiry } } else { Event { time: end, happening: Happening::End } };
+        let mut event = if expiry <= end {
+            Event { time: expiry, happening: Happening::Expiry }
+        } else {
+            Event { time: end, happening: Happening::End }
+        };
         if self.mechanics.is_present(body)
             && let Some((time, surface)) = self.mechanics.first_surface(k, body, event.time)
         {
             event = Event { time, happening: Happening::Surface(surface) };
         }
-        self.state.boxes[k] = self.mechanics.swept(k, body, self.mechanics.clock(body).max(self.state.time), event.time);
+        self.state.boxes[k] =
+            self.mechanics.swept(k, body, self.mechanics.clock(body).max(self.state.time), event.time);
         self.state.events[k] = event;
     }
 
@@ -287,7 +294,10 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             let until = event.time.min(self.state.events[j].time);
             let (pair, both) = if k < j { ([k, j], [body, other]) } else { ([j, k], [other, body]) };
             if let Some(time) = self.mechanics.first_meeting(pair, both, from, until) {
-                let found = Event { time, happening: Happening::Body { other: j as u32, generation: self.state.generations[j] } };
+                let found = Event {
+                    time,
+                    happening: Happening::Body { other: j as u32, generation: self.state.generations[j] },
+                };
                 if found.precedes(k as u32, &event, k as u32) {
                     event = found;
                 }
@@ -295,7 +305,10 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
         self.state.events[k] = event;
         if let Happening::Body { other, .. } = event.happening {
-            let back = Event { time: event.time, happening: Happening::Body { other: k as u32, generation: self.state.generations[k] } };
+            let back = Event {
+                time: event.time,
+                happening: Happening::Body { other: k as u32, generation: self.state.generations[k] },
+            };
             if back.precedes(other, &self.state.events[other as usize], other) {
                 self.state.events[other as usize] = back;
                 self.scratch.queue.update(other as usize, &self.state.events);

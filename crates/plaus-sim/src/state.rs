@@ -71,7 +71,7 @@ impl<B> State<B> {
             links: Links::default(),
             events: vec![Event { time: 0.0, happening: Happening::End }; n],
             generations: vec![0; n],
-            boxes: vec![Aabb::EMPTY; n],
+            boxes: vec![Aabb::around([glam::DVec3::ZERO]); n],
             counts: Counts::default(),
             started: false,
         }

@@ -9,7 +9,14 @@ const SEAM: f64 = 1e-9;
 
 /// First time in `[from, until]` seconds after the motion's clock at which a sphere touches a surface while approaching it.
 #[inline]
-pub(crate) fn sphere_surface(scenery: &Scenery, surface: Surface, path: &Parabola, radius: f64, from: f64, until: f64) -> Option<f64> {
+pub(crate) fn sphere_surface(
+    scenery: &Scenery,
+    surface: Surface,
+    path: &Parabola,
+    radius: f64,
+    from: f64,
+    until: f64,
+) -> Option<f64> {
     match surface {
         Surface::Plane(k) => {
             let plane = &scenery.planes()[k as usize];

@@ -7,13 +7,21 @@ use crate::scenery::{Scenery, Surface};
 use glam::DVec3;
 
 /// First surface that a sphere touches while approaching it, within `until` seconds of the motion's clock. Surfaces in `skip` (its lasting contacts) do not count.
-pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip: &[Surface], until: f64) -> Option<(f64, Surface)> {
+pub(crate) fn next_surface(
+    scenery: &Scenery,
+    path: &Parabola,
+    radius: f64,
+    skip: &[Surface],
+    until: f64,
+) -> Option<(f64, Surface)> {
     let mut best = None;
     let mut limit = until;
     for k in 0..scenery.planes().len() as u32 {
         consider(scenery, Surface::Plane(k), path, radius, skip, 0.0, &mut limit, &mut best);
     }
     let grid = scenery.grid();
+    // A little more than the radius, so that rounding cannot hide what touches.
+    let near = radius * radius * (1.0 + 1e-9);
     let mut cell = grid.cell_of(path.x);
     let mut from = 0.0;
     // A coordinate that moves with its acceleration never turns again. Knowing that, rounding cannot send the walk to and fro.
@@ -23,17 +31,18 @@ pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip
         let way = path.bounds(from, limit);
         let stays = way.min.cmpgt(low).all() && way.max.cmplt(high).all();
         let (leaves, next) = if stays { (f64::INFINITY, None) } else { exit((low, high), path, from, limit, &onward) };
-        let stop = leaves.min(limit);
+        let mut stop = leaves.min(limit);
         let items = grid.items(cell);
         if !items.is_empty() {
-            let swept = if stays { way } else { path.bounds(from, stop) }.grown(radius * (1.0 + 1e-9));
+            let swept = if stays { way } else { path.bounds(from, stop) };
             for &item in items {
-                if scenery.bounds(item).meets(&swept) {
-                    // A hit within this cell bounds the rest of the search, here and beyond.
-                    consider(scenery, scenery.surface(item), path, radius, skip, from, &mut limit, &mut best);
+                if scenery.bounds(item).distance_squared(&swept) <= near {
+                    // A hit within this cell bounds the rest of the search, here and beyond; what is hit beyond it is listed there.
+                    consider(scenery, scenery.surface(item), path, radius, skip, from, &mut stop, &mut best);
                 }
             }
         }
+        limit = best.map_or(limit, |(time, _)| limit.min(time));
         match next {
             Some((axis, way)) if leaves < limit => {
                 cell[axis] = if way > 0.0 { cell[axis] + 1 } else { cell[axis] - 1 };
@@ -70,7 +79,13 @@ fn consider(
 
 /// When a centre leaves a cell after `from`, along which axis and which way; infinite and none where it stays until `limit`.
 #[inline]
-fn exit((low, high): (DVec3, DVec3), path: &Parabola, from: f64, limit: f64, onward: &[f64; 3]) -> (f64, Option<(usize, f64)>) {
+fn exit(
+    (low, high): (DVec3, DVec3),
+    path: &Parabola,
+    from: f64,
+    limit: f64,
+    onward: &[f64; 3],
+) -> (f64, Option<(usize, f64)>) {
     let (x, v) = (path.after(from), path.velocity_after(from));
     let mut best = (f64::INFINITY, None);
     for k in 0..3 {

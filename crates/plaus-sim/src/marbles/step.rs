@@ -23,13 +23,16 @@ pub struct MarbleScratch {
 const PREDICT: u32 = 3;
 
 /// Most corrections of position per step; more than two are rare outside piles.
-const CORRECTIONS: usize = 12;
+const CORRECTIONS: usize = 40;
 
 /// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half, so that little is still to come.
 const CREEP: f64 = 0.03;
 
-/// Overlap over the radius that needs no further correction. Default 1e-10.
-const CORRECTED: f64 = 1e-10;
+/// Overlap over the radius that rest may keep. Default 2e-5.
+const OVERLAP: f64 = 2e-5;
+
+/// Overlap over the radius that needs no further correction. Default 1e-6.
+const CORRECTED: f64 = 1e-6;
 
 /// Separating speed over `√(g r)` plus the body's own that never ends a contact. Default 1e-9: far above rounding, far below any motion.
 const KEEP: f64 = 1e-9;
@@ -39,7 +42,13 @@ const KEEP: f64 = 1e-9;
 const APPROACH: f64 = 0.02;
 
 /// Decides how a group of marbles goes on.
-pub(super) fn settle(world: &Marbles, members: &[u32], bodies: &mut [Marble], links: &mut Links, scratch: &mut MarbleScratch) {
+pub(super) fn settle(
+    world: &Marbles,
+    members: &[u32],
+    bodies: &mut [Marble],
+    links: &mut Links,
+    scratch: &mut MarbleScratch,
+) {
     for &k in members {
         follow_contacts(world, k as usize, &mut bodies[k as usize]);
     }
@@ -88,7 +97,6 @@ fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) {
         let surface = if surface != old && before.contacts().contains(&surface) { old } else { surface };
         let foot = world.scenery.foot(surface, x);
         let most = world.settle_speed(scale, world.surface_law(index, surface)).max(KEEP * (scale + v.length()));
-        if std::env::var("DBGC").is_ok() { eprintln!("    {old:?} -> {surface:?} speed {:e} most {most:e} gap {:e} n {}", v.dot(foot.normal), foot.distance-radius, foot.normal); }
         (v.dot(foot.normal) <= most && foot.distance - radius <= world.unseen * radius).then_some(surface)
     });
 }
@@ -151,7 +159,12 @@ impl MarbleScratch {
             for &surface in bodies[index as usize].contacts() {
                 let normal = world.scenery.foot(surface, self.members[a].start).normal;
                 self.members[a].is_held = true;
-                self.contacts.push(Contact::new(a, With::Surface(surface), *world.surface_law(index as usize, surface), normal));
+                self.contacts.push(Contact::new(
+                    a,
+                    With::Surface(surface),
+                    *world.surface_law(index as usize, surface),
+                    normal,
+                ));
             }
             if links.is_empty() {
                 continue;
@@ -199,14 +212,34 @@ impl MarbleScratch {
             let (scale, speed) = match c.with {
                 With::Surface(s) => {
                     let curvature = world.scenery.foot(s, m.start).curvature_radius;
-                    let scale = if curvature < 0.0 { -curvature - m.radius } else if curvature.is_finite() { curvature + m.radius } else { m.radius };
+                    let scale = if curvature < 0.0 {
+                        -curvature - m.radius
+                    } else if curvature.is_finite() {
+                        curvature + m.radius
+                    } else {
+                        m.radius
+                    };
                     (scale, m.start_v.length())
                 }
-                With::Member(b) => (0.5 * (m.radius + self.members[b].radius), (m.start_v - self.members[b].start_v).length()),
+                With::Member(b) => {
+                    (0.5 * (m.radius + self.members[b].radius), (m.start_v - self.members[b].start_v).length())
+                }
             };
             shortest = shortest.min((scale / world.strength).sqrt()).min(scale / speed);
         }
         world.accuracy.step * shortest
+    }
+
+    /// Whether anything overlaps by more than rest may keep: then a step comes first, which puts it back.
+    fn overlaps(&self, world: &Marbles) -> bool {
+        self.contacts.iter().any(|c| {
+            let m = &self.members[c.a];
+            let (distance, reach) = match c.with {
+                With::Surface(s) => (world.scenery.foot(s, m.start).distance, m.radius),
+                With::Member(b) => ((m.start - self.members[b].start).length(), m.radius + self.members[b].radius),
+            };
+            reach - distance > OVERLAP * reach
+        })
     }
 
     /// Rest, where everything is slow and the contacts can hold everything still.
@@ -215,7 +248,7 @@ impl MarbleScratch {
             let limit = world.accuracy.rest_speed * (world.strength * m.radius).sqrt();
             m.start_v.length() <= limit && m.start_w.length() * m.radius <= limit
         });
-        if !slow || self.contacts.is_empty() {
+        if !slow || self.contacts.is_empty() || self.overlaps(world) {
             return false;
         }
         let h = self.step_length(world);
@@ -226,7 +259,8 @@ impl MarbleScratch {
             (m.v, m.w, m.x) = (world.gravity * h, DVec3::ZERO, m.start);
         }
         let left = world.accuracy.rest_residual * world.strength * h;
-        let holds = self.sweep(world.accuracy.sweeps, CREEP * left, |m| m.v.length().max(m.w.length() * m.radius) <= left);
+        let holds =
+            self.sweep(world.accuracy.sweeps, CREEP * left, |m| m.v.length().max(m.w.length() * m.radius) <= left);
         self.clear();
         if !holds {
             return false;
@@ -339,7 +373,10 @@ impl MarbleScratch {
                     With::Member(b) => {
                         let offset = m.x - self.members[b].x;
                         let distance = offset.length();
-                        (m.radius + self.members[b].radius - distance, if distance > 0.0 { offset / distance } else { c.last })
+                        (
+                            m.radius + self.members[b].radius - distance,
+                            if distance > 0.0 { offset / distance } else { c.last },
+                        )
                     }
                 };
                 if missing <= 0.0 && (round > 0 || c.load == 0.0) {
@@ -364,9 +401,11 @@ impl MarbleScratch {
 
     /// Takes back what discretisation added: a group's energy never grows.
     fn guard_energy(&mut self, world: &Marbles) {
-        let kinetic = |m: &Member, v: DVec3, w: DVec3| 0.5 * (m.mass * v.length_squared() + m.inertia * w.length_squared());
+        let kinetic =
+            |m: &Member, v: DVec3, w: DVec3| 0.5 * (m.mass * v.length_squared() + m.inertia * w.length_squared());
         let held = || self.members.iter().filter(|m| m.is_held);
-        let before: f64 = held().map(|m| kinetic(m, m.start_v, m.start_w) + m.mass * world.gravity.dot(m.x - m.start)).sum();
+        let before: f64 =
+            held().map(|m| kinetic(m, m.start_v, m.start_w) + m.mass * world.gravity.dot(m.x - m.start)).sum();
         let after: f64 = held().map(|m| kinetic(m, m.v, m.w)).sum();
         if after > before {
             let part = if before > 0.0 { (before / after).sqrt() } else { 0.0 };

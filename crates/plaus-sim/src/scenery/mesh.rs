@@ -76,13 +76,25 @@ impl Mesh {
     ///
     /// # Errors
     /// As [`Mesh::new`], and where the margins are not as many as the vertices.
-    pub fn with_margins(vertices: Vec<DVec3>, triangles: &[([u32; 3], Material)], margins: Vec<f64>) -> Result<Self, WorldError> {
+    pub fn with_margins(
+        vertices: Vec<DVec3>,
+        triangles: &[([u32; 3], Material)],
+        margins: Vec<f64>,
+    ) -> Result<Self, WorldError> {
         if margins.len() != vertices.len() {
-            return Err(WorldError::BadNumber { field: "number of margins", value: margins.len() as f64, expected: "one for each vertex" });
+            return Err(WorldError::BadNumber {
+                field: "number of margins",
+                value: margins.len() as f64,
+                expected: "one for each vertex",
+            });
         }
         let bad = margins.iter().copied().find(|margin| !(*margin >= 0.0 && margin.is_finite()));
         if let Some(value) = bad {
-            return Err(WorldError::BadNumber { field: "mesh margin", value, expected: "a length that is not negative" });
+            return Err(WorldError::BadNumber {
+                field: "mesh margin",
+                value,
+                expected: "a length that is not negative",
+            });
         }
         let mut mesh = Self {
             around_vertex: vec![Vec::new(); vertices.len()],
@@ -120,7 +132,14 @@ impl Mesh {
                 list.push(k as u32);
             }
             let nothing = (DVec3::ZERO, 0.0);
-            self.faces.push(Face { corners, normal: DVec3::ZERO, offset: 0.0, sides: [nothing; 3], material, neighbours: [None; 3] });
+            self.faces.push(Face {
+                corners,
+                normal: DVec3::ZERO,
+                offset: 0.0,
+                sides: [nothing; 3],
+                material,
+                neighbours: [None; 3],
+            });
         }
         Ok(())
     }
@@ -138,7 +157,14 @@ impl Mesh {
                         self.edges_at_vertex[v as usize].push(self.edges.len() as u32);
                     }
                     let faces = [Some(k as u32), None];
-                    self.edges.push(Edge { ends: [from, to], origin: DVec3::ZERO, direction: DVec3::X, length: 0.0, faces, active: true });
+                    self.edges.push(Edge {
+                        ends: [from, to],
+                        origin: DVec3::ZERO,
+                        direction: DVec3::X,
+                        length: 0.0,
+                        faces,
+                        active: true,
+                    });
                     continue;
                 };
                 let edge = &mut self.edges[e];
@@ -161,7 +187,8 @@ impl Mesh {
         let p = corners.map(|c| self.vertices[c as usize]);
         let cross = (p[1] - p[0]).cross(p[2] - p[0]);
         let doubled = cross.length();
-        let longest = (p[1] - p[0]).length_squared().max((p[2] - p[0]).length_squared()).max((p[2] - p[1]).length_squared());
+        let longest =
+            (p[1] - p[0]).length_squared().max((p[2] - p[0]).length_squared()).max((p[2] - p[1]).length_squared());
         if !(doubled > 1e-12 * longest && doubled.is_finite()) {
             return Err(WorldError::DegenerateTriangle { triangle: f, area: 0.5 * doubled });
         }
@@ -195,7 +222,11 @@ impl Mesh {
     fn is_convex(&self, e: usize, length: f64) -> bool {
         let [Some(first), Some(second)] = self.edges[e].faces else { return true };
         let (first, second) = (&self.faces[first as usize], &self.faces[second as usize]);
-        let far = second.corners.iter().find(|c| !self.edges[e].ends.contains(c)).map_or(DVec3::ZERO, |&c| self.vertices[c as usize]);
+        let far = second
+            .corners
+            .iter()
+            .find(|c| !self.edges[e].ends.contains(c))
+            .map_or(DVec3::ZERO, |&c| self.vertices[c as usize]);
         first.normal.dot(far) - first.offset < -FLAT * length
     }
 
@@ -269,7 +300,14 @@ impl Mesh {
 
     /// Boxes of all edges where they can ever be; empty for one that can never become convex.
     pub(crate) fn edge_reaches(&self) -> impl Iterator<Item = Aabb> + '_ {
-        (0..self.edges.len()).map(|e| if self.edge_may_count(e) { Aabb::around(self.edges[e].ends.map(|v| self.vertices[v as usize])).grown(self.margin_of(&self.edges[e].ends)) } else { Aabb::EMPTY })
+        (0..self.edges.len()).map(|e| {
+            if self.edge_may_count(e) {
+                Aabb::around(self.edges[e].ends.map(|v| self.vertices[v as usize]))
+                    .grown(self.margin_of(&self.edges[e].ends))
+            } else {
+                Aabb::EMPTY
+            }
+        })
     }
 
     /// Boxes of all vertices where they can ever be; empty for one whose edges can never become convex.
@@ -278,6 +316,17 @@ impl Mesh {
             let counts = self.edges_at_vertex[v].iter().any(|&e| self.edge_may_count(e as usize));
             if counts { Aabb::around([self.vertices[v]]).grown(self.margins[v]) } else { Aabb::EMPTY }
         })
+    }
+
+    /// Whether a ball of radius up to `reach` whose centre is in a box can touch a face: not where the box is all behind it or all beyond reach.
+    pub(crate) fn face_may_touch(&self, f: usize, centres: &Aabb, reach: f64) -> bool {
+        let face = &self.faces[f];
+        if self.margin_of(&face.corners) > 0.0 || !centres.min.is_finite() || !centres.max.is_finite() {
+            return true;
+        }
+        let middle = face.normal.dot(0.5 * (centres.min + centres.max)) - face.offset;
+        let half = face.normal.abs().dot(0.5 * (centres.max - centres.min));
+        middle + half >= 0.0 && middle - half <= reach * (1.0 + 1e-6)
     }
 
     fn edge_may_count(&self, e: usize) -> bool {

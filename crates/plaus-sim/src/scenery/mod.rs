@@ -80,8 +80,12 @@ impl Scenery {
             return Err(WorldError::BadNumber { field: "largest radius", value: reach, expected: "a positive length" });
         }
         let caps = domes.iter().map(Dome::bounds);
-        let reaches: Vec<Aabb> = mesh.face_reaches().chain(caps).chain(mesh.edge_reaches()).chain(mesh.vertex_reaches()).collect();
-        let grid = Grid::new(&reaches, reach);
+        let reaches: Vec<Aabb> =
+            mesh.face_reaches().chain(caps).chain(mesh.edge_reaches()).chain(mesh.vertex_reaches()).collect();
+        let faces = mesh.faces.len();
+        let grid = Grid::new(&reaches, reach, |item, centres| {
+            item as usize >= faces || mesh.face_may_touch(item as usize, centres, reach)
+        });
         let faces = (0..mesh.faces.len()).map(|f| mesh.face_bounds(f));
         let edges = (0..mesh.edges.len()).map(|e| mesh.edge_bounds(e));
         let vertices = (0..mesh.vertices.len()).map(|v| mesh.vertex_bounds(v));
@@ -149,7 +153,8 @@ impl Scenery {
     /// What an item of the broad phase is.
     #[inline]
     pub(crate) fn surface(&self, item: u32) -> Surface {
-        let (faces, domes, edges) = (self.mesh.faces.len() as u32, self.domes.len() as u32, self.mesh.edges.len() as u32);
+        let (faces, domes, edges) =
+            (self.mesh.faces.len() as u32, self.domes.len() as u32, self.mesh.edges.len() as u32);
         if item < faces {
             Surface::Face(item)
         } else if item < faces + domes {
@@ -169,8 +174,12 @@ impl Scenery {
             Surface::Plane(k) => self.planes[k as usize].material,
             Surface::Dome(k) => self.domes[k as usize].material,
             Surface::Face(k) => self.mesh.faces[k as usize].material,
-            Surface::Edge(k) => self.mesh.edges[k as usize].faces[0].map_or(Material(0), |f| self.mesh.faces[f as usize].material),
-            Surface::Vertex(k) => self.mesh.around_vertex(k).first().map_or(Material(0), |&f| self.mesh.faces[f as usize].material),
+            Surface::Edge(k) => {
+                self.mesh.edges[k as usize].faces[0].map_or(Material(0), |f| self.mesh.faces[f as usize].material)
+            }
+            Surface::Vertex(k) => {
+                self.mesh.around_vertex(k).first().map_or(Material(0), |&f| self.mesh.faces[f as usize].material)
+            }
         }
     }
 
@@ -185,7 +194,11 @@ impl Scenery {
             }
             Surface::Face(k) => {
                 let face = &self.mesh.faces[k as usize];
-                Foot { normal: face.normal, distance: face.normal.dot(x) - face.offset, curvature_radius: f64::INFINITY }
+                Foot {
+                    normal: face.normal,
+                    distance: face.normal.dot(x) - face.offset,
+                    curvature_radius: f64::INFINITY,
+                }
             }
             Surface::Dome(k) => {
                 let dome = &self.domes[k as usize];

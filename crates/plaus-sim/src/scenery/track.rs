@@ -133,7 +133,10 @@ impl Scenery {
                     let height = face.normal.dot(x) - face.offset;
                     if squared.is_finite() {
                         note(surface, radius - squared.sqrt());
-                    } else if height > -radius && face.inside(x - face.normal * height) > 0.0 && !self.is_shielded(f, x, -height) {
+                    } else if height > -radius
+                        && face.inside(x - face.normal * height) > 0.0
+                        && !self.is_shielded(f, x, -height)
+                    {
                         note(surface, radius - height);
                     }
                 }
@@ -156,7 +159,10 @@ impl Scenery {
             Surface::Face(g) if g != f => {
                 let face = &self.mesh.faces[g as usize];
                 let height = face.normal.dot(x) - face.offset;
-                face.normal.dot(behind) < 0.0 && height >= 0.0 && height < depth && face.inside(x - face.normal * height) >= 0.0
+                face.normal.dot(behind) < 0.0
+                    && height >= 0.0
+                    && height < depth
+                    && face.inside(x - face.normal * height) >= 0.0
             }
             _ => false,
         })
