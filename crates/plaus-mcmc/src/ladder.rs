@@ -91,7 +91,9 @@ mod tests {
     fn ladders_ascend_from_0_to_1() {
         assert_eq!(Ladder::even(5).betas(), [0.0, 0.25, 0.5, 0.75, 1.0]);
         assert_eq!(Ladder::even(0).betas(), [0.0, 1.0]);
-        for bad in [vec![], vec![0.0], vec![0.0, 0.5], vec![0.1, 1.0], vec![0.0, 0.5, 0.5, 1.0], vec![0.0, f64::NAN, 1.0]] {
+        for bad in
+            [vec![], vec![0.0], vec![0.0, 0.5], vec![0.1, 1.0], vec![0.0, 0.5, 0.5, 1.0], vec![0.0, f64::NAN, 1.0]]
+        {
             assert!(Ladder::new(bad.clone()).is_err(), "{bad:?}");
         }
         assert!(serde_json::from_str::<Ladder>("[0.0, 0.7, 1.0]").is_ok());

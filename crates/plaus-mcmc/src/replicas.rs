@@ -91,7 +91,11 @@ impl<'r, 'a, T: Target + 'static> Replicas<'r, 'a, T> {
         let walk = |chain: &mut Chain<'r, Rung<'a, T>>| (0..iterations).try_for_each(|_| chain.step().map(drop));
         self.chains.par_iter_mut().map(walk).collect::<Vec<_>>().into_iter().collect::<Result<(), _>>()?;
         self.rounds += 1;
-        self.swap().map_err(|source| ChainError::Model { iteration: self.rounds, step: Some("swap".into()), source })?;
+        self.swap().map_err(|source| ChainError::Model {
+            iteration: self.rounds,
+            step: Some("swap".into()),
+            source,
+        })?;
         self.note_ends();
         Ok(())
     }

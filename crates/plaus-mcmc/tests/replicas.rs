@@ -15,7 +15,8 @@ type Rung<'a> = Tempered<'a, Ring>;
 fn rungs<'a>(ring: &'a Ring, ladder: &Ladder) -> (Vec<Rung<'a>>, Vec<Mixture<Rung<'a>>>) {
     let rungs = ladder.betas().iter().map(|&beta| Tempered::new(ring, beta).unwrap()).collect();
     let moves = ladder.betas().iter().map(|&beta| {
-        let mixture = if beta == 0.0 { Mixture::of(Box::new(Redraw { symmetric: false })) } else { Mixture::of(Box::new(Walk)) };
+        let mixture =
+            if beta == 0.0 { Mixture::of(Box::new(Redraw { symmetric: false })) } else { Mixture::of(Box::new(Walk)) };
         lend::<Rung<'a>>(mixture).unwrap()
     });
     (rungs, moves.collect())
@@ -60,7 +61,12 @@ fn every_rung_has_its_law() {
             let summary = diagnose::summarize(&columns).unwrap();
             // 28 comparisons at 5 standard errors: 2e-5 altogether.
             let z = (summary.mean - expected) / summary.mcse_mean;
-            assert!(z.abs() < 5.0, "rung {rung}, place {place}: {} ± {}, not {expected}", summary.mean, summary.mcse_mean);
+            assert!(
+                z.abs() < 5.0,
+                "rung {rung}, place {place}: {} ± {}, not {expected}",
+                summary.mean,
+                summary.mcse_mean
+            );
             assert!(summary.mcse_mean < 0.02, "± {} proves nothing", summary.mcse_mean);
         }
     }

@@ -68,9 +68,17 @@ fn measure(scene: &Spelling, [count, iterations, limit]: [u64; 3], seed: u64) ->
     let minutes = (seconds() - begin) / 60.0;
     let rejected = replicas.rejected();
     println!("{} rounds, rejected {rejected:.2?}, barrier {:.2}", replicas.rounds(), Ladder::barrier(&rejected));
-    println!("restarts a minute {:.1}, round trips {:.1}", restarts as f64 / minutes, replicas.round_trips() as f64 / minutes);
-    println!("restarts a minute that brought a full word {:.1}; distinct full words at the end of a round, a minute {:.0}; share full {:.3}",
-        fruitful as f64 / minutes, distinct.len() as f64 / minutes, full as f64 / replicas.rounds() as f64);
+    println!(
+        "restarts a minute {:.1}, round trips {:.1}",
+        restarts as f64 / minutes,
+        replicas.round_trips() as f64 / minutes
+    );
+    println!(
+        "restarts a minute that brought a full word {:.1}; distinct full words at the end of a round, a minute {:.0}; share full {:.3}",
+        fruitful as f64 / minutes,
+        distinct.len() as f64 / minutes,
+        full as f64 / replicas.rounds() as f64
+    );
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! Time that a program spent, whatever else the machine did.
 
 /// Seconds of processor time of this thread, where Linux tells; else those since some fixed time.
-pub fn seconds() -> f64 {
+pub(crate) fn seconds() -> f64 {
     let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
     nanoseconds.map_or_else(since_start, |ns| ns * 1e-9)

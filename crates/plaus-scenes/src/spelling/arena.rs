@@ -5,9 +5,11 @@ use super::draw::Drops;
 use super::word::Word;
 use crate::scene::ConfigError;
 use glam::DVec3;
-use plaus_sim::marbles::{Marble, Marbles, Phase, Start};
+use plaus_dist::math;
+use plaus_sim::marbles::{Marble, MarbleSpec, MarbleWorld, Marbles, Phase, Start};
+use plaus_sim::scenery::Scenery;
 use plaus_sim::worlds::Bins;
-use plaus_sim::{Accuracy, Law, WorldError};
+use plaus_sim::{Accuracy, Law, Laws, Material, WorldError};
 
 /// Standard deviations of an offset's coordinate beyond which an offset has density 0: its length exceeds 8 with probability 8e-14.
 const LONGEST: f64 = 8.0;
@@ -22,6 +24,9 @@ pub(super) const MM: f64 = 1e-3;
 #[derive(Debug)]
 pub(super) struct Arena {
     bins: Bins,
+    /// Made once: its broad phase costs more than some thousand drops.
+    scenery: Scenery,
+    laws: Laws,
     /// Of the simulator's mesh, the vertices that are random, and where they are without offset.
     vertices: Vec<(u32, DVec3)>,
     interval: f64,
@@ -36,7 +41,7 @@ pub(super) struct Arena {
 impl Arena {
     pub(super) fn new(config: &Config, word: &Word, balls: usize) -> Result<Self, ConfigError> {
         check(config)?;
-        let (size, contact) = (&config.dimensions, &config.contact);
+        let size = &config.dimensions;
         let bins = Bins {
             columns: word.columns(),
             rows: word.rows(),
@@ -51,16 +56,16 @@ impl Arena {
             density: config.density,
             // A hair more, so that rounding does not make the longest offset too long.
             margin: longest_offset(config) * MM * (1.0 + 1e-9),
-            // Spinning about the normal dies by the same resistance, half as strong: a spinning ball is at rest all but for that.
-            wall_law: Law::new(contact.box_friction, contact.box_restitution)
-                .with_resistance(contact.rolling_resistance, 0.5 * contact.rolling_resistance),
-            marble_law: Law::new(contact.ball_friction, contact.ball_restitution),
+            ..Bins::default()
         };
         let (nx, ny) = (word.columns(), word.rows());
         let inner = |k: usize| (1..nx).contains(&(k % (nx + 1))) && (1..ny).contains(&(k / (nx + 1)));
         let is_random = |k: &usize| config.vertices == Vertices::Crossings || inner(*k);
         let vertices = (0..bins.crossings()).filter(is_random).map(|k| (k as u32, bins.crossing(k))).collect();
+        let fail = |error: WorldError| ConfigError::new("world.spelling.box", error);
         let arena = Self {
+            scenery: bins.scenery().map_err(fail)?,
+            laws: laws(config).map_err(fail)?,
             bins,
             vertices,
             interval: config.drop_interval_s,
@@ -77,7 +82,16 @@ impl Arena {
 
     /// A world of `count` balls with all vertices where they are without offset.
     pub(super) fn world(&self, count: usize) -> Result<Marbles, WorldError> {
-        self.bins.world(count, self.accuracy, self.duration)
+        let volume = 4.0 / 3.0 * std::f64::consts::PI * math::powi(self.bins.marble, 3);
+        let ball = MarbleSpec::solid(self.bins.marble, volume * self.bins.density, BALL);
+        Marbles::new(MarbleWorld {
+            specs: vec![ball; count],
+            laws: self.laws.clone(),
+            scenery: self.scenery.clone(),
+            gravity: DVec3::new(0.0, 0.0, -GRAVITY),
+            accuracy: self.accuracy,
+            duration: self.duration,
+        })
     }
 
     /// The random vertices.
@@ -129,6 +143,19 @@ impl Arena {
         // The simulator counts rows along y, the word from above.
         u16::try_from((self.rows - 1 - row) * self.columns + column).ok()
     }
+}
+
+/// The simulator's materials.
+const BALL: Material = Material(0);
+const BOX: Material = Material(1);
+
+fn laws(config: &Config) -> Result<Laws, WorldError> {
+    let contact = &config.contact;
+    let mut laws = Laws::new(2, Law::new(contact.ball_friction, contact.ball_restitution))?;
+    // Spinning about the normal dies by the same resistance, half as strong: a ball that only spins is at rest for the eye.
+    let on_box = Law::new(contact.box_friction, contact.box_restitution);
+    laws.set(BALL, BOX, on_box.with_resistance(contact.rolling_resistance, 0.5 * contact.rolling_resistance))?;
+    Ok(laws)
 }
 
 /// The longest offset a vertex can have, in mm.
