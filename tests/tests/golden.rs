@@ -21,6 +21,21 @@ const CASES: &[Case] = &[
     ("ball2d-paper", "ball2d.toml", &["world.ball2d.moves=paper"], 400),
     ("ball2d-as-printed", "ball2d.toml", &["sampler.rules.preset=as-printed"], 400),
     ("ball2d-64-bounces", "ball2d.toml", &["world.ball2d.collisions=64", "world.ball2d.downward=mirror"], 100),
+    ("spelling-hi", "spelling-hi.toml", &[], 300),
+    ("spelling-hi-paper", "spelling-hi.toml", &["world.spelling.moves=paper"], 300),
+    (
+        "spelling-hi-as-printed",
+        "spelling-hi.toml",
+        &["world.spelling.moves=paper", "sampler.rules.preset=as-printed"],
+        300,
+    ),
+    ("spelling-acm", "spelling-acm.toml", &[], 100),
+    (
+        "spelling-queue",
+        "spelling-hi.toml",
+        &["text=A7", "order=queue", "vertices=interior", "count=balls", "accuracy=fine"],
+        60,
+    ),
 ];
 
 /// What one iteration left.

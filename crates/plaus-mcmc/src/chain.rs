@@ -224,6 +224,17 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
     }
 
+    /// Exchanges what two chains aim at, that is targets, moves and their counts, while each keeps its state, memory and streams.
+    pub(crate) fn exchange_targets(a: &mut Self, b: &mut Self) -> Result<(), ModelError> {
+        std::mem::swap(&mut a.target, &mut b.target);
+        std::mem::swap(&mut a.moves, &mut b.moves);
+        std::mem::swap(&mut a.counts, &mut b.counts);
+        for chain in [a, b] {
+            chain.state.log_constraint = chain.target.log_constraint(&chain.state.outcome)?;
+        }
+        Ok(())
+    }
+
     fn accept_above(
         &mut self,
         floor: LogPotential,

@@ -49,8 +49,10 @@
 pub mod chain;
 pub mod check;
 pub mod diagnose;
+pub mod ladder;
 pub mod moves;
 pub mod record;
+pub mod replicas;
 pub mod run;
 pub mod solutions;
 pub mod target;
@@ -58,8 +60,10 @@ pub mod tempered;
 pub mod view;
 
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
+pub use ladder::Ladder;
 pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
 pub use record::{Block, Entry};
+pub use replicas::{Replicas, RungStatistics};
 pub use run::{Control, Ending, Plan, PlanError, Progress, RunError, Sink, Snapshot, Start, run};
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};

@@ -8,7 +8,7 @@
 //! // A ball bounces three times and should come to rest two diameters to the right.
 //! let text = "[world.ball2d]\ncollisions = 3\nsigma_d = 0.05";
 //! let scenario = Scenario::read("inline", text, &["target=2".into()])?;
-//! let World::Ball2d(config) = &scenario.world;
+//! let World::Ball2d(config) = &scenario.world else { return Ok(()) };
 //! let ball = Ball2d::new(config)?;
 //! let moves = ball.moves(&scenario.sampler.rules)?;
 //! let mut chain = Chain::start(&ball, &moves, Seed(scenario.sampler.seed).chain(0))?;
@@ -29,6 +29,7 @@ pub mod registry;
 pub mod rules;
 pub mod scenario;
 pub mod scene;
+pub mod spelling;
 
 pub use animation::Animation;
 pub use registry::{Visitor, World};

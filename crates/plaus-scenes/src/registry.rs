@@ -17,7 +17,7 @@ macro_rules! scenes {
         /// The world of a scenario: which scene, and its settings.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
         pub enum World {
-            $($(#[$doc])* #[serde(rename = $name)] $variant(crate::$module::Config),)+
+            $($(#[$doc])* #[serde(rename = $name)] $variant(Box<crate::$module::Config>),)+
         }
 
         /// Names of all scenes, as in `[world.NAME]`.
@@ -33,7 +33,7 @@ macro_rules! scenes {
             /// The world of a scene with all settings at their defaults.
             #[must_use]
             pub fn default_of(name: &str) -> Option<Self> {
-                match name { $($name => Some(Self::$variant(Default::default())),)+ _ => None }
+                match name { $($name => Some(Self::$variant(Box::default())),)+ _ => None }
             }
 
             /// Builds the scene and hands it to `visitor`.
@@ -50,4 +50,6 @@ macro_rules! scenes {
 scenes! {
     /// A ball bounces on a table whose surface normal is uncertain at every bounce; it should come to rest in a given place.
     "ball2d" Ball2d => ball2d,
+    /// Balls are dropped one after the other into a box of bins and should come to rest so that they spell a word.
+    "spelling" Spelling => spelling,
 }

@@ -26,6 +26,13 @@ pub struct Rules {
     /// Accept moves that draw values anew as if they were symmetric, as the paper does (its A.2 and 5.3). The true ratio divides by the prior.
     /// Unset: what the preset says.
     pub symmetric_redraws: Option<bool>,
+    /// Draw fresh offsets of points in a random direction with a Gaussian length, as the paper does (its A.2, B.1 and B.2), where its prior is
+    /// Gaussian in each coordinate. Unset: what the preset says.
+    pub radial_offsets: Option<bool>,
+    /// Accept moves that add or remove some of many balls by the area's factor alone, as the paper does (its B.2, with that factor the right way up: as printed
+    /// it would empty or fill the box by the choice of the unit of length). The true ratio counts the balls left as they were, too. Unset: what the
+    /// preset says.
+    pub incomplete_toggles: Option<bool>,
 }
 
 impl Rules {
@@ -41,10 +48,26 @@ impl Rules {
         self.symmetric_redraws.unwrap_or(self.preset == Preset::AsPrinted)
     }
 
+    /// Whether fresh offsets have a random direction and a Gaussian length.
+    #[must_use]
+    pub fn radial_offsets(&self) -> bool {
+        self.radial_offsets.unwrap_or(self.preset == Preset::AsPrinted)
+    }
+
+    /// Whether moves that add or remove balls forget those left as they were.
+    #[must_use]
+    pub fn incomplete_toggles(&self) -> bool {
+        self.incomplete_toggles.unwrap_or(self.preset == Preset::AsPrinted)
+    }
+
     /// The flags as they stand, by name: what a run records.
     #[must_use]
     pub fn flags(&self) -> Vec<(&'static str, bool)> {
-        vec![("symmetric_redraws", self.symmetric_redraws())]
+        vec![
+            ("symmetric_redraws", self.symmetric_redraws()),
+            ("radial_offsets", self.radial_offsets()),
+            ("incomplete_toggles", self.incomplete_toggles()),
+        ]
     }
 
     /// Whether the chain is guaranteed to leave the target invariant.

@@ -80,6 +80,7 @@ impl Leaf {
                 value.as_i64().is_some_and(|value| (least..=most).contains(&value))
             }
             "boolean" => value.is_boolean() || value.is_null(),
+            "string" => value.is_string(),
             "word" => self.words().iter().any(|word| value == word),
             kind => panic!("{}: no test for {kind}", self.key),
         }

@@ -1,0 +1,341 @@
+//! Scenario keys of the balls that spell.
+
+use plaus_sim::{Accuracy, Preset};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Most bins along a side of the box.
+pub const MOST_COLUMNS: u32 = 64;
+/// Most bins along the other side.
+pub const MOST_ROWS: u32 = 16;
+
+/// Balls are dropped one after the other into a box of bins, and should come to rest so that they spell a word (Chenney & Forsyth 2000, section
+/// 5.3 and appendix B).
+///
+/// The box is seen from above: x along the word, y from its last row of bins to its first. Lengths are in millimetres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// The word: letters A to Z, digits, spaces and `.-+!?=*` of a small built-in font. Case does not matter.
+    pub text: String,
+    /// A picture in place of a word: one line a row of bins, where `#`, `X`, `x`, `1` or `*` is a bin to fill and `.`, `_`, `0`, `-` or a space one
+    /// to leave empty. Empty: `text` counts.
+    pub bitmap: String,
+    /// Which font.
+    pub letters: Letters,
+    /// Bins along the word. 0: as many as the word needs, with one empty bin on either side.
+    #[schemars(range(min = 0, max = 64))]
+    pub columns: u32,
+    /// Rows of bins. 0: as many as the word needs, with an empty one above and below.
+    #[schemars(range(min = 0, max = 16))]
+    pub rows: u32,
+    /// Balls at most, of which each may be dropped or not. 0: as many as there are bins to fill, as in the paper; fewer can't spell the word.
+    #[schemars(range(min = 0, max = 1024))]
+    pub balls: u32,
+    /// ln λ, the reward in nats for each filled bin. The paper's: 5 for HI, 7.25 for ACM. The more bins, the more ways there are to fill a few less, and
+    /// the larger it must be.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat"))]
+    pub ln_lambda: f64,
+    /// What is counted.
+    pub count: Count,
+    /// Standard deviation of each coordinate of a partition vertex's offset. Offsets beyond 8 of it, or beyond 9/20 of the partitions' thickness, have
+    /// density 0: the partitions stay whole.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 0.5, "x-unit" = "mm"))]
+    pub sigma_mm: f64,
+    /// Which vertices of the partitions are random.
+    pub vertices: Vertices,
+    /// Radius of a ball. Toy marbles measure 12 to 16 mm across; the smaller ones leave room to land in a bin of 20 mm.
+    #[schemars(extend("minimum" = 0.5, "maximum" = 50.0, "x-unit" = "mm"))]
+    pub ball_radius_mm: f64,
+    /// Density of a ball; glass has 2500. All balls are alike, so that it has no influence on their motion.
+    #[schemars(extend("minimum" = 1.0, "maximum" = 25000.0, "x-unit" = "kg/m³"))]
+    pub density: f64,
+    /// Height above the bottom of the box from which a ball's centre falls.
+    #[schemars(extend("minimum" = 1.0, "maximum" = 1000.0, "x-unit" = "mm"))]
+    pub drop_height_mm: f64,
+    /// How much smaller than the box the rectangle is over which balls are dropped, on each side. 0: a ball at its edge just touches the wall.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "mm"))]
+    pub drop_inset_mm: f64,
+    /// Time between two drops. The default lets a ball make one bounce or two before the next one falls; less makes balls meet more often.
+    #[schemars(extend("minimum" = 0.01, "maximum" = 10.0, "x-unit" = "s"))]
+    pub drop_interval_s: f64,
+    /// When which ball falls.
+    pub order: Order,
+    /// Whether balls touch each other. Without it each falls as if alone, and two may lie in one place.
+    pub balls_touch: bool,
+    /// Time after the last drop at which what still moves counts as not at rest.
+    #[schemars(extend("minimum" = 0.1, "maximum" = 60.0, "x-unit" = "s"))]
+    pub settle_s: f64,
+    /// The box.
+    #[serde(rename = "box")]
+    pub dimensions: Dimensions,
+    /// What happens where things touch.
+    pub contact: Contact,
+    /// How exact the simulation is.
+    pub accuracy: AccuracyPreset,
+    /// Which moves: "mixed", or the "paper"'s five.
+    pub moves: Moves,
+    /// Relative weights of the moves.
+    pub weights: Weights,
+    /// Sizes of the moves' steps.
+    pub steps: Steps,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            text: "HI".into(),
+            bitmap: String::new(),
+            letters: Letters::default(),
+            columns: 0,
+            rows: 0,
+            balls: 0,
+            ln_lambda: 5.0,
+            count: Count::default(),
+            sigma_mm: 0.1,
+            vertices: Vertices::default(),
+            ball_radius_mm: 6.0,
+            density: 2500.0,
+            drop_height_mm: 72.0,
+            drop_inset_mm: 0.0,
+            drop_interval_s: 0.1,
+            order: Order::default(),
+            balls_touch: true,
+            settle_s: 3.0,
+            dimensions: Dimensions::default(),
+            contact: Contact::default(),
+            accuracy: AccuracyPreset::default(),
+            moves: Moves::default(),
+            weights: Weights::default(),
+            steps: Steps::default(),
+        }
+    }
+}
+
+/// A built-in font.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Letters {
+    /// Three bins high: the paper's HI.
+    #[default]
+    Short,
+    /// Five bins high: the paper's ACM.
+    Tall,
+}
+
+/// What k, the number that λ rewards, counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Count {
+    /// Designated bins in which at least one ball lies at rest (the paper's appendix B.1).
+    #[default]
+    Bins,
+    /// Balls at rest in designated bins (the paper's section 5.3): two in one bin count twice.
+    Balls,
+}
+
+/// Which vertices have random offsets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Vertices {
+    /// The tops of all crossings of partitions, those along the walls too: 48 for 7 × 5 bins. No ball reaches those along the walls.
+    #[default]
+    Crossings,
+    /// The tops of the crossings that are not along a wall: 24 for 7 × 5 bins.
+    Interior,
+}
+
+/// When which ball falls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Order {
+    /// Ball i falls in the i-th time slot, and a slot stays empty where its ball is not dropped: adding a ball changes no other one's time.
+    #[default]
+    Slots,
+    /// The balls that are dropped fall one after the other without gaps.
+    Queue,
+}
+
+/// A point of the simulator's scale between fast and exact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AccuracyPreset {
+    /// For looking for ideas: contact is coarse.
+    Draft,
+    /// Outcome distributions agree with the reference within sampling noise.
+    #[default]
+    Standard,
+    /// Trajectories agree with the reference until chaos separates them.
+    Fine,
+    /// What the others are measured against; slow.
+    Reference,
+}
+
+impl AccuracyPreset {
+    /// The simulator's tolerances.
+    #[must_use]
+    pub fn tolerances(self) -> Accuracy {
+        Accuracy::preset(match self {
+            Self::Draft => Preset::Draft,
+            Self::Standard => Preset::Standard,
+            Self::Fine => Preset::Fine,
+            Self::Reference => Preset::Reference,
+        })
+    }
+}
+
+/// The box (the paper's figure 10).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Dimensions {
+    /// Side of a bin, from the middle of one partition to the middle of the next.
+    #[schemars(extend("minimum" = 2.0, "maximum" = 200.0, "x-unit" = "mm"))]
+    pub bin_mm: f64,
+    /// Thickness of a partition.
+    #[schemars(extend("minimum" = 0.4, "maximum" = 100.0, "x-unit" = "mm"))]
+    pub partition_mm: f64,
+    /// Height of the partitions above the bottom.
+    #[schemars(extend("minimum" = 0.5, "maximum" = 200.0, "x-unit" = "mm"))]
+    pub partition_height_mm: f64,
+    /// Radius of the bowl that is each bin's floor: larger is flatter.
+    #[schemars(extend("minimum" = 1.0, "maximum" = 100000.0, "x-unit" = "mm"))]
+    pub floor_radius_mm: f64,
+    /// Depth of the box, for pictures. Balls meet its walls at any height: none bounces out.
+    #[schemars(extend("minimum" = 0.5, "maximum" = 1000.0, "x-unit" = "mm"))]
+    pub depth_mm: f64,
+}
+
+impl Default for Dimensions {
+    fn default() -> Self {
+        Self { bin_mm: 20.0, partition_mm: 2.0, partition_height_mm: 12.0, floor_radius_mm: 40.0, depth_mm: 36.0 }
+    }
+}
+
+/// What happens where things touch.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Contact {
+    /// Restitution between a ball and the box: rebound speed over approach speed.
+    #[schemars(range(min = 0.0, max = 0.95))]
+    pub box_restitution: f64,
+    /// Coulomb's coefficient of friction between a ball and the box.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub box_friction: f64,
+    /// Rolling resistance on the box: torque over load times radius. Without any, balls roll in their bowls for ever and never rest.
+    #[schemars(range(min = 0.0001, max = 1.0))]
+    pub rolling_resistance: f64,
+    /// Restitution between two balls.
+    #[schemars(range(min = 0.0, max = 0.95))]
+    pub ball_restitution: f64,
+    /// Coulomb's coefficient of friction between two balls.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub ball_friction: f64,
+}
+
+impl Default for Contact {
+    fn default() -> Self {
+        Self {
+            box_restitution: 0.5,
+            box_friction: 0.3,
+            rolling_resistance: 0.02,
+            ball_restitution: 0.8,
+            ball_friction: 0.1,
+        }
+    }
+}
+
+/// Which moves the chain makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Moves {
+    /// All moves, by `weights`.
+    #[default]
+    Mixed,
+    /// The paper's five with the paper's weights 0.04, 0.32, 0.32, 0.16, 0.16.
+    Paper,
+}
+
+/// Relative weights of the moves of "mixed".
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Weights {
+    /// The paper's: everything is drawn anew.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub change_all: f64,
+    /// The paper's: some partition vertices are shifted.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub change_vertices: f64,
+    /// The paper's: one ball's drop position is shifted.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub change_ball: f64,
+    /// The paper's: some balls are dropped that were not, and its reverse; each half of the time.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub toggle: f64,
+    /// A ball is dropped elsewhere, preferably over an empty designated bin.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub redrop: f64,
+    /// A ball more, preferably over an empty designated bin, or one less.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub birth_death: f64,
+    /// Two balls exchange their drop positions, hence their turns to fall.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub swap: f64,
+}
+
+impl Weights {
+    /// The paper's.
+    #[must_use]
+    pub fn paper() -> Self {
+        let none = Self {
+            change_all: 0.0,
+            change_vertices: 0.0,
+            change_ball: 0.0,
+            toggle: 0.0,
+            redrop: 0.0,
+            birth_death: 0.0,
+            swap: 0.0,
+        };
+        Self { change_all: 0.04, change_vertices: 0.32, change_ball: 0.32, toggle: 0.32, ..none }
+    }
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self {
+            change_all: 0.01,
+            change_vertices: 0.15,
+            change_ball: 0.24,
+            toggle: 0.1,
+            redrop: 0.25,
+            birth_death: 0.15,
+            swap: 0.1,
+        }
+    }
+}
+
+/// Sizes of the moves' steps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Steps {
+    /// Probability that `change_vertices` shifts a vertex.
+    #[schemars(range(min = 0.000001, max = 1.0))]
+    pub vertex_chance: f64,
+    /// Standard deviation of the length of such a shift, in a random direction.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1.0, "x-unit" = "mm"))]
+    pub vertex_mm: f64,
+    /// Standard deviation of the length of `change_ball`'s shift, in a random direction; the paper's is the side of a bin.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1000.0, "x-unit" = "mm"))]
+    pub ball_mm: f64,
+    /// Probability that `toggle` toggles a ball.
+    #[schemars(range(min = 0.000001, max = 0.999999))]
+    pub toggle_chance: f64,
+    /// Share of `redrop` and `birth_death` that aims at an empty designated bin; the others drop anywhere.
+    #[schemars(range(min = 0.0, max = 0.99))]
+    pub aimed: f64,
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        Self { vertex_chance: 0.02, vertex_mm: 0.05, ball_mm: 20.0, toggle_chance: 0.25, aimed: 0.8 }
+    }
+}

@@ -1,0 +1,233 @@
+//! Some balls simulated by themselves: their ways, where they end, and which vertices that can depend on.
+
+use super::arena::Arena;
+use glam::DVec3;
+use plaus_mcmc::ModelError;
+use plaus_sim::marbles::{Marble, MarbleScratch, Marbles, Phase, Start};
+use plaus_sim::mechanics::Impact;
+use plaus_sim::motion::Parabola;
+use plaus_sim::scenery::Aabb;
+use plaus_sim::trace::Observer;
+use plaus_sim::worlds::Bins;
+use plaus_sim::{Outcome, Scratch};
+
+/// The balls of one group, from their drops to the end.
+#[derive(Debug)]
+pub(super) struct Fall {
+    /// Which balls, in ascending order.
+    pub(super) members: Vec<usize>,
+    pub(super) starts: Vec<Start>,
+    pub(super) ways: Vec<Way>,
+    /// Each one's bin, as in [`super::Rest`].
+    pub(super) bins: Vec<Option<u16>>,
+    /// Whether the simulation came to its end.
+    pub(super) complete: bool,
+    /// Bit k: what became of a ball alone can depend on random vertex k.
+    touched: Vec<u64>,
+}
+
+/// The way of one ball.
+#[derive(Debug, Default)]
+pub(super) struct Way {
+    pub(super) pieces: Vec<Piece>,
+    /// Around the centre at all times.
+    around: Option<Aabb>,
+}
+
+/// A parabola of a way; it ends where the next begins.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece {
+    pub(super) path: Parabola,
+    pub(super) until: f64,
+    /// Around the centre.
+    around: Aabb,
+}
+
+/// Records ways, and impacts where wanted.
+#[derive(Default)]
+pub(super) struct Recorder {
+    ways: Vec<Vec<Parabola>>,
+    pub(super) impacts: Option<Vec<Impact>>,
+}
+
+impl Observer<Marbles> for Recorder {
+    #[inline]
+    fn impact(&mut self, impact: &Impact) {
+        if let Some(impacts) = &mut self.impacts {
+            impacts.push(*impact);
+        }
+    }
+
+    #[inline]
+    fn motion(&mut self, index: usize, body: &Marble) {
+        if body.phase == Phase::Waiting {
+            return;
+        }
+        let way = &mut self.ways[index];
+        // A motion that ended when it began is none.
+        if way.last().is_some_and(|last| last.t >= body.path.t) {
+            way.pop();
+        }
+        way.push(body.path);
+    }
+}
+
+impl Fall {
+    /// Simulates `members` with their `starts` in a world of as many balls.
+    pub(super) fn simulate(
+        arena: &Arena,
+        world: &Marbles,
+        (members, starts): (Vec<usize>, Vec<Start>),
+        scratch: &mut Scratch<MarbleScratch>,
+        recorder: &mut Recorder,
+    ) -> Result<Self, ModelError> {
+        recorder.ways.resize_with(members.len(), Vec::new);
+        recorder.ways.iter_mut().for_each(Vec::clear);
+        let mut state = world.state(&starts).map_err(ModelError::new)?;
+        let complete = match world.run(&mut state, scratch, arena.duration(), recorder) {
+            Outcome::AllAtRest | Outcome::TimeReached => true,
+            Outcome::OutOfEvents => false,
+            Outcome::Stopped => return Err(ModelError::new("a simulation stopped although nobody asked it to")),
+            Outcome::NotFinite { body } => {
+                let message = format!(
+                    "the motion of ball {} is not finite; it was dropped at {}",
+                    members[body], starts[body].position
+                );
+                return Err(ModelError::new(message));
+            }
+        };
+        let ways = recorder.ways[..members.len()].iter().map(|way| Way::new(way, arena.duration())).collect();
+        let bins = state.bodies().iter().map(|ball| arena.bin_of(ball)).collect();
+        let mut fall = Self { members, starts, ways, bins, complete, touched: Vec::new() };
+        if let [way] = fall.ways.as_slice() {
+            fall.touched = Footprint::new(arena.bins()).of(way, arena);
+        }
+        Ok(fall)
+    }
+
+    /// Whether the simulation could have other bits once the vertices `moved` have moved.
+    ///
+    /// A ball alone depends on the vertices near its way. What several do can also depend on features that they were deflected from before they came
+    /// there, wherever those are.
+    pub(super) fn depends_on(&self, moved: &[usize]) -> bool {
+        match self.members.len() {
+            1 => moved.iter().any(|&k| (self.touched[k / 64] >> (k % 64)) & 1 == 1),
+            _ => !moved.is_empty(),
+        }
+    }
+
+    /// Whether a ball of this group comes nearer than `reach` to one of another group.
+    pub(super) fn meets(&self, other: &Self, reach: f64) -> bool {
+        self.ways.iter().any(|way| other.ways.iter().any(|their| way.meets(their, reach)))
+    }
+}
+
+impl Way {
+    fn new(paths: &[Parabola], end: f64) -> Self {
+        let pieces: Vec<Piece> = paths
+            .iter()
+            .enumerate()
+            .map(|(k, path)| {
+                let until = paths.get(k + 1).map_or(end.max(path.t), |next| next.t);
+                Piece { path: *path, until, around: path.bounds(0.0, until - path.t) }
+            })
+            .collect();
+        let around = pieces.iter().map(|piece| piece.around).reduce(Aabb::union);
+        Self { pieces, around }
+    }
+
+    /// Whether the two centres come nearer than `reach`. Answers yes where it is close: then the balls are simulated together, which is right in any case.
+    fn meets(&self, other: &Self, reach: f64) -> bool {
+        let (Some(a), Some(b)) = (&self.around, &other.around) else { return false };
+        if !a.grown(reach).meets(b) {
+            return false;
+        }
+        let (mut i, mut j) = (0, 0);
+        while let (Some(a), Some(b)) = (self.pieces.get(i), other.pieces.get(j)) {
+            let (from, until) = (a.path.t.max(b.path.t), a.until.min(b.until));
+            if from < until && a.around.grown(reach).meets(&b.around) && come_near(a, b, from, until, reach) {
+                return true;
+            }
+            if a.until <= b.until {
+                i += 1;
+            } else {
+                j += 1;
+            }
+        }
+        false
+    }
+}
+
+/// Seconds below which two centres that could be near each other count as near. Default 1e-7; larger merges more groups than needed.
+const SHORTEST: f64 = 1e-7;
+
+/// Whether two centres may come nearer than `reach` between two times: no where their distance in the middle, less what they can cover until the ends, is more.
+fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> bool {
+    let velocity = |t: f64| a.path.velocity_after(t - a.path.t) - b.path.velocity_after(t - b.path.t);
+    // A velocity that changes linearly is largest at an end.
+    let fastest = velocity(from).length_squared().max(velocity(until).length_squared()).sqrt();
+    let (middle, half) = (0.5 * (from + until), 0.5 * (until - from));
+    let distance = (a.path.at(middle) - b.path.at(middle)).length();
+    if distance - fastest * half > reach {
+        return false;
+    }
+    half < SHORTEST
+        || distance <= reach
+        || come_near(a, b, from, middle, reach)
+        || come_near(a, b, middle, until, reach)
+}
+
+/// Which vertices a way can depend on.
+///
+/// Moving a vertex changes the tops of the partitions that meet in it, up to the next crossings. Their features are looked at where a ball's way, as far as
+/// the cell of the broad phase in which a motion ends, passes within its radius of where they can be.
+struct Footprint {
+    side: f64,
+    /// How far from the middle of a partition's top, along and across it, a ball's centre can be to see a change.
+    near: f64,
+    columns: usize,
+    rows: usize,
+}
+
+impl Footprint {
+    fn new(bins: &Bins) -> Self {
+        // The broad phase makes its cells a quarter as large as a typical feature with its surroundings, but at least 1/128 of all.
+        let around = 2.0 * (bins.margin + bins.marble);
+        let largest = (bins.side + bins.thickness).max(2.0 * bins.height) + around;
+        let extent = bins.extent();
+        let all = extent.0.max(extent.1).max(2.0 * bins.height) + bins.thickness + around;
+        let cell = (0.25 * largest).max(all / 128.0);
+        let near = 0.5 * bins.thickness + bins.margin + bins.marble + cell;
+        Self { side: bins.side, near: near * (1.0 + 1e-9), columns: bins.columns, rows: bins.rows }
+    }
+
+    fn of(&self, way: &Way, arena: &Arena) -> Vec<u64> {
+        let count = arena.vertices().len();
+        let mut touched = vec![0_u64; count.div_ceil(64)];
+        let mut crossings = vec![false; (self.columns + 1) * (self.rows + 1)];
+        for piece in &way.pieces {
+            self.mark(piece.around.min, piece.around.max, &mut crossings);
+        }
+        for (k, (vertex, _)) in arena.vertices().iter().enumerate() {
+            touched[k / 64] |= u64::from(crossings[*vertex as usize]) << (k % 64);
+        }
+        touched
+    }
+
+    fn mark(&self, low: DVec3, high: DVec3, crossings: &mut [bool]) {
+        let wide = self.side + self.near;
+        let index = |x: f64, most: usize| (x.max(0.0) as usize).min(most);
+        let range = |low: f64, high: f64, most: usize| {
+            index(((low - wide) / self.side).ceil(), most)..=index(((high + wide) / self.side).floor(), most)
+        };
+        let within = |low: f64, high: f64, x: f64, slack: f64| low - slack <= x && x <= high + slack;
+        for j in range(low.y, high.y, self.rows) {
+            for i in range(low.x, high.x, self.columns) {
+                let (x, y) = (i as f64 * self.side, j as f64 * self.side);
+                let along_x = within(low.x, high.x, x, wide) && within(low.y, high.y, y, self.near);
+                let along_y = within(low.x, high.x, x, self.near) && within(low.y, high.y, y, wide);
+                crossings[j * (self.columns + 1) + i] |= along_x || along_y;
+            }
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Balls that spell a word (section 5.3, appendix B): which bins are filled is demanded; the shape of the partitions and the drops are uncertain.
+
+mod animate;
+mod arena;
+mod config;
+mod draw;
+mod fall;
+mod font;
+mod moves;
+mod settle;
+mod word;
+
+pub use config::{
+    AccuracyPreset, Config, Contact, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Moves, Order, Steps,
+    Vertices, Weights,
+};
+pub use draw::{Drops, Prior};
+pub use moves::{BirthDeath, ChangeAll, ChangeBall, ChangeVertices, Redrop, Swap, Toggle};
+pub use settle::{Savings, Work};
+pub use word::Word;
+
+use crate::animation::Animation;
+use crate::rules::Rules;
+use crate::scene::{ConfigError, Role, Scalar, Scene};
+use arena::Arena;
+use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream, math};
+use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
+use serde::{Deserialize, Serialize};
+
+/// The balls that spell: `p ∝ λ^k · Π exp(−½‖offset‖²/σ²) · Π 1/a`, the first product over vertices, the second over the balls that are dropped.
+#[derive(Debug)]
+pub struct Spelling {
+    config: Config,
+    word: Word,
+    prior: Prior,
+    goal: Gibbs,
+    arena: Arena,
+    savings: Savings,
+}
+
+/// Where the balls came to rest.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Rest {
+    /// Each ball's bin; `None` where it was not dropped, lies on a partition or on another ball above it, or still moves.
+    pub bins: Vec<Option<u16>>,
+    /// Whether the simulation came to its end within the simulator's budget of events. Where it did not, the draw has probability 0.
+    pub complete: bool,
+}
+
+impl Spelling {
+    /// The scene of a configuration.
+    ///
+    /// # Errors
+    /// [`ConfigError`] where the word does not fit its box, the balls not their bins, or the numbers make no world.
+    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        let blame = |key: &'static str| {
+            move |error: &dyn std::error::Error| ConfigError::new(format!("world.spelling.{key}"), error)
+        };
+        let word = Word::new(config)?;
+        let balls = arena::balls(config, &word)?;
+        let arena = Arena::new(config, &word, balls)?;
+        let goal = Gibbs::from_ln_lambda(config.ln_lambda).map_err(|error| blame("ln_lambda")(&error))?;
+        let offsets = (arena.vertices().len(), config.sigma_mm, arena::longest_offset(config));
+        let prior =
+            Prior::new(offsets, balls, arena::rectangle(config, &word)?).map_err(|error| blame("sigma_mm")(&error))?;
+        Ok(Self { config: config.clone(), word, prior, goal, arena, savings: Savings::ALL })
+    }
+
+    /// The same scene with some of the work that its simulation saves switched off or on. It has no influence on any state.
+    #[must_use]
+    pub fn with_savings(mut self, savings: Savings) -> Self {
+        self.savings = savings;
+        self
+    }
+
+    /// The configuration.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Which bins are to be filled.
+    #[must_use]
+    pub fn word(&self) -> &Word {
+        &self.word
+    }
+
+    /// The law of a draw without the constraint.
+    #[must_use]
+    pub fn prior(&self) -> &Prior {
+        &self.prior
+    }
+
+    /// Lower and upper ends, along x and y, of the part of the drop rectangle that lies over a bin, in mm; `None` where none does.
+    #[must_use]
+    pub fn over(&self, bin: u16) -> Option<[[f64; 2]; 2]> {
+        let side = self.config.dimensions.bin_mm;
+        let (row, column) = (usize::from(bin) / self.word.columns(), usize::from(bin) % self.word.columns());
+        let low = [column, self.word.rows() - 1 - row].map(|index| index as f64 * side);
+        let ends = std::array::from_fn(|axis| {
+            let whole = &self.prior.wrapped()[axis];
+            [low[axis].max(whole.low()), (low[axis] + side).min(whole.high())]
+        });
+        ends.iter().all(|[low, high]| low < high).then_some(ends)
+    }
+
+    /// k: what λ rewards.
+    #[must_use]
+    pub fn reward(&self, rest: &Rest) -> u64 {
+        let wanted = rest.bins.iter().flatten().filter(|&&bin| self.word.wants(bin));
+        match self.config.count {
+            Count::Balls => wanted.count() as u64,
+            Count::Bins => self.word.designated().iter().filter(|bin| rest.bins.contains(&Some(**bin))).count() as u64,
+        }
+    }
+
+    /// How many designated bins hold a ball at rest.
+    #[must_use]
+    pub fn filled(&self, rest: &Rest) -> usize {
+        self.word.designated().iter().filter(|bin| rest.bins.contains(&Some(**bin))).count()
+    }
+}
+
+impl Target for Spelling {
+    type Draw = Drops;
+    type Outcome = Rest;
+    type Scratch = Work;
+
+    fn start(&self, stream: &mut Stream) -> Drops {
+        let mut draw = Drops { offsets: Vec::new(), balls: Vec::new() };
+        self.prior.sample(false, &mut draw, stream);
+        draw
+    }
+
+    fn log_prior(&self, draw: &Drops) -> Result<LogDensity, ModelError> {
+        Ok(self.prior.log_density(draw)?)
+    }
+
+    fn simulate(
+        &self,
+        draw: &Drops,
+        current: Option<&StateOf<Self>>,
+        floor: LogPotential,
+        work: &mut Work,
+    ) -> Result<Simulated<Rest>, ModelError> {
+        // Each ball fills one bin at most.
+        let most = draw.active().min(match self.config.count {
+            Count::Bins => self.word.designated().len(),
+            Count::Balls => usize::MAX,
+        });
+        if self.savings.bound && self.goal.log_potential(most as u64) <= floor {
+            work.skip();
+            return Ok(Simulated::CannotExceedFloor);
+        }
+        let known = current.map(|state| &state.draw).filter(|_| self.savings.reuse);
+        work.simulate(&self.arena, draw, known).map(Simulated::Complete)
+    }
+
+    fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
+        if !rest.complete {
+            return Ok(LogPotential::ZERO);
+        }
+        Ok(self.goal.log_potential(self.reward(rest)))
+    }
+
+    fn settle(&self, accepted: bool, work: &mut Work) {
+        work.settle(accepted);
+    }
+}
+
+/// Two solutions are the same where every ball lies in the same bin.
+impl Goal for Spelling {
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+        let rest = &state.outcome;
+        let full = rest.complete && self.filled(rest) == self.word.designated().len();
+        full.then(|| SolutionClass::of(rest.bins.iter().map(|bin| bin.map_or(-1, i64::from))))
+    }
+}
+
+impl Scene for Spelling {
+    fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
+        let weights = match self.config.moves {
+            Moves::Paper => Weights::paper(),
+            Moves::Mixed => self.config.weights,
+        };
+        Mixture::new(moves::all(&self.config, &weights, rules))
+            .map_err(|error| ConfigError::new("world.spelling.weights", error))
+    }
+
+    fn scalars(&self) -> Vec<Scalar> {
+        let scalar = |name: &str, unit, role| Scalar { name: name.into(), unit, role };
+        let bin = |ball| scalar(&format!("bin_{ball}"), "", Role::Outcome);
+        [scalar("k", "", Role::Outcome), scalar("active", "", Role::Draw), scalar("offset_rms", "mm", Role::Draw)]
+            .into_iter()
+            .chain((0..self.prior.balls()).map(bin))
+            .collect()
+    }
+
+    /// A ball in no bin has bin −1.
+    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
+        if let [k, active, rms, bins @ ..] = values {
+            *k = self.reward(&state.outcome) as f64;
+            *active = state.draw.active() as f64;
+            let squares: f64 = state.draw.offsets.iter().flatten().map(|x| math::square(*x)).sum();
+            *rms = (squares / (3 * state.draw.offsets.len()).max(1) as f64).sqrt();
+            for (value, bin) in bins.iter_mut().zip(&state.outcome.bins) {
+                *value = bin.map_or(-1.0, f64::from);
+            }
+        }
+    }
+
+    fn animate(&self, draw: &Drops) -> Result<Animation, ModelError> {
+        animate::animate(&self.arena, draw)
+    }
+}

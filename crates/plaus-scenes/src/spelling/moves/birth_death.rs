@@ -1,0 +1,107 @@
+//! A ball more over a bin that waits for one, or a ball less.
+
+use super::aim::Aim;
+use super::happens;
+use crate::spelling::{Drops, Spelling};
+use plaus_dist::stream::below;
+use plaus_dist::{LogRatio, Stream, math};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+
+/// Half of the time a birth: one of the N − n balls that are not dropped, each as likely, is, at a position that mostly lies over an empty designated
+/// bin. Else a death: one of the n balls that are dropped, each as likely, no longer is.
+///
+/// A birth has density `h(position)/(N−n)` and the death that undoes it probability `1/(n+1)`. The law h is that of the state with one ball less, so a
+/// death knows its ratio after the simulation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BirthDeath {
+    /// Share of positions that aim.
+    pub aimed: f64,
+}
+
+/// The path of a birth is twice the ball, that of a death one more.
+fn is_birth(path: Path) -> bool {
+    path.0.is_multiple_of(2)
+}
+
+fn ball_of(path: Path) -> usize {
+    (path.0 / 2) as usize
+}
+
+impl BirthDeath {
+    /// Log density of the birth of `ball` at `position` in `less`, without h.
+    fn log_choice(target: &Spelling, less: &Drops) -> f64 {
+        -math::ln((target.prior().balls() - less.active()) as f64)
+    }
+
+    /// Log of h in the state with one ball less.
+    fn log_aim(self, target: &Spelling, less: &StateOf<Spelling>, ball: usize, position: [f64; 2]) -> f64 {
+        Aim::new(target, self.aimed, &less.outcome, ball).log_density(position)
+    }
+
+    fn birth(self, target: &Spelling, less: &StateOf<Spelling>, ball: usize, position: [f64; 2]) -> f64 {
+        let death = -math::ln((less.draw.active() + 1) as f64);
+        death - Self::log_choice(target, &less.draw) - self.log_aim(target, less, ball, position)
+    }
+}
+
+impl Move<Spelling> for BirthDeath {
+    fn name(&self) -> &'static str {
+        "birth_death"
+    }
+
+    fn propose(
+        &self,
+        target: &Spelling,
+        current: &StateOf<Spelling>,
+        candidate: &mut Drops,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let n = current.draw.active();
+        if happens(0.5, stream) {
+            let chosen = below(stream, target.prior().balls() - n);
+            let mut absent = (0..candidate.balls.len()).filter(|&ball| candidate.balls[ball].is_none());
+            let Some(ball) = absent.nth(chosen) else { return Ok(Proposal::Stay) };
+            let position = Aim::new(target, self.aimed, &current.outcome, ball).sample(stream);
+            candidate.balls[ball] = Some(position);
+            let log_ratio = LogRatio::new(self.birth(target, current, ball, position))?;
+            return Ok(Proposal::Candidate { log_ratio, path: Path(2 * ball as u64), later: None });
+        }
+        let chosen = below(stream, n);
+        let mut present = (0..candidate.balls.len()).filter(|&ball| candidate.balls[ball].is_some());
+        let Some(ball) = present.nth(chosen) else { return Ok(Proposal::Stay) };
+        candidate.balls[ball] = None;
+        let log_ratio = LogRatio::new(Self::log_choice(target, candidate) + math::ln(n as f64))?;
+        let later = Some(LogRatio::new(Aim::highest(target, self.aimed))?);
+        Ok(Proposal::Candidate { log_ratio, path: Path(2 * ball as u64 + 1), later })
+    }
+
+    fn log_ratio(
+        &self,
+        target: &Spelling,
+        from: &StateOf<Spelling>,
+        to: &StateOf<Spelling>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        let ball = ball_of(path);
+        let (less, more) = if is_birth(path) { (from, to) } else { (to, from) };
+        let Some(position) = more.draw.balls[ball] else { return Ok(LogRatio::ZERO) };
+        let birth = LogRatio::new(self.birth(target, less, ball, position))?;
+        Ok(if is_birth(path) { birth } else { birth.inverse() })
+    }
+
+    fn reverse(&self, path: Path) -> Path {
+        Path(path.0 ^ 1)
+    }
+
+    fn log_ratio_after(
+        &self,
+        target: &Spelling,
+        current: &StateOf<Spelling>,
+        candidate: &StateOf<Spelling>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        let ball = ball_of(path);
+        let Some(position) = current.draw.balls[ball] else { return Ok(LogRatio::ZERO) };
+        Ok(LogRatio::new(self.log_aim(target, candidate, ball, position))?)
+    }
+}

@@ -1,0 +1,53 @@
+//! The moves of the balls that spell, one a file. The first four are the paper's (its appendix B.2), activate and deactivate being one.
+
+mod aim;
+mod birth_death;
+mod change_all;
+mod change_ball;
+mod change_vertices;
+mod redrop;
+mod swap;
+mod toggle;
+
+pub use birth_death::BirthDeath;
+pub use change_all::ChangeAll;
+pub use change_ball::ChangeBall;
+pub use change_vertices::ChangeVertices;
+pub use redrop::Redrop;
+pub use swap::Swap;
+pub use toggle::Toggle;
+
+use super::Spelling;
+use super::config::{Config, Weights};
+use crate::rules::Rules;
+use plaus_dist::{Stream, math, open_unit, standard_normal};
+use plaus_mcmc::Move;
+
+/// All moves with their weights.
+pub(super) fn all(config: &Config, weights: &Weights, rules: &Rules) -> Vec<(f64, Box<dyn Move<Spelling>>)> {
+    let steps = &config.steps;
+    let change_all = ChangeAll { symmetric: rules.symmetric_redraws(), radial_offsets: rules.radial_offsets() };
+    vec![
+        (weights.change_all, Box::new(change_all)),
+        (weights.change_vertices, Box::new(ChangeVertices { chance: steps.vertex_chance, sd: steps.vertex_mm })),
+        (weights.change_ball, Box::new(ChangeBall { sd: steps.ball_mm })),
+        (weights.toggle, Box::new(Toggle { chance: steps.toggle_chance, incomplete: rules.incomplete_toggles() })),
+        (weights.redrop, Box::new(Redrop { aimed: steps.aimed })),
+        (weights.birth_death, Box::new(BirthDeath { aimed: steps.aimed })),
+        (weights.swap, Box::new(Swap)),
+    ]
+}
+
+/// A shift in a uniformly random direction by a length N(0, `sd`). As likely as its opposite.
+fn shift<const D: usize>(sd: f64, stream: &mut Stream) -> [f64; D] {
+    // Independent normal components have a uniform direction; they are never all 0.
+    let direction: [f64; D] = std::array::from_fn(|_| standard_normal(stream));
+    let norm = direction.iter().map(|x| math::square(*x)).sum::<f64>().sqrt();
+    let length = sd * standard_normal(stream);
+    direction.map(|x| x / norm * length)
+}
+
+/// Whether something of this probability happens.
+fn happens(chance: f64, stream: &mut Stream) -> bool {
+    open_unit(stream) < chance
+}

@@ -1,0 +1,113 @@
+//! A ball dropped over a bin that waits for one.
+
+use super::aim::Aim;
+use crate::spelling::{Drops, Rest, Spelling};
+use plaus_dist::{LogRatio, Stream, math, open_unit};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+
+/// How much likelier a ball that fills no designated bin by itself is chosen than one that does.
+const USELESS: f64 = 10.0;
+
+/// A ball that is dropped, mostly a useless one, is dropped elsewhere, mostly over a designated bin that no other ball fills.
+///
+/// Which balls are useless and which bins empty, the outcome tells; the way back asks the candidate's. So the ratio is
+/// `w'(ball)/Σw' · h'(old position) / (w(ball)/Σw · h(new position))`, with the primed factors known after the simulation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Redrop {
+    /// Share of positions that aim.
+    pub aimed: f64,
+}
+
+/// Weights of the balls to choose from: 0 for one that is not dropped.
+fn weights<'a>(target: &'a Spelling, draw: &'a Drops, rest: &'a Rest) -> impl Iterator<Item = f64> + 'a {
+    draw.balls.iter().zip(&rest.bins).enumerate().map(move |(ball, (position, bin))| {
+        let alone = |bin: u16| rest.bins.iter().enumerate().all(|(other, at)| other == ball || *at != Some(bin));
+        match (position, bin) {
+            (None, _) => 0.0,
+            (Some(_), Some(bin)) if target.word().wants(*bin) && alone(*bin) => 1.0,
+            _ => USELESS,
+        }
+    })
+}
+
+impl Redrop {
+    /// Log probability of choosing `ball`, and log density of dropping it at `position`.
+    fn log_q(self, target: &Spelling, from: &StateOf<Spelling>, ball: usize, position: [f64; 2]) -> f64 {
+        let (mut chosen, mut sum) = (0.0, 0.0);
+        for (index, weight) in weights(target, &from.draw, &from.outcome).enumerate() {
+            sum += weight;
+            if index == ball {
+                chosen = weight;
+            }
+        }
+        let aim = Aim::new(target, self.aimed, &from.outcome, ball);
+        math::ln(chosen / sum) + aim.log_density(position)
+    }
+
+    /// The way back, from `to` to `from`.
+    fn back(
+        self,
+        target: &Spelling,
+        from: &Drops,
+        to: &StateOf<Spelling>,
+        ball: usize,
+    ) -> Result<LogRatio, ModelError> {
+        Ok(match from.balls.get(ball).copied().flatten() {
+            Some(position) => LogRatio::new(self.log_q(target, to, ball, position))?,
+            None => LogRatio::ZERO,
+        })
+    }
+}
+
+impl Move<Spelling> for Redrop {
+    fn name(&self) -> &'static str {
+        "redrop"
+    }
+
+    fn propose(
+        &self,
+        target: &Spelling,
+        current: &StateOf<Spelling>,
+        candidate: &mut Drops,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let sum: f64 = weights(target, &current.draw, &current.outcome).sum();
+        let mut left = sum * open_unit(stream);
+        let chosen = weights(target, &current.draw, &current.outcome).position(|weight| {
+            left -= weight;
+            left < 0.0
+        });
+        // Rounding may pass the last one.
+        let Some(ball) = chosen.or_else(|| candidate.balls.iter().rposition(Option::is_some)) else {
+            return Ok(Proposal::Stay);
+        };
+        let position = Aim::new(target, self.aimed, &current.outcome, ball).sample(stream);
+        candidate.balls[ball] = Some(position);
+        let log_ratio = LogRatio::new(-self.log_q(target, current, ball, position))?;
+        let later = Some(LogRatio::new(Aim::highest(target, self.aimed))?);
+        Ok(Proposal::Candidate { log_ratio, path: Path(ball as u64), later })
+    }
+
+    fn log_ratio(
+        &self,
+        target: &Spelling,
+        from: &StateOf<Spelling>,
+        to: &StateOf<Spelling>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        let ball = path.0 as usize;
+        let Some(position) = to.draw.balls[ball] else { return Ok(LogRatio::ZERO) };
+        let forth = LogRatio::new(self.log_q(target, from, ball, position))?;
+        Ok(self.back(target, &from.draw, to, ball)?.times(forth.inverse())?)
+    }
+
+    fn log_ratio_after(
+        &self,
+        target: &Spelling,
+        current: &StateOf<Spelling>,
+        candidate: &StateOf<Spelling>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.back(target, &current.draw, candidate, path.0 as usize)
+    }
+}

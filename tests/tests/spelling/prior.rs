@@ -1,0 +1,92 @@
+//! Draws without the constraint have the laws of MODEL.md's section 4.
+
+use super::straight::scene;
+use plaus_dist::{Purpose, Seed, math};
+use plaus_mcmc::Target;
+use plaus_scenes::spelling::{Drops, Spelling};
+
+const DRAWS: usize = 100_000;
+
+fn draws(scene: &Spelling) -> Vec<Drops> {
+    let mut stream = Seed(3).chain(0).at(0, Purpose::START);
+    (0..DRAWS).map(|_| scene.start(&mut stream)).collect()
+}
+
+/// The largest distance between an empirical and a given distribution function exceeds this with probability 1e-8 at most (Dvoretzky, Kiefer, Wolfowitz,
+/// Massart), whatever the law. About 60 such tests below: 1e-6 for all.
+fn most(samples: usize) -> f64 {
+    (math::ln(2.0 / 1e-8) / (2.0 * samples as f64)).sqrt()
+}
+
+fn distance(mut values: Vec<f64>, cdf: impl Fn(f64) -> f64) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    let count = values.len() as f64;
+    let gap = |(index, x): (usize, &f64)| {
+        let at = cdf(*x);
+        (at - index as f64 / count).abs().max((at - (index + 1) as f64 / count).abs())
+    };
+    values.iter().enumerate().map(gap).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_number_of_balls_is_binomial() {
+    let scene = scene(|_| ());
+    let counts: Vec<usize> = draws(&scene).iter().map(Drops::active).collect();
+    let (mut choose, mut below) = (1.0, 0.0);
+    for n in 0..=10 {
+        below += choose / 1024.0;
+        choose *= (10 - n) as f64 / (n + 1) as f64;
+        let seen = counts.iter().filter(|&&count| count <= n).count() as f64 / DRAWS as f64;
+        assert!((seen - below).abs() < most(DRAWS), "P(n ≤ {n}) is {seen}, not {below}");
+    }
+}
+
+#[test]
+fn each_coordinate_of_an_offset_is_gaussian() {
+    let scene = scene(|_| ());
+    let draws = draws(&scene);
+    assert_eq!(draws[0].offsets.len(), 48);
+    let normal = |x: f64| 0.5 * math::erfc(-x / 0.1 * std::f64::consts::FRAC_1_SQRT_2);
+    for (vertex, axis) in (0..48).step_by(3).map(|vertex| (vertex, vertex % 3)) {
+        let values = draws.iter().map(|draw| draw.offsets[vertex][axis]).collect();
+        let gap = distance(values, normal);
+        assert!(gap < most(DRAWS), "vertex {vertex}, axis {axis}: {gap}");
+    }
+}
+
+#[test]
+fn each_drop_position_is_uniform_over_the_rectangle() {
+    let scene = scene(|_| ());
+    let draws = draws(&scene);
+    // Inside of 140 × 100 mm with partitions 2 mm thick and balls 12 mm across.
+    for (axis, [low, high]) in [[7.0, 133.0], [7.0, 93.0]].into_iter().enumerate() {
+        assert_eq!((scene.prior().wrapped()[axis].low(), scene.prior().wrapped()[axis].high()), (low, high));
+        for ball in 0..10 {
+            let values: Vec<f64> = draws.iter().filter_map(|draw| draw.balls[ball]).map(|at| at[axis]).collect();
+            let (count, gap) = (values.len(), distance(values, |x| (x - low) / (high - low)));
+            assert!(gap < most(count), "ball {ball}, axis {axis}: {gap}");
+        }
+    }
+}
+
+/// Independence of what should be independent: one ball's being dropped, another's position, an offset.
+#[test]
+fn variables_are_uncorrelated() {
+    let scene = scene(|_| ());
+    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); 6];
+    for draw in draws(&scene) {
+        let sign = |ball: usize| f64::from(u8::from(draw.balls[ball].is_some())) - 0.5;
+        let place = |ball: usize, axis: usize, middle: f64| draw.balls[ball].map_or(0.0, |at| at[axis] - middle);
+        let row = [sign(0), sign(1), place(2, 0, 70.0), place(2, 1, 50.0), draw.offsets[0][0], draw.offsets[0][1]];
+        columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+    }
+    let norm = |column: &[f64]| column.iter().map(|x| x * x).sum::<f64>().sqrt();
+    for a in 0..columns.len() {
+        for b in 0..a {
+            let product: f64 = columns[a].iter().zip(&columns[b]).map(|(x, y)| x * y).sum();
+            let r = product / norm(&columns[a]) / norm(&columns[b]);
+            // Six standard errors.
+            assert!(r.abs() < 6.0 / (DRAWS as f64).sqrt(), "{a}, {b}: {r}");
+        }
+    }
+}
