@@ -15,9 +15,9 @@
 //!
 //! **Which preset to take.** `Standard` for sampling, `Draft` while looking for a scenario that works, `Fine` for a trajectory that is shown, `Reference` only to judge the
 //! others. Free flight, bounces, sliding and rolling on planes are exact at every preset (a slide that turns into a roll and a bounce from 1 m agree with the exact answer to
-//! 2e-15). Ten marbles over bins, 2 s of motion, on a busy 2-core machine (`cargo xtask tradeoff --quick`): 0.32, 0.48, 2.2 and 7.3 ms in the median; they keep within a
-//! tenth of a radius of the reference for 0.6, 0.95 and 1.5 s, until chaos parts them. The number of bins filled is distributed as at the reference as far as 100 draws can tell
-//! (total variation 0.07–0.08 where sampling alone gives 0.11); the full command compares 2,000.
+//! 2e-15). Ten marbles over bins, 2 s of motion, on a busy 2-core machine (`cargo xtask tradeoff`): 0.30, 0.41, 1.4 and 11 ms in the median, `Draft` to `Reference`; they keep
+//! within a tenth of a radius of the reference for 0.6, 0.95 and 1.5 s, until chaos parts them. The number of bins filled has the same law as far as 2,000 draws can tell: total
+//! variation 0.035–0.037 for the three, all against one sample of the reference, where sampling alone gives 0.025 on average.
 //!
 //! Every length is in units of a body's own size and every time in units of `√(size/g)`, so no tolerance is absolute: the same world at another scale
 //! gives the same bits up to the scale.
