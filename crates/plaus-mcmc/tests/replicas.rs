@@ -42,9 +42,9 @@ fn every_rung_has_its_law() {
         let mut replicas = Replicas::start(&rungs, &moves, Seed(repeat), 0).unwrap();
         for round in 0..30_000 {
             replicas.round(2).unwrap();
-            for rung in 0..rungs.len() {
-                if round >= 100 {
-                    seen[rung][repeat as usize].push(replicas.rung(rung).unwrap().draw);
+            if round >= 100 {
+                for (rung, seen) in seen.iter_mut().enumerate() {
+                    seen[repeat as usize].push(replicas.rung(rung).unwrap().draw);
                 }
             }
         }

@@ -22,6 +22,19 @@ struct Run {
     full: u64,
     classes: BTreeSet<SolutionClass>,
     counts: Vec<MoveCounts>,
+    /// Every hundredth state's bins, from the first full word on.
+    bins: Vec<Vec<Option<u16>>>,
+}
+
+/// Share of balls in one bin both before and `lag` hundreds of iterations later, among those in a bin before, over all such pairs of states.
+fn overlap(runs: &[Run], lag: usize) -> f64 {
+    let (mut same, mut all) = (0_u64, 0_u64);
+    for pair in runs.iter().flat_map(|run| run.bins.iter().zip(run.bins.iter().skip(lag))) {
+        for (before, after) in pair.0.iter().zip(pair.1).filter(|(before, _)| before.is_some()) {
+            (same, all) = (same + u64::from(before == after), all + 1);
+        }
+    }
+    same as f64 / all as f64
 }
 
 fn run(scene: &Spelling, moves: &Mixture<Spelling>, seed: u64, iterations: u64) -> Result<Run> {
@@ -30,6 +43,9 @@ fn run(scene: &Spelling, moves: &Mixture<Spelling>, seed: u64, iterations: u64) 
     let mut run = Run::default();
     for iteration in 1..=iterations {
         chain.step()?;
+        if run.first.is_some() && iteration.is_multiple_of(100) {
+            run.bins.push(chain.state().outcome.bins.clone());
+        }
         let Some(class) = scene.class(chain.state()) else { continue };
         run.first.get_or_insert_with(|| (iteration, seconds() - begin));
         run.full += 1;
@@ -83,6 +99,8 @@ fn main() -> Result<()> {
         quantile(&distinct, 0.5),
         quantile(&distinct, 0.0)
     );
+    let overlaps = [1, 10, 100].map(|lag| overlap(&runs, lag));
+    println!("balls still or again in their bins after 100, 1,000, 10,000 iterations: {overlaps:.3?}");
     for (index, name) in moves.names().iter().enumerate() {
         let mut all = MoveCounts::default();
         runs.iter().for_each(|run| all.add(&run.counts[index]));

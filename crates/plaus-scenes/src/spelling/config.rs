@@ -304,10 +304,10 @@ impl Default for Weights {
         Self {
             change_all: 0.01,
             change_vertices: 0.15,
-            change_ball: 0.24,
-            toggle: 0.1,
-            redrop: 0.25,
-            birth_death: 0.15,
+            change_ball: 0.19,
+            toggle: 0.05,
+            redrop: 0.2,
+            birth_death: 0.3,
             swap: 0.1,
         }
     }
