@@ -79,7 +79,7 @@ class Filters {
     span.innerHTML = '<span></span><output></output><div class="double"><canvas></canvas><input type="range"><input type="range"></div><output></output>';
     span.firstElementChild.textContent = variable.name;
     const [low, high] = span.querySelectorAll('input'), [first, last] = span.querySelectorAll('output');
-    const show = (value) => (variable.whole ? String(Math.round(value)) : String(+value.toPrecision(3)));
+    const show = (value) => (variable.whole ? String(Math.round(value)) : short(value));
     const step = variable.whole ? 1 : 'any';
     for (const [input, value, name] of [[low, variable.low, 'lowest'], [high, variable.high, 'highest']]) {
       Object.assign(input, { min: variable.low, max: variable.high, step });
@@ -158,4 +158,9 @@ class Filters {
     label.append(`${text} `, element);
     return label;
   }
+}
+
+// Three digits, or none where there is nothing but rounding.
+function short(value) {
+  return Math.abs(value) < 5e-4 ? '0' : String(+value.toPrecision(3));
 }

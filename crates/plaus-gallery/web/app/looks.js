@@ -56,7 +56,7 @@ function materialOf(look, ghost) {
   if (materials.has(key)) return materials.get(key);
   const [metalness, roughness, opacity] = SURFACES[look.material] ?? SURFACES.matte;
   const colour = new THREE.Color().setRGB(...look.colour.map((c) => c / 255), THREE.SRGBColorSpace);
-  if (ghost) colour.lerp(new THREE.Color('#2f9bff'), 0.65);
+  if (ghost) colour.set('#2f9bff');
   const settings = { color: colour, metalness, roughness, envMapIntensity: 0.55 };
   const seen = ghost ? 0.5 : opacity;
   if (seen < 1) Object.assign(settings, { transparent: true, opacity: seen, depthWrite: ghost });

@@ -9,7 +9,8 @@ class Stage {
     this.trails = new Map();
     this.frame = this.commonFrame();
     this.size = this.frame.low.distanceTo(this.frame.high);
-    this.bodies = [this.makeBodies(false), this.makeBodies(true)];
+    this.bodies = [this.makeBodies(false)];
+    this.bodies.push(this.makeBodies(true));
     this.flashes = this.makeFlashes();
     this.light();
   }

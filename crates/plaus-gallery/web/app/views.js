@@ -28,7 +28,8 @@ class Views {
   // Draws all jobs: { canvas, camera?, solution, time, … } as Stage.pose takes them.
   draw(jobs) {
     if (this.lost) return;
-    const wide = 2048;
+    // As wide as the widest picture, so that the canvas stays small.
+    const wide = Math.max(...jobs.map(({ canvas }) => Math.round(canvas.clientWidth * this.ratio)), 256);
     let batch = [], x = 0, y = 0, row = 0;
     const flush = () => { if (batch.length) this.drawBatch(batch); batch = []; x = y = row = 0; };
     for (const job of jobs) {
@@ -36,7 +37,7 @@ class Views {
       if (!width || !height) continue;
       if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
       if (x && x + width > wide) { x = 0; y += row; row = 0; }
-      if (y && y + height > wide) flush();
+      if (y && y + height > 2048) flush();
       batch.push({ job, x, y, width, height });
       x += width;
       row = Math.max(row, height);
@@ -44,14 +45,23 @@ class Views {
     flush();
   }
 
+  // Copying out of the canvas costs as much as all of it: it shrinks when for a while only small pictures were drawn.
+  fit(width, height) {
+    const { renderer } = this, roomy = 2 * width * height < this.width * this.height;
+    this.roomy = roomy ? (this.roomy ?? 0) + 1 : 0;
+    if (width > this.width || height > this.height || this.roomy > 3) {
+      const keep = this.roomy <= 3;
+      this.width = keep ? Math.max(width, this.width) : width;
+      this.height = keep ? Math.max(height, this.height) : height;
+      this.roomy = 0;
+      renderer.setSize(this.width, this.height, false);
+    }
+  }
+
   drawBatch(batch) {
     const { renderer, stage } = this;
     const width = Math.max(...batch.map((b) => b.x + b.width)), height = Math.max(...batch.map((b) => b.y + b.height));
-    if (width > this.width || height > this.height) {
-      this.width = Math.max(width, this.width);
-      this.height = Math.max(height, this.height);
-      renderer.setSize(this.width, this.height, false);
-    }
+    this.fit(width, height);
     renderer.setScissorTest(true);
     for (const { job, x, y, width: w, height: h } of batch) {
       const camera = job.camera ?? this.fitted(this.camera, w / h);

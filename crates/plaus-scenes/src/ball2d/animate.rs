@@ -37,7 +37,10 @@ pub(super) fn animate(config: &Config, table: &Table, draw: &Normals) -> Result<
     pieces.push(Piece::resting(time * second, middle(x, 0.0)));
     let shape = Shape::Disc { radius: 0.5 * size, thickness: 0.3 * size };
     let ball = Track::new("ball_0", shape, Look::nth(0), pieces);
-    let view = View::from(0.25, 0.35, 1.0).showing(DVec3::ZERO, DVec3::new(config.target * size, height * size, 0.0));
+    let wide = DVec3::new(1.8, 0.3, 1.3) * size;
+    let (left, right) = (config.target.min(0.0) * size, config.target.max(0.0) * size);
+    let view = View::from(0.3, 0.3, 1.0)
+        .showing(DVec3::X * left - wide, DVec3::new(right + wide.x, (height + 1.0) * size, wide.z));
     Ok(Animation::new(time * second, vec![ball], impacts).with_scenery(scenery).with_view(view))
 }
 
