@@ -92,7 +92,9 @@ pub enum ExportError {
     #[error("--fps {0}: must be above 0 and make at most {MOST_POSES} poses")]
     Fps(f64),
     /// A range that holds nothing.
-    #[error("--time-range {from}:{to}: must begin at 0 or later, and before it ends; the animation ends at {duration} s")]
+    #[error(
+        "--time-range {from}:{to}: must begin at 0 or later, and before it ends; the animation ends at {duration} s"
+    )]
     Range {
         /// Where it begins, s.
         from: f64,
@@ -102,7 +104,9 @@ pub enum ExportError {
         duration: f64,
     },
     /// More bytes than the format can hold.
-    #[error("the file would be longer than 4 GiB, the most that glTF can hold: choose fewer --fps or a shorter --time-range")]
+    #[error(
+        "the file would be longer than 4 GiB, the most that glTF can hold: choose fewer --fps or a shorter --time-range"
+    )]
     TooLong,
     /// A value that the format cannot hold.
     #[error("cannot be written as JSON: {0}")]

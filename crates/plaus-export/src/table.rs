@@ -58,7 +58,8 @@ fn poses<'a>(clip: &Clip<'a>) -> Vec<(&'a str, Key)> {
 pub fn write_events(out: &mut dyn Write, clip: &Clip<'_>, prefix: &str) -> io::Result<()> {
     for hit in clip.animation.impacts.iter().filter(|hit| clip.cut.holds(hit.time)) {
         let (p, n) = (hit.point, hit.normal);
-        let numbers = [p.x, p.y, p.z, n.x, n.y, n.z, hit.speed, hit.impulse].map(|number| format!("{:?}", number + 0.0));
+        let numbers =
+            [p.x, p.y, p.z, n.x, n.y, n.z, hit.speed, hit.impulse].map(|number| format!("{:?}", number + 0.0));
         let t = hit.time - clip.cut.from();
         writeln!(out, "{prefix}{t:?},{},{},{}", hit.body, hit.other, numbers.join(","))?;
     }

@@ -74,13 +74,16 @@ pub fn gallery<S: Scene>(run: &RunOf<'_, S>, options: &Options) -> Result<Galler
     let ids: Vec<SampleId> = candidates.iter().map(|solution| solution.sample).collect();
     let features = Features::of(replay_each(run, &ids, |replay| features::Paths::of(&replay.animation))?);
     let Some(first) = likeliest(&candidates) else {
-        return Err(Error::Request("no sample of the run satisfies the constraint: there is nothing to show".to_owned()));
+        return Err(Error::Request(
+            "no sample of the run satisfies the constraint: there is nothing to show".to_owned(),
+        ));
     };
     let chosen = choose::farthest_first(&features.paths, first, options.count);
     let maps = map::Maps { outcomes: map::of(&features.outcomes, &chosen), paths: map::of(&features.paths, &chosen) };
     let ids: Vec<SampleId> = chosen.iter().map(|&index| ids[index]).collect();
     let replays = replay_each(run, &ids, |replay| replay)?;
-    let packed = pack::pack(run, &replays, &maps, &pack::About { options, distinct: all.len(), candidates: candidates.len() });
+    let packed =
+        pack::pack(run, &replays, &maps, &pack::About { options, distinct: all.len(), candidates: candidates.len() });
     Ok(Gallery { html: page::html(run.run().manifest(), &packed), shown: replays.len(), distinct: all.len() })
 }
 

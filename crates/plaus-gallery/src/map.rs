@@ -60,7 +60,8 @@ mod tests {
 
     #[test]
     fn points_of_a_plane_keep_their_distances() {
-        let rows: Vec<Vec<f32>> = [[0.0, 0.0, 1.0], [3.0, 0.0, 1.0], [3.0, 1.0, 1.0], [0.0, 1.5, 1.0]].map(Vec::from).to_vec();
+        let rows: Vec<Vec<f32>> =
+            [[0.0, 0.0, 1.0], [3.0, 0.0, 1.0], [3.0, 1.0, 1.0], [0.0, 1.5, 1.0]].map(Vec::from).to_vec();
         let map = of(&rows, &[0, 1, 2, 3]);
         for a in 0..4 {
             for b in 0..4 {

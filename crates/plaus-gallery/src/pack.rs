@@ -141,13 +141,8 @@ fn columns(animation: &Animation, ranges: &Ranges, turning: bool, bytes: &mut By
 impl Ranges {
     fn of(replays: &[Replay]) -> Self {
         let tiny = f64::MIN_POSITIVE;
-        let mut ranges = Self {
-            low: DVec3::INFINITY,
-            high: DVec3::NEG_INFINITY,
-            velocity: tiny,
-            acceleration: tiny,
-            spin: tiny,
-        };
+        let mut ranges =
+            Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, velocity: tiny, acceleration: tiny, spin: tiny };
         for replay in replays {
             for piece in replay.animation.tracks.iter().flat_map(|track| &track.pieces) {
                 ranges.include(piece.position);

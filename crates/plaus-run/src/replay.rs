@@ -66,9 +66,8 @@ pub fn replay_each<S: Scene, T: Send>(
         }
     }
     states.sort_by_key(|&(index, ..)| index);
-    let rebuilt = states.par_iter().map(|(index, state, satisfied)| {
-        rebuild(run, samples[*index], state, *satisfied).map(&make)
-    });
+    let rebuilt =
+        states.par_iter().map(|(index, state, satisfied)| rebuild(run, samples[*index], state, *satisfied).map(&make));
     rebuilt.collect()
 }
 

@@ -25,14 +25,14 @@ impl Blob {
     pub(super) fn points(&mut self, root: &mut Root, points: &[[f32; 3]], ranged: bool) -> Index<Accessor> {
         let target = Some(Target::ArrayBuffer);
         let range = ranged.then(|| range(points));
-        let content =
-            Content { component: ComponentType::F32, type_: Type::Vec3, count: points.len(), target, range };
+        let content = Content { component: ComponentType::F32, type_: Type::Vec3, count: points.len(), target, range };
         self.push(root, floats(points.as_flattened()), content)
     }
 
     /// Corners of triangles, in two bytes each where that is enough.
     pub(super) fn indices(&mut self, root: &mut Root, indices: &[u32]) -> Index<Accessor> {
-        let short: Option<Vec<u16>> = indices.iter().map(|&i| u16::try_from(i).ok().filter(|&i| i < u16::MAX)).collect();
+        let short: Option<Vec<u16>> =
+            indices.iter().map(|&i| u16::try_from(i).ok().filter(|&i| i < u16::MAX)).collect();
         let (component, bytes): (_, Vec<u8>) = match short {
             Some(short) => (ComponentType::U16, short.iter().flat_map(|i| i.to_le_bytes()).collect()),
             None => (ComponentType::U32, indices.iter().flat_map(|i| i.to_le_bytes()).collect()),
@@ -54,8 +54,7 @@ impl Blob {
     /// Values of keys: vectors of three or four.
     pub(super) fn values<const N: usize>(&mut self, root: &mut Root, values: &[[f32; N]]) -> Index<Accessor> {
         let type_ = if N == 3 { Type::Vec3 } else { Type::Vec4 };
-        let content =
-            Content { component: ComponentType::F32, type_, count: values.len(), target: None, range: None };
+        let content = Content { component: ComponentType::F32, type_, count: values.len(), target: None, range: None };
         self.push(root, floats(values.as_flattened()), content)
     }
 

@@ -104,7 +104,13 @@ fn triangles(text: &mut Text, name: &str, part: &Part) {
     text.line(3, "uniform token subdivisionScheme = \"none\"");
     text.line(3, &format!("float3[] extent = [{}]", vectors(&[low, high])));
     text.line(3, &format!("point3f[] points = [{}]", vectors(positions)));
-    text.line(3, &format!("normal3f[] normals = [{}] (\n                interpolation = \"vertex\"\n            )", vectors(normals)));
+    text.line(
+        3,
+        &format!(
+            "normal3f[] normals = [{}] (\n                interpolation = \"vertex\"\n            )",
+            vectors(normals)
+        ),
+    );
     text.line(3, &format!("int[] faceVertexCounts = [{}]", list(&mut triangles.iter().map(|_| 3))));
     text.line(3, &format!("int[] faceVertexIndices = [{}]", list(&mut triangles.as_flattened().iter().copied())));
     text.line(2, "}");

@@ -92,7 +92,8 @@ class Filters {
       });
     }
     // The handles' own rounding must not shut out the ends.
-    const limits = () => [+low.value <= +low.min ? -Infinity : +low.value, +high.value >= +high.max ? Infinity : +high.value];
+    const slack = 1e-6 * (variable.high - variable.low);
+    const limits = () => [+low.value <= variable.low + slack ? -Infinity : +low.value, +high.value >= variable.high - slack ? Infinity : +high.value];
     const update = () => { first.textContent = show(+low.value); last.textContent = `${show(+high.value)} ${variable.unit ?? ''}`; };
     update();
     const reset = () => { low.value = variable.low; high.value = variable.high; update(); };
