@@ -1,5 +1,6 @@
 //! Everything that must pass.
 
+use crate::clients;
 use crate::command::{Command, Failure, cargo, has_subcommand, root, target};
 use crate::steps::{self, Done, Step};
 use std::fs;
@@ -13,7 +14,7 @@ pub(crate) fn run() -> Result<(), Failure> {
     let golden = ["--package", "plaus-tests", "--test", "golden"];
     let quick = target().join("figures-quick");
     let figures = Command::new(built("plaus-figures")).args(["--quick", "--out"]).args([&quick]);
-    steps::run(vec![
+    let mut all = vec![
         Step::command("format", cargo(&["fmt", "--all", "--", "--check"])),
         Step::command("clippy", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])),
         // Everything at once: with a package at a time, cargo would build what they share anew for each choice of features.
@@ -27,7 +28,27 @@ pub(crate) fn run() -> Result<(), Failure> {
         Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"])),
         Step::new("ArviZ reads a run", crate::arviz::run),
         Step::new("licences and advisories", deny),
-    ])
+    ];
+    all.extend(client_steps());
+    steps::run(all)
+}
+
+/// Only what other programs make of exports and galleries.
+pub(crate) fn clients() -> Result<(), Failure> {
+    let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
+    let mut all = vec![Step::command("plaus in release", release)];
+    all.extend(client_steps());
+    steps::run(all)
+}
+
+fn client_steps() -> Vec<Step> {
+    vec![
+        Step::new("exports of every scene", clients::export),
+        Step::new("glTF validator and three.js read them", clients::gltf),
+        Step::new("USD reads them", clients::usd),
+        Step::new("galleries in a browser", clients::gallery),
+        Step::new("the committed three.js is what its script makes", clients::bundle),
+    ]
 }
 
 /// Where the step `build` puts what has this name.
