@@ -64,7 +64,10 @@ fn all_distinct_solutions_make_a_folder() {
     for animation in animations {
         assert!(files[animation["file"].as_str().unwrap()].starts_with(b"glTF"));
         assert_eq!(animation["facts"]["satisfied"], true);
-        assert_eq!(animation["facts"]["time_range"], serde_json::json!([0.1, 0.6]));
+        let range = animation["facts"]["time_range"].as_array().unwrap();
+        assert_eq!(range[0], 0.1);
+        // Some animations end before that.
+        assert!((0.1..=0.6).contains(&range[1].as_f64().unwrap()));
     }
     place.ends("export run --format glb --all-distinct --out all", 2).says(&["--force"]);
     place.ok("export run --format glb --all-distinct --out all --force");
