@@ -29,7 +29,9 @@ fn errors_name_the_key_and_the_limit() {
     refused(&["drop_inset_mm=50"], &["world.spelling.drop_inset_mm", "less than 43.000 mm"]);
     refused(&["box.floor_radius_mm=14"], &["world.spelling.box.floor_radius_mm", "more than 14.142 mm"]);
     refused(
-        &["weights={change_all=0,change_vertices=0,change_ball=0,toggle=0,redrop=0,birth_death=0,swap=0}"],
+        &[
+            "weights={change_all=0,change_vertices=0,redraw_vertices=0,change_ball=0,toggle=0,redrop=0,birth_death=0,swap=0}",
+        ],
         &["world.spelling.weights"],
     );
 }

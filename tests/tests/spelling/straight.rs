@@ -5,7 +5,8 @@ use plaus_mcmc::check::Statistic;
 use plaus_mcmc::view::View;
 use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target};
 use plaus_scenes::spelling::{
-    BirthDeath, ChangeAll, ChangeBall, ChangeVertices, Config, Drops, Redrop, Rest, Spelling, Swap, Toggle, Vertices,
+    BirthDeath, ChangeAll, ChangeBall, ChangeVertices, Config, Drops, RedrawVertices, Redrop, Rest, Spelling, Swap,
+    Toggle, Vertices,
 };
 
 pub(crate) type AnyMove = Box<dyn Move<Spelling>>;
@@ -91,6 +92,7 @@ pub(crate) fn all_moves() -> Vec<AnyMove> {
     vec![
         Box::new(ChangeAll::default()),
         Box::new(ChangeVertices { chance: 0.2, sd: 0.2 }),
+        Box::new(RedrawVertices { chance: 0.2 }),
         Box::new(ChangeBall { sd: 20.0 }),
         Box::new(Toggle { chance: 0.25, incomplete: false }),
         Box::new(Redrop { aimed: 0.7 }),

@@ -4,7 +4,9 @@ use super::moves::{constrained, free};
 use super::straight::{AnyMove, small};
 use plaus_dist::{LogRatio, Stream, math};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
-use plaus_scenes::spelling::{BirthDeath, ChangeAll, ChangeBall, ChangeVertices, Drops, Redrop, Spelling, Toggle};
+use plaus_scenes::spelling::{
+    BirthDeath, ChangeAll, ChangeBall, ChangeVertices, Drops, RedrawVertices, Redrop, Spelling, Toggle,
+};
 use plaus_scenes::{Rules, Scene};
 
 /// What is done to a right move to make it wrong.
@@ -128,6 +130,7 @@ fn other_faults_change_the_law() {
         (Box::new(BirthDeath { aimed: 0.7 }), Fault::Symmetric),
         (Box::new(BirthDeath { aimed: 0.7 }), Fault::Forgets),
         (Box::new(BirthDeath { aimed: 0.7 }), Fault::Unit),
+        (Box::new(RedrawVertices { chance: 0.2 }), Fault::Symmetric),
         (Box::new(Redrop { aimed: 0.7 }), Fault::Symmetric),
         (Box::new(Redrop { aimed: 0.7 }), Fault::Forgets),
         (Box::new(ChangeBall { sd: 20.0 }), Fault::Clamps),

@@ -265,6 +265,9 @@ pub struct Weights {
     /// The paper's: some partition vertices are shifted.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub change_vertices: f64,
+    /// Some partition vertices are drawn anew.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub redraw_vertices: f64,
     /// The paper's: one ball's drop position is shifted.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub change_ball: f64,
@@ -289,6 +292,7 @@ impl Weights {
         let none = Self {
             change_all: 0.0,
             change_vertices: 0.0,
+            redraw_vertices: 0.0,
             change_ball: 0.0,
             toggle: 0.0,
             redrop: 0.0,
@@ -303,7 +307,8 @@ impl Default for Weights {
     fn default() -> Self {
         Self {
             change_all: 0.01,
-            change_vertices: 0.15,
+            change_vertices: 0.07,
+            redraw_vertices: 0.08,
             change_ball: 0.19,
             toggle: 0.05,
             redrop: 0.2,
@@ -323,6 +328,9 @@ pub struct Steps {
     /// Standard deviation of the length of such a shift, in a random direction.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1.0, "x-unit" = "mm"))]
     pub vertex_mm: f64,
+    /// Probability that `redraw_vertices` draws a vertex anew.
+    #[schemars(range(min = 0.000001, max = 1.0))]
+    pub redraw_chance: f64,
     /// Standard deviation of the length of `change_ball`'s shift, in a random direction; the paper's is the side of a bin.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub ball_mm: f64,
@@ -336,6 +344,13 @@ pub struct Steps {
 
 impl Default for Steps {
     fn default() -> Self {
-        Self { vertex_chance: 0.02, vertex_mm: 0.05, ball_mm: 20.0, toggle_chance: 0.25, aimed: 0.8 }
+        Self {
+            vertex_chance: 0.02,
+            vertex_mm: 0.05,
+            redraw_chance: 0.05,
+            ball_mm: 20.0,
+            toggle_chance: 0.25,
+            aimed: 0.8,
+        }
     }
 }

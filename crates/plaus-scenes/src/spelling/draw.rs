@@ -100,16 +100,26 @@ impl Prior {
         self.rectangle.sample(stream)
     }
 
+    /// The offset of one vertex.
+    pub fn offset(&self, stream: &mut Stream) -> [f64; 3] {
+        self.held(|| self.offset.sample(stream))
+    }
+
+    /// The first of `fresh` offsets that is not too long.
+    fn held(&self, mut fresh: impl FnMut() -> [f64; 3]) -> [f64; 3] {
+        let mut offset = fresh();
+        while !self.holds(&offset) {
+            offset = fresh();
+        }
+        offset
+    }
+
     /// A draw of the prior; with the paper's recipe for offsets (a random direction, a Gaussian length) where `as_printed`, which is another law.
     pub fn sample(&self, as_printed: bool, draw: &mut Drops, stream: &mut Stream) {
         draw.offsets.clear();
         for _ in 0..self.vertices {
-            let mut fresh =
-                || if as_printed { self.fresh_as_printed.sample(stream) } else { self.offset.sample(stream) };
-            let mut offset = fresh();
-            while !self.holds(&offset) {
-                offset = fresh();
-            }
+            let offset =
+                if as_printed { self.held(|| self.fresh_as_printed.sample(stream)) } else { self.offset(stream) };
             draw.offsets.push(offset);
         }
         draw.balls.clear();

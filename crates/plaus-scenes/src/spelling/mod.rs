@@ -16,7 +16,7 @@ pub use config::{
     Vertices, Weights,
 };
 pub use draw::{Drops, Prior};
-pub use moves::{BirthDeath, ChangeAll, ChangeBall, ChangeVertices, Redrop, Swap, Toggle};
+pub use moves::{BirthDeath, ChangeAll, ChangeBall, ChangeVertices, RedrawVertices, Redrop, Swap, Toggle};
 pub use settle::{Savings, Work};
 pub use word::Word;
 

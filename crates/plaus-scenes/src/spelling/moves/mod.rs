@@ -5,6 +5,7 @@ mod birth_death;
 mod change_all;
 mod change_ball;
 mod change_vertices;
+mod redraw_vertices;
 mod redrop;
 mod swap;
 mod toggle;
@@ -13,6 +14,7 @@ pub use birth_death::BirthDeath;
 pub use change_all::ChangeAll;
 pub use change_ball::ChangeBall;
 pub use change_vertices::ChangeVertices;
+pub use redraw_vertices::RedrawVertices;
 pub use redrop::Redrop;
 pub use swap::Swap;
 pub use toggle::Toggle;
@@ -30,6 +32,7 @@ pub(super) fn all(config: &Config, weights: &Weights, rules: &Rules) -> Vec<(f64
     vec![
         (weights.change_all, Box::new(change_all)),
         (weights.change_vertices, Box::new(ChangeVertices { chance: steps.vertex_chance, sd: steps.vertex_mm })),
+        (weights.redraw_vertices, Box::new(RedrawVertices { chance: steps.redraw_chance })),
         (weights.change_ball, Box::new(ChangeBall { sd: steps.ball_mm })),
         (weights.toggle, Box::new(Toggle { chance: steps.toggle_chance, incomplete: rules.incomplete_toggles() })),
         (weights.redrop, Box::new(Redrop { aimed: steps.aimed })),
