@@ -2,6 +2,7 @@
 pub mod accuracy;
 mod detect;
 pub mod error;
+pub mod field;
 pub mod marbles;
 pub mod material;
 pub mod mechanics;
