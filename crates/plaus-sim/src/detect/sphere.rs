@@ -33,6 +33,7 @@ pub(crate) fn sphere_surface(scenery: &Scenery, surface: Surface, path: &Parabol
             let c = squared_distance(path.x - scenery.mesh().vertices[k as usize], path.v, path.a, radius);
             falls_of_quartic(&c, from, until, |_| true)
         }
+        Surface::Part { .. } => None,
     }
 }
 

@@ -17,6 +17,7 @@ impl Scenery {
             }
             Surface::Edge(k) => self.nearest_around_edge(k, x),
             Surface::Vertex(k) => self.nearest([k; 3], x),
+            Surface::Part { .. } => None,
         }
     }
 
