@@ -1,0 +1,198 @@
+//! The moving state of a turning body.
+
+use super::tumble::{Tumble, drift};
+use super::{Rigid, Spec};
+use crate::motion::Parabola;
+use crate::scenery::Surface;
+use glam::{DMat3, DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// Where a body starts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Start {
+    /// Centre of gravity in m.
+    pub position: DVec3,
+    /// Turns body axes into world axes.
+    pub orientation: DQuat,
+    /// In m/s.
+    pub velocity: DVec3,
+    /// Angular velocity in rad/s, in world axes.
+    pub spin: DVec3,
+    /// When the body appears, in s.
+    pub time: f64,
+}
+
+impl Start {
+    /// At rest and upright at a point at time 0.
+    #[must_use]
+    pub fn at_rest(position: DVec3) -> Self {
+        Self { position, orientation: DQuat::IDENTITY, velocity: DVec3::ZERO, spin: DVec3::ZERO, time: 0.0 }
+    }
+}
+
+/// What kind of motion a body is in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Phase {
+    /// Not released yet.
+    Waiting,
+    /// Free flight: a parabola and free rotation.
+    Flight,
+    /// A step of lasting contact: straight, at constant angular velocity.
+    Step,
+    /// At rest until something hits it.
+    Rest,
+}
+
+/// Velocities of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Motion {
+    pub(crate) v: DVec3,
+    pub(crate) w: DVec3,
+}
+
+/// Most points of a body that may touch fixed parts at once; those beyond are left out. A cuboid in a corner has 7.
+pub(crate) const MOST_TOUCHES: usize = 16;
+
+/// A turning body with the closed form of its current motion.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Turning {
+    /// Motion of the centre of gravity.
+    pub path: Parabola,
+    /// Orientation at the clock: turns body axes into world axes.
+    pub turn: DQuat,
+    /// Angular velocity at the clock in rad/s, in world axes; constant over a step.
+    pub spin: DVec3,
+    /// Kind of motion.
+    pub phase: Phase,
+    pub(crate) expiry: f64,
+    /// Velocities at the start and the end of a step.
+    pub(crate) ends: [Motion; 2],
+    /// Points that touch fixed parts at the clock.
+    touching: [Surface; MOST_TOUCHES],
+    touching_count: u8,
+    /// The clock at which `touching` was found.
+    pub(crate) listed: f64,
+}
+
+const NOWHERE: Surface = Surface::Part { part: u16::MAX, point: u16::MAX };
+
+impl Turning {
+    pub(super) fn waiting(start: &Start) -> Self {
+        let path = Parabola { t: start.time, x: start.position, v: start.velocity, a: DVec3::ZERO };
+        Self {
+            path,
+            turn: start.orientation.normalize(),
+            spin: start.spin,
+            phase: Phase::Waiting,
+            expiry: start.time,
+            ends: [Motion::default(); 2],
+            touching: [NOWHERE; MOST_TOUCHES],
+            touching_count: 0,
+            listed: f64::NEG_INFINITY,
+        }
+    }
+
+    /// Points that touch fixed parts.
+    #[must_use]
+    pub fn touching(&self) -> &[Surface] {
+        &self.touching[..usize::from(self.touching_count)]
+    }
+
+    pub(super) fn list(&mut self, surfaces: impl Iterator<Item = Surface>) {
+        self.touching_count = 0;
+        for s in surfaces.take(MOST_TOUCHES) {
+            self.touching[usize::from(self.touching_count)] = s;
+            self.touching_count += 1;
+        }
+    }
+
+    /// Velocities `dt` after the clock.
+    pub(super) fn motion_after(&self, spec: &Spec, dt: f64) -> Motion {
+        match self.phase {
+            Phase::Flight => Motion { v: self.path.velocity_after(dt), w: drift(&spec.inertia, self.turn, self.spin, dt).1 },
+            Phase::Step => {
+                let part = (dt / (self.expiry - self.path.t)).clamp(0.0, 1.0);
+                let [a, b] = self.ends;
+                Motion { v: a.v.lerp(b.v, part), w: a.w.lerp(b.w, part) }
+            }
+            Phase::Waiting | Phase::Rest => Motion { v: self.path.v, w: self.spin },
+        }
+    }
+
+    /// The rotation of the current motion.
+    pub(super) fn tumble(&self, spec: &Spec) -> Tumble {
+        match self.phase {
+            Phase::Flight => Tumble::free(&spec.inertia, self.turn, self.spin),
+            _ => Tumble::steady(self.turn, self.spin),
+        }
+    }
+
+    pub(super) fn advance(&mut self, spec: &Spec, time: f64) {
+        let dt = time - self.path.t;
+        if dt != 0.0 {
+            let x = self.path.after(dt);
+            match self.phase {
+                Phase::Flight => {
+                    self.path.v = self.path.velocity_after(dt);
+                    (self.turn, self.spin) = drift(&spec.inertia, self.turn, self.spin, dt);
+                }
+                Phase::Step => {
+                    let motion = if time >= self.expiry { self.ends[1] } else { self.motion_after(spec, dt) };
+                    (self.turn, _) = drift_steadily(self.turn, self.spin, dt);
+                    self.ends[0] = motion;
+                    (self.path.v, self.spin) = (motion.v, motion.w);
+                    // What is left of the step is no longer straight in the same way; settling decides anew.
+                    self.expiry = time;
+                }
+                Phase::Waiting | Phase::Rest => {}
+            }
+            self.path.x = x;
+            self.path.t = time;
+        } else if self.phase == Phase::Step {
+            let motion = self.ends[0];
+            (self.path.v, self.spin) = (motion.v, motion.w);
+        }
+    }
+
+    /// Starts a phase that lasts until something happens.
+    pub(super) fn begin(&mut self, phase: Phase, a: DVec3) {
+        self.phase = phase;
+        self.path.a = a;
+        self.expiry = f64::INFINITY;
+    }
+
+    pub(super) fn pose(&self) -> Pose {
+        Pose { x: self.path.x, r: DMat3::from_quat(self.turn), v: self.path.v, w: self.spin }
+    }
+}
+
+fn drift_steadily(turn: DQuat, w: DVec3, dt: f64) -> (DQuat, DVec3) {
+    ((super::tumble::rotation(w * dt) * turn).normalize(), w)
+}
+
+/// Place and velocities at one time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pose {
+    pub(crate) x: DVec3,
+    pub(crate) r: DMat3,
+    pub(crate) v: DVec3,
+    pub(crate) w: DVec3,
+}
+
+impl Pose {
+    /// Velocity of the body's point at `offset` from the centre of gravity.
+    #[inline]
+    pub(crate) fn velocity(&self, offset: DVec3) -> DVec3 {
+        self.v + self.w.cross(offset)
+    }
+}
+
+impl Rigid {
+    /// Place, orientation and velocities of a body at any time within its current motion.
+    #[must_use]
+    pub fn at(&self, index: usize, body: &Turning, time: f64) -> Turning {
+        let mut moved = body.clone();
+        moved.advance(&self.specs[index], time);
+        moved
+    }
+}

@@ -1,0 +1,240 @@
+//! Worlds of turning bodies: balls and cuboids among planes, boxes and tables with a spline surface.
+//!
+//! A body in the air is on a parabola and rotates freely, both in closed form. It touches when the first of its [feelers](crate::shape::Feeler) comes within
+//! `accuracy.gap` of a part. Impacts follow Stronge's law. A contact whose rebound would be slower than `accuracy.settle` lasts: the body (with all bodies in lasting
+//! contact with it) then moves in short steps whose impulses are found together, until it leaves the ground or is at rest.
+
+mod body;
+mod contact;
+mod detect;
+mod mechanics;
+mod part;
+mod solve;
+mod step;
+mod tumble;
+
+pub use body::{Phase, Start, Turning};
+pub use part::{Part, Table};
+pub use step::RigidScratch;
+
+use crate::accuracy::Accuracy;
+use crate::error::WorldError;
+use crate::material::{Laws, Material};
+use crate::mechanics::Mechanics;
+use crate::shape::{Feeler, MassProperties, Shape};
+use crate::simulate::{Outcome, Scratch, simulate};
+use crate::state::State;
+use crate::trace::Observer;
+use glam::DVec3;
+use tumble::Inertia;
+
+/// One body of a world.
+#[derive(Debug, Clone)]
+pub struct BodySpec {
+    /// Its shape about its centre of gravity.
+    pub shape: Shape,
+    /// Its mass and inertia.
+    pub mass: MassProperties,
+    /// What it is made of.
+    pub material: Material,
+}
+
+impl BodySpec {
+    /// A body of uniform density in kg/m³.
+    #[must_use]
+    pub fn solid(shape: Shape, density: f64, material: Material) -> Self {
+        let mass = shape.mass_properties(density);
+        Self { shape, mass, material }
+    }
+}
+
+/// Everything that does not change during a run.
+#[derive(Debug, Clone)]
+pub struct RigidWorld {
+    /// The bodies.
+    pub bodies: Vec<BodySpec>,
+    /// What stands still.
+    pub parts: Vec<Part>,
+    /// Friction and restitution per pair of materials.
+    pub laws: Laws,
+    /// In m/s².
+    pub gravity: DVec3,
+    /// Tolerances.
+    pub accuracy: Accuracy,
+    /// Distance between points of a body's skin that are looked at over a table, over the table's grid spacing. Default 0.5; usual 0.25–1; a bump between them reaches into
+    /// the body by up to about `curvature · (skin · spacing)²/8`; the cost grows as its inverse square.
+    pub skin: f64,
+    /// When a run ends, in s.
+    pub duration: f64,
+}
+
+/// A checked world with what follows from it.
+#[derive(Debug, Clone)]
+pub struct Rigid {
+    specs: Vec<Spec>,
+    parts: Vec<Part>,
+    laws: Laws,
+    gravity: DVec3,
+    strength: f64,
+    accuracy: Accuracy,
+    duration: f64,
+}
+
+/// A body with what follows from its shape.
+#[derive(Debug, Clone)]
+pub(crate) struct Spec {
+    pub(crate) mass: f64,
+    pub(crate) inertia: Inertia,
+    pub(crate) material: Material,
+    /// The balls of the hull first, then those for uneven ground.
+    feelers: Vec<Feeler>,
+    hull: usize,
+    pub(crate) reach: f64,
+    pub(crate) size: f64,
+    /// `√(g · size)`.
+    pub(crate) speed: f64,
+    /// Gap at which it touches, in m: the preset's over [`step::TOUCHING`].
+    pub(crate) gap: f64,
+    wobble: f64,
+    is_ball: bool,
+}
+
+impl Rigid {
+    /// Checks a world.
+    ///
+    /// # Errors
+    /// [`WorldError`] naming the body, law or part at fault.
+    pub fn new(world: RigidWorld) -> Result<Self, WorldError> {
+        world.accuracy.check()?;
+        if !world.gravity.is_finite() {
+            return Err(WorldError::BadNumber { field: "gravity", value: f64::NAN, expected: "finite numbers" });
+        }
+        for (field, value) in [("duration", world.duration), ("skin", world.skin)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(WorldError::BadNumber { field, value, expected: "a positive number" });
+            }
+        }
+        let mut spacing = f64::INFINITY;
+        for part in &world.parts {
+            world.laws.require(part.material())?;
+            if let Part::Table(table) = part {
+                table.check()?;
+                spacing = spacing.min(world.skin * table.height.grid().spacing);
+            }
+        }
+        let strength = world.gravity.length();
+        let specs = world.bodies.iter().enumerate().map(|(k, b)| Spec::new(k, b, &world, spacing, strength)).collect::<Result<_, _>>()?;
+        let RigidWorld { parts, laws, gravity, accuracy, duration, .. } = world;
+        Ok(Self { specs, parts, laws, gravity, strength, accuracy, duration })
+    }
+
+    /// A state in which every body waits for its release.
+    ///
+    /// # Errors
+    /// [`WorldError`] naming the body whose start is not finite, or that overlaps a part.
+    pub fn state(&self, starts: &[Start]) -> Result<State<Turning>, WorldError> {
+        if starts.len() != self.specs.len() {
+            return Err(WorldError::WrongState { state: starts.len(), world: self.specs.len() });
+        }
+        for (k, start) in starts.iter().enumerate() {
+            self.check_start(k, start)?;
+        }
+        Ok(State::new(starts.iter().map(Turning::waiting).collect()))
+    }
+
+    fn check_start(&self, body: usize, start: &Start) -> Result<(), WorldError> {
+        let bad = |field, value, expected| Err(WorldError::BadBody { body, field, value, expected });
+        for (field, is_finite) in [
+            ("position", start.position.is_finite()),
+            ("velocity", start.velocity.is_finite()),
+            ("spin", start.spin.is_finite()),
+            ("orientation", start.orientation.is_finite()),
+        ] {
+            if !is_finite {
+                return bad(field, f64::NAN, "finite numbers");
+            }
+        }
+        if !(start.orientation.length() > 0.0) {
+            return bad("orientation", 0.0, "a quaternion that is not zero");
+        }
+        if !(start.time >= 0.0 && start.time.is_finite()) {
+            return bad("start time", start.time, "a time from 0 on");
+        }
+        let waiting = Turning::waiting(start);
+        let spec = &self.specs[body];
+        if let Some((part, depth)) = self.deepest(body, &waiting)
+            && depth > OVERLAP * spec.size
+        {
+            return Err(WorldError::OverlapsScenery { body, surface: format!("part {part}"), depth });
+        }
+        Ok(())
+    }
+
+    /// Runs a state until `until` seconds, the end of the world's duration, rest, or the observer's stop.
+    ///
+    /// # Errors
+    /// [`WorldError::BadControlPoint`] where a field of a table was given a value that is not finite or out of its range; the run stops there.
+    pub fn run(
+        &self,
+        state: &mut State<Turning>,
+        scratch: &mut Scratch<RigidScratch>,
+        until: f64,
+        observer: &mut impl Observer<Self>,
+    ) -> Result<Outcome, WorldError> {
+        let outcome = simulate(self, state, scratch, until, observer);
+        match self.parts.iter().find_map(Part::fault) {
+            Some(fault) => Err(fault),
+            None => Ok(outcome),
+        }
+    }
+
+    /// The fixed parts. A table's control points are asked for through them.
+    #[must_use]
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The fixed parts, to move control points. States that have started do not notice until their next event.
+    pub fn parts_mut(&mut self) -> &mut [Part] {
+        &mut self.parts
+    }
+
+    /// Kinetic plus potential energy of one body at its own clock, in J.
+    #[must_use]
+    pub fn energy(&self, index: usize, body: &Turning) -> f64 {
+        let s = &self.specs[index];
+        let m = if body.phase == Phase::Step { body.ends[0] } else { body.motion_after(s, 0.0) };
+        0.5 * (s.mass * m.v.length_squared() + m.w.dot(s.inertia.momentum(body.turn, m.w))) - s.mass * self.gravity.dot(body.path.x)
+    }
+
+    /// How many bodies there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.len()
+    }
+}
+
+/// Overlap at the start that counts as touching, over the size. Default 1e-6; danger: larger values start bodies inside each other.
+const OVERLAP: f64 = 1e-6;
+
+impl Spec {
+    fn new(body: usize, b: &BodySpec, world: &RigidWorld, spacing: f64, strength: f64) -> Result<Self, WorldError> {
+        let bad = |field, value| WorldError::BadBody { body, field, value, expected: "a positive number" };
+        let MassProperties { mass, inertia } = b.mass;
+        for (field, value) in [("mass", mass), ("inertia", inertia.x), ("inertia", inertia.y), ("inertia", inertia.z), ("reach", b.shape.reach())] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(bad(field, value));
+            }
+        }
+        world.laws.require(b.material)?;
+        let mut feelers = b.shape.feelers();
+        let hull = feelers.len();
+        if spacing.is_finite() {
+            feelers.extend(b.shape.feelers_between(spacing));
+        }
+        let (size, inertia) = (b.shape.size(), Inertia::new(inertia));
+        let (speed, gap) = ((strength * size).sqrt(), world.accuracy.gap * size / step::TOUCHING);
+        let (reach, wobble) = (b.shape.reach(), inertia.wobble());
+        Ok(Self { mass, inertia, material: b.material, feelers, hull, reach, size, speed, gap, wobble, is_ball: matches!(b.shape, Shape::Ball(_)) })
+    }
+}

@@ -1,0 +1,161 @@
+//! Impulses of lasting contacts, found together: block Gauss–Seidel whose blocks obey Coulomb's law exactly.
+
+use glam::{DMat3, DVec3};
+
+/// A body while its contacts are solved.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Member {
+    pub(crate) index: u32,
+    pub(crate) inverse_mass: f64,
+    pub(crate) inverse_inertia: DMat3,
+    pub(crate) v: DVec3,
+    pub(crate) w: DVec3,
+}
+
+/// A contact between a member and a fixed part or another member.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Contact {
+    pub(crate) a: usize,
+    pub(crate) b: Option<usize>,
+    pub(crate) arms: [DVec3; 2],
+    /// Unit normal towards `a`.
+    pub(crate) normal: DVec3,
+    pub(crate) friction: f64,
+    /// Least normal velocity after solving.
+    pub(crate) target: f64,
+    /// Velocity change per impulse.
+    k: DMat3,
+    k_inverse: DMat3,
+    along: f64,
+    /// Impulse on `a` so far.
+    pub(crate) impulse: DVec3,
+    slip: DVec3,
+}
+
+/// Rounds over the direction of slip per visit; the sweeps around it do the rest.
+const ROUNDS: usize = 3;
+
+impl Contact {
+    pub(crate) fn new(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3, friction: f64, k: DMat3) -> Self {
+        let along = normal.dot(k * normal);
+        Self { a, b, arms, normal, friction, target: 0.0, k, k_inverse: k.inverse(), along, impulse: DVec3::ZERO, slip: DVec3::ZERO }
+    }
+
+    /// Relative velocity at the contact.
+    #[inline]
+    pub(crate) fn velocity(&self, members: &[Member]) -> DVec3 {
+        let a = &members[self.a];
+        let u = a.v + a.w.cross(self.arms[0]);
+        match self.b {
+            Some(b) => u - (members[b].v + members[b].w.cross(self.arms[1])),
+            None => u,
+        }
+    }
+
+    #[inline]
+    pub(crate) fn push(&self, members: &mut [Member], impulse: DVec3) {
+        let a = &mut members[self.a];
+        a.v += impulse * a.inverse_mass;
+        a.w += a.inverse_inertia * self.arms[0].cross(impulse);
+        if let Some(b) = self.b {
+            let b = &mut members[b];
+            b.v -= impulse * b.inverse_mass;
+            b.w -= b.inverse_inertia * self.arms[1].cross(impulse);
+        }
+    }
+
+    /// Gives this contact the impulse that it needs with all others as they are; returns the change of velocity that this meant.
+    #[inline]
+    pub(crate) fn solve(&mut self, members: &mut [Member]) -> f64 {
+        let free = self.velocity(members) - self.k * self.impulse;
+        let next = self.needed(free);
+        let change = next - self.impulse;
+        if change == DVec3::ZERO {
+            return 0.0;
+        }
+        self.push(members, change);
+        self.impulse = next;
+        change.length() * self.along
+    }
+
+    /// The impulse after which a contact with velocity `free` obeys Coulomb's law.
+    fn needed(&mut self, free: DVec3) -> DVec3 {
+        let n = self.normal;
+        let missing = self.target - free.dot(n);
+        if missing <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let across = free - n * free.dot(n);
+        if self.friction > 0.0 {
+            let stick = self.k_inverse * (n * missing - across);
+            let load = stick.dot(n);
+            if load > 0.0 && (stick - n * load).length_squared() <= self.friction * self.friction * load * load {
+                self.slip = DVec3::ZERO;
+                return stick;
+            }
+        }
+        self.sliding(free, missing, across)
+    }
+
+    /// Sliding: the friction opposes the slip that is left.
+    fn sliding(&mut self, free: DVec3, missing: f64, across: DVec3) -> DVec3 {
+        let n = self.normal;
+        if self.friction == 0.0 {
+            return n * (missing / self.along);
+        }
+        let kn = self.k * n;
+        // No smaller than the largest response across the normal.
+        let stiff = self.k.x_axis.x + self.k.y_axis.y + self.k.z_axis.z - self.along;
+        let mut slip = if self.slip == DVec3::ZERO { (across + (kn - n * self.along) * (missing / self.along)).normalize_or_zero() } else { self.slip };
+        let mut load = 0.0;
+        for _ in 0..ROUNDS {
+            let force = n - slip * self.friction;
+            let gain = n.dot(self.k * force);
+            if gain <= 1e-3 * self.along {
+                // Friction wedges the contact: as much of it as still lets the normal velocity rise.
+                return self.wedged(free, missing);
+            }
+            load = missing / gain;
+            let after = free + self.k * force * load;
+            let after = after - n * after.dot(n);
+            slip = (after + slip * (self.friction * load * stiff)).normalize_or(slip);
+        }
+        self.slip = slip;
+        let force = n - slip * self.friction;
+        let gain = n.dot(self.k * force);
+        if gain > 1e-3 * self.along { force * (missing / gain) } else { force * load }
+    }
+
+    /// The sticking impulse where the cone allows its normal part at all, else one without friction: neither gains energy.
+    fn wedged(&self, free: DVec3, missing: f64) -> DVec3 {
+        let n = self.normal;
+        let stick = self.k_inverse * (n * missing - (free - n * free.dot(n)));
+        let load = stick.dot(n);
+        let side = stick - n * load;
+        if load > 0.0 && side.length() <= self.friction * load { stick } else { n * (missing / self.along) }
+    }
+}
+
+/// Sweeps over all contacts until none changes a velocity by more than `enough`, at most `most` times.
+pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: f64, most: u32) {
+    if let [only] = contacts {
+        for _ in 0..4 {
+            if only.solve(members) <= enough {
+                break;
+            }
+        }
+        return;
+    }
+    for _ in 0..most {
+        let mut change: f64 = 0.0;
+        for c in contacts.iter_mut() {
+            change = change.max(c.solve(members));
+        }
+        if change <= enough {
+            break;
+        }
+        for c in contacts.iter_mut().rev() {
+            change = change.max(c.solve(members));
+        }
+    }
+}
