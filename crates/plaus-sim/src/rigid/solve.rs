@@ -26,7 +26,10 @@ pub(crate) struct Contact {
     /// Velocity change per impulse.
     k: DMat3,
     k_inverse: DMat3,
+    kn: DVec3,
     along: f64,
+    /// At least the largest response across the normal.
+    stiff: f64,
     /// Impulse on `a` so far.
     pub(crate) impulse: DVec3,
     slip: DVec3,
@@ -37,8 +40,11 @@ const ROUNDS: usize = 3;
 
 impl Contact {
     pub(crate) fn new(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3, friction: f64, k: DMat3) -> Self {
-        let along = normal.dot(k * normal);
-        Self { a, b, arms, normal, friction, target: 0.0, k, k_inverse: k.inverse(), along, impulse: DVec3::ZERO, slip: DVec3::ZERO }
+        let kn = k * normal;
+        let along = normal.dot(kn);
+        let stiff = k.x_axis.x + k.y_axis.y + k.z_axis.z - along;
+        let k_inverse = k.inverse();
+        Self { a, b, arms, normal, friction, target: 0.0, k, k_inverse, kn, along, stiff, impulse: DVec3::ZERO, slip: DVec3::ZERO }
     }
 
     /// Relative velocity at the contact.
@@ -67,63 +73,58 @@ impl Contact {
     /// Gives this contact the impulse that it needs with all others as they are; returns the change of velocity that this meant.
     #[inline]
     pub(crate) fn solve(&mut self, members: &mut [Member]) -> f64 {
-        let free = self.velocity(members) - self.k * self.impulse;
-        let next = self.needed(free);
-        let change = next - self.impulse;
-        if change == DVec3::ZERO {
+        let u = self.velocity(members);
+        let n = self.normal;
+        let wanted = n * self.target - u;
+        if self.impulse == DVec3::ZERO && wanted.dot(n) <= 0.0 {
             return 0.0;
+        }
+        // Sticking is by far the most frequent: no slip is left, and the impulse lies in the cone.
+        let mut change = self.k_inverse * wanted;
+        let mut next = self.impulse + change;
+        let load = next.dot(n);
+        if load <= 0.0 || (next - n * load).length_squared() > self.friction * self.friction * load * load {
+            next = self.sliding(u - self.k * self.impulse);
+            change = next - self.impulse;
+        } else {
+            self.slip = DVec3::ZERO;
         }
         self.push(members, change);
         self.impulse = next;
         change.length() * self.along
     }
 
-    /// The impulse after which a contact with velocity `free` obeys Coulomb's law.
-    fn needed(&mut self, free: DVec3) -> DVec3 {
+    /// The impulse after which a contact with velocity `free`, that cannot stick, obeys Coulomb's law: the friction opposes the slip that is left.
+    fn sliding(&mut self, free: DVec3) -> DVec3 {
         let n = self.normal;
         let missing = self.target - free.dot(n);
         if missing <= 0.0 {
             return DVec3::ZERO;
         }
-        let across = free - n * free.dot(n);
-        if self.friction > 0.0 {
-            let stick = self.k_inverse * (n * missing - across);
-            let load = stick.dot(n);
-            if load > 0.0 && (stick - n * load).length_squared() <= self.friction * self.friction * load * load {
-                self.slip = DVec3::ZERO;
-                return stick;
-            }
-        }
-        self.sliding(free, missing, across)
-    }
-
-    /// Sliding: the friction opposes the slip that is left.
-    fn sliding(&mut self, free: DVec3, missing: f64, across: DVec3) -> DVec3 {
-        let n = self.normal;
         if self.friction == 0.0 {
             return n * (missing / self.along);
         }
-        let kn = self.k * n;
-        // No smaller than the largest response across the normal.
-        let stiff = self.k.x_axis.x + self.k.y_axis.y + self.k.z_axis.z - self.along;
-        let mut slip = if self.slip == DVec3::ZERO { (across + (kn - n * self.along) * (missing / self.along)).normalize_or_zero() } else { self.slip };
-        let mut load = 0.0;
-        for _ in 0..ROUNDS {
-            let force = n - slip * self.friction;
-            let gain = n.dot(self.k * force);
+        let is_new = self.slip == DVec3::ZERO;
+        if is_new {
+            let across = free - n * free.dot(n);
+            self.slip = (across + (self.kn - n * self.along) * (missing / self.along)).normalize_or_zero();
+        }
+        for _ in 0..if is_new { ROUNDS } else { 1 } {
+            let ks = self.k * self.slip;
+            let gain = self.along - self.friction * self.kn.dot(self.slip);
             if gain <= 1e-3 * self.along {
-                // Friction wedges the contact: as much of it as still lets the normal velocity rise.
+                // Friction wedges the contact.
                 return self.wedged(free, missing);
             }
-            load = missing / gain;
-            let after = free + self.k * force * load;
-            let after = after - n * after.dot(n);
-            slip = (after + slip * (self.friction * load * stiff)).normalize_or(slip);
+            let load = missing / gain;
+            let after = free + (self.kn - ks * self.friction) * load;
+            self.slip = (after - n * after.dot(n) + self.slip * (self.friction * load * self.stiff)).normalize_or(self.slip);
         }
-        self.slip = slip;
-        let force = n - slip * self.friction;
-        let gain = n.dot(self.k * force);
-        if gain > 1e-3 * self.along { force * (missing / gain) } else { force * load }
+        let gain = self.along - self.friction * self.kn.dot(self.slip);
+        if gain <= 1e-3 * self.along {
+            return self.wedged(free, missing);
+        }
+        (n - self.slip * self.friction) * (missing / gain)
     }
 
     /// The sticking impulse where the cone allows its normal part at all, else one without friction: neither gains energy.

@@ -206,7 +206,7 @@ impl Rigid {
                 next.push(&mut members, next.impulse);
             } else {
                 // It has left the ground: no impulse, whatever its velocity.
-                next.target = f64::NEG_INFINITY;
+                next.target = -f64::MAX;
             }
             scratch.contacts[c] = next;
         }
