@@ -10,6 +10,10 @@ pub(crate) struct Member {
     pub(crate) inverse_inertia: DMat3,
     pub(crate) v: DVec3,
     pub(crate) w: DVec3,
+    /// Largest distance of a point from the centre of gravity.
+    pub(crate) reach: f64,
+    /// Velocities a round ago.
+    pub(crate) last: [DVec3; 2],
 }
 
 /// A contact between a member and a fixed part or another member.
@@ -36,7 +40,7 @@ pub(crate) struct Contact {
 }
 
 /// Rounds over the direction of slip per visit; the sweeps around it do the rest.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 8;
 
 impl Contact {
     pub(crate) fn new(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3, friction: f64, k: DMat3) -> Self {
@@ -86,8 +90,6 @@ impl Contact {
         if load <= 0.0 || (next - n * load).length_squared() > self.friction * self.friction * load * load {
             next = self.sliding(u - self.k * self.impulse);
             change = next - self.impulse;
-        } else {
-            self.slip = DVec3::ZERO;
         }
         self.push(members, change);
         self.impulse = next;
@@ -104,12 +106,11 @@ impl Contact {
         if self.friction == 0.0 {
             return n * (missing / self.along);
         }
-        let is_new = self.slip == DVec3::ZERO;
-        if is_new {
+        if self.slip == DVec3::ZERO {
             let across = free - n * free.dot(n);
             self.slip = (across + (self.kn - n * self.along) * (missing / self.along)).normalize_or_zero();
         }
-        for _ in 0..if is_new { ROUNDS } else { 1 } {
+        for _ in 0..ROUNDS {
             let ks = self.k * self.slip;
             let gain = self.along - self.friction * self.kn.dot(self.slip);
             if gain <= 1e-3 * self.along {
@@ -118,7 +119,11 @@ impl Contact {
             }
             let load = missing / gain;
             let after = free + (self.kn - ks * self.friction) * load;
-            self.slip = (after - n * after.dot(n) + self.slip * (self.friction * load * self.stiff)).normalize_or(self.slip);
+            let before = self.slip;
+            self.slip = (after - n * after.dot(n) + before * (self.friction * load * self.stiff)).normalize_or(before);
+            if before.dot(self.slip) > 1.0 - 1e-9 {
+                break;
+            }
         }
         let gain = self.along - self.friction * self.kn.dot(self.slip);
         if gain <= 1e-3 * self.along {
@@ -137,7 +142,9 @@ impl Contact {
     }
 }
 
-/// Sweeps over all contacts until none changes a velocity by more than `enough`, at most `most` times.
+/// Sweeps up and down over all contacts until a round changes no body's velocity by more than `enough`, at most `most` times.
+///
+/// Velocities decide, not impulses: where contacts are redundant, impulses that cancel each other may go on growing for ever.
 pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: f64, most: u32) {
     if let [only] = contacts {
         for _ in 0..4 {
@@ -148,15 +155,18 @@ pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: f6
         return;
     }
     for _ in 0..most {
-        let mut change: f64 = 0.0;
+        for m in members.iter_mut() {
+            m.last = [m.v, m.w];
+        }
         for c in contacts.iter_mut() {
-            change = change.max(c.solve(members));
+            c.solve(members);
         }
-        if change <= enough {
+        for c in contacts.iter_mut().rev().skip(1) {
+            c.solve(members);
+        }
+        let quiet = |m: &Member| (m.v - m.last[0]).length_squared() <= enough * enough && (m.w - m.last[1]).length_squared() * m.reach * m.reach <= enough * enough;
+        if members.iter().all(quiet) {
             break;
-        }
-        for c in contacts.iter_mut().rev() {
-            change = change.max(c.solve(members));
         }
     }
 }

@@ -145,14 +145,15 @@ impl Rigid {
         }
         let mut members = [self.member(spec, 0, &pose.r, self.gravity * h, DVec3::ZERO)];
         self.make_contacts(index, pose, &members[0], scratch);
-        sweep(&mut scratch.contacts, &mut members, 0.01 * self.accuracy.rest_residual * self.strength * h, self.accuracy.sweeps);
+        sweep(&mut scratch.contacts, &mut members, 0.03 * self.accuracy.rest_residual * self.strength * h, self.accuracy.sweeps);
         let [m] = members;
         let left = m.v.length().max(m.w.length() * spec.reach);
-        left <= 0.1 * self.accuracy.rest_residual * self.strength * h
+        left <= self.accuracy.rest_residual * self.strength * h
     }
 
     fn member(&self, spec: &Spec, index: u32, r: &DMat3, v: DVec3, w: DVec3) -> Member {
-        Member { index, inverse_mass: 1.0 / spec.mass, inverse_inertia: spec.inertia.inverse(r), v, w }
+        let inverse_inertia = spec.inertia.inverse(r);
+        Member { index, inverse_mass: 1.0 / spec.mass, inverse_inertia, v, w, reach: spec.reach, last: [DVec3::ZERO; 2] }
     }
 
     fn make_contacts(&self, index: usize, pose: &Pose, member: &Member, scratch: &mut RigidScratch) {
