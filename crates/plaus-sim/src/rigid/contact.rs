@@ -38,9 +38,18 @@ impl Rigid {
     /// A point of a body, wherever it is.
     #[inline]
     pub(super) fn touch(&self, index: usize, pose: &Pose, part: u16, point: u16) -> Touch {
-        let feeler = &self.specs[index].feelers[usize::from(point)];
+        let (spec, part_here, k) = (&self.specs[index], &self.parts[usize::from(part)], usize::from(point));
+        let feeler = if spec.ring_points().contains(&k) {
+            let up = match part_here {
+                Part::Plane(plane) => plane.normal,
+                _ => part_here.foot(pose.x, spec.reach).normal,
+            };
+            spec.ring_point(k, pose.r.transpose() * up).0
+        } else {
+            spec.feelers[k]
+        };
         let arm = pose.r * feeler.centre;
-        let foot = self.parts[usize::from(part)].foot(pose.x + arm, feeler.radius);
+        let foot = part_here.foot(pose.x + arm, feeler.radius);
         Touch { part, point, arm: arm - foot.normal * feeler.radius, normal: foot.normal, gap: foot.distance - feeler.radius }
     }
 
@@ -63,11 +72,19 @@ impl Rigid {
                             each(Touch { part: k, point: point as u16, arm, normal: plane.normal, gap });
                         }
                     }
+                    for point in spec.ring_points() {
+                        let (feeler, _) = spec.ring_point(point, lever);
+                        let gap = height + lever.dot(feeler.centre) - feeler.radius;
+                        if gap <= within {
+                            let arm = pose.r * feeler.centre - plane.normal * feeler.radius;
+                            each(Touch { part: k, point: point as u16, arm, normal: plane.normal, gap });
+                        }
+                    }
                 }
                 Part::Block { bounds, .. } => {
                     if bounds.grown(spec.reach + within).contains(pose.x) {
-                        for point in 0..spec.hull as u16 {
-                            let touch = self.touch(index, pose, k, point);
+                        for point in (0..spec.hull).chain(spec.ring_points()) {
+                            let touch = self.touch(index, pose, k, point as u16);
                             if touch.gap <= within {
                                 each(touch);
                             }

@@ -69,8 +69,11 @@ impl Mechanics for Rigid {
         self.first_touch(index, body, until)
     }
 
-    fn first_meeting(&self, _pair: [usize; 2], _bodies: [&Turning; 2], _from: f64, _until: f64) -> Option<f64> {
-        None
+    fn first_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
+        if bodies.iter().all(|b| b.phase == Phase::Rest) {
+            return None;
+        }
+        self.first_pair(pair, bodies, from, until)
     }
 
     fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface) -> Option<Impact> {
@@ -80,8 +83,8 @@ impl Mechanics for Rigid {
         }
     }
 
-    fn hit_body(&self, _pair: [usize; 2], _bodies: [&mut Turning; 2], _linked: bool) -> Option<Impact> {
-        None
+    fn hit_body(&self, pair: [usize; 2], bodies: [&mut Turning; 2], linked: bool) -> Option<Impact> {
+        self.hit_pair(pair, bodies, linked)
     }
 
     #[inline]

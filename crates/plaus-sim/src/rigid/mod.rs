@@ -8,7 +8,9 @@ mod body;
 mod contact;
 mod detect;
 mod mechanics;
+mod pair;
 mod part;
+mod rest;
 mod solve;
 mod step;
 mod tumble;
@@ -21,7 +23,7 @@ use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::{Laws, Material};
 use crate::mechanics::Mechanics;
-use crate::shape::{Feeler, MassProperties, Shape};
+use crate::shape::{Feeler, MassProperties, Ring, Shape};
 use crate::simulate::{Outcome, Scratch, simulate};
 use crate::state::State;
 use crate::trace::Observer;
@@ -95,9 +97,24 @@ pub(crate) struct Spec {
     pub(crate) speed: f64,
     /// Gap at which it touches, in m: the preset's over [`step::TOUCHING`].
     pub(crate) gap: f64,
-    wobble: f64,
-    is_ball: bool,
+    pub(crate) wobble: f64,
+    pub(crate) is_ball: bool,
+    /// Whether it can roll: a ball or a body of revolution.
+    pub(crate) is_round: bool,
+    rings: Vec<Ring>,
+    pub(crate) skin: Skin,
 }
+
+/// How a body is looked at by others.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Skin {
+    Ball,
+    Revolved,
+    Cuboid { half: DVec3, rounding: f64 },
+}
+
+/// Points of the first ring, a quarter turn apart from its lowest on; other rings have their lowest only.
+pub(crate) const RIM_POINTS: usize = 4;
 
 impl Rigid {
     /// Checks a world.
@@ -235,6 +252,39 @@ impl Spec {
         let (size, inertia) = (b.shape.size(), Inertia::new(inertia));
         let (speed, gap) = ((strength * size).sqrt(), world.accuracy.gap * size / step::TOUCHING);
         let (reach, wobble) = (b.shape.reach(), inertia.wobble());
-        Ok(Self { mass, inertia, material: b.material, feelers, hull, reach, size, speed, gap, wobble, is_ball: matches!(b.shape, Shape::Ball(_)) })
+        let (skin, rings) = match &b.shape {
+            Shape::Ball(_) => (Skin::Ball, Vec::new()),
+            Shape::Revolution(r) => (Skin::Revolved, r.rings().to_vec()),
+            Shape::Cuboid(c) => (Skin::Cuboid { half: c.half(), rounding: c.rounding() }, Vec::new()),
+        };
+        let is_ball = matches!(skin, Skin::Ball);
+        let is_round = is_ball || matches!(skin, Skin::Revolved);
+        Ok(Self { mass, inertia, material: b.material, feelers, hull, reach, size, speed, gap, wobble, is_ball, is_round, rings, skin })
+    }
+
+    /// The balls on the axis of a body of revolution.
+    pub(crate) fn row(&self) -> &[Feeler] {
+        &self.feelers[..self.hull]
+    }
+
+    /// How many points can touch a part: feelers of the hull, then points of rings.
+    pub(crate) fn ring_points(&self) -> std::ops::Range<usize> {
+        let count = if self.rings.is_empty() { 0 } else { RIM_POINTS + self.rings.len() - 1 };
+        self.hull..self.hull + count
+    }
+
+    /// A point of a ring as a ball, in body axes, where `up` (in body axes) points away from the part, and how it stands: 0 lowest, 1 and 3 sideways, 2 highest.
+    pub(crate) fn ring_point(&self, point: usize, up: DVec3) -> (Feeler, usize) {
+        let k = point - self.hull;
+        let (ring, quarter) = if k < RIM_POINTS { (&self.rings[0], k) } else { (&self.rings[k + 1 - RIM_POINTS], 0) };
+        let flat = DVec3::new(up.x, up.y, 0.0);
+        let down = if flat == DVec3::ZERO { DVec3::X } else { -flat.normalize() };
+        let along = match quarter {
+            0 => down,
+            1 => DVec3::new(-down.y, down.x, 0.0),
+            2 => -down,
+            _ => DVec3::new(down.y, -down.x, 0.0),
+        };
+        (Feeler { centre: along * ring.circle + DVec3::new(0.0, 0.0, ring.height), radius: ring.radius }, quarter)
     }
 }

@@ -5,7 +5,6 @@ use glam::{DMat3, DVec3};
 /// A body while its contacts are solved.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Member {
-    pub(crate) index: u32,
     pub(crate) inverse_mass: f64,
     pub(crate) inverse_inertia: DMat3,
     pub(crate) v: DVec3,

@@ -1,4 +1,4 @@
-//! Lasting contact: what a body that touches something does next, in steps on its own adaptive clock.
+//! Lasting contact: what bodies that touch something do next, in steps on their group's own adaptive clock.
 //!
 //! A step is a half kick of gravity and contact impulses, a straight drift at constant angular velocity, and another half kick (RATTLE's order). The first impulses
 //! are such that every loaded point ends the drift at the gap that it is to keep, found in [`PASSES`] passes over the true geometry; the second such that no point
@@ -6,20 +6,38 @@
 
 use super::body::{Motion, Phase, Pose, Turning};
 use super::contact::{Touch, response};
+use super::pair::PairTouch;
 use super::part::Part;
+use super::rest;
 use super::solve::{Contact, Member, sweep};
 use super::tumble::{drift, rotation};
 use super::{Rigid, Spec};
 use crate::mechanics::Link;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 /// Work space of a group's step.
 #[derive(Debug, Default)]
 pub struct RigidScratch {
-    touches: Vec<Touch>,
+    pub(super) members: Vec<Member>,
+    pub(super) places: Vec<Place>,
+    /// Points on fixed parts.
+    pub(super) touches: Vec<(usize, Touch)>,
     /// Points that touch but separate.
-    leaving: Vec<Touch>,
-    contacts: Vec<Contact>,
+    pub(super) leaving: Vec<(usize, Touch)>,
+    /// Points between bodies.
+    pub(super) pairs: Vec<([usize; 2], PairTouch)>,
+    /// Of the touches first, then of the pairs.
+    pub(super) contacts: Vec<Contact>,
+}
+
+/// A member's pose and orientation at the start and at the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) body: usize,
+    pub(super) start: Pose,
+    turn: DQuat,
+    end: Pose,
+    end_turn: DQuat,
 }
 
 /// Passes over the end of a step: the first predicts where points get to, the others correct.
@@ -31,71 +49,124 @@ const KEEP: f64 = 0.75;
 /// Gap up to which a point counts as touching, over the gap at which bodies touch: what a step leaves is not looked at as a new impact. This is the preset's gap.
 pub(super) const TOUCHING: f64 = 2.0;
 
-/// Decides how a group goes on.
-pub(super) fn settle(world: &Rigid, members: &[u32], bodies: &mut [Turning], _links: &mut Vec<Link>, scratch: &mut RigidScratch) {
-    for &k in members {
-        let (index, body) = (k as usize, &mut bodies[k as usize]);
-        if body.phase == Phase::Rest {
-            body.begin(Phase::Rest, DVec3::ZERO);
-            continue;
-        }
-        single(world, index, body, scratch);
-    }
-}
+/// How often a step is shortened so that points which just left are not back within it. Each aims at half their speed.
+const SHORTENINGS: usize = 4;
 
-fn single(world: &Rigid, index: usize, body: &mut Turning, scratch: &mut RigidScratch) {
-    let spec = &world.specs[index];
-    let pose = body.pose();
-    let touches = &mut scratch.touches;
-    touches.clear();
-    world.for_touches(index, &pose, TOUCHING * spec.gap, |t| touches.push(t));
-    // Points that separate faster than a bounce that counts are on their own.
-    let leaving = &mut scratch.leaving;
-    leaving.clear();
-    touches.retain(|t| {
-        let law = world.law_at(index, t.part, pose.x + t.arm);
-        let lasts = pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law);
-        if !lasts {
-            leaving.push(*t);
+/// Decides how a group goes on.
+pub(super) fn settle(world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Vec<Link>, scratch: &mut RigidScratch) {
+    if group.iter().all(|&k| bodies[k as usize].phase == Phase::Rest) {
+        return;
+    }
+    scratch.gather(world, group, bodies, links);
+    if scratch.places.is_empty() {
+        return;
+    }
+    let mut h = scratch.step_length(world);
+    if rest::is_slow(world, scratch) && rest::is_supported(world, scratch, h) {
+        for p in &scratch.places {
+            let body = &mut bodies[p.body];
+            (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);
+            body.begin(Phase::Rest, DVec3::ZERO);
         }
-        lasts
-    });
-    body.listed = f64::NEG_INFINITY;
-    if touches.is_empty() {
-        body.list(std::iter::empty());
-        return body.begin(Phase::Flight, world.gravity);
-    }
-    let mut h = world.step_length(spec, &pose, touches);
-    if !h.is_finite() || !(h > 0.0) {
-        return body.begin(Phase::Flight, world.gravity);
-    }
-    if world.is_slow(spec, &pose) && world.is_supported(index, spec, &pose, scratch, h) {
-        (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);
-        return body.begin(Phase::Rest, DVec3::ZERO);
+        return;
     }
     for _ in 0..SHORTENINGS {
-        world.step(index, body, &pose, scratch, h);
-        match world.returns(body, scratch, &pose) {
+        scratch.step(world, h);
+        match scratch.returns() {
             Some(part) => h *= part,
-            None => return body.list(scratch.touches.iter().map(Touch::surface)),
+            None => return scratch.write(bodies, h),
         }
     }
     // Bounces too fast for any step: they count as lasting.
     scratch.touches.append(&mut scratch.leaving);
-    world.step(index, body, &pose, scratch, h);
-    body.list(scratch.touches.iter().map(Touch::surface));
+    scratch.touches.sort_by_key(|t| t.0);
+    scratch.step(world, h);
+    scratch.write(bodies, h);
 }
 
-/// How often a step is shortened so that points which just left are not back within it. Each aims at half their speed.
-const SHORTENINGS: usize = 4;
+impl RigidScratch {
+    /// Finds the lasting contacts of a group. Bodies without any fly.
+    fn gather(&mut self, world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Vec<Link>) {
+        self.places.clear();
+        self.touches.clear();
+        self.leaving.clear();
+        self.pairs.clear();
+        links.retain(|&[i, j]| {
+            if !group.contains(&i) {
+                return true;
+            }
+            let (i, j) = (i as usize, j as usize);
+            let (a, b) = (bodies[i].pose(), bodies[j].pose());
+            let touch = world.pair_touch([i, j], [&a, &b]);
+            let speed = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
+            let lasts = touch.gap <= TOUCHING * world.pair_gap([i, j]) && speed <= world.pair_settle_speed([i, j]);
+            if lasts {
+                self.pairs.push(([i, j], touch));
+            }
+            lasts
+        });
+        for &k in group {
+            let index = k as usize;
+            let (spec, pose) = (&world.specs[index], bodies[index].pose());
+            let (at, before) = (self.places.len(), self.touches.len());
+            world.for_touches(index, &pose, TOUCHING * spec.gap, |t| {
+                let law = world.law_at(index, t.part, pose.x + t.arm);
+                if pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law) {
+                    self.touches.push((at, t));
+                } else {
+                    self.leaving.push((at, t));
+                }
+            });
+            let body = &mut bodies[index];
+            body.listed = f64::NEG_INFINITY;
+            let linked = self.pairs.iter().any(|p| p.0.contains(&index));
+            if self.touches.len() == before && !linked {
+                self.leaving.retain(|l| l.0 != at);
+                body.list(std::iter::empty());
+                body.begin(Phase::Flight, world.gravity);
+                continue;
+            }
+            self.places.push(Place { body: index, start: pose, turn: body.turn, end: pose, end_turn: body.turn });
+        }
+        for p in &mut self.pairs {
+            p.0 = p.0.map(|k| self.places.iter().position(|q| q.body == k).unwrap_or(0));
+        }
+    }
 
-impl Rigid {
+    fn step_length(&self, world: &Rigid) -> f64 {
+        let mut time = f64::INFINITY;
+        for p in &self.places {
+            let spec = &world.specs[p.body];
+            time = time.min((spec.size / world.strength).sqrt()).min(spec.size / p.start.v.length().max(world.accuracy.settle * spec.speed) * LONGEST).min(1.0 / p.start.w.length());
+        }
+        for (k, t) in &self.touches {
+            let p = &self.places[*k];
+            if let Part::Table(table) = &world.parts[usize::from(t.part)] {
+                let at = p.start.x + t.arm;
+                let bend = table.height.at(at.x, at.y).bend;
+                let bend = bend[0].abs().max(bend[2].abs()) + bend[1].abs();
+                let speed = p.start.velocity(t.arm).length();
+                time = time.min(1.0 / (world.strength * bend).sqrt()).min(1.0 / (bend * speed));
+            }
+        }
+        for ([a, b], t) in &self.pairs {
+            let (p, q) = (&self.places[*a], &self.places[*b]);
+            let speed = (p.start.velocity(t.arms[0]) - q.start.velocity(t.arms[1])).length();
+            time = time.min(world.specs[p.body].size.min(world.specs[q.body].size) / speed);
+        }
+        if world.strength == 0.0 && !time.is_finite() {
+            time = world.duration;
+        }
+        world.accuracy.step * time
+    }
+
     /// Whether the drift of a step brings a point back that is just leaving, and by what part the step is too long then.
-    fn returns(&self, body: &Turning, scratch: &RigidScratch, start: &Pose) -> Option<f64> {
+    fn returns(&self) -> Option<f64> {
         let mut worst = 1.0_f64;
-        for t in &scratch.leaving {
-            let before = start.velocity(t.arm).dot(t.normal);
-            let drifting = (body.path.v + body.spin.cross(t.arm)).dot(t.normal);
+        for (k, t) in &self.leaving {
+            let p = &self.places[*k];
+            let before = p.start.velocity(t.arm).dot(t.normal);
+            let drifting = (p.end.v + p.end.w.cross(t.arm)).dot(t.normal);
             if drifting < 0.25 * before {
                 worst = worst.min(0.5 * before / (before - drifting));
             }
@@ -103,157 +174,136 @@ impl Rigid {
         (worst < 1.0).then_some(worst)
     }
 
-    fn step_length(&self, spec: &Spec, pose: &Pose, touches: &[Touch]) -> f64 {
-        let mut time = (spec.size / self.strength).sqrt().min(1.0 / pose.w.length());
-        for t in touches {
-            if let Part::Table(table) = &self.parts[usize::from(t.part)] {
-                let at = pose.x + t.arm;
-                let bend = table.height.at(at.x, at.y).bend;
-                let bend = bend[0].abs().max(bend[2].abs()) + bend[1].abs();
-                let speed = pose.velocity(t.arm).length();
-                time = time.min(1.0 / (self.strength * bend).sqrt()).min(1.0 / (bend * speed));
-            }
-        }
-        self.accuracy.step * time
-    }
-
-    fn is_slow(&self, spec: &Spec, pose: &Pose) -> bool {
-        let limit = self.accuracy.rest_speed * spec.speed;
-        pose.v.length() <= limit && pose.w.length() * spec.reach <= limit
-    }
-
-    /// Whether the contacts can hold a body that does not move.
-    fn is_supported(&self, index: usize, spec: &Spec, pose: &Pose, scratch: &mut RigidScratch, h: f64) -> bool {
-        if !scratch.leaving.is_empty() {
-            return false;
-        }
-        let touches = &scratch.touches;
-        if spec.is_ball {
-            let [only] = &touches[..] else { return false };
-            return only.normal.cross(self.gravity).length() <= 1e-9 * self.strength && pose.v == DVec3::ZERO && pose.w == DVec3::ZERO;
-        }
-        if touches.len() < 3 {
-            return false;
-        }
-        let normal = touches[0].normal;
-        if touches.iter().all(|t| t.normal == normal) {
-            // Flat ground: the centre of gravity above the points, and not steeper than friction allows.
-            let law = self.law_at(index, touches[0].part, pose.x + touches[0].arm);
-            let press = -self.gravity.dot(normal);
-            let slide = (self.gravity + normal * press).length();
-            return slide <= law.friction * press && is_above(touches, self.gravity / self.strength);
-        }
-        let mut members = [self.member(spec, 0, &pose.r, self.gravity * h, DVec3::ZERO)];
-        self.make_contacts(index, pose, &members[0], scratch);
-        sweep(&mut scratch.contacts, &mut members, 0.03 * self.accuracy.rest_residual * self.strength * h, self.accuracy.sweeps);
-        let [m] = members;
-        let left = m.v.length().max(m.w.length() * spec.reach);
-        left <= self.accuracy.rest_residual * self.strength * h
-    }
-
-    fn member(&self, spec: &Spec, index: u32, r: &DMat3, v: DVec3, w: DVec3) -> Member {
+    fn member(spec: &Spec, r: &DMat3, v: DVec3, w: DVec3) -> Member {
         let inverse_inertia = spec.inertia.inverse(r);
-        Member { index, inverse_mass: 1.0 / spec.mass, inverse_inertia, v, w, reach: spec.reach, last: [DVec3::ZERO; 2] }
+        Member { inverse_mass: 1.0 / spec.mass, inverse_inertia, v, w, reach: spec.reach, last: [DVec3::ZERO; 2] }
     }
 
-    fn make_contacts(&self, index: usize, pose: &Pose, member: &Member, scratch: &mut RigidScratch) {
-        let RigidScratch { touches, contacts, .. } = scratch;
-        contacts.clear();
-        contacts.extend(touches.iter().map(|t| {
-            let law = self.law_at(index, t.part, pose.x + t.arm);
-            let k = response(member.inverse_mass, &member.inverse_inertia, t.arm);
-            Contact::new(0, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k)
+    /// Members at their starts with the velocities that `free` gives, and contacts without impulses.
+    pub(super) fn prepare(&mut self, world: &Rigid, free: impl Fn(&Spec, &Place) -> (DVec3, DVec3)) {
+        self.members.clear();
+        self.members.extend(self.places.iter().map(|p| {
+            let spec = &world.specs[p.body];
+            let (v, w) = free(spec, p);
+            Self::member(spec, &p.start.r, v, w)
         }));
+        self.contacts.clear();
+        for (a, t) in &self.touches {
+            let (p, m) = (&self.places[*a], &self.members[*a]);
+            let law = world.law_at(p.body, t.part, p.start.x + t.arm);
+            let k = response(m.inverse_mass, &m.inverse_inertia, t.arm);
+            self.contacts.push(Contact::new(*a, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k));
+        }
+        for ([a, b], t) in &self.pairs {
+            self.contacts.push(self.pair_contact(world, [*a, *b], t));
+        }
     }
 
-    fn step(&self, index: usize, body: &mut Turning, start: &Pose, scratch: &mut RigidScratch, h: f64) {
-        let spec = &self.specs[index];
-        let enough = self.accuracy.sweep_tolerance * self.strength * h;
-        let keep = KEEP * spec.gap;
-        let half_kick = self.gravity * (0.5 * h);
-        let half_spin = |turn, w| if spec.wobble == 0.0 { w } else { drift(&spec.inertia, turn, w, 0.5 * h).1 };
-        let free_w = half_spin(body.turn, start.w);
-        let mut members = [self.member(spec, index as u32, &start.r, start.v + half_kick, free_w)];
-        self.make_contacts(index, start, &members[0], scratch);
+    fn pair_contact(&self, world: &Rigid, [a, b]: [usize; 2], t: &PairTouch) -> Contact {
+        let (m, n) = (&self.members[a], &self.members[b]);
+        let k = response(m.inverse_mass, &m.inverse_inertia, t.arms[0]) + response(n.inverse_mass, &n.inverse_inertia, t.arms[1]);
+        let friction = world.pair_law([self.places[a].body, self.places[b].body]).friction;
+        Contact::new(a, Some(b), t.arms, t.normal, friction, k)
+    }
+
+    /// One step of `h` seconds from the starts; the ends are left in `places` (drift) and `members` (final velocities).
+    fn step(&mut self, world: &Rigid, h: f64) {
+        let enough = world.accuracy.sweep_tolerance * world.strength * h;
+        let half_kick = world.gravity * (0.5 * h);
+        let half_spin = |spec: &Spec, turn: DQuat, w: DVec3| if spec.wobble == 0.0 { w } else { drift(&spec.inertia, turn, w, 0.5 * h).1 };
+        self.prepare(world, |spec, p| (p.start.v + half_kick, half_spin(spec, p.turn, p.start.w)));
         // What a point may still fall, and how far turning alone lifts it towards its own circle.
-        for (c, t) in scratch.contacts.iter_mut().zip(&scratch.touches) {
-            let rise = start.w.cross(start.w.cross(t.arm)).dot(t.normal);
-            c.target = (keep - t.gap) / h - 0.5 * h * rise;
+        for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
+            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
+            let rise = if spec.is_round { 0.0 } else { p.start.w.cross(p.start.w.cross(t.arm)).dot(t.normal) };
+            c.target = (KEEP * spec.gap - t.gap) / h - 0.5 * h * rise;
         }
-        let mut end = *start;
-        let mut end_turn = body.turn;
+        let first_pair = self.touches.len();
+        for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
+            c.target = (KEEP * world.pair_gap(ab.map(|k| self.places[k].body)) - t.gap) / h;
+        }
         for pass in 0..PASSES {
-            sweep(&mut scratch.contacts, &mut members, enough, self.accuracy.sweeps);
-            end_turn = (rotation(members[0].w * h) * body.turn).normalize();
-            end = Pose { x: start.x + members[0].v * h, r: DMat3::from_quat(end_turn), v: members[0].v, w: members[0].w };
+            sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
+            for (p, m) in self.places.iter_mut().zip(&self.members) {
+                p.end_turn = (rotation(m.w * h) * p.turn).normalize();
+                p.end = Pose { x: p.start.x + m.v * h, r: DMat3::from_quat(p.end_turn), v: m.v, w: m.w };
+            }
             if pass + 1 < PASSES {
-                for (c, t) in scratch.contacts.iter_mut().zip(&scratch.touches) {
-                    c.target += (keep - self.touch(index, &end, t.part, t.point).gap) / h;
+                for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
+                    let p = &self.places[*k];
+                    c.target += (KEEP * world.specs[p.body].gap - world.touch(p.body, &p.end, t.part, t.point).gap) / h;
+                }
+                for (c, (ab, _)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
+                    let [p, q] = ab.map(|k| &self.places[k]);
+                    let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
+                    c.target += (KEEP * world.pair_gap([p.body, q.body]) - after.gap) / h;
                 }
             }
         }
-        let [drifting] = members;
-        // The second kick, over the points that still touch.
-        let mut members = [self.member(spec, index as u32, &end.r, drifting.v + half_kick, half_spin(end_turn, drifting.w))];
-        for c in 0..scratch.touches.len() {
-            let loaded = scratch.contacts[c].impulse != DVec3::ZERO;
-            let t = &scratch.touches[c];
-            let after = self.touch(index, &end, t.part, t.point);
-            let old = scratch.contacts[c];
-            let k = response(members[0].inverse_mass, &members[0].inverse_inertia, after.arm);
-            let mut next = Contact::new(0, None, [after.arm, DVec3::ZERO], after.normal, old.friction, k);
-            if loaded || after.gap <= TOUCHING * spec.gap {
-                next.impulse = old.impulse;
-                next.push(&mut members, next.impulse);
+        self.second_kick(world, half_kick, half_spin);
+        sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
+        self.guard_energy(world);
+    }
+
+    /// The second kick, over the points that still touch at the ends.
+    fn second_kick(&mut self, world: &Rigid, half_kick: DVec3, half_spin: impl Fn(&Spec, DQuat, DVec3) -> DVec3) {
+        for (m, p) in self.members.iter_mut().zip(&self.places) {
+            let spec = &world.specs[p.body];
+            *m = Self::member(spec, &p.end.r, p.end.v + half_kick, half_spin(spec, p.end_turn, p.end.w));
+        }
+        for c in 0..self.contacts.len() {
+            let old = self.contacts[c];
+            let (mut next, gap, touching) = if let Some((a, t)) = self.touches.get(c) {
+                let (p, m) = (&self.places[*a], &self.members[*a]);
+                let after = world.touch(p.body, &p.end, t.part, t.point);
+                let k = response(m.inverse_mass, &m.inverse_inertia, after.arm);
+                (Contact::new(*a, None, [after.arm, DVec3::ZERO], after.normal, old.friction, k), after.gap, world.specs[p.body].gap)
             } else {
-                // It has left the ground: no impulse, whatever its velocity.
+                let ab = self.pairs[c - self.touches.len()].0;
+                let [p, q] = ab.map(|k| &self.places[k]);
+                let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
+                (self.pair_contact(world, ab, &after), after.gap, world.pair_gap([p.body, q.body]))
+            };
+            if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
+                next.impulse = old.impulse;
+                next.push(&mut self.members, next.impulse);
+            } else {
+                // It has left: no impulse, whatever its velocity.
                 next.target = -f64::MAX;
             }
-            scratch.contacts[c] = next;
+            self.contacts[c] = next;
         }
-        sweep(&mut scratch.contacts, &mut members, enough, self.accuracy.sweeps);
-        let [m] = members;
-        let mut finish = Motion { v: m.v, w: m.w };
-        // A group's energy never grows, whatever the step's error.
-        let kinetic = |turn, m: &Motion| 0.5 * (spec.mass * m.v.length_squared() + m.w.dot(spec.inertia.momentum(turn, m.w)));
-        let first = Motion { v: start.v, w: start.w };
-        let before = kinetic(body.turn, &first) + spec.mass * self.gravity.dot(end.x - start.x);
-        let after = kinetic(end_turn, &finish);
+    }
+
+    /// A group's energy never grows, whatever the step's error.
+    fn guard_energy(&mut self, world: &Rigid) {
+        let kinetic = |spec: &Spec, turn, v: DVec3, w: DVec3| 0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)));
+        let (mut before, mut after) = (0.0, 0.0);
+        for (p, m) in self.places.iter().zip(&self.members) {
+            let spec = &world.specs[p.body];
+            before += kinetic(spec, p.turn, p.start.v, p.start.w) + spec.mass * world.gravity.dot(p.end.x - p.start.x);
+            after += kinetic(spec, p.end_turn, m.v, m.w);
+        }
         if after > before {
             let part = (before.max(0.0) / after).sqrt();
-            finish = Motion { v: finish.v * part, w: finish.w * part };
+            for m in &mut self.members {
+                m.v *= part;
+                m.w *= part;
+            }
         }
-        body.ends = [first, finish];
-        (body.path.v, body.spin) = (drifting.v, drifting.w);
-        body.begin(Phase::Step, DVec3::ZERO);
-        body.expiry = body.path.t + h;
+    }
+
+    fn write(&self, bodies: &mut [Turning], h: f64) {
+        for (k, (p, m)) in self.places.iter().zip(&self.members).enumerate() {
+            let body = &mut bodies[p.body];
+            body.ends = [Motion { v: p.start.v, w: p.start.w }, Motion { v: m.v, w: m.w }];
+            (body.path.v, body.spin) = (p.end.v, p.end.w);
+            body.begin(Phase::Step, DVec3::ZERO);
+            body.expiry = body.path.t + h;
+            body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface()));
+        }
     }
 }
 
-/// Whether the line of gravity through the centre of gravity meets the hull of the points: no half plane holds them all.
-fn is_above(touches: &[Touch], down: DVec3) -> bool {
-    let flat = |t: &Touch| t.arm - down * t.arm.dot(down);
-    touches.iter().all(|a| {
-        let p = flat(a);
-        let margin = MARGIN * p.length_squared();
-        let (mut left, mut right) = (false, false);
-        for b in touches {
-            let side = p.cross(flat(b)).dot(down);
-            left |= side > margin;
-            right |= side < -margin;
-        }
-        let opposite = || touches.iter().any(|b| p.dot(flat(b)) < 0.0);
-        (left && right) || ((left || right) && opposite() && on_line(p, touches, down))
-    })
-}
-
-/// Whether some point lies exactly opposite to `p`: then a third one on one side is enough to look at from here.
-fn on_line(p: DVec3, touches: &[Touch], down: DVec3) -> bool {
-    touches.iter().any(|b| {
-        let q = b.arm - down * b.arm.dot(down);
-        p.dot(q) < 0.0 && p.cross(q).length() <= MARGIN * p.length_squared()
-    })
-}
-
-/// Sine of the angle below which points count as opposite. Default 1e-6.
-const MARGIN: f64 = 1e-6;
+/// Sizes that a body may move within the unit of a step's length.
+const LONGEST: f64 = 4.0;

@@ -5,11 +5,14 @@
 
 mod cuboid;
 mod mass;
+mod revolution;
 
 pub use cuboid::Cuboid;
 pub use mass::MassProperties;
+pub use revolution::{Profile, Revolution, Ring};
 
 use glam::DVec3;
+use std::sync::Arc;
 
 /// A ball fixed in a body: centre in m from the centre of gravity along the body's axes, and radius in m.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -27,6 +30,8 @@ pub enum Shape {
     Ball(f64),
     /// A cuboid.
     Cuboid(Cuboid),
+    /// A body of revolution about its z axis.
+    Revolution(Arc<Revolution>),
 }
 
 impl Shape {
@@ -36,6 +41,7 @@ impl Shape {
         match self {
             Self::Ball(radius) => *radius,
             Self::Cuboid(c) => (c.half() - c.rounding()).length() + c.rounding(),
+            Self::Revolution(r) => r.reach(),
         }
     }
 
@@ -45,6 +51,7 @@ impl Shape {
         match self {
             Self::Ball(radius) => *radius,
             Self::Cuboid(c) => c.half().min_element(),
+            Self::Revolution(r) => r.rings()[0].circle,
         }
     }
 
@@ -54,6 +61,7 @@ impl Shape {
         match self {
             Self::Ball(radius) => vec![Feeler { centre: DVec3::ZERO, radius: *radius }],
             Self::Cuboid(c) => c.corners().into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect(),
+            Self::Revolution(r) => r.row().to_vec(),
         }
     }
 
@@ -61,7 +69,7 @@ impl Shape {
     #[must_use]
     pub fn feelers_between(&self, spacing: f64) -> Vec<Feeler> {
         match self {
-            Self::Ball(_) => Vec::new(),
+            Self::Ball(_) | Self::Revolution(_) => Vec::new(),
             Self::Cuboid(c) => c.between(spacing).into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect(),
         }
     }
@@ -72,6 +80,7 @@ impl Shape {
         match self {
             Self::Ball(radius) => MassProperties::ball(*radius, density),
             Self::Cuboid(c) => c.mass_properties(density),
+            Self::Revolution(r) => r.mass_properties(density),
         }
     }
 }

@@ -1,7 +1,9 @@
 //! Plain worlds of the shapes that the scenes have, for tests, benchmarks and the trade-off study. The scenes build their own.
 
+mod alley;
 mod bins;
 mod table;
 
+pub use alley::Alley;
 pub use bins::{Bins, drops};
 pub use table::DieOnTable;
