@@ -67,12 +67,24 @@ pub struct Turning {
     pub(crate) expiry: f64,
     /// Velocities at the start and the end of a step.
     pub(crate) ends: [Motion; 2],
+    /// Velocities of the drift of the step that was interrupted last.
+    drifted: Motion,
+    /// Events since `hurried_from`, all within [`HURRY`].
+    hurried: u32,
+    hurried_from: f64,
     /// Points that touch fixed parts at the clock.
     touching: [Surface; MOST_TOUCHES],
     touching_count: u8,
     /// The clock at which `touching` was found.
     pub(crate) listed: f64,
 }
+
+/// Window over `√(size/g)` in which events are counted. Default 1e-3; this is the contact time of the TC model (Luding & McNamara, Granular Matter 1, 1998): below it a contact is
+/// not resolved into bounces.
+const HURRY: f64 = 1e-3;
+
+/// Events within the window from which contacts last. Default 16: no chain of real bounces of one body is so fast.
+const MOST_HURRIED: u32 = 16;
 
 const NOWHERE: Surface = Surface::Part { part: u16::MAX, point: u16::MAX };
 
@@ -86,6 +98,9 @@ impl Turning {
             phase: Phase::Waiting,
             expiry: start.time,
             ends: [Motion::default(); 2],
+            drifted: Motion::default(),
+            hurried: 0,
+            hurried_from: f64::NEG_INFINITY,
             touching: [NOWHERE; MOST_TOUCHES],
             touching_count: 0,
             listed: f64::NEG_INFINITY,
@@ -129,6 +144,13 @@ impl Turning {
 
     pub(super) fn advance(&mut self, spec: &Spec, time: f64) {
         let dt = time - self.path.t;
+        self.hurried += 1;
+        if time - self.hurried_from > HURRY * spec.time {
+            (self.hurried, self.hurried_from) = (0, time);
+        }
+        if self.phase == Phase::Step {
+            self.drifted = Motion { v: self.path.v, w: self.spin };
+        }
         if dt != 0.0 {
             let x = self.path.after(dt);
             match self.phase {
@@ -152,6 +174,34 @@ impl Turning {
             let motion = self.ends[0];
             (self.path.v, self.spin) = (motion.v, motion.w);
         }
+    }
+
+    /// Whether so much has happened within so little time that its contacts are to last, however fast they part.
+    pub(super) fn is_hurried(&self) -> bool {
+        self.hurried > MOST_HURRIED
+    }
+
+    /// A contact was found on the drift of an interrupted step, but the step's velocities at this time, which lie between those of its ends, do not approach: the body takes the
+    /// drift's velocities then. What energy that adds is taken back after the impact, by [`slow_down`](Self::slow_down).
+    pub(super) fn take_drift(&mut self) {
+        if self.phase == Phase::Step {
+            self.set_motion(self.drifted);
+        }
+    }
+
+    pub(super) fn set_motion(&mut self, motion: Motion) {
+        (self.path.v, self.spin) = (motion.v, motion.w);
+        self.ends[0] = motion;
+    }
+
+    /// Twice the kinetic energy at the clock.
+    pub(super) fn vigour(&self, spec: &Spec) -> f64 {
+        spec.mass * self.path.v.length_squared() + self.spin.dot(spec.inertia.momentum(self.turn, self.spin))
+    }
+
+    /// Scales the velocities.
+    pub(super) fn slow_down(&mut self, part: f64) {
+        self.set_motion(Motion { v: self.path.v * part, w: self.spin * part });
     }
 
     /// Starts a phase that lasts until something happens.

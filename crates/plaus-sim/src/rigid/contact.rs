@@ -162,17 +162,26 @@ impl Rigid {
     /// Impact of one point of a body on a part.
     pub(super) fn hit_part(&self, index: usize, body: &mut Turning, part: u16, point: u16) -> Option<Impact> {
         let spec = &self.specs[index];
+        // Only the event's own contact may be one that the drift alone brings about.
+        let first = body.listed != body.path.t;
         self.list_touches(index, body);
-        let pose = body.pose();
+        let mut pose = body.pose();
         let touch = self.touch(index, &pose, part, point);
-        let u = pose.velocity(touch.arm);
-        let approach = -u.dot(touch.normal);
+        let mut u = pose.velocity(touch.arm);
+        let mut approach = -u.dot(touch.normal);
+        let vigour = body.vigour(spec);
+        if approach <= 0.0 && first {
+            body.take_drift();
+            pose = body.pose();
+            u = pose.velocity(touch.arm);
+            approach = -u.dot(touch.normal);
+        }
         if approach <= 0.0 || touch.gap > super::step::TOUCHING * spec.gap {
             return None;
         }
         let law = self.law_at(index, part, pose.x + touch.arm);
         let settles = self.settle_speed(spec, &law);
-        let lasting = law.restitution * approach <= settles;
+        let lasting = law.restitution * approach <= settles || body.is_hurried();
         if lasting && approach <= LEFT * settles {
             return None;
         }
@@ -183,6 +192,10 @@ impl Rigid {
         body.path.v += impulse / spec.mass;
         body.spin += inverse * touch.arm.cross(impulse);
         body.ends[0] = Motion { v: body.path.v, w: body.spin };
+        let after = body.vigour(spec);
+        if after > vigour {
+            body.slow_down((vigour / after).sqrt());
+        }
         if body.phase != Phase::Flight {
             body.phase = Phase::Step;
         }

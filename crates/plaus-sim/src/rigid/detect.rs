@@ -369,12 +369,13 @@ fn ring_gap(
     let circle = feeler.centre.truncate().length();
     let lean = lever.truncate().length();
     let middle = fall + swing.z * feeler.centre.z;
-    let rate = if quarter % 2 == 0 { fall + swing.dot(feeler.centre) } else { middle };
+    let rate = fall + swing.dot(feeler.centre);
     let m = (pull + turning * feeler.centre.length()).max(0.0);
     if quarter == 0 && lean < LEANS {
         return [f, rate, middle - circle * swing.truncate().length(), m];
     }
-    [f, rate, rate, m + turning * circle / lean.max(LEANS)]
+    // Sideways points keep their place on the circle while the body spins.
+    [f, rate, if quarter % 2 == 0 { rate } else { middle }, m + turning * circle / lean.max(LEANS)]
 }
 
 /// Sine of the lean from which the lowest point of a rim is followed. Default 0.02; smaller values take more advancements, larger ones see impacts a little early.

@@ -95,6 +95,8 @@ pub(crate) struct Spec {
     pub(crate) size: f64,
     /// `√(g · size)`.
     pub(crate) speed: f64,
+    /// `√(size / g)`; without gravity the time in which it would cover its size at 1 m/s.
+    pub(crate) time: f64,
     /// Gap at which it touches, in m: the preset's over [`step::TOUCHING`].
     pub(crate) gap: f64,
     pub(crate) wobble: f64,
@@ -251,6 +253,7 @@ impl Spec {
         }
         let (size, inertia) = (b.shape.size(), Inertia::new(inertia));
         let (speed, gap) = ((strength * size).sqrt(), world.accuracy.gap * size / step::TOUCHING);
+        let time = if strength > 0.0 { (size / strength).sqrt() } else { size };
         let (reach, wobble) = (b.shape.reach(), inertia.wobble());
         let (skin, rings) = match &b.shape {
             Shape::Ball(_) => (Skin::Ball, Vec::new()),
@@ -259,7 +262,7 @@ impl Spec {
         };
         let is_ball = matches!(skin, Skin::Ball);
         let is_round = is_ball || matches!(skin, Skin::Revolved);
-        Ok(Self { mass, inertia, material: b.material, feelers, hull, reach, size, speed, gap, wobble, is_ball, is_round, rings, skin })
+        Ok(Self { mass, inertia, material: b.material, feelers, hull, reach, size, speed, time, gap, wobble, is_ball, is_round, rings, skin })
     }
 
     /// The balls on the axis of a body of revolution.

@@ -106,7 +106,8 @@ impl Rigid {
             Pose { x: b.path.after(dt), r: tumbles[k].at(dt), v: b.path.velocity_after(dt), w }
         };
         let mut time = from;
-        let mut clear = from;
+        // The last time at which they were apart, if they have been.
+        let mut clear = None;
         for _ in 0..MOST_ADVANCES {
             let dx = bodies[0].path.at(time) - bodies[1].path.at(time);
             let distance = dx.length();
@@ -119,14 +120,16 @@ impl Rigid {
                 if !(time < until) {
                     return None;
                 }
-                clear = time;
+                clear = Some(time);
                 continue;
             }
             let (a, b) = (pose(0, time), pose(1, time));
             let touch = self.pair_touch(pair, [&a, &b]);
             let f = touch.gap - 0.5 * level;
             let rate = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
-            if f < -2.0 * level && clear < time {
+            if f < -2.0 * level
+                && let Some(clear) = clear
+            {
                 // Another pair of points came first: back to where they touch.
                 let (mut low, mut high) = (clear, time);
                 for _ in 0..BISECTIONS {
@@ -140,7 +143,7 @@ impl Rigid {
                 return Some(time);
             }
             if f > 0.0 {
-                clear = time;
+                clear = Some(time);
             }
             time += earliest(f, rate, m);
             if !(time < until) {
@@ -154,13 +157,20 @@ impl Rigid {
     pub(super) fn hit_pair(&self, pair: [usize; 2], [a, b]: [&mut Turning; 2], linked: bool) -> Option<Impact> {
         let [s, t] = pair.map(|k| &self.specs[k]);
         let time = a.path.t;
-        let (p, q) = (a.pose(), b.pose());
+        let (mut p, mut q) = (a.pose(), b.pose());
         let touch = self.pair_touch(pair, [&p, &q]);
-        let u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
+        let vigour = a.vigour(s) + b.vigour(t);
+        let mut u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
+        if u.dot(touch.normal) >= 0.0 && !linked && (a.listed != time || b.listed != time) {
+            a.take_drift();
+            b.take_drift();
+            (p, q) = (a.pose(), b.pose());
+            u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
+        }
         let approach = -u.dot(touch.normal);
         let law = self.pair_law(pair);
         let settles = self.pair_settle_speed(pair);
-        let lasting = law.restitution * approach <= settles;
+        let lasting = law.restitution * approach <= settles || a.is_hurried() || b.is_hurried();
         if approach <= 0.0 || touch.gap > super::step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
             return None;
         }
@@ -168,7 +178,7 @@ impl Rigid {
         let k = response(1.0 / s.mass, &ia, touch.arms[0]) + response(1.0 / t.mass, &ib, touch.arms[1]);
         let e = if lasting { 0.0 } else { law.restitution };
         let impulse = impulse(&k, u, touch.normal, e, law.friction, self.accuracy.slip_turn);
-        for (index, body, spec, inverse, arm, push) in [(pair[0], a, s, ia, touch.arms[0], impulse), (pair[1], b, t, ib, touch.arms[1], -impulse)] {
+        for (index, body, spec, inverse, arm, push) in [(pair[0], &mut *a, s, ia, touch.arms[0], impulse), (pair[1], &mut *b, t, ib, touch.arms[1], -impulse)] {
             body.path.v += push / spec.mass;
             body.spin += inverse * arm.cross(push);
             body.ends[0] = Motion { v: body.path.v, w: body.spin };
@@ -176,6 +186,12 @@ impl Rigid {
                 body.phase = Phase::Step;
             }
             self.list_touches(index, body);
+        }
+        let after = a.vigour(s) + b.vigour(t);
+        if after > vigour {
+            let part = (vigour / after).sqrt();
+            a.slow_down(part);
+            b.slow_down(part);
         }
         let point = p.x + touch.arms[0];
         Some(Impact { time, body: pair[0], other: Other::Body(pair[1]), point, normal: touch.normal, impulse, approach, lasting })

@@ -52,6 +52,12 @@ pub(super) const TOUCHING: f64 = 2.0;
 /// How often a step is shortened so that points which just left are not back within it. Each aims at half their speed.
 const SHORTENINGS: usize = 4;
 
+/// Largest speed with which a point is pushed out of an overlap, over that below which bounces last. Default 1; only the drift has it, not the velocities.
+const PUSH: f64 = 1.0;
+
+/// Least part that one shortening leaves of a step.
+const SHORTEST: f64 = 0.1;
+
 /// Decides how a group goes on.
 pub(super) fn settle(world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Vec<Link>, scratch: &mut RigidScratch) {
     if group.iter().all(|&k| bodies[k as usize].phase == Phase::Rest) {
@@ -99,7 +105,8 @@ impl RigidScratch {
             let (a, b) = (bodies[i].pose(), bodies[j].pose());
             let touch = world.pair_touch([i, j], [&a, &b]);
             let speed = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
-            let lasts = touch.gap <= TOUCHING * world.pair_gap([i, j]) && speed <= world.pair_settle_speed([i, j]);
+            let slow = speed <= world.pair_settle_speed([i, j]) || bodies[i].is_hurried() || bodies[j].is_hurried();
+            let lasts = slow && touch.gap <= TOUCHING * world.pair_gap([i, j]);
             if lasts {
                 self.pairs.push(([i, j], touch));
             }
@@ -107,11 +114,11 @@ impl RigidScratch {
         });
         for &k in group {
             let index = k as usize;
-            let (spec, pose) = (&world.specs[index], bodies[index].pose());
+            let (spec, pose, hurried) = (&world.specs[index], bodies[index].pose(), bodies[index].is_hurried());
             let (at, before) = (self.places.len(), self.touches.len());
             world.for_touches(index, &pose, TOUCHING * spec.gap, |t| {
                 let law = world.law_at(index, t.part, pose.x + t.arm);
-                if pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law) {
+                if hurried || pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law) {
                     self.touches.push((at, t));
                 } else {
                     self.leaving.push((at, t));
@@ -168,7 +175,7 @@ impl RigidScratch {
             let before = p.start.velocity(t.arm).dot(t.normal);
             let drifting = (p.end.v + p.end.w.cross(t.arm)).dot(t.normal);
             if drifting < 0.25 * before {
-                worst = worst.min(0.5 * before / (before - drifting));
+                worst = worst.min((0.5 * before / (before - drifting)).max(SHORTEST));
             }
         }
         (worst < 1.0).then_some(worst)
@@ -216,11 +223,12 @@ impl RigidScratch {
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
             let rise = if spec.is_round { 0.0 } else { p.start.w.cross(p.start.w.cross(t.arm)).dot(t.normal) };
-            c.target = (KEEP * spec.gap - t.gap) / h - 0.5 * h * rise;
+            c.target = ((KEEP * spec.gap - t.gap) / h).min(PUSH * world.accuracy.settle * spec.speed) - 0.5 * h * rise;
         }
         let first_pair = self.touches.len();
         for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
-            c.target = (KEEP * world.pair_gap(ab.map(|k| self.places[k].body)) - t.gap) / h;
+            let both = ab.map(|k| self.places[k].body);
+            c.target = ((KEEP * world.pair_gap(both) - t.gap) / h).min(PUSH * world.accuracy.settle * world.specs[both[0]].speed);
         }
         for pass in 0..PASSES {
             sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
@@ -231,12 +239,15 @@ impl RigidScratch {
             if pass + 1 < PASSES {
                 for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
                     let p = &self.places[*k];
-                    c.target += (KEEP * world.specs[p.body].gap - world.touch(p.body, &p.end, t.part, t.point).gap) / h;
+                    let spec = &world.specs[p.body];
+                    let missing = (KEEP * spec.gap - world.touch(p.body, &p.end, t.part, t.point).gap) / h;
+                    c.target += missing.min(PUSH * world.accuracy.settle * spec.speed);
                 }
                 for (c, (ab, _)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
                     let [p, q] = ab.map(|k| &self.places[k]);
                     let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
-                    c.target += (KEEP * world.pair_gap([p.body, q.body]) - after.gap) / h;
+                    let missing = (KEEP * world.pair_gap([p.body, q.body]) - after.gap) / h;
+                    c.target += missing.min(PUSH * world.accuracy.settle * world.specs[p.body].speed);
                 }
             }
         }
