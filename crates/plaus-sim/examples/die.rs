@@ -13,7 +13,10 @@ fn main() {
     let mut args = std::env::args().skip(1);
     let throws: usize = args.next().map_or(2000, |a| a.parse().unwrap());
     let only: Option<f64> = args.next().map(|a| a.parse().unwrap());
-    println!("{:>9} {:>6} {:>8} {:>8} {:>7} {:>8} {:>8} {:>6} {:>6}  faces", "preset", "bumps", "median", "90 %", "events", "impacts", "ns/event", "rest", "other");
+    println!(
+        "{:>9} {:>6} {:>8} {:>8} {:>7} {:>8} {:>8} {:>6} {:>6}  faces",
+        "preset", "bumps", "median", "90 %", "events", "impacts", "ns/event", "rest", "other"
+    );
     for bumps in [0.0, 0.1, 0.3].into_iter().filter(|b| only.is_none_or(|o| o == *b)) {
         for preset in [Preset::Draft, Preset::Standard, Preset::Fine] {
             row(preset, bumps, throws);

@@ -1,7 +1,12 @@
 //! Rolls a ball at ten pins many times, and prints how many fell, how much work that was, and how long it took.
 //!
 //! `cargo run --release -p plaus-sim --example pins -- [shots]`
-#![allow(clippy::disallowed_methods, clippy::print_stdout, clippy::unwrap_used, reason = "a measuring program: it reads the clock and prints")]
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    reason = "a measuring program: it reads the clock and prints"
+)]
 
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
@@ -11,7 +16,10 @@ use std::time::Instant;
 
 fn main() {
     let shots: usize = std::env::args().nth(1).map_or(100, |a| a.parse().unwrap());
-    println!("{:>9} {:>9} {:>9} {:>7} {:>8} {:>8}  pins down 0..10; outcomes (time, rest, events, bad)", "preset", "median", "90 %", "events", "impacts", "ns/event");
+    println!(
+        "{:>9} {:>9} {:>9} {:>7} {:>8} {:>8}  pins down 0..10; outcomes (time, rest, events, bad)",
+        "preset", "median", "90 %", "events", "impacts", "ns/event"
+    );
     for preset in [Preset::Draft, Preset::Standard] {
         row(preset, shots);
     }

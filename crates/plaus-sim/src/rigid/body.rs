@@ -41,6 +41,8 @@ pub enum Phase {
     Step,
     /// At rest until something hits it.
     Rest,
+    /// Fallen below the world's sink: it takes no further part.
+    Gone,
 }
 
 /// Velocities of a body.
@@ -124,13 +126,15 @@ impl Turning {
     /// Velocities `dt` after the clock.
     pub(super) fn motion_after(&self, spec: &Spec, dt: f64) -> Motion {
         match self.phase {
-            Phase::Flight => Motion { v: self.path.velocity_after(dt), w: drift(&spec.inertia, self.turn, self.spin, dt).1 },
+            Phase::Flight => {
+                Motion { v: self.path.velocity_after(dt), w: drift(&spec.inertia, self.turn, self.spin, dt).1 }
+            }
             Phase::Step => {
                 let part = (dt / (self.expiry - self.path.t)).clamp(0.0, 1.0);
                 let [a, b] = self.ends;
                 Motion { v: a.v.lerp(b.v, part), w: a.w.lerp(b.w, part) }
             }
-            Phase::Waiting | Phase::Rest => Motion { v: self.path.v, w: self.spin },
+            Phase::Waiting | Phase::Rest | Phase::Gone => Motion { v: self.path.v, w: self.spin },
         }
     }
 
@@ -166,7 +170,7 @@ impl Turning {
                     // What is left of the step is no longer straight in the same way; settling decides anew.
                     self.expiry = time;
                 }
-                Phase::Waiting | Phase::Rest => {}
+                Phase::Waiting | Phase::Rest | Phase::Gone => {}
             }
             self.path.x = x;
             self.path.t = time;

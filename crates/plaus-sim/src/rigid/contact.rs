@@ -30,7 +30,11 @@ impl Touch {
 /// Velocity change at `arm` per impulse there, in world axes.
 #[inline]
 pub(crate) fn response(inverse_mass: f64, inverse_inertia: &DMat3, arm: DVec3) -> DMat3 {
-    let cross = DMat3::from_cols(DVec3::new(0.0, arm.z, -arm.y), DVec3::new(-arm.z, 0.0, arm.x), DVec3::new(arm.y, -arm.x, 0.0));
+    let cross = DMat3::from_cols(
+        DVec3::new(0.0, arm.z, -arm.y),
+        DVec3::new(-arm.z, 0.0, arm.x),
+        DVec3::new(arm.y, -arm.x, 0.0),
+    );
     DMat3::from_diagonal(DVec3::splat(inverse_mass)) - cross * *inverse_inertia * cross
 }
 
@@ -50,7 +54,13 @@ impl Rigid {
         };
         let arm = pose.r * feeler.centre;
         let foot = part_here.foot(pose.x + arm, feeler.radius);
-        Touch { part, point, arm: arm - foot.normal * feeler.radius, normal: foot.normal, gap: foot.distance - feeler.radius }
+        Touch {
+            part,
+            point,
+            arm: arm - foot.normal * feeler.radius,
+            normal: foot.normal,
+            gap: foot.distance - feeler.radius,
+        }
     }
 
     /// Calls `each` for the points of a body that are within `within` of a part.
@@ -200,7 +210,16 @@ impl Rigid {
             body.phase = Phase::Step;
         }
         let at = pose.x + touch.arm;
-        Some(Impact { time: body.path.t, body: index, other: Other::Surface(touch.surface()), point: at, normal: touch.normal, impulse, approach, lasting })
+        Some(Impact {
+            time: body.path.t,
+            body: index,
+            other: Other::Surface(touch.surface()),
+            point: at,
+            normal: touch.normal,
+            impulse,
+            approach,
+            lasting,
+        })
     }
 }
 

@@ -60,7 +60,11 @@ impl Rigid {
         let spec = &self.specs[index];
         let free = body.phase == Phase::Flight;
         let momentum = spec.inertia.momentum(body.turn, body.spin).length();
-        let fastest = if free { (momentum / spec.inertia.moments.min_element()).min(body.spin.length() * (1.0 + spec.wobble)) } else { body.spin.length() };
+        let fastest = if free {
+            (momentum / spec.inertia.moments.min_element()).min(body.spin.length() * (1.0 + spec.wobble))
+        } else {
+            body.spin.length()
+        };
         let fastest = if spec.wobble == 0.0 || !free { body.spin.length() } else { fastest };
         let turning = fastest * fastest * if free { 1.0 + spec.wobble } else { 1.0 };
         let mut search = Search { spec, body, fastest, turning, until: until - body.path.t, found: None };
@@ -180,7 +184,11 @@ impl Search<'_> {
     /// Angular velocity after `t`; only a top's moves.
     #[inline]
     fn spin_at(&self, t: f64) -> DVec3 {
-        if self.spec.wobble == 0.0 || self.body.phase != Phase::Flight { self.body.spin } else { self.body.motion_after(self.spec, t).w }
+        if self.spec.wobble == 0.0 || self.body.phase != Phase::Flight {
+            self.body.spin
+        } else {
+            self.body.motion_after(self.spec, t).w
+        }
     }
 
     fn block(&mut self, part: u16, block: &Part) {
@@ -198,7 +206,8 @@ impl Search<'_> {
             if away > 0.0 {
                 // The sphere around the body, whose centre only falls.
                 let n = offset / offset.length();
-                step = earliest(away, n.dot(v), pull).max(1e-3 * away / (v.length() + pull * away).max(f64::MIN_POSITIVE).sqrt().max(v.length()));
+                step = earliest(away, n.dot(v), pull)
+                    .max(1e-3 * away / (v.length() + pull * away).max(f64::MIN_POSITIVE).sqrt().max(v.length()));
             } else {
                 let r = tumble.at(t);
                 let w = self.spin_at(t);
@@ -232,7 +241,8 @@ impl Search<'_> {
                     let foot = block.foot(x + arm, feeler.radius);
                     let (lever, swing) = (r.transpose() * foot.normal, r.transpose() * foot.normal.cross(w));
                     let height = foot.distance - lever.dot(feeler.centre) - 0.5 * spec.gap;
-                    let gap = ring_gap(&feeler, quarter, (lever, swing), height, foot.normal.dot(v), (pull, self.turning));
+                    let gap =
+                        ring_gap(&feeler, quarter, (lever, swing), height, foot.normal.dot(v), (pull, self.turning));
                     self.ring(part, k, gap, &mut step, &mut first);
                 }
                 if step == 0.0 {

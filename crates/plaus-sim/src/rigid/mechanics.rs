@@ -35,12 +35,12 @@ impl Mechanics for Rigid {
 
     #[inline]
     fn is_present(&self, body: &Turning) -> bool {
-        body.phase != Phase::Waiting
+        !matches!(body.phase, Phase::Waiting | Phase::Gone)
     }
 
     #[inline]
     fn is_resting(&self, body: &Turning) -> bool {
-        body.phase == Phase::Rest
+        matches!(body.phase, Phase::Rest | Phase::Gone)
     }
 
     fn is_finite(&self, body: &Turning) -> bool {

@@ -66,6 +66,8 @@ pub struct RigidWorld {
     /// Distance between points of a body's skin that are looked at over a table, over the table's grid spacing. Default 0.5; usual 0.25–1; a bump between them reaches into
     /// the body by up to about `curvature · (skin · spacing)²/8`; the cost grows as its inverse square.
     pub skin: f64,
+    /// Height in m below which a body whose centre of gravity is found there, at one of its events, is gone: a pit. `-∞` for none.
+    pub sink: f64,
     /// When a run ends, in s.
     pub duration: f64,
 }
@@ -79,6 +81,7 @@ pub struct Rigid {
     gravity: DVec3,
     strength: f64,
     accuracy: Accuracy,
+    sink: f64,
     duration: f64,
 }
 
@@ -105,6 +108,8 @@ pub(crate) struct Spec {
     pub(crate) is_round: bool,
     rings: Vec<Ring>,
     pub(crate) skin: Skin,
+    /// A capsule along the body's z axis that holds it: heights of its ends, and its radius.
+    pub(crate) capsule: [f64; 3],
 }
 
 /// How a body is looked at by others.
@@ -142,9 +147,17 @@ impl Rigid {
             }
         }
         let strength = world.gravity.length();
-        let specs = world.bodies.iter().enumerate().map(|(k, b)| Spec::new(k, b, &world, spacing, strength)).collect::<Result<_, _>>()?;
-        let RigidWorld { parts, laws, gravity, accuracy, duration, .. } = world;
-        Ok(Self { specs, parts, laws, gravity, strength, accuracy, duration })
+        let specs = world
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(k, b)| Spec::new(k, b, &world, spacing, strength))
+            .collect::<Result<_, _>>()?;
+        let RigidWorld { parts, laws, gravity, accuracy, sink, duration, .. } = world;
+        if sink.is_nan() {
+            return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
+        }
+        Ok(Self { specs, parts, laws, gravity, strength, accuracy, sink, duration })
     }
 
     /// A state in which every body waits for its release.
@@ -223,7 +236,8 @@ impl Rigid {
     pub fn energy(&self, index: usize, body: &Turning) -> f64 {
         let s = &self.specs[index];
         let m = if body.phase == Phase::Step { body.ends[0] } else { body.motion_after(s, 0.0) };
-        0.5 * (s.mass * m.v.length_squared() + m.w.dot(s.inertia.momentum(body.turn, m.w))) - s.mass * self.gravity.dot(body.path.x)
+        0.5 * (s.mass * m.v.length_squared() + m.w.dot(s.inertia.momentum(body.turn, m.w)))
+            - s.mass * self.gravity.dot(body.path.x)
     }
 
     /// How many bodies there are.
@@ -240,7 +254,13 @@ impl Spec {
     fn new(body: usize, b: &BodySpec, world: &RigidWorld, spacing: f64, strength: f64) -> Result<Self, WorldError> {
         let bad = |field, value| WorldError::BadBody { body, field, value, expected: "a positive number" };
         let MassProperties { mass, inertia } = b.mass;
-        for (field, value) in [("mass", mass), ("inertia", inertia.x), ("inertia", inertia.y), ("inertia", inertia.z), ("reach", b.shape.reach())] {
+        for (field, value) in [
+            ("mass", mass),
+            ("inertia", inertia.x),
+            ("inertia", inertia.y),
+            ("inertia", inertia.z),
+            ("reach", b.shape.reach()),
+        ] {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(bad(field, value));
             }
@@ -260,9 +280,27 @@ impl Spec {
             Shape::Revolution(r) => (Skin::Revolved, r.rings().to_vec()),
             Shape::Cuboid(c) => (Skin::Cuboid { half: c.half(), rounding: c.rounding() }, Vec::new()),
         };
+        let capsule = capsule(&b.shape, reach);
         let is_ball = matches!(skin, Skin::Ball);
         let is_round = is_ball || matches!(skin, Skin::Revolved);
-        Ok(Self { mass, inertia, material: b.material, feelers, hull, reach, size, speed, time, gap, wobble, is_ball, is_round, rings, skin })
+        Ok(Self {
+            mass,
+            inertia,
+            material: b.material,
+            feelers,
+            hull,
+            reach,
+            size,
+            speed,
+            time,
+            gap,
+            wobble,
+            is_ball,
+            is_round,
+            rings,
+            skin,
+            capsule,
+        })
     }
 
     /// The balls on the axis of a body of revolution.
@@ -290,4 +328,18 @@ impl Spec {
         };
         (Feeler { centre: along * ring.circle + DVec3::new(0.0, 0.0, ring.height), radius: ring.radius }, quarter)
     }
+}
+
+fn capsule(shape: &Shape, reach: f64) -> [f64; 3] {
+    let Shape::Revolution(body) = shape else { return [0.0, 0.0, reach] };
+    let widest =
+        body.row().iter().map(|f| f.radius).chain(body.rings().iter().map(|r| r.circle + r.radius)).fold(0.0, f64::max);
+    // Ends such that the balls there hold the cap and the foot.
+    let top = body.row().iter().map(|f| f.centre.z + f.radius - widest).fold(f64::NEG_INFINITY, f64::max);
+    let low = body.rings().iter().map(|r| {
+        let outer = r.circle + r.radius;
+        r.height - r.radius + (widest * widest - outer * outer).max(0.0).sqrt()
+    });
+    let low = low.chain(body.row().iter().map(|f| f.centre.z - f.radius + widest)).fold(f64::INFINITY, f64::min);
+    [low.min(top), top.max(low), widest]
 }

@@ -28,6 +28,9 @@ const MOST_ADVANCES: usize = 100;
 /// Bisections of a step that ended in overlap: to 2⁻⁴⁰ of it.
 const BISECTIONS: usize = 40;
 
+/// Distance of the capsules around two bodies, over their size, from which their skins are looked at. Default 0.02.
+const NEAR: f64 = 0.02;
+
 /// Stride over the balls of two rows in the first look; the best local minima are then followed ball by ball.
 const STRIDE: usize = 4;
 
@@ -113,7 +116,8 @@ impl Rigid {
             let distance = dx.length();
             let away = distance - s.reach - t.reach - level;
             if away > 0.0 {
-                let dv = bodies[0].path.velocity_after(time - bodies[0].path.t) - bodies[1].path.velocity_after(time - bodies[1].path.t);
+                let dv = bodies[0].path.velocity_after(time - bodies[0].path.t)
+                    - bodies[1].path.velocity_after(time - bodies[1].path.t);
                 // A convex distance: at least this long. Never less than a thousandth of the gap, so that it ends.
                 let step = earliest(away, dx.dot(dv) / distance, pull);
                 time += step + 1e-3 * level / (dv.length() + (pull * level).sqrt()).max(f64::MIN_POSITIVE);
@@ -124,6 +128,15 @@ impl Rigid {
                 continue;
             }
             let (a, b) = (pose(0, time), pose(1, time));
+            let (apart, rate) = capsules([s, t], [&a, &b]);
+            if apart - level > NEAR * s.size.min(t.size) {
+                time += earliest(apart - level, rate, m);
+                if !(time < until) {
+                    return None;
+                }
+                clear = Some(time);
+                continue;
+            }
             let touch = self.pair_touch(pair, [&a, &b]);
             let f = touch.gap - 0.5 * level;
             let rate = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
@@ -171,6 +184,30 @@ impl Rigid {
         let law = self.pair_law(pair);
         let settles = self.pair_settle_speed(pair);
         let lasting = law.restitution * approach <= settles || a.is_hurried() || b.is_hurried();
+        if !linked
+            && approach <= 0.0
+            && touch.gap <= super::step::TOUCHING * self.pair_gap(pair)
+            && (a.is_hurried() || b.is_hurried())
+        {
+            // Found again and again without an approach, as where two pairs of points are equally near: their group is to deal with it.
+            for (index, body) in [(pair[0], &mut *a), (pair[1], &mut *b)] {
+                if body.phase != Phase::Flight {
+                    body.phase = Phase::Step;
+                }
+                self.list_touches(index, body);
+            }
+            let point = p.x + touch.arms[0];
+            return Some(Impact {
+                time,
+                body: pair[0],
+                other: Other::Body(pair[1]),
+                point,
+                normal: touch.normal,
+                impulse: DVec3::ZERO,
+                approach,
+                lasting: true,
+            });
+        }
         if approach <= 0.0 || touch.gap > super::step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
             return None;
         }
@@ -178,7 +215,9 @@ impl Rigid {
         let k = response(1.0 / s.mass, &ia, touch.arms[0]) + response(1.0 / t.mass, &ib, touch.arms[1]);
         let e = if lasting { 0.0 } else { law.restitution };
         let impulse = impulse(&k, u, touch.normal, e, law.friction, self.accuracy.slip_turn);
-        for (index, body, spec, inverse, arm, push) in [(pair[0], &mut *a, s, ia, touch.arms[0], impulse), (pair[1], &mut *b, t, ib, touch.arms[1], -impulse)] {
+        for (index, body, spec, inverse, arm, push) in
+            [(pair[0], &mut *a, s, ia, touch.arms[0], impulse), (pair[1], &mut *b, t, ib, touch.arms[1], -impulse)]
+        {
             body.path.v += push / spec.mass;
             body.spin += inverse * arm.cross(push);
             body.ends[0] = Motion { v: body.path.v, w: body.spin };
@@ -194,7 +233,16 @@ impl Rigid {
             b.slow_down(part);
         }
         let point = p.x + touch.arms[0];
-        Some(Impact { time, body: pair[0], other: Other::Body(pair[1]), point, normal: touch.normal, impulse, approach, lasting })
+        Some(Impact {
+            time,
+            body: pair[0],
+            other: Other::Body(pair[1]),
+            point,
+            normal: touch.normal,
+            impulse,
+            approach,
+            lasting,
+        })
     }
 }
 
@@ -252,7 +300,16 @@ fn two_revolved([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], offset: DVec3) -> PairTo
         let (mut k, mut l, mut f) = (k, l, f);
         for _ in 0..row.len() + col.len() {
             let (before, now) = ((k, l), f);
-            for (i, j) in [(k.wrapping_sub(1), l), (k + 1, l), (k, l.wrapping_sub(1)), (k, l + 1), (k.wrapping_sub(1), l + 1), (k + 1, l.wrapping_sub(1)), (k + 1, l + 1), (k.wrapping_sub(1), l.wrapping_sub(1))] {
+            for (i, j) in [
+                (k.wrapping_sub(1), l),
+                (k + 1, l),
+                (k, l.wrapping_sub(1)),
+                (k, l + 1),
+                (k.wrapping_sub(1), l + 1),
+                (k + 1, l.wrapping_sub(1)),
+                (k + 1, l + 1),
+                (k.wrapping_sub(1), l.wrapping_sub(1)),
+            ] {
                 if i < row.len() && j < col.len() {
                     let other = gap(i, j);
                     if other < f {
@@ -298,4 +355,30 @@ fn cuboid_and_balls(s: &Spec, a: &Pose, t: &Spec, b: &Pose, offset: DVec3) -> Pa
         nearer(&mut best, balls(offset, [a.r * on, arm], [rounding, f.radius]));
     }
     best.unwrap_or(balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]))
+}
+
+/// Distance of the capsules around two bodies, a lower bound on their gap, and its rate.
+fn capsules([s, t]: [&Spec; 2], [a, b]: [&Pose; 2]) -> (f64, f64) {
+    let ends =
+        |spec: &Spec, pose: &Pose| [pose.x + pose.r.z_axis * spec.capsule[0], pose.x + pose.r.z_axis * spec.capsule[1]];
+    let [p, q] = nearest_on_segments(ends(s, a), ends(t, b));
+    let between = p - q;
+    let distance = between.length();
+    let rate = (a.velocity(p - a.x) - b.velocity(q - b.x)).dot(between) / distance;
+    (distance - s.capsule[2] - t.capsule[2], rate)
+}
+
+/// Nearest points of two segments (Ericson, *Real-Time Collision Detection*, §5.1.9).
+fn nearest_on_segments([p1, q1]: [DVec3; 2], [p2, q2]: [DVec3; 2]) -> [DVec3; 2] {
+    let (d1, d2, r) = (q1 - p1, q2 - p2, p1 - p2);
+    let (a, e, f) = (d1.length_squared(), d2.length_squared(), d2.dot(r));
+    let part = |x: f64, of: f64| if of > 0.0 { (x / of).clamp(0.0, 1.0) } else { 0.0 };
+    let (c, b) = (d1.dot(r), d1.dot(d2));
+    let mut s = part(b * f - c * e, a * e - b * b);
+    let mut t = if e > 0.0 { (b * s + f) / e } else { 0.0 };
+    if !(0.0..=1.0).contains(&t) {
+        t = t.clamp(0.0, 1.0);
+    }
+    s = if a > 0.0 { ((b * t - c) / a).clamp(0.0, 1.0) } else { s };
+    [p1 + d1 * s, p2 + d2 * t]
 }

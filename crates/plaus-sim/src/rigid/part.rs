@@ -54,13 +54,19 @@ impl Table {
     }
 
     pub(crate) fn check(&self) -> Result<(), WorldError> {
-        for (field, most, expected) in
-            [(&self.restitution, 1.0, "a field with values in [0, 1]"), (&self.friction, f64::INFINITY, "a field with values in [0, ∞)")]
-        {
+        for (field, most, expected) in [
+            (&self.restitution, 1.0, "a field with values in [0, 1]"),
+            (&self.friction, f64::INFINITY, "a field with values in [0, ∞)"),
+        ] {
             if let Some(field) = field {
                 for value in field.range() {
                     if !(0.0..=most).contains(&value) {
-                        return Err(WorldError::BadSurface { surface: "table".into(), field: "range of a field", value, expected });
+                        return Err(WorldError::BadSurface {
+                            surface: "table".into(),
+                            field: "range of a field",
+                            value,
+                            expected,
+                        });
                     }
                 }
             }

@@ -24,7 +24,9 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
         let spec = &world.specs[place.body];
         if spec.is_ball {
             let [(_, only)] = &group.touches[..] else { return false };
-            return only.normal.cross(world.gravity).length() <= 1e-9 * world.strength && place.start.v == DVec3::ZERO && place.start.w == DVec3::ZERO;
+            return only.normal.cross(world.gravity).length() <= 1e-9 * world.strength
+                && place.start.v == DVec3::ZERO
+                && place.start.w == DVec3::ZERO;
         }
         if group.touches.len() < 3 && !spec.is_round {
             return false;

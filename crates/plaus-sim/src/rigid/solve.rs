@@ -47,7 +47,21 @@ impl Contact {
         let along = normal.dot(kn);
         let stiff = k.x_axis.x + k.y_axis.y + k.z_axis.z - along;
         let k_inverse = k.inverse();
-        Self { a, b, arms, normal, friction, target: 0.0, k, k_inverse, kn, along, stiff, impulse: DVec3::ZERO, slip: DVec3::ZERO }
+        Self {
+            a,
+            b,
+            arms,
+            normal,
+            friction,
+            target: 0.0,
+            k,
+            k_inverse,
+            kn,
+            along,
+            stiff,
+            impulse: DVec3::ZERO,
+            slip: DVec3::ZERO,
+        }
     }
 
     /// Relative velocity at the contact.
@@ -163,7 +177,10 @@ pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: f6
         for c in contacts.iter_mut().rev().skip(1) {
             c.solve(members);
         }
-        let quiet = |m: &Member| (m.v - m.last[0]).length_squared() <= enough * enough && (m.w - m.last[1]).length_squared() * m.reach * m.reach <= enough * enough;
+        let quiet = |m: &Member| {
+            (m.v - m.last[0]).length_squared() <= enough * enough
+                && (m.w - m.last[1]).length_squared() * m.reach * m.reach <= enough * enough
+        };
         if members.iter().all(quiet) {
             break;
         }

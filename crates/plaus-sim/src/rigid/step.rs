@@ -59,8 +59,24 @@ const PUSH: f64 = 1.0;
 const SHORTEST: f64 = 0.1;
 
 /// Decides how a group goes on.
-pub(super) fn settle(world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Vec<Link>, scratch: &mut RigidScratch) {
-    if group.iter().all(|&k| bodies[k as usize].phase == Phase::Rest) {
+pub(super) fn settle(
+    world: &Rigid,
+    group: &[u32],
+    bodies: &mut [Turning],
+    links: &mut Vec<Link>,
+    scratch: &mut RigidScratch,
+) {
+    let mut is_over = true;
+    for &k in group {
+        let body = &mut bodies[k as usize];
+        if body.path.x.z < world.sink && body.phase != Phase::Waiting {
+            (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);
+            body.begin(Phase::Gone, DVec3::ZERO);
+            links.retain(|l| !l.contains(&k));
+        }
+        is_over &= matches!(body.phase, Phase::Rest | Phase::Gone);
+    }
+    if is_over {
         return;
     }
     scratch.gather(world, group, bodies, links);
@@ -114,6 +130,9 @@ impl RigidScratch {
         });
         for &k in group {
             let index = k as usize;
+            if bodies[index].phase == Phase::Gone {
+                continue;
+            }
             let (spec, pose, hurried) = (&world.specs[index], bodies[index].pose(), bodies[index].is_hurried());
             let (at, before) = (self.places.len(), self.touches.len());
             world.for_touches(index, &pose, TOUCHING * spec.gap, |t| {
@@ -144,7 +163,10 @@ impl RigidScratch {
         let mut time = f64::INFINITY;
         for p in &self.places {
             let spec = &world.specs[p.body];
-            time = time.min((spec.size / world.strength).sqrt()).min(spec.size / p.start.v.length().max(world.accuracy.settle * spec.speed) * LONGEST).min(1.0 / p.start.w.length());
+            time = time
+                .min((spec.size / world.strength).sqrt())
+                .min(spec.size / p.start.v.length().max(world.accuracy.settle * spec.speed) * LONGEST)
+                .min(1.0 / p.start.w.length());
         }
         for (k, t) in &self.touches {
             let p = &self.places[*k];
@@ -208,7 +230,8 @@ impl RigidScratch {
 
     fn pair_contact(&self, world: &Rigid, [a, b]: [usize; 2], t: &PairTouch) -> Contact {
         let (m, n) = (&self.members[a], &self.members[b]);
-        let k = response(m.inverse_mass, &m.inverse_inertia, t.arms[0]) + response(n.inverse_mass, &n.inverse_inertia, t.arms[1]);
+        let k = response(m.inverse_mass, &m.inverse_inertia, t.arms[0])
+            + response(n.inverse_mass, &n.inverse_inertia, t.arms[1]);
         let friction = world.pair_law([self.places[a].body, self.places[b].body]).friction;
         Contact::new(a, Some(b), t.arms, t.normal, friction, k)
     }
@@ -217,7 +240,9 @@ impl RigidScratch {
     fn step(&mut self, world: &Rigid, h: f64) {
         let enough = world.accuracy.sweep_tolerance * world.strength * h;
         let half_kick = world.gravity * (0.5 * h);
-        let half_spin = |spec: &Spec, turn: DQuat, w: DVec3| if spec.wobble == 0.0 { w } else { drift(&spec.inertia, turn, w, 0.5 * h).1 };
+        let half_spin = |spec: &Spec, turn: DQuat, w: DVec3| {
+            if spec.wobble == 0.0 { w } else { drift(&spec.inertia, turn, w, 0.5 * h).1 }
+        };
         self.prepare(world, |spec, p| (p.start.v + half_kick, half_spin(spec, p.turn, p.start.w)));
         // What a point may still fall, and how far turning alone lifts it towards its own circle.
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
@@ -228,7 +253,8 @@ impl RigidScratch {
         let first_pair = self.touches.len();
         for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
             let both = ab.map(|k| self.places[k].body);
-            c.target = ((KEEP * world.pair_gap(both) - t.gap) / h).min(PUSH * world.accuracy.settle * world.specs[both[0]].speed);
+            c.target = ((KEEP * world.pair_gap(both) - t.gap) / h)
+                .min(PUSH * world.accuracy.settle * world.specs[both[0]].speed);
         }
         for pass in 0..PASSES {
             sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
@@ -268,7 +294,11 @@ impl RigidScratch {
                 let (p, m) = (&self.places[*a], &self.members[*a]);
                 let after = world.touch(p.body, &p.end, t.part, t.point);
                 let k = response(m.inverse_mass, &m.inverse_inertia, after.arm);
-                (Contact::new(*a, None, [after.arm, DVec3::ZERO], after.normal, old.friction, k), after.gap, world.specs[p.body].gap)
+                (
+                    Contact::new(*a, None, [after.arm, DVec3::ZERO], after.normal, old.friction, k),
+                    after.gap,
+                    world.specs[p.body].gap,
+                )
             } else {
                 let ab = self.pairs[c - self.touches.len()].0;
                 let [p, q] = ab.map(|k| &self.places[k]);
@@ -288,7 +318,9 @@ impl RigidScratch {
 
     /// A group's energy never grows, whatever the step's error.
     fn guard_energy(&mut self, world: &Rigid) {
-        let kinetic = |spec: &Spec, turn, v: DVec3, w: DVec3| 0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)));
+        let kinetic = |spec: &Spec, turn, v: DVec3, w: DVec3| {
+            0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)))
+        };
         let (mut before, mut after) = (0.0, 0.0);
         for (p, m) in self.places.iter().zip(&self.members) {
             let spec = &world.specs[p.body];

@@ -136,9 +136,10 @@ impl Tumble {
                 let top = Top::new(inertia, axis, turn, w);
                 Self { own: Some((axis, top.own)), ..Self::about(turn, top.along, top.rate) }
             }
-            Kind::Different => {
-                Self { series: Some((*inertia, Box::new(Series::new(inertia, turn, w)))), ..Self::steady(turn, DVec3::ZERO) }
-            }
+            Kind::Different => Self {
+                series: Some((*inertia, Box::new(Series::new(inertia, turn, w)))),
+                ..Self::steady(turn, DVec3::ZERO)
+            },
         }
     }
 
@@ -260,7 +261,8 @@ mod tests {
         // State: rotation (columns) and body angular velocity.
         let euler = |w: DVec3| -> DVec3 { (moments * w).cross(w) / moments };
         let spin = |r: DMat3, w: DVec3| {
-            let hat = DMat3::from_cols(DVec3::new(0.0, w.z, -w.y), DVec3::new(-w.z, 0.0, w.x), DVec3::new(w.y, -w.x, 0.0));
+            let hat =
+                DMat3::from_cols(DVec3::new(0.0, w.z, -w.y), DVec3::new(-w.z, 0.0, w.x), DVec3::new(w.y, -w.x, 0.0));
             r * hat
         };
         let (mut r, mut w) = (r0, r0.transpose() * w0);

@@ -24,7 +24,11 @@ impl Cuboid {
             }
         }
         if !(rounding >= 0.0 && 2.0 * rounding < edges.min_element()) {
-            return Err(WorldError::BadNumber { field: "rounding", value: rounding, expected: "at least 0 and less than half the shortest edge" });
+            return Err(WorldError::BadNumber {
+                field: "rounding",
+                value: rounding,
+                expected: "at least 0 and less than half the shortest edge",
+            });
         }
         Ok(Self { half: edges * 0.5, rounding })
     }
@@ -45,7 +49,9 @@ impl Cuboid {
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
         let c = self.half - self.rounding;
-        std::array::from_fn(|k| DVec3::from_array(std::array::from_fn(|axis| if k >> axis & 1 == 1 { c[axis] } else { -c[axis] })))
+        std::array::from_fn(|k| {
+            DVec3::from_array(std::array::from_fn(|axis| if k >> axis & 1 == 1 { c[axis] } else { -c[axis] }))
+        })
     }
 
     /// Points on the edges and faces of the inner cuboid, on a lattice of at most `spacing`, without the corners.
@@ -59,7 +65,9 @@ impl Cuboid {
         for i in 0..=n[0] {
             for j in 0..=n[1] {
                 for k in 0..=n[2] {
-                    let ends = usize::from(i == 0 || i == n[0]) + usize::from(j == 0 || j == n[1]) + usize::from(k == 0 || k == n[2]);
+                    let ends = usize::from(i == 0 || i == n[0])
+                        + usize::from(j == 0 || j == n[1])
+                        + usize::from(k == 0 || k == n[2]);
                     if ends == 1 || ends == 2 {
                         points.push(DVec3::new(at(0, i), at(1, j), at(2, k)));
                     }
@@ -78,7 +86,9 @@ impl Cuboid {
             + 2.0 * PI * r * r * (c.x + c.y + c.z)
             + 4.0 / 3.0 * PI * r * r * r;
         // Second moments ∫ x² dV along each axis.
-        let second = DVec3::from_array(std::array::from_fn(|axis| second_moment(c[axis], c[(axis + 1) % 3], c[(axis + 2) % 3], r)));
+        let second = DVec3::from_array(std::array::from_fn(|axis| {
+            second_moment(c[axis], c[(axis + 1) % 3], c[(axis + 2) % 3], r)
+        }));
         let about = DVec3::new(second.y + second.z, second.z + second.x, second.x + second.y);
         MassProperties { mass: density * volume, inertia: about * density }
     }
@@ -154,7 +164,9 @@ mod tests {
 
     #[test]
     fn bad_sizes_are_refused() {
-        for (edges, rounding) in [(DVec3::new(0.0, 1.0, 1.0), 0.0), (DVec3::ONE, 0.5), (DVec3::ONE, -0.1), (DVec3::NAN, 0.0)] {
+        for (edges, rounding) in
+            [(DVec3::new(0.0, 1.0, 1.0), 0.0), (DVec3::ONE, 0.5), (DVec3::ONE, -0.1), (DVec3::NAN, 0.0)]
+        {
             assert!(Cuboid::new(edges, rounding).is_err());
         }
     }

@@ -70,7 +70,9 @@ impl Shape {
     pub fn feelers_between(&self, spacing: f64) -> Vec<Feeler> {
         match self {
             Self::Ball(_) | Self::Revolution(_) => Vec::new(),
-            Self::Cuboid(c) => c.between(spacing).into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect(),
+            Self::Cuboid(c) => {
+                c.between(spacing).into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect()
+            }
         }
     }
 

@@ -80,7 +80,9 @@ impl Profile {
     }
 
     fn check(&self) -> Result<(), WorldError> {
-        let bad = |field, value| Err(WorldError::BadNumber { field, value, expected: "a profile that rises from a foot to a cap" });
+        let bad = |field, value| {
+            Err(WorldError::BadNumber { field, value, expected: "a profile that rises from a foot to a cap" })
+        };
         for (field, value) in [("foot", self.foot), ("rim", self.rim), ("top", self.top)] {
             if !(value > 0.0 && value.is_finite()) {
                 return bad(field, value);
@@ -194,10 +196,12 @@ impl Revolution {
         let balance = PI * moment(1, 2) / volume;
         let along = 0.5 * PI * moment(0, 4);
         let across = 0.5 * along + PI * moment(2, 2) - volume * balance * balance;
-        let (row, flank) = row(&pieces, stations, balance, Feeler { centre: DVec3::new(0.0, 0.0, cap_centre - balance), radius: cap });
+        let (row, flank) =
+            row(&pieces, stations, balance, Feeler { centre: DVec3::new(0.0, 0.0, cap_centre - balance), radius: cap });
         let mut rings = vec![Ring { height: profile.rim - balance, circle: profile.foot, radius: profile.rim }];
         rings.extend(flank_rings(&pieces, flank, profile.rim, balance));
-        let reach = row.iter().map(|f| f.centre.length() + f.radius).chain(rings.iter().map(Ring::reach)).fold(0.0, f64::max);
+        let reach =
+            row.iter().map(|f| f.centre.length() + f.radius).chain(rings.iter().map(Ring::reach)).fold(0.0, f64::max);
         Ok(Self { row, rings, reach, balance, volume, across, along })
     }
 
@@ -228,7 +232,10 @@ impl Revolution {
     /// Mass and inertia for a uniform density.
     #[must_use]
     pub fn mass_properties(&self, density: f64) -> MassProperties {
-        MassProperties { mass: density * self.volume, inertia: DVec3::new(self.across, self.across, self.along) * density }
+        MassProperties {
+            mass: density * self.volume,
+            inertia: DVec3::new(self.across, self.across, self.along) * density,
+        }
     }
 }
 
@@ -366,7 +373,8 @@ mod tests {
         // At each table height the balls and rings reach the table's radius to 0.3 mm from inside, and nothing sticks out by more than 0.01 mm.
         for &[z, r] in &profile.points[..profile.points.len() - 1] {
             let h = z - pin.balance();
-            let balls = pin.row().iter().map(|f| (f.radius * f.radius - (h - f.centre.z) * (h - f.centre.z)).max(0.0).sqrt());
+            let balls =
+                pin.row().iter().map(|f| (f.radius * f.radius - (h - f.centre.z) * (h - f.centre.z)).max(0.0).sqrt());
             let rings = pin.rings().iter().map(|g| {
                 let inside = g.radius * g.radius - (h - g.height) * (h - g.height);
                 if inside >= 0.0 { g.circle + inside.sqrt() } else { 0.0 }

@@ -92,7 +92,11 @@ impl Alley {
         let pin = Arc::new(self.pin()?);
         let mass = pin.mass_properties(1.0).with_mass(self.pin_mass);
         let inertia = DVec3::splat(self.ball_mass * self.ball_gyration * self.ball_gyration);
-        let ball = BodySpec { shape: Shape::Ball(self.ball_radius), mass: MassProperties { mass: self.ball_mass, inertia }, material: BALL };
+        let ball = BodySpec {
+            shape: Shape::Ball(self.ball_radius),
+            mass: MassProperties { mass: self.ball_mass, inertia },
+            material: BALL,
+        };
         let mut bodies = vec![ball];
         bodies.extend((0..10).map(|_| BodySpec { shape: Shape::Revolution(Arc::clone(&pin)), mass, material: PIN }));
         let mut laws = Laws::new(3, self.pin_lane)?;
@@ -106,6 +110,7 @@ impl Alley {
             gravity: DVec3::new(0.0, 0.0, -9.81),
             accuracy: self.accuracy,
             skin: 1.0,
+            sink: -5.0 * INCH,
             duration: self.duration,
         })
     }
@@ -115,7 +120,8 @@ impl Alley {
             bounds: Aabb { min: DVec3::from(min) * INCH, max: DVec3::from(max) * INCH },
             material: WOOD,
         };
-        let plane = |point: [f64; 3], normal: DVec3| Ok(Part::Plane(Plane::new(DVec3::from(point) * INCH, normal, WOOD)?));
+        let plane =
+            |point: [f64; 3], normal: DVec3| Ok(Part::Plane(Plane::new(DVec3::from(point) * INCH, normal, WOOD)?));
         let (half, gutter, end, start) = (20.75, 9.25, 34.1875, -740.0);
         let wall = half + gutter + 0.0625;
         Ok(vec![
@@ -139,7 +145,13 @@ impl Alley {
     /// [`WorldError`] for impossible numbers.
     pub fn starts(&self, distance: f64, x: f64, velocity: DVec3, spin: DVec3) -> Result<Vec<Start>, WorldError> {
         let up = self.pin()?.balance();
-        let ball = Start { position: DVec3::new(x, -distance, self.ball_radius), orientation: DQuat::IDENTITY, velocity, spin, time: 0.0 };
+        let ball = Start {
+            position: DVec3::new(x, -distance, self.ball_radius),
+            orientation: DQuat::IDENTITY,
+            velocity,
+            spin,
+            time: 0.0,
+        };
         let pins = (1..=10).map(|k| Start::at_rest(Self::spot(k) + DVec3::new(0.0, 0.0, up)));
         Ok(std::iter::once(ball).chain(pins).collect())
     }

@@ -56,7 +56,8 @@ impl DieOnTable {
             let spacing = self.spacing * self.edges.x;
             let spread = self.bumps * spacing;
             let grid = Grid { origin: [0.0, 0.0], spacing };
-            let height = Spline::new("height", grid, [-8.0 * spread, 8.0 * spread], move |i, j| spread * gaussian(i, j))?;
+            let height =
+                Spline::new("height", grid, [-8.0 * spread, 8.0 * spread], move |i, j| spread * gaussian(i, j))?;
             Part::Table(Box::new(Table::new(height, material)))
         };
         let shape = Shape::Cuboid(Cuboid::new(self.edges, self.rounding)?);
@@ -67,6 +68,7 @@ impl DieOnTable {
             gravity: DVec3::new(0.0, 0.0, -9.81),
             accuracy: self.accuracy,
             skin: 1.0,
+            sink: f64::NEG_INFINITY,
             duration: 20.0,
         })
     }
