@@ -74,7 +74,9 @@ pub enum WorldError {
         vertices: usize,
     },
     /// Two triangles run along an edge in the same direction, or more than two share it.
-    #[error("edge {from}–{to} of triangle {triangle} is shared by triangles that disagree on which side is outside, or by more than two")]
+    #[error(
+        "edge {from}–{to} of triangle {triangle} is shared by triangles that disagree on which side is outside, or by more than two"
+    )]
     BadEdge {
         /// Index of the later triangle.
         triangle: usize,

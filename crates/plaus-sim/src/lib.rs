@@ -1,8 +1,42 @@
-//! Event-driven rigid-body simulator.
+//! An exact, event-driven rigid-body simulator.
+//!
+//! Every body has its own clock and a closed-form motion from there on: free flight, sliding, rolling, spinning, rest. The loop ([`simulate`](mod@simulate)) takes the
+//! earliest event, brings only the bodies that it concerns to its time, resolves it and looks ahead again. Collisions are found as roots of polynomials, so nothing
+//! tunnels at any speed, and there is no time step. Contact that lasts and has no closed form (a marble in a bowl, a pile) advances in steps of its own group.
+//!
+//! A world is immutable, a [`State`] is data that can be cloned, serialised and resumed to the same bits, and a [`Scratch`] is work space for one thread. SI units
+//! throughout. The same input gives the same bits on every thread and at every optimisation level. What a run may cost and how exact it is follow from one [`Preset`].
+//!
+//! ```
+//! use glam::DVec3;
+//! use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
+//! use plaus_sim::scenery::{Mesh, Plane, Scenery};
+//! use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Scratch};
+//!
+//! let glass = Material(0);
+//! let floor = Plane::new(DVec3::ZERO, DVec3::Z, glass)?;
+//! let world = Marbles::new(MarbleWorld {
+//!     specs: vec![MarbleSpec::solid(0.006, 0.0023, glass); 2],
+//!     laws: Laws::uniform(Law::new(0.2, 0.7).with_resistance(0.01, 0.01))?,
+//!     scenery: Scenery::new(vec![floor], Mesh::new(Vec::new(), &[], 0.0)?, Vec::new(), 0.006)?,
+//!     gravity: DVec3::new(0.0, 0.0, -9.81),
+//!     accuracy: Accuracy::default(),
+//!     duration: 60.0,
+//! })?;
+//! let starts = [Start::at_rest(DVec3::new(0.0, 0.0, 0.1)), Start::at_rest(DVec3::new(0.004, 0.0, 0.2))];
+//! let mut state = world.state(&starts)?;
+//! let outcome = world.run(&mut state, &mut Scratch::default(), 60.0, &mut ());
+//! assert_eq!(outcome, Outcome::AllAtRest);
+//! assert!(state.bodies().iter().all(|marble| (marble.path.x.z - 0.006).abs() < 1e-12));
+//! # Ok::<(), plaus_sim::WorldError>(())
+//! ```
+//!
+//! Listening is optional and costs nothing where it is not wanted: pass a [`trace::Trace`] for all motions and impacts, [`trace::While`] to stop early, or `&mut ()`.
 pub mod accuracy;
 mod detect;
 pub mod error;
 pub mod field;
+pub mod links;
 pub mod marbles;
 pub mod material;
 pub mod mechanics;

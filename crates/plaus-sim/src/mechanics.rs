@@ -2,6 +2,7 @@
 //!
 //! The loop is compiled once per kind, so a world of marbles holds no orientation, no shape and no code for turning bodies.
 
+use crate::links::Links;
 use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
 
@@ -34,9 +35,6 @@ pub enum Other {
     /// The scenery.
     Surface(Surface),
 }
-
-/// A pair of bodies in lasting contact, lower index first.
-pub type Link = [u32; 2];
 
 /// A kind of bodies and the scenery that they live in. Everything here is immutable; bodies are passed in.
 pub trait Mechanics {
@@ -84,5 +82,5 @@ pub trait Mechanics {
     fn contacts<'b>(&self, body: &'b Self::Body) -> &'b [Surface];
     /// Decides what a group of bodies in lasting contact with each other (`links` among `members`, all clocks equal) does next: gives each a closed form. Drops
     /// contacts and links that have ended.
-    fn settle(&self, members: &[u32], bodies: &mut [Self::Body], links: &mut Vec<Link>, scratch: &mut Self::Scratch);
+    fn settle(&self, members: &[u32], bodies: &mut [Self::Body], links: &mut Links, scratch: &mut Self::Scratch);
 }

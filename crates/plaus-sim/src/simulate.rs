@@ -2,6 +2,7 @@
 //!
 //! Nothing else moves. A body far from others is touched only at its own events.
 
+use crate::links::Links;
 use crate::mechanics::{Impact, Mechanics};
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::State;
@@ -31,8 +32,29 @@ pub struct Scratch<S> {
     queue: Tournament,
     concerned: Vec<u32>,
     group: Vec<u32>,
+    marks: Marks,
     worklist: Vec<Meeting>,
     settle: S,
+}
+
+/// Which bodies have been seen since the last wipe.
+#[derive(Debug, Default)]
+struct Marks {
+    epoch: u64,
+    seen: Vec<u64>,
+}
+
+impl Marks {
+    fn wipe(&mut self, bodies: usize) {
+        self.epoch += 1;
+        self.seen.resize(bodies, 0);
+    }
+
+    /// Marks a body; whether it is the first time.
+    fn mark(&mut self, body: u32) -> bool {
+        let seen = &mut self.seen[body as usize];
+        std::mem::replace(seen, self.epoch) != self.epoch
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -72,6 +94,20 @@ pub fn simulate<M: Mechanics>(
     if run.state.all_resting(mechanics) { Outcome::AllAtRest } else { Outcome::TimeReached }
 }
 
+/// Appends the bodies in lasting contact with `seed`, itself among them, in ascending order; nothing where it is marked already.
+fn add_group(links: &Links, seed: u32, marks: &mut Marks, members: &mut Vec<u32>) {
+    let start = members.len();
+    let mut next = start;
+    if marks.mark(seed) {
+        members.push(seed);
+    }
+    while let Some(&at) = members.get(next) {
+        next += 1;
+        members.extend(links.of(at).filter(|&other| marks.mark(other)));
+    }
+    members[start..].sort_unstable();
+}
+
 struct Run<'r, M: Mechanics, O> {
     mechanics: &'r M,
     state: &'r mut State<M::Body>,
@@ -103,18 +139,19 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     /// Brings the bodies of an event, and all that are in lasting contact with them, to its time.
     fn bring_to(&mut self, body: u32, event: &Event) {
         self.scratch.concerned.clear();
-        self.state.group(body, &mut self.scratch.concerned);
-        if let Happening::Body { other, generation } = event.happening
-            && generation == self.state.generations[other as usize]
-            && !self.scratch.concerned.contains(&other)
-        {
-            self.state.group(other, &mut self.scratch.concerned);
+        let mut other = None;
+        if let Happening::Body { other: partner, generation } = event.happening {
+            if generation != self.state.generations[partner as usize] {
+                // Stale: its motion goes on as it is; it is only looked at anew.
+                return;
+            }
+            other = Some(partner);
         }
-        let is_stale = matches!(event.happening, Happening::Body { other, generation } if generation != self.state.generations[other as usize]);
-        if is_stale {
-            // Its motion goes on as it is; it is only looked at anew.
-            self.scratch.concerned.clear();
-            return;
+        self.scratch.marks.wipe(self.state.bodies.len());
+        let Scratch { concerned, marks, .. } = &mut *self.scratch;
+        add_group(&self.state.links, body, marks, concerned);
+        if let Some(partner) = other {
+            add_group(&self.state.links, partner, marks, concerned);
         }
         for &k in &self.scratch.concerned {
             self.mechanics.advance(k as usize, &mut self.state.bodies[k as usize], event.time);
@@ -146,14 +183,16 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
 
     fn collide(&mut self, meeting: Meeting) -> Option<Impact> {
         match meeting {
-            Meeting::Surface(k, surface) => self.mechanics.hit_surface(k as usize, &mut self.state.bodies[k as usize], surface),
+            Meeting::Surface(k, surface) => {
+                self.mechanics.hit_surface(k as usize, &mut self.state.bodies[k as usize], surface)
+            }
             Meeting::Bodies(i, j) => {
-                let linked = self.state.are_linked(i, j);
+                let linked = self.state.links.contains(i, j);
                 let (low, high) = self.state.bodies.split_at_mut(j as usize);
-                let impact = self.mechanics.hit_body([i as usize, j as usize], [&mut low[i as usize], &mut high[0]], linked)?;
+                let impact =
+                    self.mechanics.hit_body([i as usize, j as usize], [&mut low[i as usize], &mut high[0]], linked)?;
                 if impact.lasting {
-                    self.state.links.push([i, j]);
-                    self.state.links.sort_unstable();
+                    self.state.links.insert(i, j);
                 }
                 Some(impact)
             }
@@ -172,8 +211,9 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
                     self.scratch.worklist.push(Meeting::Surface(k, s));
                 }
             }
-            for &[i, j] in &self.state.links {
-                if (i == k || j == k) && !matches!(meeting, Meeting::Bodies(p, q) if p == i && q == j) {
+            for other in self.state.links.of(k) {
+                let (i, j) = (k.min(other), k.max(other));
+                if !matches!(meeting, Meeting::Bodies(p, q) if p == i && q == j) {
                     self.scratch.worklist.push(Meeting::Bodies(i, j));
                 }
             }
@@ -182,16 +222,14 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
 
     /// Gives every concerned body its next closed form, group by group.
     fn settle(&mut self) {
-        let mut done = 0;
-        while done < self.scratch.concerned.len() {
-            let seed = self.scratch.concerned[done];
-            done += 1;
-            self.scratch.group.clear();
-            self.state.group(seed, &mut self.scratch.group);
-            if self.scratch.group[0] != seed {
-                continue;
+        let Scratch { concerned, group, marks, settle, .. } = &mut *self.scratch;
+        marks.wipe(self.state.bodies.len());
+        for &seed in &*concerned {
+            group.clear();
+            add_group(&self.state.links, seed, marks, group);
+            if !group.is_empty() {
+                self.mechanics.settle(group, &mut self.state.bodies, &mut self.state.links, settle);
             }
-            self.mechanics.settle(&self.scratch.group, &mut self.state.bodies, &mut self.state.links, &mut self.scratch.settle);
         }
         for &k in &self.scratch.concerned {
             self.state.generations[k as usize] = self.state.generations[k as usize].wrapping_add(1);
@@ -223,14 +261,18 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     fn surfaces(&mut self, k: usize) {
         let body = &self.state.bodies[k];
         let (expiry, end) = (self.mechanics.expiry(body), self.mechanics.duration());
-        let mut event =
-            if expiry <= end { Event { time: expiry, happening: Happening::Expiry } } else { Event { time: end, happening: Happening::End } };
+        let mut event = if expiry <= end {
+            Event { time: expiry, happening: Happening::Expiry }
+        } else {
+            Event { time: end, happening: Happening::End }
+        };
         if self.mechanics.is_present(body)
             && let Some((time, surface)) = self.mechanics.first_surface(k, body, event.time)
         {
             event = Event { time, happening: Happening::Surface(surface) };
         }
-        self.state.boxes[k] = self.mechanics.swept(k, body, self.mechanics.clock(body).max(self.state.time), event.time);
+        self.state.boxes[k] =
+            self.mechanics.swept(k, body, self.mechanics.clock(body).max(self.state.time), event.time);
         self.state.events[k] = event;
     }
 
@@ -245,14 +287,17 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             if j == k || !self.state.boxes[j].meets(&self.state.boxes[k]) || !self.mechanics.is_present(other) {
                 continue;
             }
-            if self.state.are_linked(j as u32, k as u32) {
+            if self.state.links.contains(j as u32, k as u32) {
                 continue;
             }
             let from = self.state.time.max(self.mechanics.clock(other)).max(self.mechanics.clock(body));
             let until = event.time.min(self.state.events[j].time);
             let (pair, both) = if k < j { ([k, j], [body, other]) } else { ([j, k], [other, body]) };
             if let Some(time) = self.mechanics.first_meeting(pair, both, from, until) {
-                let found = Event { time, happening: Happening::Body { other: j as u32, generation: self.state.generations[j] } };
+                let found = Event {
+                    time,
+                    happening: Happening::Body { other: j as u32, generation: self.state.generations[j] },
+                };
                 if found.precedes(k as u32, &event, k as u32) {
                     event = found;
                 }
@@ -260,7 +305,10 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
         self.state.events[k] = event;
         if let Happening::Body { other, .. } = event.happening {
-            let back = Event { time: event.time, happening: Happening::Body { other: k as u32, generation: self.state.generations[k] } };
+            let back = Event {
+                time: event.time,
+                happening: Happening::Body { other: k as u32, generation: self.state.generations[k] },
+            };
             if back.precedes(other, &self.state.events[other as usize], other) {
                 self.state.events[other as usize] = back;
                 self.scratch.queue.update(other as usize, &self.state.events);

@@ -1,6 +1,7 @@
 //! The mutable half of a simulation. It can be cloned or serialised at any pause and resumed to the same bits.
 
-use crate::mechanics::{Link, Mechanics};
+use crate::links::Links;
+use crate::mechanics::Mechanics;
 use crate::queue::{Event, Happening};
 use crate::scenery::Aabb;
 use serde::{Deserialize, Serialize};
@@ -19,18 +20,45 @@ pub struct Counts {
 }
 
 /// Bodies with their motions, lasting contacts between them, and the queue.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct State<B> {
     /// Time up to which everything has happened.
     pub(crate) time: f64,
     pub(crate) bodies: Vec<B>,
-    pub(crate) links: Vec<Link>,
+    pub(crate) links: Links,
     pub(crate) events: Vec<Event>,
     pub(crate) generations: Vec<u32>,
     pub(crate) boxes: Vec<Aabb>,
     pub(crate) counts: Counts,
     /// Whether the first predictions have been made.
     pub(crate) started: bool,
+}
+
+impl<B: Clone> Clone for State<B> {
+    fn clone(&self) -> Self {
+        Self {
+            time: self.time,
+            bodies: self.bodies.clone(),
+            links: self.links.clone(),
+            events: self.events.clone(),
+            generations: self.generations.clone(),
+            boxes: self.boxes.clone(),
+            counts: self.counts,
+            started: self.started,
+        }
+    }
+
+    /// Copies without allocating where there is room: how a scene goes back to a saved beginning.
+    fn clone_from(&mut self, source: &Self) {
+        self.time = source.time;
+        self.bodies.clone_from(&source.bodies);
+        self.links.clone_from(&source.links);
+        self.events.clone_from(&source.events);
+        self.generations.clone_from(&source.generations);
+        self.boxes.clone_from(&source.boxes);
+        self.counts = source.counts;
+        self.started = source.started;
+    }
 }
 
 impl<B> State<B> {
@@ -40,10 +68,10 @@ impl<B> State<B> {
         Self {
             time: 0.0,
             bodies,
-            links: Vec::new(),
+            links: Links::default(),
             events: vec![Event { time: 0.0, happening: Happening::End }; n],
             generations: vec![0; n],
-            boxes: vec![Aabb::EMPTY; n],
+            boxes: vec![Aabb::around([glam::DVec3::ZERO]); n],
             counts: Counts::default(),
             started: false,
         }
@@ -63,7 +91,7 @@ impl<B> State<B> {
 
     /// Pairs of bodies in lasting contact.
     #[must_use]
-    pub fn links(&self) -> &[Link] {
+    pub fn links(&self) -> &Links {
         &self.links
     }
 
@@ -77,30 +105,6 @@ impl<B> State<B> {
     pub(crate) fn replace_unreleased(&mut self, index: usize, body: B, release: f64) {
         self.bodies[index] = body;
         self.events[index] = Event { time: release, happening: Happening::Expiry };
-    }
-
-    /// The group of bodies in lasting contact that `seed` belongs to, in ascending order, appended to `members`.
-    pub(crate) fn group(&self, seed: u32, members: &mut Vec<u32>) {
-        let start = members.len();
-        members.push(seed);
-        let mut next = start;
-        while next < members.len() {
-            let at = members[next];
-            next += 1;
-            for &[a, b] in &self.links {
-                let other = if a == at { b } else if b == at { a } else { continue };
-                if !members[start..].contains(&other) {
-                    members.push(other);
-                }
-            }
-        }
-        members[start..].sort_unstable();
-    }
-
-    /// Whether two bodies are in lasting contact.
-    #[inline]
-    pub(crate) fn are_linked(&self, a: u32, b: u32) -> bool {
-        !self.links.is_empty() && self.links.contains(&[a.min(b), a.max(b)])
     }
 
     /// Whether every body is at rest.

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// What figures are drawn on.
-pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Units of the drawing in a pixel of the SVG.
 const FINE: i32 = 8;
@@ -24,57 +24,52 @@ const REGULAR: &[u8] = include_bytes!("../assets/DejaVuSans.subset.ttf");
 const BOLD: &[u8] = include_bytes!("../assets/DejaVuSans-Bold.subset.ttf");
 
 /// Colours that the colour-blind can tell apart (Okabe & Ito 2008), the same thing in the same colour in all figures.
-pub(crate) mod colour {
+pub mod colour {
     use plotters::style::RGBColor;
-    pub(crate) const INK: RGBColor = RGBColor(40, 40, 40);
-    pub(crate) const FAINT: RGBColor = RGBColor(130, 130, 130);
-    pub(crate) const GRID: RGBColor = RGBColor(228, 228, 228);
-    pub(crate) const GROUND: RGBColor = RGBColor(236, 232, 226);
-    pub(crate) const TARGET: RGBColor = RGBColor(0, 158, 115);
-    pub(crate) const NORMAL: RGBColor = RGBColor(204, 41, 41);
-    pub(crate) const PATH: RGBColor = RGBColor(0, 92, 158);
+    pub const INK: RGBColor = RGBColor(40, 40, 40);
+    pub const FAINT: RGBColor = RGBColor(130, 130, 130);
+    pub const GRID: RGBColor = RGBColor(228, 228, 228);
+    pub const GROUND: RGBColor = RGBColor(236, 232, 226);
+    pub const TARGET: RGBColor = RGBColor(0, 158, 115);
+    pub const NORMAL: RGBColor = RGBColor(204, 41, 41);
+    pub const PATH: RGBColor = RGBColor(0, 92, 158);
     /// The paper's move.
-    pub(crate) const PAPER: RGBColor = RGBColor(204, 96, 0);
+    pub const PAPER: RGBColor = RGBColor(204, 96, 0);
     /// The default moves.
-    pub(crate) const OURS: RGBColor = RGBColor(0, 114, 178);
+    pub const OURS: RGBColor = RGBColor(0, 114, 178);
 }
 
 /// A length of `pixels` in units of the drawing.
-pub(crate) fn px(pixels: f64) -> i32 {
+pub fn px(pixels: f64) -> i32 {
     (pixels * f64::from(FINE)).round() as i32
 }
 
 /// A line of `pixels` width.
-pub(crate) fn pen(colour: RGBColor, pixels: f64) -> ShapeStyle {
+pub fn pen(colour: RGBColor, pixels: f64) -> ShapeStyle {
     ShapeStyle { color: colour.into(), filled: false, stroke_width: px(pixels) as u32 }
 }
 
 /// Text of `pixels` height.
-pub(crate) fn text(pixels: f64, colour: RGBColor) -> TextStyle<'static> {
+pub fn text(pixels: f64, colour: RGBColor) -> TextStyle<'static> {
     (FAMILY, f64::from(px(pixels)) * FONT_UNIT).into_font().color(&colour)
 }
 
 /// Bold text.
-pub(crate) fn bold(pixels: f64, colour: RGBColor) -> TextStyle<'static> {
+pub fn bold(pixels: f64, colour: RGBColor) -> TextStyle<'static> {
     (FAMILY, f64::from(px(pixels)) * FONT_UNIT).into_font().style(FontStyle::Bold).color(&colour)
 }
 
 /// Writes `words` at `at`, in pixels from the corner of `area`; `align` is where of the words `at` is.
-pub(crate) fn write(area: &Area<'_>, words: &str, style: &TextStyle<'_>, align: HPos, at: (f64, f64)) -> Result<()> {
+pub fn write(area: &Area<'_>, words: &str, style: &TextStyle<'_>, align: HPos, at: (f64, f64)) -> Result<()> {
     let style = style.pos(plotters::style::text_anchor::Pos::new(align, VPos::Center));
     area.draw(&Text::new(words.to_owned(), (px(at.0), px(at.1)), style)).map_err(|error| error.to_string())?;
     Ok(())
 }
 
-pub(crate) use plotters::style::text_anchor::{HPos, VPos};
+pub use plotters::style::text_anchor::{HPos, VPos};
 
 /// Draws a figure of `size` pixels and saves it as `name.svg` and `name.png`.
-pub(crate) fn save(
-    folder: &Path,
-    name: &str,
-    size: (u32, u32),
-    draw: impl FnOnce(&Area<'_>) -> Result<()>,
-) -> Result<()> {
+pub fn save(folder: &Path, name: &str, size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> Result<()>) -> Result<()> {
     let mut svg = String::new();
     let fine = FINE as u32;
     {

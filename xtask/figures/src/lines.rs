@@ -1,7 +1,7 @@
 //! Curves cut to what a plot shows.
 
 /// The parts of a curve with y in [`low`, `high`], each ending where it leaves.
-pub(crate) fn inside(points: &[(f64, f64)], low: f64, high: f64) -> Vec<Vec<(f64, f64)>> {
+pub fn inside(points: &[(f64, f64)], low: f64, high: f64) -> Vec<Vec<(f64, f64)>> {
     let mut parts: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut open = false;
     for pair in points.windows(2) {
@@ -39,7 +39,7 @@ fn cut(a: (f64, f64), b: (f64, f64), low: f64, high: f64) -> Option<((f64, f64),
 }
 
 /// Steps: each value holds for one iteration, the first for iteration `first`.
-pub(crate) fn numbered(values: &[f64]) -> Vec<(f64, f64)> {
+pub fn numbered(values: &[f64]) -> Vec<(f64, f64)> {
     values.iter().enumerate().map(|(index, &value)| (index as f64, value)).collect()
 }
 

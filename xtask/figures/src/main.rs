@@ -6,18 +6,13 @@
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 
 mod ball2d;
-mod canvas;
-mod lines;
-mod plot;
-mod report;
 mod sampler;
 mod stats;
 
-use report::Report;
+use plaus_figures::report::Report;
+use plaus_figures::{Result, canvas, lines, plot, report};
 use std::path::PathBuf;
 use std::process::ExitCode;
-
-type Result<T> = std::result::Result<T, Box<dyn std::error::Error + Send + Sync>>;
 
 /// Scenes with figures: name, and what adds them.
 const SCENES: &[(&str, fn(&mut Work) -> Result<()>)] = &[("ball2d", ball2d::make)];

@@ -8,23 +8,23 @@ use plotters::prelude::*;
 use std::ops::Range;
 
 /// A plot with axes.
-pub(crate) type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+pub type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// What axes show.
-pub(crate) struct Axes<'a> {
-    pub(crate) title: &'a str,
-    pub(crate) x: Range<f64>,
-    pub(crate) y: Range<f64>,
-    pub(crate) x_label: &'a str,
-    pub(crate) y_label: &'a str,
+pub struct Axes<'a> {
+    pub title: &'a str,
+    pub x: Range<f64>,
+    pub y: Range<f64>,
+    pub x_label: &'a str,
+    pub y_label: &'a str,
     /// About how many labels along x and y.
-    pub(crate) ticks: (usize, usize),
-    pub(crate) x_text: &'a dyn Fn(&f64) -> String,
-    pub(crate) y_text: &'a dyn Fn(&f64) -> String,
+    pub ticks: (usize, usize),
+    pub x_text: &'a dyn Fn(&f64) -> String,
+    pub y_text: &'a dyn Fn(&f64) -> String,
 }
 
 /// A tick's number, whole where it is, with a true minus sign.
-pub(crate) fn plain(value: &f64) -> String {
+pub fn plain(value: &f64) -> String {
     let number =
         if (value - value.round()).abs() < 1e-9 { format!("{:.0}", value + 0.0) } else { format!("{value:.1}") };
     let number = if number == "-0" { "0".to_owned() } else { number };
@@ -32,7 +32,7 @@ pub(crate) fn plain(value: &f64) -> String {
 }
 
 /// A tick of an axis of logarithms to base 10.
-pub(crate) fn power(value: &f64) -> String {
+pub fn power(value: &f64) -> String {
     let whole = value.round();
     if (value - whole).abs() > 1e-9 {
         return String::new();
@@ -46,7 +46,7 @@ pub(crate) fn power(value: &f64) -> String {
 
 impl Axes<'_> {
     /// Draws the axes on `area`.
-    pub(crate) fn draw<'a>(&self, area: &Area<'a>) -> Result<Chart<'a>> {
+    pub fn draw<'a>(&self, area: &Area<'a>) -> Result<Chart<'a>> {
         let mut builder = ChartBuilder::on(area);
         builder.margin_right(px(14.0)).margin_top(px(8.0)).margin_bottom(px(4.0)).margin_left(px(4.0));
         builder.set_label_area_size(LabelAreaPosition::Left, px(58.0));
@@ -75,7 +75,7 @@ impl Axes<'_> {
 }
 
 /// Draws a curve, as far as it is inside the plot.
-pub(crate) fn curve(chart: &mut Chart<'_>, points: &[(f64, f64)], style: ShapeStyle) -> Result<()> {
+pub fn curve(chart: &mut Chart<'_>, points: &[(f64, f64)], style: ShapeStyle) -> Result<()> {
     let y = chart.y_range();
     for part in inside(points, y.start, y.end) {
         chart.draw_series([PathElement::new(part, style)])?;
@@ -84,7 +84,7 @@ pub(crate) fn curve(chart: &mut Chart<'_>, points: &[(f64, f64)], style: ShapeSt
 }
 
 /// Draws a dashed curve: `on` and `off` in pixels.
-pub(crate) fn dashed(chart: &mut Chart<'_>, points: &[(f64, f64)], style: ShapeStyle, on: f64, off: f64) -> Result<()> {
+pub fn dashed(chart: &mut Chart<'_>, points: &[(f64, f64)], style: ShapeStyle, on: f64, off: f64) -> Result<()> {
     let y = chart.y_range();
     for part in inside(points, y.start, y.end) {
         chart.draw_series(DashedLineSeries::new(part, px(on), px(off), style))?;
@@ -93,7 +93,7 @@ pub(crate) fn dashed(chart: &mut Chart<'_>, points: &[(f64, f64)], style: ShapeS
 }
 
 /// Shades a band across the whole plot.
-pub(crate) fn band(chart: &mut Chart<'_>, low: f64, high: f64, colour: RGBColor) -> Result<()> {
+pub fn band(chart: &mut Chart<'_>, low: f64, high: f64, colour: RGBColor) -> Result<()> {
     let x = chart.x_range();
     chart.draw_series([Rectangle::new([(x.start, low), (x.end, high)], colour.mix(0.22).filled())])?;
     Ok(())

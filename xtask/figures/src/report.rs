@@ -3,19 +3,19 @@
 use std::fmt::Write as _;
 
 /// A row of the table of claims.
-pub(crate) struct Claim {
+pub struct Claim {
     /// What the paper says, and where.
-    pub(crate) paper: String,
+    pub paper: String,
     /// What was found, with its error.
-    pub(crate) ours: String,
+    pub ours: String,
     /// From which seed, how many iterations.
-    pub(crate) how: String,
+    pub how: String,
     /// Whether they agree, in a word and a reason.
-    pub(crate) verdict: String,
+    pub verdict: String,
 }
 
 /// The report as it grows.
-pub(crate) struct Report {
+pub struct Report {
     quick: bool,
     figures: Vec<(String, String)>,
     claims: Vec<Claim>,
@@ -23,25 +23,25 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    pub(crate) fn new(quick: bool) -> Self {
+    pub fn new(quick: bool) -> Self {
         Self { quick, figures: Vec::new(), claims: Vec::new(), sections: String::new() }
     }
 
     /// A figure by the name of its files, with its caption.
-    pub(crate) fn figure(&mut self, name: &str, caption: impl Into<String>) {
+    pub fn figure(&mut self, name: &str, caption: impl Into<String>) {
         self.figures.push((name.to_owned(), caption.into()));
     }
 
-    pub(crate) fn claim(&mut self, claim: Claim) {
+    pub fn claim(&mut self, claim: Claim) {
         self.claims.push(claim);
     }
 
     /// A section after the table.
-    pub(crate) fn section(&mut self, title: &str, text: &str) {
+    pub fn section(&mut self, title: &str, text: &str) {
         let _ = write!(self.sections, "\n## {title}\n\n{}\n", text.trim_end()); // writing to a string cannot fail
     }
 
-    pub(crate) fn to_markdown(&self) -> String {
+    pub fn to_markdown(&self) -> String {
         let mut text = "# The paper's figures and claims, sampled anew\n\n".to_owned();
         text += "S. Chenney, D. A. Forsyth, \"Sampling Plausible Solutions to Multi-body Constraint Problems\", SIGGRAPH 2000.\n";
         text += "This file and the figures beside it are made by one command, from fixed seeds; a second run of the same version gives the same\n";
@@ -65,7 +65,7 @@ impl Report {
 }
 
 /// A Markdown table.
-pub(crate) fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+pub fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let mut text = line(&head.iter().map(|cell| (*cell).to_owned()).collect::<Vec<_>>());
     text += &line(&vec!["---".to_owned(); head.len()]);
@@ -76,7 +76,7 @@ pub(crate) fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) 
 }
 
 /// `value` with `digits` significant digits, without an exponent.
-pub(crate) fn significant(value: f64, digits: usize) -> String {
+pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
@@ -87,7 +87,7 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
 }
 
 /// `1234567` as `1,234,567`.
-pub(crate) fn thousands(number: u64) -> String {
+pub fn thousands(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {

@@ -4,13 +4,19 @@ use crate::motion::Parabola;
 use crate::roots::{fall_of_quadratic, falls_of_quartic, squared_distance};
 use crate::scenery::{Scenery, Surface};
 
-/// How far a contact point may lie outside a face and still count as on it, in radii. Closes the cracks that rounding leaves between faces that share a flat
-/// or concave edge. Default 1e-9; danger: much larger values catch balls on the invisible continuation of a face.
+/// How far a contact point may lie outside a feature of the mesh and still count as on it, in radii. Closes the cracks that rounding leaves between neighbours. Default 1e-9; danger: much larger values catch balls on the invisible continuation of a face.
 const SEAM: f64 = 1e-9;
 
 /// First time in `[from, until]` seconds after the motion's clock at which a sphere touches a surface while approaching it.
 #[inline]
-pub(crate) fn sphere_surface(scenery: &Scenery, surface: Surface, path: &Parabola, radius: f64, from: f64, until: f64) -> Option<f64> {
+pub(crate) fn sphere_surface(
+    scenery: &Scenery,
+    surface: Surface,
+    path: &Parabola,
+    radius: f64,
+    from: f64,
+    until: f64,
+) -> Option<f64> {
     match surface {
         Surface::Plane(k) => {
             let plane = &scenery.planes()[k as usize];
@@ -31,7 +37,7 @@ pub(crate) fn sphere_surface(scenery: &Scenery, surface: Surface, path: &Parabol
                 return None;
             }
             let c = squared_distance(path.x - scenery.mesh().vertices[k as usize], path.v, path.a, radius);
-            falls_of_quartic(&c, from, until, |_| true)
+            falls_of_quartic(&c, from, until, |t| scenery.is_over_vertex(k, path.after(t), SEAM * radius))
         }
         Surface::Part { .. } => None,
     }
@@ -63,8 +69,5 @@ fn edge(scenery: &Scenery, k: u32, path: &Parabola, radius: f64, from: f64, unti
     let across = |u: glam::DVec3| u - d * d.dot(u);
     let offset = path.x - edge.origin;
     let c = squared_distance(across(offset), across(path.v), across(path.a), radius);
-    falls_of_quartic(&c, from, until, |t| {
-        let along = d.dot(path.after(t) - edge.origin);
-        (0.0..=edge.length).contains(&along)
-    })
+    falls_of_quartic(&c, from, until, |t| scenery.is_over_edge(k, path.after(t), SEAM * radius))
 }

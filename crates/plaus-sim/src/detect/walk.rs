@@ -4,32 +4,51 @@ use super::sphere::sphere_surface;
 use crate::motion::Parabola;
 use crate::roots::fall_of_quadratic;
 use crate::scenery::{Scenery, Surface};
+use glam::DVec3;
 
 /// First surface that a sphere touches while approaching it, within `until` seconds of the motion's clock. Surfaces in `skip` (its lasting contacts) do not count.
-pub(crate) fn next_surface(scenery: &Scenery, path: &Parabola, radius: f64, skip: &[Surface], until: f64) -> Option<(f64, Surface)> {
+pub(crate) fn next_surface(
+    scenery: &Scenery,
+    path: &Parabola,
+    radius: f64,
+    skip: &[Surface],
+    until: f64,
+) -> Option<(f64, Surface)> {
     let mut best = None;
     let mut limit = until;
     for k in 0..scenery.planes().len() as u32 {
         consider(scenery, Surface::Plane(k), path, radius, skip, 0.0, &mut limit, &mut best);
     }
     let grid = scenery.grid();
+    // A little more than the radius, so that rounding cannot hide what touches.
+    let near = radius * radius * (1.0 + 1e-9);
     let mut cell = grid.cell_of(path.x);
     let mut from = 0.0;
+    // A coordinate that moves with its acceleration never turns again. Knowing that, rounding cannot send the walk to and fro.
+    let mut onward = [0.0; 3];
     loop {
-        let (leaves, next) = exit(scenery, cell, path, from, limit);
-        let stop = leaves.min(limit);
+        let (low, high) = grid.walls(cell);
+        let way = path.bounds(from, limit);
+        let stays = way.min.cmpgt(low).all() && way.max.cmplt(high).all();
+        let (leaves, next) = if stays { (f64::INFINITY, None) } else { exit((low, high), path, from, limit, &onward) };
+        let mut stop = leaves.min(limit);
         let items = grid.items(cell);
         if !items.is_empty() {
-            let swept = path.bounds(from, stop).grown(radius * (1.0 + 1e-9));
+            let swept = if stays { way } else { path.bounds(from, stop) };
             for &item in items {
-                if scenery.bounds(item).meets(&swept) {
-                    // A hit within this cell bounds the rest of the search, here and beyond.
-                    consider(scenery, scenery.surface(item), path, radius, skip, from, &mut limit, &mut best);
+                if scenery.bounds(item).distance_squared(&swept) <= near {
+                    // A hit within this cell bounds the rest of the search, here and beyond; what is hit beyond it is listed there.
+                    consider(scenery, scenery.surface(item), path, radius, skip, from, &mut stop, &mut best);
                 }
             }
         }
+        limit = best.map_or(limit, |(time, _)| limit.min(time));
         match next {
-            Some(neighbour) if leaves < limit => (cell, from) = (neighbour, leaves),
+            Some((axis, way)) if leaves < limit => {
+                cell[axis] = if way > 0.0 { cell[axis] + 1 } else { cell[axis] - 1 };
+                onward[axis] = if path.a[axis] * way >= 0.0 { way } else { 0.0 };
+                from = leaves;
+            }
             _ => return best,
         }
     }
@@ -58,24 +77,27 @@ fn consider(
     }
 }
 
-/// When a centre leaves a cell after `from`, and into which neighbour; infinite and none where it stays until `limit`.
+/// When a centre leaves a cell after `from`, along which axis and which way; infinite and none where it stays until `limit`.
 #[inline]
-fn exit(scenery: &Scenery, cell: [usize; 3], path: &Parabola, from: f64, limit: f64) -> (f64, Option<[usize; 3]>) {
-    let (low, high) = scenery.grid().walls(cell);
+fn exit(
+    (low, high): (DVec3, DVec3),
+    path: &Parabola,
+    from: f64,
+    limit: f64,
+    onward: &[f64; 3],
+) -> (f64, Option<(usize, f64)>) {
     let (x, v) = (path.after(from), path.velocity_after(from));
     let mut best = (f64::INFINITY, None);
     for k in 0..3 {
-        for (wall, sign) in [(low[k], 1.0), (high[k], -1.0)] {
-            if !wall.is_finite() {
+        for (wall, way) in [(low[k], -1.0), (high[k], 1.0)] {
+            if !wall.is_finite() || onward[k] == -way {
                 continue;
             }
-            let c = [sign * (x[k] - wall), sign * v[k], sign * 0.5 * path.a[k]];
+            let c = [way * (wall - x[k]), -way * v[k], -way * 0.5 * path.a[k]];
             if let Some(dt) = fall_of_quadratic(c, limit - from)
                 && from + dt < best.0
             {
-                let mut next = cell;
-                next[k] = if sign > 0.0 { cell[k] - 1 } else { cell[k] + 1 };
-                best = (from + dt, Some(next));
+                best = (from + dt, Some((k, way)));
             }
         }
     }

@@ -65,7 +65,12 @@ impl Start {
             }
         }
         if !(self.time >= 0.0 && self.time.is_finite()) {
-            return Err(WorldError::BadBody { body, field: "start time", value: self.time, expected: "a finite time ≥ 0" });
+            return Err(WorldError::BadBody {
+                body,
+                field: "start time",
+                value: self.time,
+                expected: "a finite time ≥ 0",
+            });
         }
         Ok(())
     }
@@ -104,7 +109,7 @@ pub(crate) enum Ending {
 }
 
 /// Most surfaces that one marble can be in lasting contact with; further ones it bounces off.
-pub(crate) const MOST_CONTACTS: usize = 6;
+pub(crate) const MOST_CONTACTS: usize = 8;
 
 /// A marble's state: a parabola, a spin that changes linearly, and its lasting contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -126,9 +131,19 @@ pub struct Marble {
     pub(crate) drill: f64,
     /// Velocity at the end of a step.
     pub(crate) end_velocity: DVec3,
+    /// When it last hit something, and how many impacts in a row came each hard upon the other.
+    last_impact: f64,
+    rattles: u8,
     contacts: [Surface; MOST_CONTACTS],
     count: u8,
 }
+
+/// An expiry that never comes; finite, so that every format can hold a state.
+const NEVER: f64 = f64::MAX;
+
+/// Impacts in a row, each within [`Accuracy::rattle`](crate::Accuracy) of the one before, from which further ones are plastic. Default 40: more than a row of touching balls
+/// makes at once, so that only a collapse of infinitely many impacts in finite time is cut short.
+const RATTLES: u8 = 40;
 
 impl Marble {
     /// A marble that waits for its release.
@@ -144,6 +159,8 @@ impl Marble {
             normal: DVec3::ZERO,
             drill: 0.0,
             end_velocity: DVec3::ZERO,
+            last_impact: start.time,
+            rattles: 0,
             contacts: [Surface::Plane(0); MOST_CONTACTS],
             count: 0,
         }
@@ -181,12 +198,24 @@ impl Marble {
         }
     }
 
+    /// Notes an impact now; `rattle` is the time within which it counts as hard upon the last.
+    pub(crate) fn note_impact(&mut self, rattle: f64) {
+        self.rattles = if self.path.t - self.last_impact <= rattle { self.rattles.saturating_add(1) } else { 0 };
+        self.last_impact = self.path.t;
+    }
+
+    /// Whether it rattles: further impacts of a law that takes energy are plastic.
+    #[inline]
+    pub(crate) fn rattles(&self) -> bool {
+        self.rattles >= RATTLES
+    }
+
     /// A motion that ends only when something happens to it.
     pub(crate) fn begin(&mut self, phase: Phase, acceleration: DVec3) {
         self.path.a = acceleration;
         self.spin_rate = DVec3::ZERO;
         self.phase = phase;
-        self.expiry = f64::INFINITY;
+        self.expiry = NEVER;
         self.ending = Ending::Plain;
         self.drill = 0.0;
     }

@@ -97,7 +97,17 @@ impl Plane {
     fn frictionless(&self, v: DVec3, body: &Marble) -> Motion {
         let still = v == DVec3::ZERO && self.pull == DVec3::ZERO;
         let spins = body.spin != DVec3::ZERO;
-        Motion::endless(if !still { Phase::Slide } else if spins { Phase::Spin } else { Phase::Rest }, self.pull, DVec3::ZERO)
+        Motion::endless(
+            if !still {
+                Phase::Slide
+            } else if spins {
+                Phase::Spin
+            } else {
+                Phase::Rest
+            },
+            self.pull,
+            DVec3::ZERO,
+        )
     }
 
     fn slide(&self, slip: DVec3) -> Option<Motion> {
@@ -108,7 +118,11 @@ impl Plane {
         }
         let drag = self.friction * self.load;
         let rate = self.pull.dot(along) - (1.0 + 1.0 / self.gyration) * drag;
-        let mut motion = Motion::endless(Phase::Slide, self.pull - along * drag, self.normal.cross(along) * (drag / (self.gyration * self.radius)));
+        let mut motion = Motion::endless(
+            Phase::Slide,
+            self.pull - along * drag,
+            self.normal.cross(along) * (drag / (self.gyration * self.radius)),
+        );
         if rate < 0.0 {
             motion.lasts = -speed / rate;
             motion.ending = Ending::Rolls;
@@ -131,7 +145,8 @@ impl Plane {
             let needed = steepness * self.gyration / (1.0 + self.gyration);
             let free = self.rolling == 0.0 && needed <= self.friction * self.load;
             let acceleration = self.pull / (1.0 + self.gyration);
-            return free.then(|| Motion::endless(Phase::Roll, acceleration, self.normal.cross(acceleration) / self.radius));
+            return free
+                .then(|| Motion::endless(Phase::Roll, acceleration, self.normal.cross(acceleration) / self.radius));
         }
         self.roll_along(along, speed)
     }
@@ -177,7 +192,7 @@ impl Plane {
         body.spin_rate = motion.spin_rate;
         body.normal = self.normal;
         body.drill = self.drill();
-        body.expiry = body.path.t + motion.lasts;
+        body.expiry = (body.path.t + motion.lasts).min(f64::MAX);
         body.ending = motion.ending;
         if motion.phase == Phase::Rest {
             (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);

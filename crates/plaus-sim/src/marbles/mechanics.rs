@@ -4,8 +4,9 @@ use super::body::{Marble, Phase};
 use super::step::MarbleScratch;
 use super::{Marbles, step};
 use crate::detect;
+use crate::links::Links;
 use crate::material::Law;
-use crate::mechanics::{Impact, Link, Mechanics, Other};
+use crate::mechanics::{Impact, Mechanics, Other};
 use crate::resolve::{Touch, sphere_impact};
 use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
@@ -23,6 +24,18 @@ impl Marbles {
         self.accuracy.settle * (1.0 - law.restitution) * scale
     }
 
+    /// Time between impacts within which a marble rattles.
+    fn rattle(&self, index: usize) -> f64 {
+        // Without gravity there is no time scale, and nothing that presses.
+        if self.strength > 0.0 { self.accuracy.rattle * (self.specs[index].radius / self.strength).sqrt() } else { 0.0 }
+    }
+
+    /// Whether an impact is the begin of lasting contact: its rebound would be unseen, or its approach is lost in rounding.
+    fn lasts(&self, scale: f64, law: &Law, approach: f64, speed: f64, rattles: bool) -> bool {
+        rattles && law.restitution < 1.0
+            || law.restitution * approach <= self.settle_speed(scale, law).max(GRAZE * speed)
+    }
+
     pub(crate) fn surface_law(&self, index: usize, surface: Surface) -> &Law {
         self.laws.of(self.specs[index].material, self.scenery.material(surface))
     }
@@ -31,6 +44,9 @@ impl Marbles {
         self.laws.of(self.specs[i].material, self.specs[j].material)
     }
 }
+
+/// Approach over the relative speed that is lost in rounding. Dimensionless; default 1e-12, a few thousand rounding errors.
+const GRAZE: f64 = 1e-12;
 
 /// The same law without rebound.
 fn plastic(law: &Law) -> Law {
@@ -74,7 +90,11 @@ impl Mechanics for Marbles {
     }
 
     fn is_finite(&self, body: &Marble) -> bool {
-        body.path.x.is_finite() && body.path.v.is_finite() && body.path.a.is_finite() && body.spin.is_finite() && !body.expiry.is_nan()
+        body.path.x.is_finite()
+            && body.path.v.is_finite()
+            && body.path.a.is_finite()
+            && body.spin.is_finite()
+            && !body.expiry.is_nan()
     }
 
     #[inline]
@@ -93,7 +113,13 @@ impl Mechanics for Marbles {
         if matches!(body.phase, Phase::Rest | Phase::Spin) {
             return None;
         }
-        let found = detect::next_surface(&self.scenery, &body.path, self.specs[index].radius, body.contacts(), until - body.path.t)?;
+        let found = detect::next_surface(
+            &self.scenery,
+            &body.path,
+            self.specs[index].radius,
+            body.contacts(),
+            until - body.path.t,
+        )?;
         Some((body.path.t + found.0, found.1))
     }
 
@@ -106,7 +132,7 @@ impl Mechanics for Marbles {
         let foot = self.scenery.foot(surface, body.path.x);
         let approach = -body.path.v.dot(foot.normal);
         let law = self.surface_law(index, surface);
-        let settles = law.restitution * approach <= self.settle_speed(self.speed_scale(index), law);
+        let settles = self.lasts(self.speed_scale(index), law, approach, body.path.v.length(), body.rattles());
         let known = body.contacts().contains(&surface);
         // A new contact whose approach is lost in rounding is taken as one that lasts: settling decides what becomes of it.
         if known && (settles || approach <= 0.0) {
@@ -117,9 +143,19 @@ impl Mechanics for Marbles {
         let law = if lasting { plastic(law) } else { *law };
         let impulse = sphere_impact(&mut touch, &mut Touch::fixed(), foot.normal, &law);
         (body.path.v, body.spin) = (touch.v, touch.w);
+        body.note_impact(self.rattle(index));
         let point = body.path.x - foot.normal * self.specs[index].radius;
         let other = Other::Surface(surface);
-        Some(Impact { time: body.path.t, body: index, other, point, normal: foot.normal, impulse: impulse.on_first, approach, lasting })
+        Some(Impact {
+            time: body.path.t,
+            body: index,
+            other,
+            point,
+            normal: foot.normal,
+            impulse: impulse.on_first,
+            approach,
+            lasting,
+        })
     }
 
     fn hit_body(&self, [i, j]: [usize; 2], [a, b]: [&mut Marble; 2], linked: bool) -> Option<Impact> {
@@ -129,7 +165,7 @@ impl Mechanics for Marbles {
         let approach = -(a.path.v - b.path.v).dot(normal);
         let law = self.pair_law(i, j);
         let scale = self.speed_scale(i).min(self.speed_scale(j));
-        let lasting = law.restitution * approach <= self.settle_speed(scale, law);
+        let lasting = self.lasts(scale, law, approach, (a.path.v - b.path.v).length(), a.rattles() || b.rattles());
         if linked && (lasting || approach <= 0.0) {
             return None;
         }
@@ -137,6 +173,8 @@ impl Mechanics for Marbles {
         let used = if lasting { plastic(law) } else { *law };
         let impulse = sphere_impact(&mut first, &mut second, normal, &used);
         (a.path.v, a.spin, b.path.v, b.spin) = (first.v, first.w, second.v, second.w);
+        a.note_impact(self.rattle(i));
+        b.note_impact(self.rattle(j));
         let point = b.path.x + normal * self.specs[j].radius;
         let other = Other::Body(j);
         Some(Impact { time: a.path.t, body: i, other, point, normal, impulse: impulse.on_first, approach, lasting })
@@ -147,7 +185,7 @@ impl Mechanics for Marbles {
         body.contacts()
     }
 
-    fn settle(&self, members: &[u32], bodies: &mut [Marble], links: &mut Vec<Link>, scratch: &mut MarbleScratch) {
+    fn settle(&self, members: &[u32], bodies: &mut [Marble], links: &mut Links, scratch: &mut MarbleScratch) {
         step::settle(self, members, bodies, links, scratch);
     }
 }

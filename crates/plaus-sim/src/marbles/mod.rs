@@ -25,6 +25,8 @@ pub struct Marbles {
     pub(crate) scenery: Scenery,
     pub(crate) gravity: DVec3,
     pub(crate) strength: f64,
+    /// Gap over the radius at which a lasting contact ends: the height of a bounce that settles.
+    pub(crate) unseen: f64,
     pub(crate) accuracy: Accuracy,
     pub(crate) duration: f64,
 }
@@ -58,13 +60,22 @@ impl Marbles {
             return Err(WorldError::BadNumber { field: "gravity", value: f64::NAN, expected: "finite components" });
         }
         if !(duration > 0.0 && duration.is_finite()) {
-            return Err(WorldError::BadNumber { field: "duration", value: duration, expected: "a positive, finite time" });
+            return Err(WorldError::BadNumber {
+                field: "duration",
+                value: duration,
+                expected: "a positive, finite time",
+            });
         }
         for (k, spec) in specs.iter().enumerate() {
             spec.check(k)?;
             laws.require(spec.material)?;
             if spec.radius > scenery.reach() {
-                return Err(WorldError::BadBody { body: k, field: "radius", value: spec.radius, expected: "at most the scenery's reach" });
+                return Err(WorldError::BadBody {
+                    body: k,
+                    field: "radius",
+                    value: spec.radius,
+                    expected: "at most the scenery's reach",
+                });
             }
             if let Some(d) = scenery.domes().iter().find(|d| d.hollow && d.radius <= spec.radius) {
                 return Err(WorldError::BadBody {
@@ -84,7 +95,16 @@ impl Marbles {
         for face in &scenery.mesh().faces {
             laws.require(face.material)?;
         }
-        Ok(Self { specs, laws, scenery, gravity, strength: gravity.length(), accuracy, duration })
+        Ok(Self {
+            specs,
+            laws,
+            scenery,
+            gravity,
+            strength: gravity.length(),
+            unseen: (0.5 * accuracy.settle * accuracy.settle).max(ROUNDING),
+            accuracy,
+            duration,
+        })
     }
 
     /// The marbles' specifications.
@@ -153,14 +173,25 @@ impl Marbles {
         self.check_start(index, start)?;
         let released = state.bodies()[index].phase != Phase::Waiting;
         if released || start.time < state.time() {
-            return Err(WorldError::BadBody { body: index, field: "start time", value: start.time, expected: "a release still to come" });
+            return Err(WorldError::BadBody {
+                body: index,
+                field: "start time",
+                value: start.time,
+                expected: "a release still to come",
+            });
         }
         state.replace_unreleased(index, Marble::waiting(start), start.time.min(self.duration));
         Ok(())
     }
 
     /// Runs a state until `until` seconds, the end of the world's duration, rest, or the observer's stop.
-    pub fn run(&self, state: &mut State<Marble>, scratch: &mut Scratch<MarbleScratch>, until: f64, observer: &mut impl Observer<Self>) -> Outcome {
+    pub fn run(
+        &self,
+        state: &mut State<Marble>,
+        scratch: &mut Scratch<MarbleScratch>,
+        until: f64,
+        observer: &mut impl Observer<Self>,
+    ) -> Outcome {
         simulate(self, state, scratch, until, observer)
     }
 
@@ -178,6 +209,9 @@ impl Marbles {
         (self.strength * self.specs[index].radius).sqrt()
     }
 }
+
+/// Gap over the radius that is never seen. Default 1e-9.
+const ROUNDING: f64 = 1e-9;
 
 /// Overlap at the start that counts as touching, over the radius. Default 1e-9; danger: larger values start bodies inside each other.
 const OVERLAP: f64 = 1e-9;

@@ -8,7 +8,7 @@ use super::Marbles;
 use super::body::{Ending, Marble, Phase};
 use super::closed;
 use super::solve::{Contact, Member, With};
-use crate::mechanics::Link;
+use crate::links::{Link, Links};
 use crate::scenery::Surface;
 use glam::DVec3;
 
@@ -19,28 +19,41 @@ pub struct MarbleScratch {
     contacts: Vec<Contact>,
 }
 
-/// Passes over normals and impulses within a step: the first predicts the end, the second uses it.
-const PASSES: usize = 2;
+/// Sweeps of the pass that only predicts where a step ends.
+const PREDICT: u32 = 3;
 
-/// Corrections of position per step; each reduces what overlapping corrections leave by about half.
-const CORRECTIONS: usize = 6;
+/// Most corrections of position per step; more than two are rare outside piles.
+const CORRECTIONS: usize = 40;
 
-/// Speed over `√(g r)` with which a contact that bears no load is let go. So small that it is no motion, so large that rounding cannot re-trigger the contact.
-const LET_GO: f64 = 1e-12;
+/// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half, so that little is still to come.
+const CREEP: f64 = 0.03;
 
-/// How often a step is quartered to find when a contact ends within it: to 1/64 of a step.
-const SHORTENINGS: usize = 4;
+/// Overlap over the radius that rest may keep. Default 2e-5.
+const OVERLAP: f64 = 2e-5;
 
-/// Closing acceleration over g from which a contact without load is kept for one more short step. Default 1e-6; smaller is rounding.
-const PRESSES: f64 = 1e-6;
+/// Overlap over the radius that needs no further correction. Default 1e-6.
+const CORRECTED: f64 = 1e-6;
 
-/// Approach over `√(g r)` along a lasting contact that a step may start with. Default 1e-9: a step then starts into the surface by less than 1e-9 radii.
-const APPROACH: f64 = 1e-9;
+/// Separating speed over `√(g r)` plus the body's own that never ends a contact. Default 1e-9: far above rounding, far below any motion.
+const KEEP: f64 = 1e-9;
+
+/// Approach along a lasting contact that a step may start with, over the speed at which contacts settle. Default 0.02: a path then dips into the surface by less than
+/// 1e-4 radii at the standard preset.
+const APPROACH: f64 = 0.02;
 
 /// Decides how a group of marbles goes on.
-pub(super) fn settle(world: &Marbles, members: &[u32], bodies: &mut [Marble], links: &mut Vec<Link>, scratch: &mut MarbleScratch) {
+pub(super) fn settle(
+    world: &Marbles,
+    members: &[u32],
+    bodies: &mut [Marble],
+    links: &mut Links,
+    scratch: &mut MarbleScratch,
+) {
     for &k in members {
         follow_contacts(world, k as usize, &mut bodies[k as usize]);
+    }
+    if !links.is_empty() {
+        links.retain(|link| members.binary_search(&link[0]).is_err() || link_lasts(world, link, bodies));
     }
     if let [only] = *members {
         let (index, body) = (only as usize, &mut bodies[only as usize]);
@@ -56,7 +69,7 @@ pub(super) fn settle(world: &Marbles, members: &[u32], bodies: &mut [Marble], li
     scratch.gather(world, members, bodies, links);
     scratch.stop_approach(world, bodies);
     if !scratch.try_rest(world, bodies) {
-        scratch.step(world, bodies, links);
+        scratch.step(world, bodies);
     }
 }
 
@@ -72,16 +85,30 @@ fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) {
     if was_waiting || body.contacts().is_empty() {
         return;
     }
-    let (x, v, scale) = (body.path.x, body.path.v, world.speed_scale(index));
-    body.revise_contacts(|surface| {
-        let surface = match (leaves, surface) {
+    let (x, v, radius) = (body.path.x, body.path.v, world.specs[index].radius);
+    let scale = world.speed_scale(index);
+    let before = *body;
+    body.revise_contacts(|old| {
+        let surface = match (leaves, old) {
             (Some(side), Surface::Face(f)) => across(world, f, usize::from(side)),
-            _ => world.scenery.track(surface, x)?,
+            _ => world.scenery.track(old, x)?,
         };
-        let speed = v.dot(world.scenery.foot(surface, x).normal);
-        let law = world.surface_law(index, surface);
-        (speed <= world.settle_speed(scale, law).max(LET_GO * scale)).then_some(surface)
+        // Two contacts never merge: what one of them then lacks would be found again at once.
+        let surface = if surface != old && before.contacts().contains(&surface) { old } else { surface };
+        let foot = world.scenery.foot(surface, x);
+        let most = world.settle_speed(scale, world.surface_law(index, surface)).max(KEEP * (scale + v.length()));
+        (v.dot(foot.normal) <= most && foot.distance - radius <= world.unseen * radius).then_some(surface)
     });
+}
+
+fn link_lasts(world: &Marbles, [i, j]: Link, bodies: &[Marble]) -> bool {
+    let (i, j) = (i as usize, j as usize);
+    let (a, b) = (&bodies[i], &bodies[j]);
+    let (offset, v) = (a.path.x - b.path.x, a.path.v - b.path.v);
+    let (distance, reach) = (offset.length(), world.specs[i].radius + world.specs[j].radius);
+    let scale = world.speed_scale(i).min(world.speed_scale(j));
+    let most = world.settle_speed(scale, world.pair_law(i, j)).max(KEEP * (scale + v.length()));
+    v.dot(offset) <= most * distance && distance - reach <= world.unseen * reach
 }
 
 /// What lies beyond a side of a triangle: its neighbour where they are level, else the edge.
@@ -98,7 +125,7 @@ fn across(world: &Marbles, f: u32, side: usize) -> Surface {
 }
 
 impl MarbleScratch {
-    fn gather(&mut self, world: &Marbles, indices: &[u32], bodies: &[Marble], links: &[Link]) {
+    fn gather(&mut self, world: &Marbles, indices: &[u32], bodies: &[Marble], links: &Links) {
         self.members.clear();
         for &k in indices {
             let (s, b) = (&world.specs[k as usize], &bodies[k as usize]);
@@ -131,13 +158,23 @@ impl MarbleScratch {
             let index = self.members[a].index;
             for &surface in bodies[index as usize].contacts() {
                 let normal = world.scenery.foot(surface, self.members[a].start).normal;
-                self.contacts.push(Contact::new(a, With::Surface(surface), *world.surface_law(index as usize, surface), normal));
+                self.members[a].is_held = true;
+                self.contacts.push(Contact::new(
+                    a,
+                    With::Surface(surface),
+                    *world.surface_law(index as usize, surface),
+                    normal,
+                ));
+            }
+            if links.is_empty() {
+                continue;
             }
             for b in 0..a {
                 let other = self.members[b].index;
-                if !links.is_empty() && links.contains(&[index.min(other), index.max(other)]) {
+                if links.contains(index, other) {
                     let law = *world.pair_law(index as usize, other as usize);
                     let normal = (self.members[a].start - self.members[b].start).normalize_or(DVec3::Z);
+                    (self.members[a].is_held, self.members[b].is_held) = (true, true);
                     self.contacts.push(Contact::new(a, With::Member(b), law, normal));
                 }
             }
@@ -152,12 +189,13 @@ impl MarbleScratch {
                 With::Surface(_) => DVec3::ZERO,
                 With::Member(b) => self.members[b].start_v,
             };
-            -(a.start_v - other).dot(c.first) > APPROACH * (world.strength * a.radius).sqrt()
+            -(a.start_v - other).dot(c.first) > APPROACH * world.accuracy.settle * (world.strength * a.radius).sqrt()
         };
         if !self.contacts.iter().any(approaches) {
             return;
         }
-        self.sweep(world, self.step_length(world));
+        let enough = world.accuracy.sweep_tolerance * world.strength * self.step_length(world);
+        self.sweep(world.accuracy.sweeps, enough, |_| false);
         self.clear();
         for m in &mut self.members {
             (m.start_v, m.start_w) = (m.v, m.w);
@@ -174,14 +212,34 @@ impl MarbleScratch {
             let (scale, speed) = match c.with {
                 With::Surface(s) => {
                     let curvature = world.scenery.foot(s, m.start).curvature_radius;
-                    let scale = if curvature < 0.0 { -curvature - m.radius } else if curvature.is_finite() { curvature + m.radius } else { m.radius };
+                    let scale = if curvature < 0.0 {
+                        -curvature - m.radius
+                    } else if curvature.is_finite() {
+                        curvature + m.radius
+                    } else {
+                        m.radius
+                    };
                     (scale, m.start_v.length())
                 }
-                With::Member(b) => (0.5 * (m.radius + self.members[b].radius), (m.start_v - self.members[b].start_v).length()),
+                With::Member(b) => {
+                    (0.5 * (m.radius + self.members[b].radius), (m.start_v - self.members[b].start_v).length())
+                }
             };
             shortest = shortest.min((scale / world.strength).sqrt()).min(scale / speed);
         }
         world.accuracy.step * shortest
+    }
+
+    /// Whether anything overlaps by more than rest may keep: then a step comes first, which puts it back.
+    fn overlaps(&self, world: &Marbles) -> bool {
+        self.contacts.iter().any(|c| {
+            let m = &self.members[c.a];
+            let (distance, reach) = match c.with {
+                With::Surface(s) => (world.scenery.foot(s, m.start).distance, m.radius),
+                With::Member(b) => ((m.start - self.members[b].start).length(), m.radius + self.members[b].radius),
+            };
+            reach - distance > OVERLAP * reach
+        })
     }
 
     /// Rest, where everything is slow and the contacts can hold everything still.
@@ -190,7 +248,7 @@ impl MarbleScratch {
             let limit = world.accuracy.rest_speed * (world.strength * m.radius).sqrt();
             m.start_v.length() <= limit && m.start_w.length() * m.radius <= limit
         });
-        if !slow || self.contacts.is_empty() {
+        if !slow || self.contacts.is_empty() || self.overlaps(world) {
             return false;
         }
         let h = self.step_length(world);
@@ -200,10 +258,11 @@ impl MarbleScratch {
         for m in &mut self.members {
             (m.v, m.w, m.x) = (world.gravity * h, DVec3::ZERO, m.start);
         }
-        self.sweep(world, h);
+        let left = world.accuracy.rest_residual * world.strength * h;
+        let holds =
+            self.sweep(world.accuracy.sweeps, CREEP * left, |m| m.v.length().max(m.w.length() * m.radius) <= left);
         self.clear();
-        let left = self.members.iter().map(|m| m.v.length().max(m.w.length() * m.radius)).fold(0.0, f64::max);
-        if left > world.accuracy.rest_residual * world.strength * h {
+        if !holds {
             return false;
         }
         for m in &self.members {
@@ -214,18 +273,18 @@ impl MarbleScratch {
         true
     }
 
-    /// Solves all contacts for members whose velocities are free of them, starting from the impulses that the contacts hold.
-    fn sweep(&mut self, world: &Marbles, h: f64) {
+    /// Solves all contacts for members whose velocities are free of them, starting from the impulses that the contacts hold, until a sweep
+    /// changes no velocity by more than `enough`, all members are `good`, or `most` sweeps are done. Whether they are good.
+    fn sweep(&mut self, most: u32, enough: f64, good: impl Fn(&Member) -> bool) -> bool {
         if let [only] = &mut self.contacts[..] {
             only.clear();
             only.solve(&mut self.members);
-            return;
+            return self.members.iter().all(good);
         }
         for c in &self.contacts {
             c.apply(&mut self.members);
         }
-        let enough = world.accuracy.sweep_tolerance * world.strength * h;
-        for _ in 0..world.accuracy.sweeps {
+        for _ in 0..most {
             // Up and down again: the lowest contacts come last, so that nothing is left moving into the scenery.
             let mut change: f64 = 0.0;
             for c in &mut self.contacts {
@@ -234,10 +293,14 @@ impl MarbleScratch {
             for c in self.contacts.iter_mut().rev() {
                 change = change.max(c.solve(&mut self.members));
             }
+            if self.members.iter().all(&good) {
+                return true;
+            }
             if change <= enough {
                 break;
             }
         }
+        false
     }
 
     fn clear(&mut self) {
@@ -246,30 +309,25 @@ impl MarbleScratch {
         }
     }
 
-    fn step(&mut self, world: &Marbles, bodies: &mut [Marble], links: &mut Vec<Link>) {
-        let mut h = self.step_length(world);
-        if h.is_finite() {
-            for _ in 0..SHORTENINGS {
-                self.clear();
-                self.solve(world, bodies, h);
-                if !self.contacts.iter().any(|c| c.load == 0.0 && self.still_presses(world, c, h, |m| (m.v - m.start_v) / h)) {
-                    break;
-                }
-                h *= 0.25;
+    fn step(&mut self, world: &Marbles, bodies: &mut [Marble]) {
+        let h = self.step_length(world);
+        if !h.is_finite() {
+            // Weightless and without relative motion: it goes on as it is.
+            for m in &self.members {
+                bodies[m.index as usize].begin(Phase::Flight, world.gravity);
             }
+            return;
         }
-        if h.is_finite() {
-            self.put_back(world);
-            self.guard_energy(world);
-        }
-        self.let_go(world, bodies, links, h);
+        self.solve(world, bodies, h);
+        self.put_back(world);
+        self.guard_energy(world);
         for m in &self.members {
             let body = &mut bodies[m.index as usize];
             if !m.is_held {
                 body.begin(Phase::Flight, world.gravity);
                 continue;
             }
-            body.begin(Phase::Step, (m.x - m.start - body.path.v * h) * (2.0 / (h * h)));
+            body.begin(Phase::Step, m.acceleration(h));
             body.spin_rate = (m.w - m.start_w) / h;
             body.end_velocity = m.v;
             body.expiry = body.path.t + h;
@@ -282,112 +340,76 @@ impl MarbleScratch {
             let pull = if body.phase == Phase::Step { body.path.a } else { DVec3::ZERO };
             m.x = m.start + (m.start_v + pull * (0.5 * h)) * h;
         }
-        for _ in 0..PASSES {
+        for most in [PREDICT, world.accuracy.sweeps] {
             for c in &mut self.contacts {
                 let x = self.members[c.a].x;
                 c.last = match c.with {
-                    With::Surface(s) => world.scenery.foot(s, x).normal,
+                    With::Surface(s) => world.scenery.foot_near(s, x).normal,
                     With::Member(b) => (x - self.members[b].x).normalize_or(c.first),
                 };
             }
             for m in &mut self.members {
                 (m.v, m.w) = (m.start_v + world.gravity * h, m.start_w);
             }
-            self.sweep(world, h);
+            self.sweep(most, world.accuracy.sweep_tolerance * world.strength * h, |_| false);
             for m in &mut self.members {
                 m.x = m.start + (m.start_v + m.v) * (0.5 * h);
             }
         }
     }
 
-    /// Whether the gap of a contact would still close at the start of a step, though it bears no load over the whole of it: the contact ends within the step.
-    fn still_presses(&self, world: &Marbles, c: &Contact, h: f64, acceleration: impl Fn(&Member) -> DVec3) -> bool {
-        let a = &self.members[c.a];
-        // Rate of v · n at the start: by the forces, and by the turning of the normal, seen over a small part of the step.
-        let dt = h * (1.0 / 64.0);
-        let (v, pull, soon) = match c.with {
-            With::Surface(s) => (a.start_v, acceleration(a), world.scenery.foot(s, a.start + a.start_v * dt).normal),
-            With::Member(b) => {
-                let b = &self.members[b];
-                let v = a.start_v - b.start_v;
-                (v, acceleration(a) - acceleration(b), (a.start - b.start + v * dt).normalize_or(c.first))
-            }
-        };
-        let rate = pull.dot(c.first) + v.dot(soon - c.first) / dt;
-        rate < -PRESSES * world.strength
-    }
-
-    /// Ends the contacts that bore no load, with a speed that keeps rounding from finding them again at once.
-    fn let_go(&mut self, world: &Marbles, bodies: &mut [Marble], links: &mut Vec<Link>, h: f64) {
-        for m in &mut self.members {
-            m.is_held = false;
-        }
-        for c in &self.contacts {
-            let index = self.members[c.a].index;
-            if c.load > 0.0 || (h.is_finite() && self.still_presses(world, c, h, |m| m.acceleration(h))) {
-                self.members[c.a].is_held = true;
-                if let With::Member(b) = c.with {
-                    self.members[b].is_held = true;
-                }
-                continue;
-            }
-            let least = LET_GO * world.speed_scale(index as usize);
-            let body = &mut bodies[index as usize];
-            let mut speed = body.path.v.dot(c.first);
-            match c.with {
-                With::Surface(s) => body.revise_contacts(|t| (t != s).then_some(t)),
-                With::Member(b) => {
-                    let other = self.members[b].index;
-                    links.retain(|&l| l != [index.min(other), index.max(other)]);
-                    speed -= bodies[other as usize].path.v.dot(c.first);
-                }
-            }
-            if speed < least {
-                bodies[index as usize].path.v += c.first * (least - speed);
-            }
-        }
-    }
-
-    /// Puts centres back onto what they touch; the scenery has the last word.
+    /// Puts centres back onto what they touch: first towards what bears a load, then only out of what they are in. The scenery has the last word.
     fn put_back(&mut self, world: &Marbles) {
         let rounds = if self.contacts.len() == 1 { 1 } else { CORRECTIONS };
-        for _ in 0..rounds {
+        for round in 0..rounds {
+            let mut moved = false;
             for c in self.contacts.iter().rev() {
                 let m = self.members[c.a];
-                match c.with {
+                let (missing, normal) = match c.with {
                     With::Surface(s) => {
-                        let foot = world.scenery.foot(s, m.x);
-                        if c.load == 0.0 && foot.distance >= m.radius {
-                            continue;
-                        }
-                        self.members[c.a].x = m.x + foot.normal * (m.radius - foot.distance);
+                        let foot = world.scenery.foot_near(s, m.x);
+                        (m.radius - foot.distance, foot.normal)
                     }
                     With::Member(b) => {
-                        let other = self.members[b];
-                        let offset = m.x - other.x;
+                        let offset = m.x - self.members[b].x;
                         let distance = offset.length();
-                        if c.load == 0.0 && distance >= m.radius + other.radius {
-                            continue;
-                        }
-                        let missing = (m.radius + other.radius - distance) / (m.mass + other.mass);
-                        let normal = if distance > 0.0 { offset / distance } else { c.last };
-                        self.members[c.a].x = m.x + normal * (missing * other.mass);
-                        self.members[b].x = other.x - normal * (missing * m.mass);
+                        (
+                            m.radius + self.members[b].radius - distance,
+                            if distance > 0.0 { offset / distance } else { c.last },
+                        )
+                    }
+                };
+                if missing <= 0.0 && (round > 0 || c.load == 0.0) {
+                    continue;
+                }
+                moved |= missing.abs() > CORRECTED * m.radius;
+                match c.with {
+                    With::Surface(_) => self.members[c.a].x += normal * missing,
+                    With::Member(b) => {
+                        let other = self.members[b].mass;
+                        let share = missing / (m.mass + other);
+                        self.members[c.a].x += normal * (share * other);
+                        self.members[b].x -= normal * (share * m.mass);
                     }
                 }
+            }
+            if !moved {
+                break;
             }
         }
     }
 
     /// Takes back what discretisation added: a group's energy never grows.
     fn guard_energy(&mut self, world: &Marbles) {
-        let kinetic = |m: &Member, v: DVec3, w: DVec3| 0.5 * (m.mass * v.length_squared() + m.inertia * w.length_squared());
-        let held = || self.members.iter();
-        let before: f64 = held().map(|m| kinetic(m, m.start_v, m.start_w) + m.mass * world.gravity.dot(m.x - m.start)).sum();
+        let kinetic =
+            |m: &Member, v: DVec3, w: DVec3| 0.5 * (m.mass * v.length_squared() + m.inertia * w.length_squared());
+        let held = || self.members.iter().filter(|m| m.is_held);
+        let before: f64 =
+            held().map(|m| kinetic(m, m.start_v, m.start_w) + m.mass * world.gravity.dot(m.x - m.start)).sum();
         let after: f64 = held().map(|m| kinetic(m, m.v, m.w)).sum();
         if after > before {
-            let part = (before.max(0.0) / after).sqrt();
-            for m in &mut self.members {
+            let part = if before > 0.0 { (before / after).sqrt() } else { 0.0 };
+            for m in self.members.iter_mut().filter(|m| m.is_held) {
                 m.v *= part;
                 m.w *= part;
             }

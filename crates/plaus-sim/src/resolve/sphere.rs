@@ -71,7 +71,8 @@ pub fn sphere_impact(first: &mut Touch, second: &mut Touch, normal: DVec3, law: 
     let along = -(1.0 + law.restitution) * normal_speed / inverse;
     let slip = relative - normal * normal_speed;
     let slip_speed = slip.length();
-    let compliance = first.inverse_mass * (1.0 + 1.0 / first.gyration) + second.inverse_mass * (1.0 + 1.0 / second.gyration);
+    let compliance =
+        first.inverse_mass * (1.0 + 1.0 / first.gyration) + second.inverse_mass * (1.0 + 1.0 / second.gyration);
     let mut impulse = normal * along;
     if slip_speed > 0.0 {
         let stick = (1.0 + law.tangential) / compliance;

@@ -88,7 +88,13 @@ pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: 
         if !step.is_finite() {
             break;
         }
-        path.take(step, force, slip_rate, normal_rate, stuck || (step == longest && longest.is_finite() && path.stops(slip_rate, step)));
+        path.take(
+            step,
+            force,
+            slip_rate,
+            normal_rate,
+            stuck || (step == longest && longest.is_finite() && path.stops(slip_rate, step)),
+        );
         if step == end {
             match target {
                 None => target = Some(path.work * (1.0 - restitution * restitution)),
@@ -139,7 +145,8 @@ impl Path {
         let u = middle / middle.length();
         let (rate, _) = k.rate(-u * friction);
         let along = u.dot(rate);
-        let closing = along < 0.0 && u.perp_dot(rate).abs() * self.slip.length() <= turn * 1e-3 * self.slip.length() * -along;
+        let closing =
+            along < 0.0 && u.perp_dot(rate).abs() * self.slip.length() <= turn * 1e-3 * self.slip.length() * -along;
         let stop = -self.slip.dot(rate) / rate.length_squared();
         (-u * friction, if closing && stop > 0.0 { stop } else { step })
     }
@@ -169,7 +176,9 @@ impl Path {
     fn take(&mut self, step: f64, force: DVec2, slip_rate: DVec2, normal_rate: f64, stuck: bool) {
         self.work += step * (self.normal + 0.5 * normal_rate * step);
         self.normal += normal_rate * step;
-        let holds = stuck && (slip_rate.length_squared() <= 1e-24 * (1.0 + force.length_squared()) * normal_rate * normal_rate || self.stops(slip_rate, step));
+        let holds = stuck
+            && (slip_rate.length_squared() <= 1e-24 * (1.0 + force.length_squared()) * normal_rate * normal_rate
+                || self.stops(slip_rate, step));
         self.slip = if holds { DVec2::ZERO } else { self.slip + slip_rate * step };
         self.impulse += DVec3::new(force.x, force.y, 1.0) * step;
     }
@@ -184,7 +193,11 @@ mod tests {
 
     /// The rod of the regression vectors: planar, so the second tangential direction is decoupled.
     fn rod() -> ContactMatrix {
-        ContactMatrix(DMat3::from_cols(DVec3::new(2.5, 0.0, -1.5), DVec3::new(0.0, 1.0, 0.0), DVec3::new(-1.5, 0.0, 2.5)))
+        ContactMatrix(DMat3::from_cols(
+            DVec3::new(2.5, 0.0, -1.5),
+            DVec3::new(0.0, 1.0, 0.0),
+            DVec3::new(-1.5, 0.0, 2.5),
+        ))
     }
 
     fn after(k: &ContactMatrix, u: DVec3, e: f64, mu: f64) -> (DVec3, f64) {
@@ -221,10 +234,15 @@ mod tests {
 
     #[test]
     fn finer_turns_converge() {
-        let k = ContactMatrix(DMat3::from_cols(DVec3::new(4.0, 1.0, -1.0), DVec3::new(1.0, 2.0, 0.7), DVec3::new(-1.0, 0.7, 1.5)));
+        let k = ContactMatrix(DMat3::from_cols(
+            DVec3::new(4.0, 1.0, -1.0),
+            DVec3::new(1.0, 2.0, 0.7),
+            DVec3::new(-1.0, 0.7, 1.5),
+        ));
         let u = DVec3::new(1.0, -0.8, -1.0);
         let exact = stronge_impulse(&k, u, 0.7, 0.3, 1e-3);
-        let errors: Vec<f64> = [0.2, 0.1, 0.05].iter().map(|&turn| (stronge_impulse(&k, u, 0.7, 0.3, turn) - exact).length()).collect();
+        let errors: Vec<f64> =
+            [0.2, 0.1, 0.05].iter().map(|&turn| (stronge_impulse(&k, u, 0.7, 0.3, turn) - exact).length()).collect();
         assert!(errors[2] < 1e-3 && errors[2] < errors[0], "{errors:?}");
     }
 

@@ -71,7 +71,7 @@ pub struct Turning {
     pub(crate) ends: [Motion; 2],
     /// Velocities of the drift of the step that was interrupted last.
     drifted: Motion,
-    /// Events since `hurried_from`, all within [`HURRY`].
+    /// Events since `hurried_from`, all within `accuracy.rattle`.
     hurried: u32,
     hurried_from: f64,
     /// Points that touch fixed parts at the clock.
@@ -80,10 +80,6 @@ pub struct Turning {
     /// The clock at which `touching` was found.
     pub(crate) listed: f64,
 }
-
-/// Window over `√(size/g)` in which events are counted. Default 1e-3; this is the contact time of the TC model (Luding & McNamara, Granular Matter 1, 1998): below it a contact is
-/// not resolved into bounces.
-const HURRY: f64 = 1e-3;
 
 /// Events within the window from which contacts last. Default 16: no chain of real bounces of one body is so fast.
 const MOST_HURRIED: u32 = 16;
@@ -149,7 +145,7 @@ impl Turning {
     pub(super) fn advance(&mut self, spec: &Spec, time: f64) {
         let dt = time - self.path.t;
         self.hurried += 1;
-        if time - self.hurried_from > HURRY * spec.time {
+        if time - self.hurried_from > spec.rattle {
             (self.hurried, self.hurried_from) = (0, time);
         }
         if self.phase == Phase::Step {

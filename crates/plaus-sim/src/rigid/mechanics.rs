@@ -4,7 +4,8 @@ use super::Rigid;
 use super::body::{Phase, Turning};
 use super::part::Part;
 use super::step::{self, RigidScratch};
-use crate::mechanics::{Impact, Link, Mechanics};
+use crate::links::Links;
+use crate::mechanics::{Impact, Mechanics};
 use crate::scenery::{Aabb, Surface};
 
 impl Mechanics for Rigid {
@@ -92,7 +93,7 @@ impl Mechanics for Rigid {
         body.touching()
     }
 
-    fn settle(&self, members: &[u32], bodies: &mut [Turning], links: &mut Vec<Link>, scratch: &mut RigidScratch) {
+    fn settle(&self, members: &[u32], bodies: &mut [Turning], links: &mut Links, scratch: &mut RigidScratch) {
         step::settle(self, members, bodies, links, scratch);
     }
 }

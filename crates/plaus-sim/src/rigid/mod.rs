@@ -98,8 +98,8 @@ pub(crate) struct Spec {
     pub(crate) size: f64,
     /// `√(g · size)`.
     pub(crate) speed: f64,
-    /// `√(size / g)`; without gravity the time in which it would cover its size at 1 m/s.
-    pub(crate) time: f64,
+    /// Time in s within which many events make its contacts last: `accuracy.rattle · √(size/g)`.
+    pub(crate) rattle: f64,
     /// Gap at which it touches, in m: the preset's over [`step::TOUCHING`].
     pub(crate) gap: f64,
     pub(crate) wobble: f64,
@@ -273,7 +273,8 @@ impl Spec {
         }
         let (size, inertia) = (b.shape.size(), Inertia::new(inertia));
         let (speed, gap) = ((strength * size).sqrt(), world.accuracy.gap * size / step::TOUCHING);
-        let time = if strength > 0.0 { (size / strength).sqrt() } else { size };
+        // Without gravity there is no time scale but that of the speeds, which is not known here.
+        let rattle = if strength > 0.0 { world.accuracy.rattle * (size / strength).sqrt() } else { 0.0 };
         let (reach, wobble) = (b.shape.reach(), inertia.wobble());
         let (skin, rings) = match &b.shape {
             Shape::Ball(_) => (Skin::Ball, Vec::new()),
@@ -292,7 +293,7 @@ impl Spec {
             reach,
             size,
             speed,
-            time,
+            rattle,
             gap,
             wobble,
             is_ball,

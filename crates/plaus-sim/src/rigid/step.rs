@@ -12,7 +12,7 @@ use super::rest;
 use super::solve::{Contact, Member, sweep};
 use super::tumble::{drift, rotation};
 use super::{Rigid, Spec};
-use crate::mechanics::Link;
+use crate::links::Links;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Work space of a group's step.
@@ -63,7 +63,7 @@ pub(super) fn settle(
     world: &Rigid,
     group: &[u32],
     bodies: &mut [Turning],
-    links: &mut Vec<Link>,
+    links: &mut Links,
     scratch: &mut RigidScratch,
 ) {
     let mut is_over = true;
@@ -108,26 +108,24 @@ pub(super) fn settle(
 
 impl RigidScratch {
     /// Finds the lasting contacts of a group. Bodies without any fly.
-    fn gather(&mut self, world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Vec<Link>) {
+    fn gather(&mut self, world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
         self.places.clear();
         self.touches.clear();
         self.leaving.clear();
         self.pairs.clear();
-        links.retain(|&[i, j]| {
-            if !group.contains(&i) {
-                return true;
+        for k in 0..group.len() {
+            for j in links.of(group[k]).filter(|&j| j > group[k]) {
+                let (i, j) = (group[k] as usize, j as usize);
+                let (a, b) = (bodies[i].pose(), bodies[j].pose());
+                let touch = world.pair_touch([i, j], [&a, &b]);
+                let speed = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
+                let slow = speed <= world.pair_settle_speed([i, j]) || bodies[i].is_hurried() || bodies[j].is_hurried();
+                if slow && touch.gap <= TOUCHING * world.pair_gap([i, j]) {
+                    self.pairs.push(([i, j], touch));
+                }
             }
-            let (i, j) = (i as usize, j as usize);
-            let (a, b) = (bodies[i].pose(), bodies[j].pose());
-            let touch = world.pair_touch([i, j], [&a, &b]);
-            let speed = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
-            let slow = speed <= world.pair_settle_speed([i, j]) || bodies[i].is_hurried() || bodies[j].is_hurried();
-            let lasts = slow && touch.gap <= TOUCHING * world.pair_gap([i, j]);
-            if lasts {
-                self.pairs.push(([i, j], touch));
-            }
-            lasts
-        });
+        }
+        links.retain(|[i, j]| !group.contains(&i) || self.pairs.iter().any(|p| p.0 == [i as usize, j as usize]));
         for &k in group {
             let index = k as usize;
             if bodies[index].phase == Phase::Gone {

@@ -67,16 +67,16 @@ mod tests {
     fn every_case_of_the_rule() {
         // (coefficients, expected)
         let cases = [
-            ([1.0, -1.0, 0.0], Some(1.0)),   // a line that falls
-            ([1.0, 1.0, 0.0], None),         // a line that rises
-            ([0.0, -1.0, 0.0], Some(0.0)),   // touching and approaching
-            ([0.0, 1.0, 0.0], None),         // touching and leaving
+            ([1.0, -1.0, 0.0], Some(1.0)),    // a line that falls
+            ([1.0, 1.0, 0.0], None),          // a line that rises
+            ([0.0, -1.0, 0.0], Some(0.0)),    // touching and approaching
+            ([0.0, 1.0, 0.0], None),          // touching and leaving
             ([-1e-18, 1.0, -1.0], Some(1.0)), // overlapping by rounding, thrown up, comes back
-            ([-0.5, 1.0, -1.0], Some(0.5)),  // overlapping all the way: from the turning point on
-            ([1.0, 0.0, -1.0], Some(1.0)),   // a drop from rest
-            ([1.0, -2.0, 1.0], Some(1.0)),   // exact grazing
-            ([1.0, -2.0, 1.5], None),        // a miss
-            ([0.0, 0.0, 0.0], None),         // resting
+            ([-0.5, 1.0, -1.0], Some(0.5)),   // overlapping all the way: from the turning point on
+            ([1.0, 0.0, -1.0], Some(1.0)),    // a drop from rest
+            ([1.0, -2.0, 1.0], Some(1.0)),    // exact grazing
+            ([1.0, -2.0, 1.5], None),         // a miss
+            ([0.0, 0.0, 0.0], None),          // resting
         ];
         for (c, expected) in cases {
             let found = fall_of_quadratic(c, 10.0);

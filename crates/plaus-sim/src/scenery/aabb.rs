@@ -47,6 +47,14 @@ impl Aabb {
             && self.max.z >= other.min.z
     }
 
+    /// Square of the distance between two boxes; infinite where one is empty.
+    #[inline]
+    #[must_use]
+    pub fn distance_squared(&self, other: &Self) -> f64 {
+        let gap = (other.min - self.max).max(self.min - other.max).max(DVec3::ZERO);
+        gap.length_squared()
+    }
+
     /// Whether a point lies in the box.
     #[inline]
     #[must_use]

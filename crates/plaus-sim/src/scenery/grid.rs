@@ -1,12 +1,15 @@
 //! Broad phase for what does not move: a uniform grid over the space of ball centres.
 //!
-//! A feature is listed in each cell that its box, grown by the largest radius and the mesh's margin, touches. The outermost cells reach to infinity.
+//! A feature is listed in each cell from which the largest ball can touch its box, grown by how far it may be moved. The outermost cells reach to infinity.
 
 use crate::scenery::Aabb;
 use glam::DVec3;
 
 /// Most cells along one axis; bounds memory at about 2 million cells.
 const MOST_CELLS: f64 = 128.0;
+
+/// Side of a cell over the mean side of a grown box. Default 0.15: smaller cells list less each but are crossed more often.
+const CELL: f64 = 0.15;
 
 /// Lists of features per cell.
 #[derive(Debug, Clone)]
@@ -20,54 +23,47 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// A grid over boxes, which are grown by `reach`.
-    pub(crate) fn new(boxes: &[Aabb], reach: f64) -> Self {
-        let boxes: Vec<Aabb> = boxes.iter().map(|b| b.grown(reach)).collect();
-        let all = boxes.iter().fold(Aabb::EMPTY, |a, b| a.union(*b));
-        let extent = if boxes.is_empty() { DVec3::ZERO } else { all.max - all.min };
+    /// A grid over boxes for balls of radius up to `reach`. `may_touch` can rule out that a ball whose centre is in a box touches an item, beyond what boxes say.
+    pub(crate) fn new(boxes: &[Aabb], reach: f64, may_touch: impl Fn(u32, &Aabb) -> bool) -> Self {
+        let listed = || boxes.iter().filter(|b| b.min.x <= b.max.x).map(|b| b.grown(reach));
+        let all = listed().fold(Aabb::EMPTY, Aabb::union);
+        let count = listed().count();
+        let extent = if count == 0 { DVec3::ZERO } else { all.max - all.min };
         let widest = extent.max_element();
-        let mean = boxes.iter().map(|b| (b.max - b.min).max_element()).sum::<f64>() / (boxes.len().max(1) as f64);
-        // A quarter of a typical grown box: smaller cells list less each but are crossed more often.
-        let size = (0.25 * mean).max(widest / MOST_CELLS).max(f64::MIN_POSITIVE);
+        let mean = listed().map(|b| (b.max - b.min).max_element()).sum::<f64>() / (count.max(1) as f64);
+        let size = (CELL * mean).max(widest / MOST_CELLS).max(f64::MIN_POSITIVE);
         let counts = extent.to_array().map(|e| ((e / size).ceil()).clamp(1.0, MOST_CELLS) as usize);
-        let mut grid = Self { origin: all.min, inverse: 1.0 / size, size, counts, starts: Vec::new(), items: Vec::new() };
-        if boxes.is_empty() {
-            grid.origin = DVec3::ZERO;
-        }
-        grid.fill(&boxes);
+        let origin = if count == 0 { DVec3::ZERO } else { all.min };
+        let mut grid = Self { origin, inverse: 1.0 / size, size, counts, starts: Vec::new(), items: Vec::new() };
+        grid.fill(boxes, reach, may_touch);
         grid
     }
 
-    fn fill(&mut self, boxes: &[Aabb]) {
-        let cells = self.counts[0] * self.counts[1] * self.counts[2];
-        let mut counts = vec![0_u32; cells + 1];
-        for b in boxes {
-            self.each_cell(b, |cell| counts[cell + 1] += 1);
-        }
-        for k in 0..cells {
-            counts[k + 1] += counts[k];
-        }
-        let mut next = counts.clone();
-        let mut items = vec![0; counts[cells] as usize];
-        for (k, b) in boxes.iter().enumerate() {
-            self.each_cell(b, |cell| {
-                items[next[cell] as usize] = k as u32;
-                next[cell] += 1;
-            });
-        }
-        self.starts = counts;
-        self.items = items;
-    }
-
-    fn each_cell(&self, b: &Aabb, mut visit: impl FnMut(usize)) {
-        let (low, high) = (self.cell_of(b.min), self.cell_of(b.max));
-        for z in low[2]..=high[2] {
-            for y in low[1]..=high[1] {
-                for x in low[0]..=high[0] {
-                    visit(self.index([x, y, z]));
+    fn fill(&mut self, boxes: &[Aabb], reach: f64, may_touch: impl Fn(u32, &Aabb) -> bool) {
+        // A little more than the reach, for rounding at the cells' walls.
+        let reach = reach * (1.0 + 1e-6);
+        let mut pairs: Vec<(u32, u32)> = Vec::new();
+        for (k, b) in boxes.iter().enumerate().filter(|(_, b)| b.min.x <= b.max.x) {
+            let around = b.grown(reach);
+            let (low, high) = (self.cell_of(around.min), self.cell_of(around.max));
+            for z in low[2]..=high[2] {
+                for y in low[1]..=high[1] {
+                    for x in low[0]..=high[0] {
+                        let (min, max) = self.walls([x, y, z]);
+                        let cell = Aabb { min, max };
+                        if cell.distance_squared(b) <= reach * reach
+                            && may_touch(k as u32, &cell.grown(1e-6 * self.size))
+                        {
+                            pairs.push((self.index([x, y, z]) as u32, k as u32));
+                        }
+                    }
                 }
             }
         }
+        pairs.sort_unstable();
+        let cells = self.counts[0] * self.counts[1] * self.counts[2];
+        self.starts = (0..=cells).map(|cell| pairs.partition_point(|&(c, _)| (c as usize) < cell) as u32).collect();
+        self.items = pairs.into_iter().map(|(_, k)| k).collect();
     }
 
     #[inline]
@@ -94,12 +90,13 @@ impl Grid {
     #[inline]
     pub(crate) fn walls(&self, cell: [usize; 3]) -> (DVec3, DVec3) {
         let low = |k: usize| if cell[k] == 0 { f64::NEG_INFINITY } else { self.origin[k] + cell[k] as f64 * self.size };
-        let high = |k: usize| if cell[k] + 1 == self.counts[k] { f64::INFINITY } else { self.origin[k] + (cell[k] + 1) as f64 * self.size };
+        let high = |k: usize| {
+            if cell[k] + 1 == self.counts[k] {
+                f64::INFINITY
+            } else {
+                self.origin[k] + (cell[k] + 1) as f64 * self.size
+            }
+        };
         (DVec3::new(low(0), low(1), low(2)), DVec3::new(high(0), high(1), high(2)))
-    }
-
-    /// How many cells there are along each axis.
-    pub(crate) fn counts(&self) -> [usize; 3] {
-        self.counts
     }
 }

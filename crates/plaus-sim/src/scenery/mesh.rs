@@ -51,7 +51,9 @@ pub(crate) struct Edge {
 pub struct Mesh {
     pub(crate) vertices: Vec<DVec3>,
     made_at: Vec<DVec3>,
-    margin: f64,
+    /// How far each vertex may be moved.
+    margins: Vec<f64>,
+    moved: Touched,
     pub(crate) faces: Vec<Face>,
     pub(crate) edges: Vec<Edge>,
     pub(crate) vertex_active: Vec<bool>,
@@ -66,8 +68,33 @@ impl Mesh {
     /// # Errors
     /// [`WorldError`] naming the triangle that is degenerate, names an unknown vertex, or shares an edge it cannot share.
     pub fn new(vertices: Vec<DVec3>, triangles: &[([u32; 3], Material)], margin: f64) -> Result<Self, WorldError> {
-        if !(margin >= 0.0 && margin.is_finite()) {
-            return Err(WorldError::BadNumber { field: "mesh margin", value: margin, expected: "a length that is not negative" });
+        let margins = vec![margin; vertices.len()];
+        Self::with_margins(vertices, triangles, margins)
+    }
+
+    /// The same with a margin for each vertex: what cannot move is found faster.
+    ///
+    /// # Errors
+    /// As [`Mesh::new`], and where the margins are not as many as the vertices.
+    pub fn with_margins(
+        vertices: Vec<DVec3>,
+        triangles: &[([u32; 3], Material)],
+        margins: Vec<f64>,
+    ) -> Result<Self, WorldError> {
+        if margins.len() != vertices.len() {
+            return Err(WorldError::BadNumber {
+                field: "number of margins",
+                value: margins.len() as f64,
+                expected: "one for each vertex",
+            });
+        }
+        let bad = margins.iter().copied().find(|margin| !(*margin >= 0.0 && margin.is_finite()));
+        if let Some(value) = bad {
+            return Err(WorldError::BadNumber {
+                field: "mesh margin",
+                value,
+                expected: "a length that is not negative",
+            });
         }
         let mut mesh = Self {
             around_vertex: vec![Vec::new(); vertices.len()],
@@ -75,7 +102,8 @@ impl Mesh {
             vertex_active: vec![false; vertices.len()],
             made_at: vertices.clone(),
             vertices,
-            margin,
+            margins,
+            moved: Touched::default(),
             faces: Vec::with_capacity(triangles.len()),
             edges: Vec::with_capacity(triangles.len() * 3 / 2 + 1),
         };
@@ -84,7 +112,12 @@ impl Mesh {
         for f in 0..mesh.faces.len() {
             mesh.place_face(f)?;
         }
-        mesh.place_edges(0..mesh.edges.len());
+        for e in 0..mesh.edges.len() {
+            mesh.place_edge(e);
+        }
+        for v in 0..mesh.vertices.len() {
+            mesh.place_vertex(v);
+        }
         Ok(mesh)
     }
 
@@ -99,7 +132,14 @@ impl Mesh {
                 list.push(k as u32);
             }
             let nothing = (DVec3::ZERO, 0.0);
-            self.faces.push(Face { corners, normal: DVec3::ZERO, offset: 0.0, sides: [nothing; 3], material, neighbours: [None; 3] });
+            self.faces.push(Face {
+                corners,
+                normal: DVec3::ZERO,
+                offset: 0.0,
+                sides: [nothing; 3],
+                material,
+                neighbours: [None; 3],
+            });
         }
         Ok(())
     }
@@ -117,7 +157,14 @@ impl Mesh {
                         self.edges_at_vertex[v as usize].push(self.edges.len() as u32);
                     }
                     let faces = [Some(k as u32), None];
-                    self.edges.push(Edge { ends: [from, to], origin: DVec3::ZERO, direction: DVec3::X, length: 0.0, faces, active: true });
+                    self.edges.push(Edge {
+                        ends: [from, to],
+                        origin: DVec3::ZERO,
+                        direction: DVec3::X,
+                        length: 0.0,
+                        faces,
+                        active: true,
+                    });
                     continue;
                 };
                 let edge = &mut self.edges[e];
@@ -140,7 +187,8 @@ impl Mesh {
         let p = corners.map(|c| self.vertices[c as usize]);
         let cross = (p[1] - p[0]).cross(p[2] - p[0]);
         let doubled = cross.length();
-        let longest = (p[1] - p[0]).length_squared().max((p[2] - p[0]).length_squared()).max((p[2] - p[1]).length_squared());
+        let longest =
+            (p[1] - p[0]).length_squared().max((p[2] - p[0]).length_squared()).max((p[2] - p[1]).length_squared());
         if !(doubled > 1e-12 * longest && doubled.is_finite()) {
             return Err(WorldError::DegenerateTriangle { triangle: f, area: 0.5 * doubled });
         }
@@ -155,27 +203,30 @@ impl Mesh {
         Ok(())
     }
 
-    fn place_edges(&mut self, edges: impl IntoIterator<Item = usize>) {
-        for e in edges {
-            let [a, b] = self.edges[e].ends.map(|v| self.vertices[v as usize]);
-            let along = b - a;
-            let length = along.length();
-            let active = self.is_convex(e, length);
-            let edge = &mut self.edges[e];
-            edge.origin = a;
-            edge.direction = along / length;
-            edge.length = length;
-            edge.active = active;
-        }
-        for v in 0..self.vertices.len() {
-            self.vertex_active[v] = self.edges_at_vertex[v].iter().any(|&e| self.edges[e as usize].active);
-        }
+    fn place_edge(&mut self, e: usize) {
+        let [a, b] = self.edges[e].ends.map(|v| self.vertices[v as usize]);
+        let along = b - a;
+        let length = along.length();
+        let active = self.is_convex(e, length);
+        let edge = &mut self.edges[e];
+        edge.origin = a;
+        edge.direction = along / length;
+        edge.length = length;
+        edge.active = active;
+    }
+
+    fn place_vertex(&mut self, v: usize) {
+        self.vertex_active[v] = self.edges_at_vertex[v].iter().any(|&e| self.edges[e as usize].active);
     }
 
     fn is_convex(&self, e: usize, length: f64) -> bool {
         let [Some(first), Some(second)] = self.edges[e].faces else { return true };
         let (first, second) = (&self.faces[first as usize], &self.faces[second as usize]);
-        let far = second.corners.iter().find(|c| !self.edges[e].ends.contains(c)).map_or(DVec3::ZERO, |&c| self.vertices[c as usize]);
+        let far = second
+            .corners
+            .iter()
+            .find(|c| !self.edges[e].ends.contains(c))
+            .map_or(DVec3::ZERO, |&c| self.vertices[c as usize]);
         first.normal.dot(far) - first.offset < -FLAT * length
     }
 
@@ -193,24 +244,24 @@ impl Mesh {
                 vertices: self.vertices.len(),
             })?;
             let distance = (to - home).length();
-            if !(distance <= self.margin) {
-                return Err(WorldError::MovedTooFar { vertex: v as usize, distance, margin: self.margin });
+            let margin = self.margins[v as usize];
+            if distance.is_nan() || distance > margin {
+                return Err(WorldError::MovedTooFar { vertex: v as usize, distance, margin });
             }
             self.vertices[v as usize] = to;
         }
-        let mut faces: Vec<u32> = moved.iter().flat_map(|&(v, _)| self.around_vertex[v as usize].iter().copied()).collect();
-        faces.sort_unstable();
-        faces.dedup();
-        for &f in &faces {
-            self.place_face(f as usize)?;
-        }
-        // An edge's convexity rests on both of its faces, so every edge of a touched face is looked at.
-        let corners = faces.iter().flat_map(|&f| self.faces[f as usize].corners);
-        let mut edges: Vec<usize> = corners.flat_map(|v| self.edges_at_vertex[v as usize].iter().map(|&e| e as usize)).collect();
-        edges.sort_unstable();
-        edges.dedup();
-        self.place_edges(edges);
-        Ok(())
+        let mut touched = std::mem::take(&mut self.moved);
+        touched.find(self, moved);
+        let placed = touched.faces.iter().try_for_each(|&f| self.place_face(f as usize));
+        touched.edges.iter().for_each(|&e| self.place_edge(e as usize));
+        touched.vertices.iter().for_each(|&v| self.place_vertex(v as usize));
+        self.moved = touched;
+        placed
+    }
+
+    /// What the last move touched.
+    pub(crate) fn touched(&self) -> &Touched {
+        &self.moved
     }
 
     /// The mesh's vertices where they are now.
@@ -237,12 +288,58 @@ impl Mesh {
         self.faces.is_empty()
     }
 
-    pub(crate) fn margin(&self) -> f64 {
-        self.margin
+    /// Largest margin of some vertices.
+    fn margin_of(&self, vertices: &[u32]) -> f64 {
+        vertices.iter().map(|&v| self.margins[v as usize]).fold(0.0, f64::max)
+    }
+
+    /// Boxes of all faces where they can ever be.
+    pub(crate) fn face_reaches(&self) -> impl Iterator<Item = Aabb> + '_ {
+        (0..self.faces.len()).map(|f| self.face_bounds(f).grown(self.margin_of(&self.faces[f].corners)))
+    }
+
+    /// Boxes of all edges where they can ever be; empty for one that can never become convex.
+    pub(crate) fn edge_reaches(&self) -> impl Iterator<Item = Aabb> + '_ {
+        (0..self.edges.len()).map(|e| {
+            if self.edge_may_count(e) {
+                Aabb::around(self.edges[e].ends.map(|v| self.vertices[v as usize]))
+                    .grown(self.margin_of(&self.edges[e].ends))
+            } else {
+                Aabb::EMPTY
+            }
+        })
+    }
+
+    /// Boxes of all vertices where they can ever be; empty for one whose edges can never become convex.
+    pub(crate) fn vertex_reaches(&self) -> impl Iterator<Item = Aabb> + '_ {
+        (0..self.vertices.len()).map(|v| {
+            let counts = self.edges_at_vertex[v].iter().any(|&e| self.edge_may_count(e as usize));
+            if counts { Aabb::around([self.vertices[v]]).grown(self.margins[v]) } else { Aabb::EMPTY }
+        })
+    }
+
+    /// Whether a ball of radius up to `reach` whose centre is in a box can touch a face: not where the box is all behind it or all beyond reach.
+    pub(crate) fn face_may_touch(&self, f: usize, centres: &Aabb, reach: f64) -> bool {
+        let face = &self.faces[f];
+        if self.margin_of(&face.corners) > 0.0 || !centres.min.is_finite() || !centres.max.is_finite() {
+            return true;
+        }
+        let middle = face.normal.dot(0.5 * (centres.min + centres.max)) - face.offset;
+        let half = face.normal.abs().dot(0.5 * (centres.max - centres.min));
+        middle + half >= 0.0 && middle - half <= reach * (1.0 + 1e-6)
+    }
+
+    fn edge_may_count(&self, e: usize) -> bool {
+        let edge = &self.edges[e];
+        edge.active || edge.faces.iter().flatten().any(|&f| self.margin_of(&self.faces[f as usize].corners) > 0.0)
     }
 
     pub(crate) fn around_vertex(&self, v: u32) -> &[u32] {
         &self.around_vertex[v as usize]
+    }
+
+    pub(crate) fn edges_at_vertex(&self, v: u32) -> &[u32] {
+        &self.edges_at_vertex[v as usize]
     }
 
     pub(crate) fn edge_between(&self, a: u32, b: u32) -> Option<u32> {
@@ -251,5 +348,44 @@ impl Mesh {
 
     pub(crate) fn face_bounds(&self, f: usize) -> Aabb {
         Aabb::around(self.faces[f].corners.map(|c| self.vertices[c as usize]))
+    }
+
+    /// Box of an edge; empty while it is not convex.
+    pub(crate) fn edge_bounds(&self, e: usize) -> Aabb {
+        let edge = &self.edges[e];
+        if edge.active { Aabb::around(edge.ends.map(|v| self.vertices[v as usize])) } else { Aabb::EMPTY }
+    }
+
+    /// Box of a vertex; empty while none of its edges is convex.
+    pub(crate) fn vertex_bounds(&self, v: usize) -> Aabb {
+        if self.vertex_active[v] { Aabb::around([self.vertices[v]]) } else { Aabb::EMPTY }
+    }
+}
+
+/// What a move of vertices touches: kept, since scenes move the same vertices again and again.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Touched {
+    moved: Vec<u32>,
+    pub(crate) faces: Vec<u32>,
+    pub(crate) edges: Vec<u32>,
+    pub(crate) vertices: Vec<u32>,
+}
+
+impl Touched {
+    fn find(&mut self, mesh: &Mesh, moved: &[(u32, DVec3)]) {
+        if self.moved.len() == moved.len() && self.moved.iter().zip(moved).all(|(a, b)| *a == b.0) {
+            return;
+        }
+        let unique = |mut list: Vec<u32>| {
+            list.sort_unstable();
+            list.dedup();
+            list
+        };
+        self.moved = moved.iter().map(|m| m.0).collect();
+        self.faces = unique(self.moved.iter().flat_map(|&v| &mesh.around_vertex[v as usize]).copied().collect());
+        // An edge's convexity rests on both of its faces, so every edge of a touched face is looked at.
+        self.vertices = unique(self.faces.iter().flat_map(|&f| mesh.faces[f as usize].corners).collect());
+        self.edges = unique(self.vertices.iter().flat_map(|&v| &mesh.edges_at_vertex[v as usize]).copied().collect());
+        self.vertices = unique(self.edges.iter().flat_map(|&e| mesh.edges[e as usize].ends).collect());
     }
 }

@@ -89,17 +89,17 @@ impl Scenery {
         if !(reach > 0.0 && reach.is_finite()) {
             return Err(WorldError::BadNumber { field: "largest radius", value: reach, expected: "a positive length" });
         }
-        let margin = mesh.margin();
-        let faces = (0..mesh.faces.len()).map(|f| mesh.face_bounds(f).grown(margin));
-        let edges = mesh.edges.iter().map(|e| {
-            // An edge that can never become convex is left out of every cell.
-            if margin == 0.0 && !e.active { Aabb::EMPTY } else { Aabb::around(e.ends.map(|v| mesh.vertices[v as usize])).grown(margin) }
+        let caps = domes.iter().map(Dome::bounds);
+        let reaches: Vec<Aabb> =
+            mesh.face_reaches().chain(caps).chain(mesh.edge_reaches()).chain(mesh.vertex_reaches()).collect();
+        let faces = mesh.faces.len();
+        let grid = Grid::new(&reaches, reach, |item, centres| {
+            item as usize >= faces || mesh.face_may_touch(item as usize, centres, reach)
         });
-        let vertices = mesh.vertices.iter().zip(&mesh.vertex_active).map(|(&v, &active)| {
-            if margin == 0.0 && !active { Aabb::EMPTY } else { Aabb { min: v, max: v }.grown(margin) }
-        });
-        let boxes: Vec<Aabb> = faces.chain(domes.iter().map(Dome::bounds)).chain(edges).chain(vertices).collect();
-        let grid = Grid::new(&boxes, reach);
+        let faces = (0..mesh.faces.len()).map(|f| mesh.face_bounds(f));
+        let edges = (0..mesh.edges.len()).map(|e| mesh.edge_bounds(e));
+        let vertices = (0..mesh.vertices.len()).map(|v| mesh.vertex_bounds(v));
+        let boxes = faces.chain(domes.iter().map(Dome::bounds)).chain(edges).chain(vertices).collect();
         Ok(Self { planes, mesh, domes, boxes, grid, reach })
     }
 
@@ -111,12 +111,20 @@ impl Scenery {
         Self::new(Vec::new(), Mesh::new(Vec::new(), &[], 0.0)?, Vec::new(), 1.0)
     }
 
-    /// The same scenery with some mesh vertices moved (see [`Mesh::move_vertices`]).
+    /// Moves some mesh vertices (see [`Mesh::move_vertices`]).
     ///
     /// # Errors
     /// As [`Mesh::move_vertices`].
     pub fn move_vertices(&mut self, moved: &[(u32, DVec3)]) -> Result<(), WorldError> {
-        self.mesh.move_vertices(moved)
+        self.mesh.move_vertices(moved)?;
+        let Self { mesh, boxes, domes, .. } = self;
+        let first_edge = mesh.faces.len() + domes.len();
+        let first_vertex = first_edge + mesh.edges.len();
+        let touched = mesh.touched();
+        touched.faces.iter().for_each(|&f| boxes[f as usize] = mesh.face_bounds(f as usize));
+        touched.edges.iter().for_each(|&e| boxes[first_edge + e as usize] = mesh.edge_bounds(e as usize));
+        touched.vertices.iter().for_each(|&v| boxes[first_vertex + v as usize] = mesh.vertex_bounds(v as usize));
+        Ok(())
     }
 
     /// The planes.
@@ -155,7 +163,8 @@ impl Scenery {
     /// What an item of the broad phase is.
     #[inline]
     pub(crate) fn surface(&self, item: u32) -> Surface {
-        let (faces, domes, edges) = (self.mesh.faces.len() as u32, self.domes.len() as u32, self.mesh.edges.len() as u32);
+        let (faces, domes, edges) =
+            (self.mesh.faces.len() as u32, self.domes.len() as u32, self.mesh.edges.len() as u32);
         if item < faces {
             Surface::Face(item)
         } else if item < faces + domes {
@@ -175,8 +184,12 @@ impl Scenery {
             Surface::Plane(k) => self.planes[k as usize].material,
             Surface::Dome(k) => self.domes[k as usize].material,
             Surface::Face(k) => self.mesh.faces[k as usize].material,
-            Surface::Edge(k) => self.mesh.edges[k as usize].faces[0].map_or(Material(0), |f| self.mesh.faces[f as usize].material),
-            Surface::Vertex(k) => self.mesh.around_vertex(k).first().map_or(Material(0), |&f| self.mesh.faces[f as usize].material),
+            Surface::Edge(k) => {
+                self.mesh.edges[k as usize].faces[0].map_or(Material(0), |f| self.mesh.faces[f as usize].material)
+            }
+            Surface::Vertex(k) => {
+                self.mesh.around_vertex(k).first().map_or(Material(0), |&f| self.mesh.faces[f as usize].material)
+            }
             Surface::Part { .. } => unreachable!("{NO_PARTS}"),
         }
     }
@@ -192,7 +205,11 @@ impl Scenery {
             }
             Surface::Face(k) => {
                 let face = &self.mesh.faces[k as usize];
-                Foot { normal: face.normal, distance: face.normal.dot(x) - face.offset, curvature_radius: f64::INFINITY }
+                Foot {
+                    normal: face.normal,
+                    distance: face.normal.dot(x) - face.offset,
+                    curvature_radius: f64::INFINITY,
+                }
             }
             Surface::Dome(k) => {
                 let dome = &self.domes[k as usize];

@@ -15,19 +15,61 @@ impl Scenery {
                 let foot = x - face.normal * (face.normal.dot(x) - face.offset);
                 if face.inside(foot) >= 0.0 { Some(surface) } else { self.nearest(face.corners, x) }
             }
-            Surface::Edge(k) => self.nearest_around_edge(k, x),
-            Surface::Vertex(k) => self.nearest([k; 3], x),
+            Surface::Edge(k) => self.around_edge(k, x),
+            Surface::Vertex(k) => self.nearest([k], x),
             Surface::Part { .. } => None,
         }
     }
 
-    fn nearest_around_edge(&self, edge: u32, x: DVec3) -> Option<Surface> {
-        let [a, b] = self.mesh.edges[edge as usize].ends;
-        self.nearest([a, b, b], x)
+    /// Where a ball's centre stands to what a contact with `surface` has become at `x`: the offset of a convex corner has no kinks, whatever feature is nearest.
+    pub(crate) fn foot_near(&self, surface: Surface, x: DVec3) -> super::Foot {
+        self.foot(self.track(surface, x).unwrap_or(surface), x)
+    }
+
+    /// Whether an edge is nearer to `x` than the insides of its faces, up to `slack`.
+    pub(crate) fn is_over_edge(&self, k: u32, x: DVec3, slack: f64) -> bool {
+        let edge = &self.mesh.edges[k as usize];
+        let along = edge.direction.dot(x - edge.origin);
+        let beyond = |&f: &u32| {
+            let face = &self.mesh.faces[f as usize];
+            let height = face.normal.dot(x) - face.offset;
+            height >= 0.0 && face.inside(x - face.normal * height) > slack
+        };
+        along >= -slack && along <= edge.length + slack && !edge.faces.iter().flatten().any(beyond)
+    }
+
+    /// Whether a vertex is nearer to `x` than the insides of its edges and faces, up to `slack`.
+    pub(crate) fn is_over_vertex(&self, k: u32, x: DVec3, slack: f64) -> bool {
+        let at = self.mesh.vertices[k as usize];
+        let away = |&e: &u32| {
+            let edge = &self.mesh.edges[e as usize];
+            let outward = if edge.ends[0] == k { edge.direction } else { -edge.direction };
+            let along = outward.dot(x - at);
+            along <= slack || along > edge.length
+        };
+        self.mesh.edges_at_vertex(k).iter().all(away)
+    }
+
+    /// The edge itself unless the ball has come over one of its faces or beyond one of its ends.
+    fn around_edge(&self, k: u32, x: DVec3) -> Option<Surface> {
+        let edge = &self.mesh.edges[k as usize];
+        let along = edge.direction.dot(x - edge.origin);
+        if along < 0.0 {
+            return self.nearest([edge.ends[0]], x);
+        }
+        if along > edge.length {
+            return self.nearest([edge.ends[1]], x);
+        }
+        let over = edge.faces.iter().flatten().find(|&&f| {
+            let face = &self.mesh.faces[f as usize];
+            let height = face.normal.dot(x) - face.offset;
+            height >= 0.0 && face.inside(x - face.normal * height) > 0.0
+        });
+        Some(over.map_or(Surface::Edge(k), |&f| Surface::Face(f)))
     }
 
     /// Nearest feature of the triangles around some vertices; the lowest triangle where several are equally near.
-    fn nearest(&self, vertices: [u32; 3], x: DVec3) -> Option<Surface> {
+    fn nearest<const N: usize>(&self, vertices: [u32; N], x: DVec3) -> Option<Surface> {
         let mut best: Option<(f64, Surface)> = None;
         for v in vertices {
             for &f in self.mesh.around_vertex(v) {
@@ -92,7 +134,10 @@ impl Scenery {
                     let height = face.normal.dot(x) - face.offset;
                     if squared.is_finite() {
                         note(surface, radius - squared.sqrt());
-                    } else if height > -radius && face.inside(x - face.normal * height) > 0.0 && !self.is_shielded(f, x, -height) {
+                    } else if height > -radius
+                        && face.inside(x - face.normal * height) > 0.0
+                        && !self.is_shielded(f, x, -height)
+                    {
                         note(surface, radius - height);
                     }
                 }
@@ -115,7 +160,10 @@ impl Scenery {
             Surface::Face(g) if g != f => {
                 let face = &self.mesh.faces[g as usize];
                 let height = face.normal.dot(x) - face.offset;
-                face.normal.dot(behind) < 0.0 && height >= 0.0 && height < depth && face.inside(x - face.normal * height) >= 0.0
+                face.normal.dot(behind) < 0.0
+                    && height >= 0.0
+                    && height < depth
+                    && face.inside(x - face.normal * height) >= 0.0
             }
             _ => false,
         })

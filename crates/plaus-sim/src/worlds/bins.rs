@@ -90,6 +90,17 @@ impl Bins {
         DVec3::new(i as f64 * self.side, j as f64 * self.side, self.height)
     }
 
+    /// Offsets of all ridge vertices, about normal (a sum of uniforms) with `sigma` metres per axis; `uniform` gives numbers in [0, 1).
+    pub fn perturbed(&self, sigma: f64, mut uniform: impl FnMut() -> f64) -> Vec<(u32, DVec3)> {
+        (0..self.crossings())
+            .map(|k| {
+                let sum =
+                    (0..4).map(|_| DVec3::new(uniform(), uniform(), uniform())).fold(DVec3::splat(-2.0), |a, b| a + b);
+                (k as u32, self.crossing(k) + sum * (sigma * 3.0_f64.sqrt()))
+            })
+            .collect()
+    }
+
     /// The partitions' surface. Vertices `0..crossings()` are the ridge at the crossings; then four shoulder corners and four foot corners of each crossing.
     ///
     /// # Errors
@@ -103,7 +114,10 @@ impl Bins {
         for z in [shoulder, -self.height] {
             for k in 0..crossings {
                 let c = self.crossing(k);
-                vertices.extend([(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| DVec3::new(c.x + x, c.y + y, z)));
+                vertices.extend(
+                    [(-half, -half), (half, -half), (half, half), (-half, half)]
+                        .map(|(x, y)| DVec3::new(c.x + x, c.y + y, z)),
+                );
             }
         }
         let top = |k: usize, corner: usize| (crossings + 4 * k + corner) as u32;
@@ -137,7 +151,8 @@ impl Bins {
             }
         }
         let all: Vec<_> = triangles.into_iter().chain(caps).map(|t| (t, Material(1))).collect();
-        Mesh::new(vertices, &all, self.margin)
+        let margins = (0..vertices.len()).map(|v| if v < crossings { self.margin } else { 0.0 }).collect();
+        Mesh::with_margins(vertices, &all, margins)
     }
 
     /// The scenery: partitions, bowls and the walls of the box.
@@ -176,7 +191,14 @@ impl Bins {
         laws.set(Material(0), Material(0), self.marble_law)?;
         let mass = 4.0 / 3.0 * std::f64::consts::PI * self.marble * self.marble * self.marble * self.density;
         let specs = vec![MarbleSpec::solid(self.marble, mass, Material(0)); count];
-        Marbles::new(MarbleWorld { specs, laws, scenery: self.scenery()?, gravity: DVec3::new(0.0, 0.0, -9.81), accuracy, duration })
+        Marbles::new(MarbleWorld {
+            specs,
+            laws,
+            scenery: self.scenery()?,
+            gravity: DVec3::new(0.0, 0.0, -9.81),
+            accuracy,
+            duration,
+        })
     }
 }
 

@@ -3,7 +3,9 @@
 mod alley;
 mod bins;
 mod table;
+mod watch;
 
 pub use alley::Alley;
 pub use bins::{Bins, drops};
 pub use table::DieOnTable;
+pub use watch::Watch;
