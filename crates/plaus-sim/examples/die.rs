@@ -1,6 +1,6 @@
 //! Throws a die many times on a flat and on a bumpy table, and prints how it fell, how much work that was, and how long it took.
 //!
-//! `cargo run --release -p plaus-sim --example die -- [throws] [bumps]`
+//! `cargo run --release -p plaus-sim --example die -- [throws] [bumps] [preset]`
 #![allow(clippy::disallowed_methods, clippy::print_stdout, clippy::unwrap_used)]
 
 use glam::DVec3;
@@ -13,12 +13,13 @@ fn main() {
     let mut args = std::env::args().skip(1);
     let throws: usize = args.next().map_or(2000, |a| a.parse().unwrap());
     let only: Option<f64> = args.next().map(|a| a.parse().unwrap());
+    let named = args.next();
     println!(
         "{:>9} {:>6} {:>8} {:>8} {:>7} {:>8} {:>8} {:>6} {:>6}  faces",
         "preset", "bumps", "median", "90 %", "events", "impacts", "ns/event", "rest", "other"
     );
     for bumps in [0.0, 0.1, 0.3].into_iter().filter(|b| only.is_none_or(|o| o == *b)) {
-        for preset in [Preset::Draft, Preset::Standard, Preset::Fine] {
+        for preset in Preset::ALL.into_iter().filter(|p| named.as_ref().map_or(*p != Preset::Reference, |n| n == p.name())) {
             row(preset, bumps, throws);
         }
     }

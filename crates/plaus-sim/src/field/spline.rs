@@ -34,6 +34,8 @@ struct Made {
     cell_places: Lookup,
     cells: Vec<Cell>,
     last: Option<([i64; 2], u32)>,
+    /// The last rectangle of cells that bounds were asked for.
+    window: Option<([[i64; 2]; 2], Bounds)>,
     fault: Option<([i64; 2], f64)>,
 }
 
@@ -106,8 +108,8 @@ impl Spline {
     #[inline]
     fn locate(&self, x: f64, y: f64) -> ([i64; 2], f64, f64) {
         let (u, v) = ((x - self.grid.origin[0]) / self.grid.spacing, (y - self.grid.origin[1]) / self.grid.spacing);
-        let (i, j) = (u.floor(), v.floor());
-        ([i as i64, j as i64], u - i, v - j)
+        let (i, j) = (floor(u), floor(v));
+        ([i, j], u - i as f64, v - j as f64)
     }
 
     /// Value and derivatives at a point.
@@ -141,6 +143,11 @@ impl Spline {
             return None;
         }
         let made = &mut *self.made.borrow_mut();
+        if let Some((cells, bounds)) = made.window
+            && cells == [low, high]
+        {
+            return Some(bounds);
+        }
         let mut all = Bounds::NONE;
         for i in low[0]..=high[0] {
             for j in low[1]..=high[1] {
@@ -148,6 +155,7 @@ impl Spline {
                 all = all.and(&made.cells[place as usize].bounds);
             }
         }
+        made.window = Some(([low, high], all));
         Some(all)
     }
 
@@ -186,6 +194,7 @@ impl Spline {
     pub fn set(&mut self, key: [i64; 2], value: f64) {
         let made = &mut *self.made.borrow_mut();
         let value = checked(self.range, made, key, value);
+        made.window = None;
         match made.point_places.get(key) {
             Some(place) => made.points[place as usize].1 = value,
             None => made.push_point(key, value),
@@ -237,6 +246,13 @@ impl Spline {
         made.push_point(key, value);
         value
     }
+}
+
+/// The largest whole number not above `x`, by a cast: a call of the library's is slower on processors without an instruction for it.
+#[inline]
+fn floor(x: f64) -> i64 {
+    let i = x as i64;
+    if i as f64 > x { i.saturating_sub(1) } else { i }
 }
 
 /// The value, or what stands for one that breaks the promise, which is noted.

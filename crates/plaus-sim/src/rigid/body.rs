@@ -77,12 +77,17 @@ pub struct Turning {
     /// Points that touch fixed parts at the clock.
     touching: [Surface; MOST_TOUCHES],
     touching_count: u8,
+    /// Forces in N at the first of the points that a step was made with: where the next begins to look.
+    loads: [DVec3; MOST_LOADS],
     /// The clock at which `touching` was found.
     pub(crate) listed: f64,
 }
 
 /// Events within the window from which contacts last. Default 16: no chain of real bounces of one body is so fast.
 const MOST_HURRIED: u32 = 16;
+
+/// Points whose forces are kept: those of a die on a face.
+pub(crate) const MOST_LOADS: usize = 4;
 
 const NOWHERE: Surface = Surface::Part { part: u16::MAX, point: u16::MAX };
 
@@ -101,6 +106,7 @@ impl Turning {
             hurried_from: f64::NEG_INFINITY,
             touching: [NOWHERE; MOST_TOUCHES],
             touching_count: 0,
+            loads: [DVec3::ZERO; MOST_LOADS],
             listed: f64::NEG_INFINITY,
         }
     }
@@ -109,6 +115,19 @@ impl Turning {
     #[must_use]
     pub fn touching(&self) -> &[Surface] {
         &self.touching[..usize::from(self.touching_count)]
+    }
+
+    /// The force at a point at the end of the last step, if it was among those kept.
+    pub(super) fn load(&self, surface: Surface) -> DVec3 {
+        let at = self.touching().iter().take(MOST_LOADS).position(|&s| s == surface);
+        at.filter(|_| self.phase == Phase::Step).map_or(DVec3::ZERO, |k| self.loads[k])
+    }
+
+    pub(super) fn set_loads(&mut self, forces: impl Iterator<Item = DVec3>) {
+        self.loads = [DVec3::ZERO; MOST_LOADS];
+        for (load, force) in self.loads.iter_mut().zip(forces) {
+            *load = force;
+        }
     }
 
     pub(super) fn list(&mut self, surfaces: impl Iterator<Item = Surface>) {

@@ -39,7 +39,7 @@ pub(crate) struct Contact {
 }
 
 /// Rounds over the direction of slip per visit; the sweeps around it do the rest.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 2;
 
 impl Contact {
     pub(crate) fn new(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3, friction: f64, k: DMat3) -> Self {

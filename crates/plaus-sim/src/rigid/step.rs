@@ -22,6 +22,8 @@ pub struct RigidScratch {
     pub(super) places: Vec<Place>,
     /// Points on fixed parts.
     pub(super) touches: Vec<(usize, Touch)>,
+    /// Forces at those points in the last step.
+    loads: Vec<DVec3>,
     /// Points that touch but separate.
     pub(super) leaving: Vec<(usize, Touch)>,
     /// Points between bodies.
@@ -51,6 +53,9 @@ pub(super) const TOUCHING: f64 = 2.0;
 
 /// How often a step is shortened so that points which just left are not back within it. Each aims at half their speed.
 const SHORTENINGS: usize = 4;
+
+/// Distance from the gap that is to be kept within which a step needs no correction, over the gap. Default 0.2.
+const CLOSE: f64 = 0.2;
 
 /// Largest speed with which a point is pushed out of an overlap, over that below which bounces last. Default 1; only the drift has it, not the velocities.
 const PUSH: f64 = 1.0;
@@ -100,6 +105,7 @@ pub(super) fn settle(
         }
     }
     // Bounces too fast for any step: they count as lasting.
+    scratch.loads.clear();
     scratch.touches.append(&mut scratch.leaving);
     scratch.touches.sort_by_key(|t| t.0);
     scratch.step(world, h);
@@ -111,6 +117,7 @@ impl RigidScratch {
     fn gather(&mut self, world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
         self.places.clear();
         self.touches.clear();
+        self.loads.clear();
         self.leaving.clear();
         self.pairs.clear();
         for k in 0..group.len() {
@@ -137,6 +144,7 @@ impl RigidScratch {
                 let law = world.law_at(index, t.part, pose.x + t.arm);
                 if hurried || pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law) {
                     self.touches.push((at, t));
+                    self.loads.push(bodies[index].load(t.surface()));
                 } else {
                     self.leaving.push((at, t));
                 }
@@ -254,6 +262,13 @@ impl RigidScratch {
             c.target = ((KEEP * world.pair_gap(both) - t.gap) / h)
                 .min(PUSH * world.accuracy.settle * world.specs[both[0]].speed);
         }
+        // The last step's forces are a good guess.
+        for (c, &load) in self.contacts.iter_mut().zip(&self.loads) {
+            if load != DVec3::ZERO {
+                c.impulse = load * (0.5 * h);
+                c.push(&mut self.members, c.impulse);
+            }
+        }
         for pass in 0..PASSES {
             sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
             for (p, m) in self.places.iter_mut().zip(&self.members) {
@@ -261,17 +276,23 @@ impl RigidScratch {
                 p.end = Pose { x: p.start.x + m.v * h, r: DMat3::from_quat(p.end_turn), v: m.v, w: m.w };
             }
             if pass + 1 < PASSES {
+                let mut off = false;
                 for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
                     let p = &self.places[*k];
                     let spec = &world.specs[p.body];
                     let missing = (KEEP * spec.gap - world.touch(p.body, &p.end, t.part, t.point).gap) / h;
+                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * spec.gap;
                     c.target += missing.min(PUSH * world.accuracy.settle * spec.speed);
                 }
                 for (c, (ab, _)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
                     let [p, q] = ab.map(|k| &self.places[k]);
                     let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
                     let missing = (KEEP * world.pair_gap([p.body, q.body]) - after.gap) / h;
+                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * world.pair_gap([p.body, q.body]);
                     c.target += missing.min(PUSH * world.accuracy.settle * world.specs[p.body].speed);
+                }
+                if !off {
+                    break;
                 }
             }
         }
@@ -337,6 +358,8 @@ impl RigidScratch {
     fn write(&self, bodies: &mut [Turning], h: f64) {
         for (k, (p, m)) in self.places.iter().zip(&self.members).enumerate() {
             let body = &mut bodies[p.body];
+            let forces = self.contacts.iter().zip(&self.touches).filter(|(_, t)| t.0 == k);
+            body.set_loads(forces.map(|(c, _)| c.impulse * (2.0 / h)));
             body.ends = [Motion { v: p.start.v, w: p.start.w }, Motion { v: m.v, w: m.w }];
             (body.path.v, body.spin) = (p.end.v, p.end.w);
             body.begin(Phase::Step, DVec3::ZERO);
