@@ -153,6 +153,23 @@ impl Turning {
         }
     }
 
+    /// Velocities within a step: between those of its ends, and with no more energy than lies between those of its ends.
+    fn within_step(&self, spec: &Spec, gravity: DVec3, dt: f64) -> Motion {
+        let h = self.expiry - self.path.t;
+        let (part, m) = ((dt / h).clamp(0.0, 1.0), self.motion_after(spec, dt));
+        let turned = |dt: f64| drift_steadily(self.turn, self.spin, dt).0;
+        let kinetic = |turn: DQuat, m: &Motion| 0.5 * (spec.mass * m.v.length_squared() + m.w.dot(spec.inertia.momentum(turn, m.w)));
+        let fallen = spec.mass * gravity.dot(self.path.v);
+        let (first, last) = (kinetic(self.turn, &self.ends[0]), kinetic(turned(h), &self.ends[1]) - fallen * h);
+        let allowed = first + (last - first) * part + fallen * dt;
+        let now = kinetic(turned(dt), &m);
+        if now <= allowed {
+            return m;
+        }
+        let slower = (allowed.max(0.0) / now).sqrt();
+        Motion { v: m.v * slower, w: m.w * slower }
+    }
+
     /// The rotation of the current motion.
     pub(super) fn tumble(&self, spec: &Spec) -> Tumble {
         match self.phase {
@@ -161,7 +178,7 @@ impl Turning {
         }
     }
 
-    pub(super) fn advance(&mut self, spec: &Spec, time: f64) {
+    pub(super) fn advance(&mut self, spec: &Spec, gravity: DVec3, time: f64) {
         let dt = time - self.path.t;
         self.hurried += 1;
         if time - self.hurried_from > spec.rattle {
@@ -178,7 +195,7 @@ impl Turning {
                     (self.turn, self.spin) = drift(&spec.inertia, self.turn, self.spin, dt);
                 }
                 Phase::Step => {
-                    let motion = if time >= self.expiry { self.ends[1] } else { self.motion_after(spec, dt) };
+                    let motion = if time >= self.expiry { self.ends[1] } else { self.within_step(spec, gravity, dt) };
                     (self.turn, _) = drift_steadily(self.turn, self.spin, dt);
                     self.ends[0] = motion;
                     (self.path.v, self.spin) = (motion.v, motion.w);
@@ -261,7 +278,7 @@ impl Rigid {
     #[must_use]
     pub fn at(&self, index: usize, body: &Turning, time: f64) -> Turning {
         let mut moved = body.clone();
-        moved.advance(&self.specs[index], time);
+        moved.advance(&self.specs[index], self.gravity, time);
         moved
     }
 }

@@ -55,7 +55,7 @@ impl Mechanics for Rigid {
 
     #[inline]
     fn advance(&self, index: usize, body: &mut Turning, time: f64) {
-        body.advance(&self.specs[index], time);
+        body.advance(&self.specs[index], self.gravity, time);
     }
 
     #[inline]

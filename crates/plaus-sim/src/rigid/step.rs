@@ -90,11 +90,7 @@ pub(super) fn settle(
     }
     let mut h = scratch.step_length(world);
     if rest::is_slow(world, scratch) && rest::is_supported(world, scratch, h) {
-        for p in &scratch.places {
-            let body = &mut bodies[p.body];
-            (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);
-            body.begin(Phase::Rest, DVec3::ZERO);
-        }
+        scratch.lie_down(bodies);
         return;
     }
     for _ in 0..SHORTENINGS {
@@ -352,6 +348,20 @@ impl RigidScratch {
                 m.v *= part;
                 m.w *= part;
             }
+        }
+    }
+
+    /// Rest: without velocity, and lifted out of what overlap steps have left.
+    fn lie_down(&self, bodies: &mut [Turning]) {
+        for (k, p) in self.places.iter().enumerate() {
+            let body = &mut bodies[p.body];
+            body.set_motion(Motion::default());
+            body.begin(Phase::Rest, DVec3::ZERO);
+            let deepest = self.touches.iter().filter(|t| t.0 == k && t.1.gap < 0.0).min_by(|a, b| a.1.gap.total_cmp(&b.1.gap));
+            if let Some((_, t)) = deepest {
+                body.path.x -= t.normal * t.gap;
+            }
+            body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface()));
         }
     }
 
