@@ -19,7 +19,9 @@ fn main() {
         "preset", "bumps", "median", "90 %", "events", "impacts", "ns/event", "rest", "other"
     );
     for bumps in [0.0, 0.1, 0.3].into_iter().filter(|b| only.is_none_or(|o| o == *b)) {
-        for preset in Preset::ALL.into_iter().filter(|p| named.as_ref().map_or(*p != Preset::Reference, |n| n == p.name())) {
+        for preset in
+            Preset::ALL.into_iter().filter(|p| named.as_ref().map_or(*p != Preset::Reference, |n| n == p.name()))
+        {
             row(preset, bumps, throws);
         }
     }

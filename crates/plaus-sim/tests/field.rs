@@ -1,4 +1,5 @@
 //! Spline fields: values against the plain formula, derivatives, bounds, laziness, faults.
+#![allow(clippy::unwrap_used)]
 
 use plaus_sim::WorldError;
 use plaus_sim::field::{Grid, Spline};
@@ -36,9 +37,9 @@ fn plain(x: f64, y: f64) -> f64 {
     let (i, j) = (u.floor(), v.floor());
     let (bu, bv) = (basis(u - i), basis(v - j));
     let mut sum = 0.0;
-    for a in 0..4 {
-        for b in 0..4 {
-            sum += bu[a] * bv[b] * noise(i as i64 + a as i64 - 1, j as i64 + b as i64 - 1);
+    for (a, wu) in bu.iter().enumerate() {
+        for (b, wv) in bv.iter().enumerate() {
+            sum += wu * wv * noise(i as i64 + a as i64 - 1, j as i64 + b as i64 - 1);
         }
     }
     sum

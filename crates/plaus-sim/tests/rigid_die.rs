@@ -1,4 +1,5 @@
 //! Dice on tables: rest, fairness, energy, scale, restart, extremes, faults.
+#![allow(clippy::unwrap_used)]
 
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
@@ -78,7 +79,11 @@ fn a_bumpy_table_ends_in_rest_on_three_points_or_more() {
             }
             for c in corners(body) {
                 // No corner is in the table by more than the preset's gap of 1e-5 half edges.
-                assert!(c.z - table.height.value(c.x, c.y) > -1e-5 * 0.008, "{} at {c}", c.z - table.height.value(c.x, c.y));
+                assert!(
+                    c.z - table.height.value(c.x, c.y) > -1e-5 * 0.008,
+                    "{} at {c}",
+                    c.z - table.height.value(c.x, c.y)
+                );
             }
         }
     }
@@ -101,7 +106,8 @@ fn a_fair_die_shows_each_face_equally_often() {
         }
         faces
     };
-    let chi = |faces: [u32; 6]| faces.iter().map(|&f| (f64::from(f) - 200.0) * (f64::from(f) - 200.0) / 200.0).sum::<f64>();
+    let chi =
+        |faces: [u32; 6]| faces.iter().map(|&f| (f64::from(f) - 200.0) * (f64::from(f) - 200.0) / 200.0).sum::<f64>();
     let faces = count(&die);
     assert!(chi(faces) < 35.9, "{faces:?}");
     // The wrong twin: a slightly flat cuboid is caught.
@@ -126,8 +132,15 @@ impl Observer<Rigid> for Energy<'_> {
 
 #[test]
 fn energy_never_grows() {
-    for (bumps, e, friction) in [(0.0, 0.5, 0.35), (0.0, 1.0, 0.0), (0.0, 0.0, 1e8), (0.0, 0.9, 1e-8), (0.2, 0.5, 0.35), (0.2, 0.0, 2.0)] {
-        let die = DieOnTable { bumps, law: Law::new(friction, e), accuracy: Accuracy { events: 500, ..Accuracy::default() }, ..DieOnTable::default() };
+    for (bumps, e, friction) in
+        [(0.0, 0.5, 0.35), (0.0, 1.0, 0.0), (0.0, 0.0, 1e8), (0.0, 0.9, 1e-8), (0.2, 0.5, 0.35), (0.2, 0.0, 2.0)]
+    {
+        let die = DieOnTable {
+            bumps,
+            law: Law::new(friction, e),
+            accuracy: Accuracy { events: 500, ..Accuracy::default() },
+            ..DieOnTable::default()
+        };
         let world = die.world(noise).unwrap();
         for start in throws(12) {
             let mut state = world.state(&[start]).unwrap();
@@ -218,7 +231,10 @@ fn bad_worlds_are_refused() {
         })
     };
     let die = |density| BodySpec::solid(Shape::Cuboid(Cuboid::new(DVec3::ONE, 0.0).unwrap()), density, Material(0));
-    assert!(matches!(world(vec![die(1.0), die(-1.0)], plane()), Err(WorldError::BadBody { body: 1, field: "mass", .. })));
+    assert!(matches!(
+        world(vec![die(1.0), die(-1.0)], plane()),
+        Err(WorldError::BadBody { body: 1, field: "mass", .. })
+    ));
     let mut other = die(1.0);
     other.material = Material(7);
     assert!(matches!(world(vec![other], plane()), Err(WorldError::UnknownMaterial { .. })));
@@ -228,8 +244,14 @@ fn bad_worlds_are_refused() {
     assert!(matches!(world(vec![die(1.0)], vec![Part::Table(Box::new(table))]), Err(WorldError::BadSurface { .. })));
 
     let good = world(vec![die(1.0)], plane()).unwrap();
-    assert!(matches!(good.state(&[Start::at_rest(DVec3::new(0.0, 0.0, 0.4))]), Err(WorldError::OverlapsScenery { body: 0, .. })));
-    assert!(matches!(good.state(&[Start::at_rest(DVec3::NAN)]), Err(WorldError::BadBody { body: 0, field: "position", .. })));
+    assert!(matches!(
+        good.state(&[Start::at_rest(DVec3::new(0.0, 0.0, 0.4))]),
+        Err(WorldError::OverlapsScenery { body: 0, .. })
+    ));
+    assert!(matches!(
+        good.state(&[Start::at_rest(DVec3::NAN)]),
+        Err(WorldError::BadBody { body: 0, field: "position", .. })
+    ));
     let turned = Start { orientation: DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), ..Start::at_rest(DVec3::Z) };
     assert!(matches!(good.state(&[turned]), Err(WorldError::BadBody { body: 0, field: "orientation", .. })));
     assert!(matches!(good.state(&[]), Err(WorldError::WrongState { .. })));

@@ -158,7 +158,9 @@ impl Turning {
         let h = self.expiry - self.path.t;
         let (part, m) = ((dt / h).clamp(0.0, 1.0), self.motion_after(spec, dt));
         let turned = |dt: f64| drift_steadily(self.turn, self.spin, dt).0;
-        let kinetic = |turn: DQuat, m: &Motion| 0.5 * (spec.mass * m.v.length_squared() + m.w.dot(spec.inertia.momentum(turn, m.w)));
+        let kinetic = |turn: DQuat, m: &Motion| {
+            0.5 * (spec.mass * m.v.length_squared() + m.w.dot(spec.inertia.momentum(turn, m.w)))
+        };
         let fallen = spec.mass * gravity.dot(self.path.v);
         let (first, last) = (kinetic(self.turn, &self.ends[0]), kinetic(turned(h), &self.ends[1]) - fallen * h);
         let allowed = first + (last - first) * part + fallen * dt;

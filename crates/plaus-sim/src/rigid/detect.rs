@@ -385,7 +385,7 @@ fn ring_gap(
         return [f, rate, middle - circle * swing.truncate().length(), m];
     }
     // Sideways points keep their place on the circle while the body spins.
-    [f, rate, if quarter % 2 == 0 { rate } else { middle }, m + turning * circle / lean.max(LEANS)]
+    [f, rate, if quarter.is_multiple_of(2) { rate } else { middle }, m + turning * circle / lean.max(LEANS)]
 }
 
 /// Sine of the lean from which the lowest point of a rim is followed. Default 0.02; smaller values take more advancements, larger ones see impacts a little early.

@@ -186,7 +186,7 @@ impl Rigid {
                 return bad(field, f64::NAN, "finite numbers");
             }
         }
-        if !(start.orientation.length() > 0.0) {
+        if start.orientation.length() == 0.0 {
             return bad("orientation", 0.0, "a quaternion that is not zero");
         }
         if !(start.time >= 0.0 && start.time.is_finite()) {

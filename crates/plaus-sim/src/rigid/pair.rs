@@ -121,7 +121,7 @@ impl Rigid {
                 // A convex distance: at least this long. Never less than a thousandth of the gap, so that it ends.
                 let step = earliest(away, dx.dot(dv) / distance, pull);
                 time += step + 1e-3 * level / (dv.length() + (pull * level).sqrt()).max(f64::MIN_POSITIVE);
-                if !(time < until) {
+                if time >= until || time.is_nan() {
                     return None;
                 }
                 clear = Some(time);
@@ -130,11 +130,11 @@ impl Rigid {
             let (a, b) = (pose(0, time), pose(1, time));
             let (apart, rate) = capsules([s, t], [&a, &b]);
             if apart - level > NEAR * s.size.min(t.size) {
-                time += earliest(apart - level, rate, m);
-                if !(time < until) {
+                clear = Some(time);
+                if time >= until || time.is_nan() {
                     return None;
                 }
-                clear = Some(time);
+                time = (time + earliest(apart - level, rate, m)).min(until);
                 continue;
             }
             let touch = self.pair_touch(pair, [&a, &b]);
@@ -158,10 +158,11 @@ impl Rigid {
             if f > 0.0 {
                 clear = Some(time);
             }
-            time += earliest(f, rate, m);
-            if !(time < until) {
+            if time >= until || time.is_nan() {
                 return None;
             }
+            // The end is looked at too: what was not the nearest pair of points may have met by then.
+            time = (time + earliest(f, rate, m)).min(until);
         }
         Some(time)
     }

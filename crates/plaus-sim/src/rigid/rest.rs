@@ -33,7 +33,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
                 && place.start.v == DVec3::ZERO
                 && place.start.w == DVec3::ZERO;
         }
-        if group.touches.len() < 3 && !spec.is_round {
+        if group.touches.len() < 3 && !(spec.is_round && lies(&group.touches, place.start.r.z_axis, spec.size)) {
             return false;
         }
         let normal = group.touches.first().map_or(DVec3::Z, |t| t.1.normal);
@@ -50,6 +50,12 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     let limit = world.accuracy.rest_residual * world.strength * h;
     sweep(&mut group.contacts, &mut group.members, 0.03 * limit, world.accuracy.sweeps);
     group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= limit)
+}
+
+/// Whether a body of revolution lies on two points of its side, on which it can only roll.
+fn lies(touches: &[(usize, Touch)], axis: DVec3, size: f64) -> bool {
+    let along = |t: &(usize, Touch)| t.1.arm.dot(axis);
+    touches.iter().any(|a| touches.iter().any(|b| along(a) - along(b) > 0.5 * size))
 }
 
 /// Whether the line of gravity through the centre of gravity meets the hull of the points: no half plane holds them all.

@@ -116,9 +116,9 @@ impl RigidScratch {
         self.loads.clear();
         self.leaving.clear();
         self.pairs.clear();
-        for k in 0..group.len() {
-            for j in links.of(group[k]).filter(|&j| j > group[k]) {
-                let (i, j) = (group[k] as usize, j as usize);
+        for &k in group {
+            for j in links.of(k).filter(|&j| j > k) {
+                let (i, j) = (k as usize, j as usize);
                 let (a, b) = (bodies[i].pose(), bodies[j].pose());
                 let touch = world.pair_touch([i, j], [&a, &b]);
                 let speed = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
@@ -284,7 +284,8 @@ impl RigidScratch {
                     let [p, q] = ab.map(|k| &self.places[k]);
                     let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
                     let missing = (KEEP * world.pair_gap([p.body, q.body]) - after.gap) / h;
-                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * world.pair_gap([p.body, q.body]);
+                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO)
+                        && missing.abs() * h > CLOSE * world.pair_gap([p.body, q.body]);
                     c.target += missing.min(PUSH * world.accuracy.settle * world.specs[p.body].speed);
                 }
                 if !off {
@@ -357,7 +358,8 @@ impl RigidScratch {
             let body = &mut bodies[p.body];
             body.set_motion(Motion::default());
             body.begin(Phase::Rest, DVec3::ZERO);
-            let deepest = self.touches.iter().filter(|t| t.0 == k && t.1.gap < 0.0).min_by(|a, b| a.1.gap.total_cmp(&b.1.gap));
+            let deepest =
+                self.touches.iter().filter(|t| t.0 == k && t.1.gap < 0.0).min_by(|a, b| a.1.gap.total_cmp(&b.1.gap));
             if let Some((_, t)) = deepest {
                 body.path.x -= t.normal * t.gap;
             }

@@ -240,7 +240,7 @@ impl Series {
             for k in 0..=n {
                 let (a, b) = (w[k], w[n - k]);
                 products += DVec3::new(a.y * b.z, a.z * b.x, a.x * b.y);
-                turned = turned + q[k] * DQuat::from_xyzw(b.x, b.y, b.z, 0.0);
+                turned += q[k] * DQuat::from_xyzw(b.x, b.y, b.z, 0.0);
             }
             let next = h / (n + 1) as f64;
             w[n + 1] = c * products * next;
