@@ -39,6 +39,8 @@ pub enum Phase {
     Flight,
     /// A step of lasting contact: straight, at constant angular velocity.
     Step,
+    /// A ball slides or rolls on level ground: a parabola, and an angular velocity that changes evenly.
+    Glide,
     /// At rest until something hits it.
     Rest,
     /// Fallen below the world's sink: it takes no further part.
@@ -67,6 +69,12 @@ pub struct Turning {
     /// Kind of motion.
     pub phase: Phase,
     pub(crate) expiry: f64,
+    /// Rate of the angular velocity of a ball that glides, in rad/s².
+    pub(crate) spin_rate: DVec3,
+    /// Whether it rolls when its slide ends.
+    pub(crate) rolls_after: bool,
+    /// The line that a ball's centre reaches at the end of its stretch: axis and place.
+    pub(crate) line: Option<(u8, f64)>,
     /// Velocities at the start and the end of a step.
     pub(crate) ends: [Motion; 2],
     /// Velocities of the drift of the step that was interrupted last.
@@ -100,6 +108,9 @@ impl Turning {
             spin: start.spin,
             phase: Phase::Waiting,
             expiry: start.time,
+            spin_rate: DVec3::ZERO,
+            rolls_after: false,
+            line: None,
             ends: [Motion::default(); 2],
             drifted: Motion::default(),
             hurried: 0,
@@ -149,6 +160,7 @@ impl Turning {
                 let [a, b] = self.ends;
                 Motion { v: a.v.lerp(b.v, part), w: a.w.lerp(b.w, part) }
             }
+            Phase::Glide => Motion { v: self.path.velocity_after(dt), w: self.spin + self.spin_rate * dt },
             Phase::Waiting | Phase::Rest | Phase::Gone => Motion { v: self.path.v, w: self.spin },
         }
     }
@@ -204,10 +216,19 @@ impl Turning {
                     // What is left of the step is no longer straight in the same way; settling decides anew.
                     self.expiry = time;
                 }
+                Phase::Glide => {
+                    let motion = self.motion_after(spec, dt);
+                    // Only a picture of the ball needs its orientation: the mean angular velocity will do.
+                    (self.turn, _) = drift_steadily(self.turn, self.spin + self.spin_rate * (0.5 * dt), dt);
+                    (self.path.v, self.spin) = (motion.v, motion.w);
+                }
                 Phase::Waiting | Phase::Rest | Phase::Gone => {}
             }
             self.path.x = x;
             self.path.t = time;
+            if self.phase == Phase::Glide && time >= self.expiry {
+                super::glide::end(spec, gravity, self);
+            }
         } else if self.phase == Phase::Step {
             let motion = self.ends[0];
             (self.path.v, self.spin) = (motion.v, motion.w);

@@ -141,6 +141,10 @@ impl Rigid {
         let law = self.laws.of(self.specs[index].material, part.material());
         match part {
             Part::Table(table) => table.law(point, law),
+            Part::Block { stretches, .. } => {
+                let here = stretches.iter().rev().find(|s| point.y >= s.from);
+                Law { friction: here.map_or(law.friction, |s| s.friction), ..*law }
+            }
             _ => *law,
         }
     }

@@ -54,7 +54,7 @@ struct Search<'s> {
 impl Rigid {
     /// First point of a body that touches a part, not after `until`.
     pub(super) fn first_touch(&self, index: usize, body: &Turning, until: f64) -> Option<(f64, Surface)> {
-        if !matches!(body.phase, Phase::Flight | Phase::Step) {
+        if !matches!(body.phase, Phase::Flight | Phase::Step | Phase::Glide) {
             return None;
         }
         let spec = &self.specs[index];
@@ -84,7 +84,8 @@ impl Search<'_> {
     /// Whether a point of the body is in lasting contact with the part already.
     #[inline]
     fn lasts(&self, part: u16, point: usize) -> bool {
-        self.body.phase == Phase::Step && self.body.touching().contains(&Surface::Part { part, point: point as u16 })
+        matches!(self.body.phase, Phase::Step | Phase::Glide)
+            && self.body.touching().contains(&Surface::Part { part, point: point as u16 })
     }
 
     fn hit(&mut self, time: f64, part: u16, point: usize) {
@@ -105,7 +106,10 @@ impl Search<'_> {
     fn plane(&mut self, part: u16, plane: &Plane) {
         let (spec, path, n) = (self.spec, &self.body.path, plane.normal);
         let Some(mut t) = self.approach(n, plane.offset) else { return };
-        if spec.is_ball && self.body.phase == Phase::Flight {
+        if spec.is_ball && self.body.phase != Phase::Step {
+            if self.lasts(part, 0) {
+                return;
+            }
             let height = n.dot(path.x) - plane.offset - spec.feelers[0].radius - 0.5 * spec.gap;
             if let Some(time) = fall_of_quadratic([height, n.dot(path.v), 0.5 * n.dot(path.a)], self.until) {
                 self.hit(time, part, 0);

@@ -7,6 +7,7 @@
 mod body;
 mod contact;
 mod detect;
+mod glide;
 mod mechanics;
 mod pair;
 mod part;
@@ -16,6 +17,7 @@ mod step;
 mod tumble;
 
 pub use body::{Phase, Start, Turning};
+pub use glide::Stretch;
 pub use part::{Part, Table};
 pub use step::RigidScratch;
 

@@ -99,13 +99,19 @@ impl Rigid {
         let [s, t] = pair.map(|k| &self.specs[k]);
         let level = self.pair_gap(pair);
         let pull = (bodies[0].path.a - bodies[1].path.a).length();
-        let turning = |spec: &Spec, b: &Turning| b.spin.length_squared() * (1.0 + spec.wobble) * spec.reach;
+        let turning = |spec: &Spec, b: &Turning| {
+            if spec.is_ball { 0.0 } else { b.spin.length_squared() * (1.0 + spec.wobble) * spec.reach }
+        };
         let m = pull + turning(s, bodies[0]) + turning(t, bodies[1]);
         let mut tumbles = [bodies[0].tumble(s), bodies[1].tumble(t)];
         let mut pose = |k: usize, time: f64| {
             let (spec, b) = ([s, t][k], bodies[k]);
             let dt = time - b.path.t;
-            let w = if spec.wobble == 0.0 || b.phase != Phase::Flight { b.spin } else { b.motion_after(spec, dt).w };
+            let w = if (spec.wobble == 0.0 && b.phase != Phase::Glide) || b.phase == Phase::Step {
+                b.spin
+            } else {
+                b.motion_after(spec, dt).w
+            };
             Pose { x: b.path.after(dt), r: tumbles[k].at(dt), v: b.path.velocity_after(dt), w }
         };
         let mut time = from;

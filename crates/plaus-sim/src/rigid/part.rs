@@ -1,5 +1,6 @@
 //! What stands still: half spaces, boxes, and tables with a spline surface.
 
+use super::glide::Stretch;
 use crate::error::WorldError;
 use crate::field::Spline;
 use crate::material::{Law, Material};
@@ -17,6 +18,8 @@ pub enum Part {
         bounds: Aabb,
         /// What it is made of.
         material: Material,
+        /// Stretches along y whose friction is not the material's, in ascending order; empty for none.
+        stretches: Vec<Stretch>,
     },
     /// A table with an uneven surface.
     Table(Box<Table>),

@@ -6,6 +6,7 @@
 
 use super::body::{Motion, Phase, Pose, Turning};
 use super::contact::{Touch, response};
+use super::glide;
 use super::pair::PairTouch;
 use super::part::Part;
 use super::rest;
@@ -85,6 +86,11 @@ pub(super) fn settle(
         return;
     }
     scratch.gather(world, group, bodies, links);
+    if let ([place], [(_, touch)], []) = (&scratch.places[..], &scratch.touches[..], &scratch.leaving[..])
+        && glide::begin(world, place.body, &mut bodies[place.body], touch)
+    {
+        return;
+    }
     if scratch.places.is_empty() {
         return;
     }

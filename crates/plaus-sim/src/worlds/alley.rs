@@ -119,6 +119,7 @@ impl Alley {
         let block = |min: [f64; 3], max: [f64; 3]| Part::Block {
             bounds: Aabb { min: DVec3::from(min) * INCH, max: DVec3::from(max) * INCH },
             material: WOOD,
+            stretches: Vec::new(),
         };
         let plane =
             |point: [f64; 3], normal: DVec3| Ok(Part::Plane(Plane::new(DVec3::from(point) * INCH, normal, WOOD)?));
