@@ -84,9 +84,9 @@ fn measure(scene: &Spelling, [count, iterations, limit]: [u64; 3], seed: u64) ->
 
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1);
-    let path = args.next().ok_or("which scenario file?")?;
+    let path = args.next().unwrap_or_else(|| "scenarios/spelling-hi.toml".into());
     let mut number = |default| args.next().map_or(Ok(default), |text| text.parse::<u64>());
-    let numbers = [number(8)?, number(20)?, number(20)?];
+    let numbers = [number(8)?, number(20)?, number(2)?];
     let overrides: Vec<String> = args.collect();
     let scenario = Scenario::read(&path, &std::fs::read_to_string(&path)?, &overrides)?;
     let World::Spelling(config) = &scenario.world else { return Err("this measures words only".into()) };

@@ -62,9 +62,9 @@ fn quantile(sorted: &[f64], q: f64) -> f64 {
 
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1);
-    let path = args.next().ok_or("which scenario file?")?;
-    let seeds: u64 = args.next().map_or(Ok(20), |text| text.parse())?;
-    let iterations: u64 = args.next().map_or(Ok(20_000), |text| text.parse())?;
+    let path = args.next().unwrap_or_else(|| "scenarios/spelling-hi.toml".into());
+    let seeds: u64 = args.next().map_or(Ok(2), |text| text.parse())?;
+    let iterations: u64 = args.next().map_or(Ok(500), |text| text.parse())?;
     let (flags, overrides): (Vec<String>, Vec<String>) = args.partition(|arg| arg == "--plain");
     let scenario = Scenario::read(&path, &std::fs::read_to_string(&path)?, &overrides)?;
     let World::Spelling(config) = &scenario.world else { return Err("this measures words only".into()) };

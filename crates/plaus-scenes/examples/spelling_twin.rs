@@ -11,8 +11,8 @@ use std::sync::Arc;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
-    let path = args.next().ok_or("which scenario file?")?;
-    let iterations: u64 = args.next().map_or(Ok(10_000), |text| text.parse())?;
+    let path = args.next().unwrap_or_else(|| "scenarios/spelling-hi.toml".into());
+    let iterations: u64 = args.next().map_or(Ok(200), |text| text.parse())?;
     let overrides: Vec<String> = args.collect();
     let scenario = Scenario::read(&path, &std::fs::read_to_string(&path)?, &overrides)?;
     let World::Spelling(config) = &scenario.world else { return Err("this checks words only".into()) };

@@ -63,7 +63,7 @@ impl Tally {
 
 fn main() {
     let mut args = std::env::args().skip(1);
-    let runs: usize = args.next().map_or(1000, |a| a.parse().unwrap());
+    let runs: usize = args.next().map_or(100, |a| a.parse().unwrap());
     let name = args.next().unwrap_or("standard".into());
     let preset = Preset::ALL.into_iter().find(|p| p.name() == name).unwrap();
     let count: usize = args.next().map_or(10, |a| a.parse().unwrap());
