@@ -8,12 +8,15 @@ use std::path::{Path, PathBuf};
 /// What each of our packages may use of the others. The chain knows no bodies; the simulator knows no chain.
 const EDGES: &[(&str, &[&str])] = &[
     ("plaus-dist", &[]),
-    ("plaus-mcmc", &["plaus-dist"]),
     ("plaus-sim", &["plaus-dist"]),
+    ("plaus-mcmc", &["plaus-dist"]),
     ("plaus-scenes", &["plaus-dist", "plaus-mcmc", "plaus-sim"]),
     ("plaus-run", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
-    ("plaus-cli", &["plaus-dist", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
+    ("plaus-export", &["plaus-dist", "plaus-scenes"]),
+    ("plaus-gallery", &["plaus-dist", "plaus-export", "plaus-run", "plaus-scenes"]),
+    ("plaus-cli", &["plaus-dist", "plaus-export", "plaus-gallery", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
     ("plaus-figures", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
+    ("plaus-tradeoff", &["plaus-dist", "plaus-figures", "plaus-sim"]),
     ("plaus-tests", &[]),
     ("xtask", &[]),
 ];
@@ -35,7 +38,7 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         if path.is_dir() {
-            if name != "target" && !name.starts_with('.') && name != "out" {
+            if name != "target" && name != "node_modules" && !name.starts_with('.') && name != "out" {
                 found.extend(files(&path, ending));
             }
         } else if name.ends_with(ending) {

@@ -14,6 +14,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from environment import environment
+
 # The newest that go together on Python 3.11.
 REQUIREMENTS = [
     "arviz==0.23.4",
@@ -24,28 +26,6 @@ REQUIREMENTS = [
     "scipy==1.17.1",
     "matplotlib==3.11.2",
 ]
-NO_REGISTRY = 77
-
-
-def environment(folder: Path) -> Path:
-    """The environment's Python, with everything installed."""
-    python = folder / "bin" / "python"
-    stamp = folder / "installed.txt"
-    wanted = "\n".join(REQUIREMENTS)
-    if stamp.exists() and stamp.read_text() == wanted and python.exists():
-        return python
-    print(f"installing {', '.join(REQUIREMENTS)} into {folder}", flush=True)
-    made = subprocess.run([sys.executable, "-m", "venv", "--clear", str(folder)])
-    if made.returncode != 0:
-        print("python3 -m venv failed", flush=True)
-        sys.exit(NO_REGISTRY)
-    pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *REQUIREMENTS]
-    if subprocess.run(pip).returncode != 0:
-        print("pip could not install them: is the package registry out of reach?", flush=True)
-        sys.exit(NO_REGISTRY)
-    stamp.write_text(wanted)
-    return python
-
 
 class Comparison:
     """Counts what was compared, and remembers what disagreed."""
@@ -130,7 +110,7 @@ def main() -> int:
     arguments = parser.parse_args()
     if arguments.venv is None:
         return check(arguments)
-    python = environment(arguments.venv)
+    python = environment(arguments.venv, REQUIREMENTS)
     rest = ["--zarr", arguments.zarr, "--csv", arguments.csv, "--diagnose", arguments.diagnose]
     return subprocess.run([python, __file__, *map(os.fspath, rest)]).returncode
 

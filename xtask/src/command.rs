@@ -39,6 +39,11 @@ pub(crate) fn cargo(arguments: &[&str]) -> Command {
     Command::named(program, "cargo").args(arguments)
 }
 
+/// The release binary that a step before has built.
+pub(crate) fn plaus(arguments: &[&str]) -> Command {
+    cargo(&["run", "--quiet", "--release", "--package", "plaus-cli", "--"]).args(arguments)
+}
+
 impl Command {
     pub(crate) fn new(program: impl AsRef<OsStr>) -> Self {
         let shown = program.as_ref().to_string_lossy().into_owned();
@@ -69,6 +74,12 @@ impl Command {
     /// The program and its arguments, as one would type them.
     pub(crate) fn shown(&self) -> &str {
         &self.shown
+    }
+
+    /// Shows it, then runs it.
+    pub(crate) fn shown_and_run(self) -> Result<(), Failure> {
+        println!("$ {}", self.shown());
+        self.run()
     }
 
     /// Runs it; its output goes where ours goes.

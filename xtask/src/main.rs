@@ -3,8 +3,10 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "chores talk to the person at the terminal")]
 
 mod arviz;
+mod clients;
 mod command;
 mod golden;
+mod registry;
 mod steps;
 mod test;
 
@@ -16,6 +18,7 @@ usage: cargo xtask CHORE
 
   test                 everything that must pass: what CI runs
   ci                   the same
+  clients              of that, only what other programs make of exports and galleries
   reproduce-figures [--out FOLDER] [--quick]
                        the paper's figures and claims, sampled anew, into out/figures
   golden               compare golden traces with fresh runs
@@ -28,6 +31,7 @@ fn main() -> ExitCode {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match arguments.split_first() {
         Some((&("test" | "ci"), [])) => test::run(),
+        Some((&"clients", [])) => test::clients(),
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"golden", rest)) => golden::run(rest),
         Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),

@@ -8,6 +8,7 @@ mod commands;
 mod console;
 mod failure;
 mod interrupt;
+mod label;
 mod progress;
 mod report;
 mod scenario_file;

@@ -57,6 +57,7 @@ pub mod records;
 pub mod replay;
 pub mod sample;
 mod sink;
+pub mod solutions;
 pub mod tally;
 
 pub use diagnosis::{Diagnosis, Finding};
@@ -65,4 +66,5 @@ pub use folder::Folder;
 pub use manifest::{Manifest, Recipe};
 pub use read::{Phase, Run, RunOf, RunVisitor};
 pub use sample::{More, Sampling, Unwatched, Watch, resume, sample};
+pub use solutions::Solution;
 pub use tally::{SampleId, Tally};

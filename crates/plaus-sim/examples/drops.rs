@@ -30,7 +30,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn judge(&mut self, bins: &Bins, world: &Marbles, state: &State<Marble>, run: usize) {
+    fn judge(&mut self, bins: &Bins, world: &Marbles, state: &State<Marble>) {
         let bodies = state.bodies();
         for (k, b) in bodies.iter().enumerate() {
             let x = b.path.at(state.time().max(b.path.t));
@@ -94,7 +94,7 @@ fn main() {
             continue;
         }
         let mut watch = Watch::new(&bins, count);
-        tally.judge(&bins, &world, &state, run);
+        tally.judge(&bins, &world, &state);
         let mut again = world.state(&starts).unwrap();
         world.run(&mut again, &mut scratch, 1e9, &mut watch);
         tally.tunnelled += watch.tunnelled();

@@ -2,16 +2,22 @@
 //!
 //! | tolerance | unit | draft | standard | fine | reference | usual range | danger | source |
 //! | --- | --- | --- | --- | --- | --- | --- | --- | --- |
-//! | `settle` | √(g·size) | 1e-1 | 3e-2 | 3e-3 | 1e-6 | 1e-6–1e-1 | large: bounces end early, visibly; small: many more impacts before rest | bounces of relative height `settle²/2` are unseen; convergence: `cargo xtask tradeoff` |
+//! | `settle` | √(g·size) | 1e-1 | 3e-2 | 3e-3 | 3e-4 | 1e-6–1e-1 | large: bounces end early, visibly; small: many more impacts before rest | bounces of relative height `settle²/2` are unseen; convergence: `cargo xtask tradeoff` |
 //! | `rattle` | √(size/g) | 1e-3 | 1e-4 | 1e-6 | 1e-9 | 1e-9–1e-2 | large: quick successions of true bounces lose energy; small: a heavy ball on a light one needs millions of events | the t_c model of Luding & McNamara, Granular Matter 1 (1998), after forty in a row |
-//! | `step` | √(ρ/g), ρ/speed | 0.7 | 0.4 | 0.1 | 0.01 | 0.002–0.7 | large: lasting contact drifts in phase, error ∝ step² | second-order scheme, phase error ≈ step²/24 per radian |
-//! | `sweeps` | count | 20 | 60 | 500 | 5000 | 20–10⁴ | small: stacks sink or creep | Gauss–Seidel; each sweep carries the load one body further |
-//! | `sweep_tolerance` | g·step | 1e-2 | 3e-3 | 1e-6 | 1e-12 | 1e-12–1e-2 | as `sweeps` | change at which sweeps end; each halves what is left |
-//! | `rest_speed` | √(g·size) | 5e-2 | 3e-2 | 3e-3 | 1e-5 | 1e-6–5e-2 | large: a slow body on its way to fall is stopped; static support is always tested first | energy of `rest_speed²/2` of a body height |
-//! | `rest_residual` | g·step | 2e-2 | 1e-2 | 1e-3 | 1e-6 | 1e-8–1e-1 | large: slopes steeper than friction allows hold bodies | what a static solution may leave unbalanced |
+//! | `step` | √(ρ/g), ρ/speed | 0.7 | 0.4 | 0.1 | 0.02 | 0.002–0.7 | large: lasting contact drifts in phase, error ∝ step² | second-order scheme, phase error ≈ step²/24 per radian |
+//! | `sweeps` | count | 20 | 60 | 500 | 1000 | 20–10⁴ | small: stacks sink or creep | Gauss–Seidel; each sweep carries the load one body further |
+//! | `sweep_tolerance` | g·step | 1e-2 | 3e-3 | 1e-6 | 1e-8 | 1e-12–1e-2 | as `sweeps` | change at which sweeps end; each halves what is left |
+//! | `rest_speed` | √(g·size) | 5e-2 | 3e-2 | 3e-3 | 1e-3 | 1e-6–5e-2 | large: a slow body on its way to fall is stopped; static support is always tested first | energy of `rest_speed²/2` of a body height |
+//! | `rest_residual` | g·step | 2e-2 | 1e-2 | 1e-3 | 3e-4 | 1e-8–1e-1 | large: slopes steeper than friction allows hold bodies | what a static solution may leave unbalanced |
 //! | `slip_turn` | rad | 0.2 | 0.1 | 0.03 | 0.01 | 0.005–0.3 | large: direction of friction within an impact is off, error ∝ turn² | Darboux–Keller midpoint steps |
 //! | `gap` | body size | 1e-4 | 1e-5 | 1e-6 | 1e-8 | 1e-9–1e-3 | large: bodies float; small: more steps of conservative advancement | first contact of turning bodies; spheres need none |
 //! | `events` | count per body | 2e3 | 5e3 | 5e4 | 5e5 | 1e2–1e7 | small: long runs end as `OutOfEvents` | a guard; ten marbles need about 40 each |
+//!
+//! **Which preset to take.** `Standard` for sampling, `Draft` while looking for a scenario that works, `Fine` for a trajectory that is shown, `Reference` only to judge the
+//! others. Free flight, bounces, sliding and rolling on planes are exact at every preset (a slide that turns into a roll and a bounce from 1 m agree with the exact answer to
+//! 2e-15). Ten marbles over bins, 2 s of motion, on a busy 2-core machine (`cargo xtask tradeoff`): 0.30, 0.41, 1.4 and 11 ms in the median, `Draft` to `Reference`; they keep
+//! within a tenth of a radius of the reference for 0.6, 0.95 and 1.5 s, until chaos parts them. The number of bins filled has the same law as far as 2,000 draws can tell: total
+//! variation 0.035–0.037 for the three, all against one sample of the reference, where sampling alone gives 0.025 on average.
 //!
 //! Every length is in units of a body's own size and every time in units of `√(size/g)`, so no tolerance is absolute: the same world at another scale
 //! gives the same bits up to the scale.
@@ -116,13 +122,13 @@ impl Accuracy {
                 events: 50_000,
             },
             Preset::Reference => Self {
-                settle: 1e-6,
+                settle: 3e-4,
                 rattle: 1e-9,
-                step: 0.01,
-                sweeps: 5000,
-                sweep_tolerance: 1e-12,
-                rest_speed: 1e-5,
-                rest_residual: 1e-6,
+                step: 0.02,
+                sweeps: 1000,
+                sweep_tolerance: 1e-8,
+                rest_speed: 1e-3,
+                rest_residual: 3e-4,
                 slip_turn: 0.01,
                 gap: 1e-8,
                 events: 500_000,

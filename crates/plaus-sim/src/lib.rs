@@ -35,6 +35,7 @@
 pub mod accuracy;
 mod detect;
 pub mod error;
+pub mod field;
 pub mod links;
 pub mod marbles;
 pub mod material;
@@ -42,8 +43,10 @@ pub mod mechanics;
 pub mod motion;
 pub mod queue;
 pub mod resolve;
+pub mod rigid;
 pub mod roots;
 pub mod scenery;
+pub mod shape;
 pub mod simulate;
 pub mod state;
 pub mod trace;

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 /// Adds a scene's figures and rows of the report.
 type Make = fn(&mut Work) -> Result<()>;
 
-/// Scenes with figures: name, and what adds them.
+/// Scenes with figures.
 const SCENES: &[(&str, Make)] = &[("ball2d", ball2d::make)];
 
 const USAGE: &str = "usage: cargo xtask reproduce-figures [--out FOLDER] [--quick]\n\n\

@@ -133,8 +133,8 @@ fn vector(x: DVec3) -> peer::Vector {
 
 impl Peer {
     fn new(bins: &Bins, starts: &[Start], rate: f64) -> Result<Self> {
-        let mut world = peer::PhysicsWorld::default();
-        world.gravity = peer::Vector::new(0.0, 0.0, -9.81);
+        let gravity = peer::Vector::new(0.0, 0.0, -9.81);
+        let mut world = peer::PhysicsWorld { gravity, ..Default::default() };
         world.integration_parameters.dt = 1.0 / rate;
         world.integration_parameters.length_unit = 0.01;
         let (mesh, law) = (bins.mesh()?, bins.wall_law);

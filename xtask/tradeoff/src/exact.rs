@@ -97,8 +97,8 @@ fn ours(case: &Case, way: Way) -> Result<DVec3> {
 }
 
 fn by_peer(case: &Case, rate: f64) -> DVec3 {
-    let mut world = peer::PhysicsWorld::default();
-    world.gravity = peer::Vector::new(0.0, 0.0, -G);
+    let gravity = peer::Vector::new(0.0, 0.0, -G);
+    let mut world = peer::PhysicsWorld { gravity, ..Default::default() };
     world.integration_parameters.dt = 1.0 / rate;
     let floor = peer::ColliderBuilder::cuboid(20.0, 20.0, 1.0)
         .translation(peer::Vector::new(0.0, 0.0, -1.0))

@@ -5,6 +5,7 @@ mod completions;
 mod diagnose;
 mod explain;
 mod export;
+mod gallery;
 mod new;
 mod replay;
 mod resume;
@@ -27,8 +28,10 @@ pub(crate) enum Command {
     Resume(resume::Args),
     /// Say whether the chains of a run have converged: R-hat, effective sample sizes, acceptance.
     Diagnose(diagnose::Args),
-    /// Write the draws of a run as a table or for ArviZ.
+    /// Write the draws of a run as a table or for ArviZ, or samples as animations: glTF, USD, poses, impacts.
     Export(export::Args),
+    /// Make a page that plays the distinct solutions of a run.
+    Gallery(gallery::Args),
     /// Rebuild the animation of one sample from its draw.
     Replay(replay::Args),
     /// Print the JSON Schema of scenario files.
@@ -49,6 +52,7 @@ impl Command {
             Self::Resume(args) => args.run(),
             Self::Diagnose(args) => args.run(),
             Self::Export(args) => args.run(),
+            Self::Gallery(args) => args.run(),
             Self::Replay(args) => args.run(),
             Self::Schema => schema::run(),
             Self::Explain(args) => args.run(),

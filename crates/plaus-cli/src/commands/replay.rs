@@ -2,14 +2,12 @@
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
-use plaus_run::replay::{Pose, Replay, poses, replay};
+use plaus_export::{Clip, Cut, Label, table};
+use plaus_run::replay::{Replay, replay};
 use plaus_run::{Error, Folder, Manifest, Run, RunOf, RunVisitor, SampleId};
 use plaus_scenes::Scene;
 use serde_json::json;
 use std::path::PathBuf;
-
-/// Most poses that are printed.
-const MOST_POSES: f64 = 1e7;
 
 /// Which sample.
 #[derive(clap::Args)]
@@ -30,7 +28,7 @@ pub(crate) struct Args {
 /// A format of animation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Format {
-    /// Rows of t,body,x,y,z,impact: seconds and metres, y up.
+    /// Rows of t,body,x,y,z,qx,qy,qz,qw,impact: seconds and metres, y up, and orientations as unit quaternions.
     Csv,
     /// One JSON object: the sample, its poses, its impacts, and the motion in closed form.
     Json,
@@ -49,17 +47,18 @@ impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let run = Run::open(&Folder::new(&self.run))?;
         let replay = run.visit(Rebuild(self.sample))??;
-        let many = replay.animation.duration * self.fps;
-        if !(self.fps > 0.0 && many <= MOST_POSES) {
-            return Err(Failure::Message(format!(
-                "--fps {}: must be above 0 and make at most {MOST_POSES} poses",
-                self.fps
-            )));
-        }
-        let poses = poses(&replay.animation, self.fps);
+        let cut = Cut::new(self.fps, None, &replay.animation).map_err(|error| Failure::Message(error.to_string()))?;
+        let clip = Clip { animation: &replay.animation, label: &Label::default(), cut };
         match self.format {
-            Format::Csv => console::print(&to_csv(&poses))?,
-            Format::Json => console::print_line(&to_json(run.manifest(), &replay, &poses).to_string())?,
+            Format::Csv => {
+                let mut rows = format!("{}\n", table::POSES).into_bytes();
+                table::write_poses(&mut rows, &clip, "").map_err(Failure::of_output)?;
+                console::print(&String::from_utf8_lossy(&rows))?;
+            }
+            Format::Json => {
+                let poses = table::poses_to_json(&clip);
+                console::print_line(&to_json(run.manifest(), &replay, &poses).to_string())?;
+            }
         }
         let Replay { sample, log_p, satisfied, .. } = replay;
         let is = if satisfied { "satisfies" } else { "does not satisfy" };
@@ -68,13 +67,7 @@ impl Args {
     }
 }
 
-fn to_csv(poses: &[Pose]) -> String {
-    let row =
-        |pose: &Pose| format!("{:?},{},{:?},{:?},{:?},{}\n", pose.t, pose.body, pose.x, pose.y, pose.z, pose.impact);
-    std::iter::once("t,body,x,y,z,impact\n".to_owned()).chain(poses.iter().map(row)).collect()
-}
-
-fn to_json(manifest: &Manifest, replay: &Replay, poses: &[Pose]) -> serde_json::Value {
+fn to_json(manifest: &Manifest, replay: &Replay, poses: &serde_json::Value) -> serde_json::Value {
     json!({
         "scene": manifest.scene,
         "seed": manifest.plan.seed,
@@ -92,5 +85,6 @@ fn to_json(manifest: &Manifest, replay: &Replay, poses: &[Pose]) -> serde_json::
         "impacts": replay.animation.impacts,
         "poses": poses,
         "tracks": replay.animation.tracks,
+        "scenery": replay.animation.scenery,
     })
 }

@@ -1,5 +1,6 @@
 //! The paper's 2D ball (sections 3 and 5.1): where it comes to rest is demanded, the table's normals are uncertain.
 
+mod animate;
 mod config;
 mod flight;
 mod moves;
@@ -7,11 +8,11 @@ mod moves;
 pub use config::{Config, Downward, MAX_COLLISIONS, Moves, Weights};
 pub use moves::{Aim, Perturb, Redraw};
 
-use crate::animation::{Animation, Impact, Piece, Track};
+use crate::animation::Animation;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene};
 use flight::Table;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, NotANumber, Sample, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
 use serde::{Deserialize, Serialize};
@@ -194,31 +195,6 @@ impl Scene for Ball2d {
     }
 
     fn animate(&self, draw: &Normals) -> Result<Animation, ModelError> {
-        let size = self.config.diameter_m;
-        // With lengths in D and gravity 1, the unit of time is √(D/g), that of speed √(D·g).
-        let (second, speed) = ((size / GRAVITY).sqrt(), (size * GRAVITY).sqrt());
-        let acceleration = DVec3::new(0.0, -GRAVITY, 0.0);
-        let height = self.config.drop_height;
-        let start = DVec3::new(0.0, height * size, 0.0);
-        let mut pieces = vec![Piece { start: 0.0, position: start, velocity: DVec3::ZERO, acceleration }];
-        let mut impacts = Vec::new();
-        let mut time = (2.0 * height).sqrt();
-        let rest = flight::fly(&self.table, height, draw.directions(), |x, normal, bounce| {
-            let (point, start) = (DVec3::new(x * size, 0.0, 0.0), time * second);
-            let velocity = (bounce.velocity * speed).extend(0.0);
-            pieces.push(Piece { start, position: point, velocity, acceleration });
-            impacts.push(Impact {
-                time: start,
-                body: "ball_0".into(),
-                other: "table".into(),
-                point,
-                normal: normal.extend(0.0),
-            });
-            time += 2.0 * bounce.velocity.y;
-        });
-        let x = rest.ok_or_else(|| ModelError::new("a downward normal rejects this draw: it has no animation"))?;
-        let (position, start) = (DVec3::new(x * size, 0.0, 0.0), time * second);
-        pieces.push(Piece { start, position, velocity: DVec3::ZERO, acceleration: DVec3::ZERO });
-        Ok(Animation { duration: start, tracks: vec![Track { name: "ball_0".into(), pieces }], impacts })
+        animate::animate(&self.config, &self.table, draw)
     }
 }

@@ -7,6 +7,7 @@ mod draw;
 mod fall;
 mod font;
 mod moves;
+mod props;
 mod settle;
 mod word;
 
@@ -210,6 +211,6 @@ impl Scene for Spelling {
     }
 
     fn animate(&self, draw: &Drops) -> Result<Animation, ModelError> {
-        animate::animate(&self.arena, draw)
+        animate::animate(&self.arena, &self.word, draw)
     }
 }

@@ -12,7 +12,7 @@ use crate::links::{Link, Links};
 use crate::scenery::Surface;
 use glam::DVec3;
 
-/// Work space of [`settle`].
+/// Work space for groups of marbles in lasting contact.
 #[derive(Debug, Default)]
 pub struct MarbleScratch {
     members: Vec<Member>,

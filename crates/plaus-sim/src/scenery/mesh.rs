@@ -245,7 +245,7 @@ impl Mesh {
             })?;
             let distance = (to - home).length();
             let margin = self.margins[v as usize];
-            if !(distance <= margin) {
+            if distance.is_nan() || distance > margin {
                 return Err(WorldError::MovedTooFar { vertex: v as usize, distance, margin });
             }
             self.vertices[v as usize] = to;

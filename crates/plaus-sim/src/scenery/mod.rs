@@ -33,6 +33,13 @@ pub enum Surface {
     Edge(u32),
     /// A vertex of the mesh.
     Vertex(u32),
+    /// A fixed part of a world of turning bodies, touched by one point of a body's skin.
+    Part {
+        /// Index of the part.
+        part: u16,
+        /// Which point of the body.
+        point: u16,
+    },
 }
 
 impl fmt::Display for Surface {
@@ -43,9 +50,12 @@ impl fmt::Display for Surface {
             Self::Dome(k) => write!(f, "dome {k}"),
             Self::Edge(k) => write!(f, "mesh edge {k}"),
             Self::Vertex(k) => write!(f, "vertex {k}"),
+            Self::Part { part, point } => write!(f, "part {part} (by point {point})"),
         }
     }
 }
+
+pub(crate) const NO_PARTS: &str = "parts belong to worlds of turning bodies";
 
 /// Where a ball's centre stands to a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -180,6 +190,7 @@ impl Scenery {
             Surface::Vertex(k) => {
                 self.mesh.around_vertex(k).first().map_or(Material(0), |&f| self.mesh.faces[f as usize].material)
             }
+            Surface::Part { .. } => unreachable!("{NO_PARTS}"),
         }
     }
 
@@ -211,6 +222,7 @@ impl Scenery {
                 sharp(offset - edge.direction * edge.direction.dot(offset))
             }
             Surface::Vertex(k) => sharp(x - self.mesh.vertices[k as usize]),
+            Surface::Part { .. } => unreachable!("{NO_PARTS}"),
         }
     }
 }

@@ -1,7 +1,11 @@
 //! Plain worlds of the shapes that the scenes have, for tests, benchmarks and the trade-off study. The scenes build their own.
 
+mod alley;
 mod bins;
+mod table;
 mod watch;
 
+pub use alley::Alley;
 pub use bins::{Bins, drops};
+pub use table::DieOnTable;
 pub use watch::Watch;

@@ -1,0 +1,73 @@
+//! `plaus gallery`
+
+use crate::console;
+use crate::failure::{Failure, Outcome};
+use plaus_export::ours;
+use plaus_gallery::{Gallery, HEAD, Options, gallery};
+use plaus_run::export::output;
+use plaus_run::{Error, Folder, Run, RunOf, RunVisitor};
+use plaus_scenes::Scene;
+use std::path::PathBuf;
+
+/// Pages longer than this are slow to open, in bytes.
+const LONG: usize = 25 << 20;
+
+/// Which run, how many solutions, where to.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Folder of the run
+    run: PathBuf,
+    /// The page to make: one HTML file that needs nothing else
+    #[arg(long, value_name = "FILE.html")]
+    out: PathBuf,
+    /// Most solutions to show; they are chosen so that they differ as much as can be
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=5000))]
+    count: u32,
+    /// Replace what is there, if `plaus gallery` made it
+    #[arg(long)]
+    force: bool,
+    /// Read a damaged run up to its first damage
+    #[arg(long)]
+    salvage: bool,
+}
+
+struct Page<'a>(&'a Args);
+
+impl RunVisitor for Page<'_> {
+    type Output = Result<Gallery, Error>;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+        let options = Options { count: self.0.count as usize, run: self.0.run.display().to_string() };
+        let is_ours = |path: &std::path::Path| ours::begins_with(path, HEAD.as_bytes());
+        let mut made = None;
+        output::file(&self.0.out, self.0.force, is_ours, |out| {
+            let page = made.insert(gallery(&run, &options)?);
+            out.write_all(page.html.as_bytes()).map_err(Error::Output)
+        })?;
+        made.ok_or_else(|| Error::Request("nothing was written".to_owned()))
+    }
+}
+
+impl Args {
+    pub(super) fn run(self) -> Result<Outcome, Failure> {
+        let mut run = Run::open(&Folder::new(&self.run))?;
+        if self.salvage {
+            run = run.salvaged();
+        } else if run.folder().is_being_written() {
+            console::note_line("note: the run is being written; this shows it as of its last checkpoint");
+        }
+        if run.visit(super::diagnose::CountDraws)? == 0 {
+            return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
+        }
+        let out = self.out.display().to_string();
+        let made = run.visit(Page(&self))?.map_err(|error| Failure::from(error).about(&out))?;
+        let (shown, distinct, size) = (made.shown, made.distinct, made.html.len());
+        console::note_line(&format!(
+            "{out}: {shown} of {distinct} distinct solutions, {:.1} MB; open it in a browser",
+            size as f64 / 1e6
+        ));
+        if size > LONG {
+            console::note_line("warning: a page of that size opens slowly; choose a smaller --count");
+        }
+        Ok(Outcome::Done)
+    }
+}

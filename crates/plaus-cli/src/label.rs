@@ -1,0 +1,33 @@
+//! Facts about a sample that travel with its animation.
+
+use plaus_export::Label;
+use plaus_run::Manifest;
+use plaus_run::replay::Replay;
+use serde_json::{Map, Value, json};
+
+/// Name and facts of a sample.
+pub(crate) fn of(manifest: &Manifest, replay: &Replay) -> Label {
+    let scalars: Map<String, Value> = replay.scalars.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+    let facts = json!({
+        "plaus": manifest.plaus,
+        "scene": manifest.scene,
+        "scenario": manifest.scenario.file,
+        "scenario_hash": manifest.scenario.hash,
+        "seed": manifest.plan.seed,
+        "sample": replay.sample.to_string(),
+        "chain": replay.sample.chain,
+        "draw": replay.sample.draw,
+        "iteration": replay.iteration,
+        "log_p": replay.log_p,
+        "log_prior": replay.log_prior,
+        "log_constraint": replay.log_constraint,
+        "satisfied": replay.satisfied,
+        "scalars": scalars,
+        "duration": replay.animation.duration,
+    });
+    let facts = match facts {
+        Value::Object(facts) => facts,
+        _ => Map::new(),
+    };
+    Label { name: format!("sample_{}_{}", replay.sample.chain, replay.sample.draw), facts }
+}

@@ -1,0 +1,114 @@
+//! What is exported: an animation, a part of its time, and what is to be said about it.
+
+use plaus_scenes::Animation;
+use serde_json::{Map, Value};
+
+/// Most poses of all bodies together in one file.
+pub const MOST_POSES: f64 = 1e7;
+
+/// What is exported.
+#[derive(Debug, Clone, Copy)]
+pub struct Clip<'a> {
+    /// The motion.
+    pub animation: &'a Animation,
+    /// What to say about it.
+    pub label: &'a Label,
+    /// Which part of it.
+    pub cut: Cut,
+}
+
+/// A name, and facts that travel with the file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Label {
+    /// Name of the animation.
+    pub name: String,
+    /// Facts: sample, seed, log p and the like.
+    pub facts: Map<String, Value>,
+}
+
+impl Label {
+    /// A name without any facts.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), facts: Map::new() }
+    }
+}
+
+/// A part of an animation's time and how often it is sampled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cut {
+    fps: f64,
+    from: f64,
+    to: f64,
+}
+
+impl Cut {
+    /// `fps` frames a second from one time to another (in s), or of all of it. A range that ends after the animation ends with it.
+    ///
+    /// # Errors
+    /// [`ExportError`] where that makes no frames, or more than [`MOST_POSES`] poses.
+    pub fn new(fps: f64, range: Option<(f64, f64)>, animation: &Animation) -> Result<Self, ExportError> {
+        let duration = animation.duration;
+        let (from, end) = range.unwrap_or((0.0, duration));
+        let to = end.min(duration);
+        if !(from >= 0.0 && (from < to || (range.is_none() && to == 0.0))) {
+            return Err(ExportError::Range { from, to: end, duration });
+        }
+        let poses = (to - from) * fps * animation.tracks.len().max(1) as f64;
+        if !(fps > 0.0 && poses <= MOST_POSES) {
+            return Err(ExportError::Fps(fps));
+        }
+        Ok(Self { fps, from, to })
+    }
+
+    /// Frames a second.
+    #[must_use]
+    pub fn fps(&self) -> f64 {
+        self.fps
+    }
+
+    /// Where it begins, in s of the animation.
+    #[must_use]
+    pub fn from(&self) -> f64 {
+        self.from
+    }
+
+    /// Where it ends, in s of the animation.
+    #[must_use]
+    pub fn to(&self) -> f64 {
+        self.to
+    }
+
+    /// Whether a time of the animation is in it.
+    #[must_use]
+    pub fn holds(&self, time: f64) -> bool {
+        (self.from..=self.to).contains(&time)
+    }
+}
+
+/// Why something cannot be exported.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ExportError {
+    /// Too few or too many frames.
+    #[error("--fps {0}: must be above 0 and make at most {MOST_POSES} poses")]
+    Fps(f64),
+    /// A range that holds nothing.
+    #[error(
+        "--time-range {from}:{to}: must begin at 0 or later, and before it ends; the animation ends at {duration} s"
+    )]
+    Range {
+        /// Where it begins, s.
+        from: f64,
+        /// Where it ends, s.
+        to: f64,
+        /// Duration of the animation, s.
+        duration: f64,
+    },
+    /// More bytes than the format can hold.
+    #[error(
+        "the file would be longer than 4 GiB, the most that glTF can hold: choose fewer --fps or a shorter --time-range"
+    )]
+    TooLong,
+    /// A value that the format cannot hold.
+    #[error("cannot be written as JSON: {0}")]
+    Json(String),
+}

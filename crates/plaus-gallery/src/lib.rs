@@ -1,0 +1,99 @@
+//! The gallery: distinct solutions of a run as one page that plays them in 3D, from disk and offline.
+//!
+//! ```no_run
+//! use plaus_gallery::{Options, gallery};
+//! use plaus_run::{Error, Folder, Run, RunOf, RunVisitor};
+//! use plaus_scenes::Scene;
+//!
+//! struct Page;
+//! impl RunVisitor for Page {
+//!     type Output = Result<String, Error>;
+//!     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+//!         Ok(gallery(&run, &Options::default())?.html)
+//!     }
+//! }
+//! let html = Run::open(&Folder::new("runs/ball2d"))?.visit(Page)??;
+//! std::fs::write("gallery.html", html)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`choose`] picks solutions that differ, [`map`] lays them out in the plane, [`features`] says what it is to differ, `pack` makes bytes of closed-form
+//! pieces, `page` makes a page of the bytes. What the page does is in the package's folder `web`.
+
+pub mod choose;
+pub mod features;
+pub mod map;
+mod models;
+mod pack;
+mod page;
+
+use features::Features;
+use plaus_run::replay::replay_each;
+use plaus_run::{Error, RunOf, SampleId, Solution, solutions};
+use plaus_scenes::Scene;
+
+/// Most solutions among which is chosen: more take long to compare.
+const MOST_CANDIDATES: usize = 2000;
+
+/// What to show.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Most solutions on the page.
+    pub count: usize,
+    /// The run's folder, as it is to appear in commands to copy.
+    pub run: String,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { count: 64, run: "RUN".to_owned() }
+    }
+}
+
+/// A page.
+#[derive(Debug, Clone)]
+pub struct Gallery {
+    /// Its text: all there is to it.
+    pub html: String,
+    /// Solutions it shows.
+    pub shown: usize,
+    /// Distinct solutions of the run's sampling phase.
+    pub distinct: usize,
+}
+
+/// The begin of every gallery: exports replace only files that begin so.
+pub const HEAD: &str = page::HEAD;
+
+/// Makes a page of a run's distinct satisfying solutions.
+///
+/// # Errors
+/// [`Error`] where no sample satisfies the constraint, or the run cannot be read.
+pub fn gallery<S: Scene>(run: &RunOf<'_, S>, options: &Options) -> Result<Gallery, Error> {
+    let all = solutions::distinct(run)?;
+    let candidates = thinned(&all);
+    let ids: Vec<SampleId> = candidates.iter().map(|solution| solution.sample).collect();
+    let features = Features::of(replay_each(run, &ids, |replay| features::Paths::of(&replay.animation))?);
+    let Some(first) = likeliest(&candidates) else {
+        return Err(Error::Request(
+            "no sample of the run satisfies the constraint: there is nothing to show".to_owned(),
+        ));
+    };
+    let chosen = choose::farthest_first(&features.paths, first, options.count);
+    let maps = map::Maps { outcomes: map::of(&features.outcomes, &chosen), paths: map::of(&features.paths, &chosen) };
+    let ids: Vec<SampleId> = chosen.iter().map(|&index| ids[index]).collect();
+    let replays = replay_each(run, &ids, |replay| replay)?;
+    let packed =
+        pack::pack(run, &replays, &maps, &pack::About { options, distinct: all.len(), candidates: candidates.len() });
+    Ok(Gallery { html: page::html(run.run().manifest(), &packed), shown: replays.len(), distinct: all.len() })
+}
+
+/// At most [`MOST_CANDIDATES`], evenly over the run.
+fn thinned(all: &[Solution]) -> Vec<Solution> {
+    let count = all.len().min(MOST_CANDIDATES);
+    (0..count).map(|k| all[k * all.len() / count]).collect()
+}
+
+fn likeliest(solutions: &[Solution]) -> Option<usize> {
+    let best = solutions.iter().enumerate().max_by(|(_, a), (_, b)| a.log_p.total_cmp(&b.log_p));
+    best.map(|(index, _)| index)
+}

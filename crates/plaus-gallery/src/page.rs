@@ -1,0 +1,85 @@
+//! The page: markup, style, three.js, the program and the data in one file.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use plaus_run::Manifest;
+use serde_json::Value;
+use std::io::Write as _;
+
+/// The begin of every gallery.
+pub(crate) const HEAD: &str = "<!doctype html>\n<!-- a gallery made by plaus";
+
+const MARKUP: &str = include_str!("../web/page.html");
+const STYLE: &str = include_str!("../web/style.css");
+/// three.js and its orbit controls as one script, made by `web/build.mjs`.
+const THREE: &str = include_str!("../web/dist/three.iife.js");
+/// The page's own program, in the order in which its parts need each other.
+const PROGRAM: &[&str] = &[
+    include_str!("../web/app/data.js"),
+    include_str!("../web/app/motion.js"),
+    include_str!("../web/app/looks.js"),
+    include_str!("../web/app/stage.js"),
+    include_str!("../web/app/views.js"),
+    include_str!("../web/app/glb.js"),
+    include_str!("../web/app/map.js"),
+    include_str!("../web/app/tiles.js"),
+    include_str!("../web/app/filter.js"),
+    include_str!("../web/app/player.js"),
+    include_str!("../web/app/details.js"),
+    include_str!("../web/app/main.js"),
+];
+
+/// What a page shows.
+pub(crate) struct Packed {
+    pub(crate) meta: Value,
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) title: String,
+}
+
+pub(crate) fn html(manifest: &Manifest, packed: &Packed) -> String {
+    let program = format!("(() => {{\n'use strict';\n{}\n}})();", PROGRAM.join("\n"));
+    let parts = [
+        ("{{title}}", escaped(&packed.title)),
+        ("{{scene}}", escaped(&manifest.scene)),
+        ("{{style}}", STYLE.to_owned()),
+        ("{{data}}", data(packed)),
+        ("{{three}}", THREE.to_owned()),
+        ("{{program}}", program),
+    ];
+    let mut html = format!("{HEAD} {} -->\n", manifest.plaus);
+    let mut rest = MARKUP;
+    while let Some((before, name, text, after)) = next(rest, &parts) {
+        debug_assert!(!name.is_empty());
+        html.push_str(before);
+        html.push_str(text);
+        rest = after;
+    }
+    html.push_str(rest);
+    html
+}
+
+/// The first placeholder in `text`: what comes before, its name, what stands for it, and what comes after.
+fn next<'a>(text: &'a str, parts: &'a [(&str, String)]) -> Option<(&'a str, &'a str, &'a str, &'a str)> {
+    let found = parts.iter().filter_map(|(name, value)| text.find(name).map(|at| (at, *name, value.as_str())));
+    let (at, name, value) = found.min_by_key(|(at, ..)| *at)?;
+    Some((&text[..at], name, value, &text[at + name.len()..]))
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
+
+/// Length of the description, description, bytes: compressed, as base64.
+fn data(packed: &Packed) -> String {
+    let mut json = packed.meta.to_string().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut whole = (json.len() as u32).to_le_bytes().to_vec();
+    whole.extend(json);
+    whole.extend(&packed.bytes);
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    // Writing to memory cannot fail.
+    let _ = encoder.write_all(&whole);
+    STANDARD.encode(encoder.finish().unwrap_or_default())
+}

@@ -1,0 +1,86 @@
+// What is known of the chosen solution, and what can be done with it.
+
+class Details {
+  constructor(app) {
+    this.app = app;
+    this.box = document.getElementById('details');
+  }
+
+  show() {
+    const { app, box } = this, { a, b, meta } = app;
+    const rows = [
+      ['log p', a.log_p, b?.log_p], ['  prior', a.log_prior, b?.log_prior], ['  constraint', a.log_constraint, b?.log_constraint],
+      ['chain', a.chain, b?.chain], ['iteration', a.iteration, b?.iteration], ['impacts', a.hits, b?.hits], ['duration', `${a.duration.toFixed(2)} s`, b && `${b.duration.toFixed(2)} s`],
+      ...meta.scalars.map(({ name, unit }, k) => [`${name}${unit ? ` (${unit})` : ''}`, a.scalars[k], b?.scalars[k]]),
+    ];
+    const show = (value) => (typeof value === 'number' && !Number.isInteger(value) ? value.toFixed(3) : String(value ?? '–'));
+    const heading = document.createElement('h2'), list = document.createElement('dl'), buttons = document.createElement('div'), code = document.createElement('code');
+    heading.textContent = b ? `A ${a.id} and B ${b.id}` : `Solution ${a.id}`;
+    for (const [name, value, other] of rows) {
+      const dt = document.createElement('dt'), dd = document.createElement('dd');
+      dt.textContent = name;
+      dd.textContent = show(value);
+      if (b) dd.append(Object.assign(document.createElement('i'), { textContent: show(other) }));
+      list.append(dt, dd);
+    }
+    buttons.className = 'buttons';
+    const starred = app.starred.has(a.id);
+    const add = (id, text, title, action) => {
+      const button = Object.assign(document.createElement('button'), { id, textContent: text, title });
+      button.addEventListener('click', () => action(button));
+      buttons.append(button);
+      return button;
+    };
+    add('star', starred ? '★ Starred' : '☆ Star', 'Star (s)', () => app.star(a)).classList.toggle('on', starred);
+    add('compare', b ? 'End A/B' : 'Compare …', 'Pin this one as B, then choose another (b)', () => app.compare());
+    add('download', 'Download GLB', 'The animation for Blender, Godot, browsers (d)', () => this.download());
+    add('copy', 'Copy command', 'The command that replays it (c)', () => this.copy());
+    code.id = 'command';
+    code.textContent = this.command(a);
+    box.replaceChildren(heading, list, buttons, code);
+    const stars = app.solutions.filter((s) => app.starred.has(s.id));
+    if (stars.length) {
+      add('copy-starred', `Copy ${stars.length} ★`, 'The command that exports all starred solutions', () => this.copy(this.exporting(stars), 'copy-starred'));
+    }
+  }
+
+  get run() {
+    const { run } = this.app.meta;
+    return /^[\w./:\\-]+$/.test(run) ? run : `'${run.replaceAll("'", "'\\''")}'`;
+  }
+
+  command(solution) { return `plaus replay ${this.run} --sample ${solution.id}`; }
+
+  exporting(solutions) {
+    return `plaus export ${this.run} --format glb ${solutions.map((s) => `--sample ${s.id}`).join(' ')} --out starred`;
+  }
+
+  copy(text = this.command(this.app.a), id = 'copy') {
+    const done = (ok) => {
+      const button = document.getElementById(id);
+      if (!button) return;
+      const before = button.textContent;
+      button.textContent = ok ? 'Copied' : 'Select it below';
+      setTimeout(() => { if (button.textContent !== before) button.textContent = before; }, 1200);
+    };
+    const byHand = () => {
+      const area = Object.assign(document.createElement('textarea'), { value: text });
+      document.body.append(area);
+      area.select();
+      const ok = document.execCommand('copy');
+      area.remove();
+      return ok;
+    };
+    if (navigator.clipboard) navigator.clipboard.writeText(text).then(() => done(true), () => done(byHand()));
+    else done(byHand());
+  }
+
+  download() {
+    const { a, meta } = this.app;
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([glbOf(this.app, a)], { type: 'model/gltf-binary' }));
+    link.download = `${meta.scene}-${a.id.replace(':', '-')}.glb`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  }
+}

@@ -1,0 +1,131 @@
+// A solution as animated glTF, in the layout that `plaus export --format glb` has: cubic splines that hold parabolas exactly, a key at every impact.
+
+function glbOf({ meta, stage }, solution, fps = 60) {
+  const json = {
+    asset: { version: '2.0', generator: `plaus gallery ${meta.plaus}` }, scene: 0, scenes: [], nodes: [], meshes: [], materials: [],
+    accessors: [], bufferViews: [], animations: [],
+  };
+  const chunks = [];
+  let length = 0;
+  const store = (array, type, component, target, ranged) => {
+    const width = { SCALAR: 1, VEC3: 3, VEC4: 4 }[type], view = { buffer: 0, byteOffset: length, byteLength: array.byteLength };
+    if (target) view.target = target;
+    const padded = new Uint8Array(Math.ceil(array.byteLength / 4) * 4);
+    padded.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+    chunks.push(padded);
+    length += padded.length;
+    const accessor = { bufferView: json.bufferViews.push(view) - 1, componentType: component, count: array.length / width, type };
+    if (ranged) {
+      const low = new Array(width).fill(Infinity), high = new Array(width).fill(-Infinity);
+      array.forEach((value, k) => { low[k % width] = Math.min(low[k % width], value); high[k % width] = Math.max(high[k % width], value); });
+      Object.assign(accessor, { min: low, max: high });
+    }
+    return json.accessors.push(accessor) - 1;
+  };
+  const FLOAT = 5126;
+  const paints = new Map();
+  const material = (look) => {
+    const key = `${look.colour}|${look.material}`;
+    if (!paints.has(key)) {
+      const [metallicFactor, roughnessFactor, opacity] = SURFACES[look.material] ?? SURFACES.matte;
+      const { r, g, b } = new THREE.Color().setRGB(...look.colour.map((c) => c / 255), THREE.SRGBColorSpace);
+      const paint = { name: key, pbrMetallicRoughness: { baseColorFactor: [r, g, b, opacity], metallicFactor, roughnessFactor } };
+      if (opacity < 1) paint.alphaMode = 'BLEND';
+      paints.set(key, json.materials.push(paint) - 1);
+    }
+    return paints.get(key);
+  };
+  const primitive = (geometry, look) => ({
+    attributes: {
+      POSITION: store(geometry.getAttribute('position').array, 'VEC3', FLOAT, 34962, true),
+      NORMAL: store(unit(geometry.getAttribute('normal').array), 'VEC3', FLOAT, 34962),
+    },
+    indices: store(geometry.index.array, 'SCALAR', geometry.index.array instanceof Uint16Array ? 5123 : 5125, 34963),
+    material: material(look),
+  });
+  const children = [];
+  for (const index of solution.props) {
+    const { name, look } = meta.props[index];
+    const mesh = json.meshes.push({ name, primitives: [primitive(stage.prop(index).geometry, look)] }) - 1;
+    children.push(json.nodes.push({ name, mesh }) - 1);
+  }
+  const animation = { name: `sample_${solution.id.replace(':', '_')}`, channels: [], samplers: [] };
+  const models = new Map();
+  solution.tracks.forEach(([name, model], track) => {
+    if (!models.has(model)) {
+      const primitives = meta.models[model].parts.map((part, k) => primitive(stage.bodies[0][model][k].geometry, part.look));
+      models.set(model, json.meshes.push({ name: meta.names[name], primitives }) - 1);
+    }
+    const keys = keysOf(solution, track, fps), node = json.nodes.length;
+    json.nodes.push({ name: meta.names[name], mesh: models.get(model), translation: Array.from(keys.splines.subarray(3, 6)) });
+    children.push(node);
+    const input = store(keys.times, 'SCALAR', FLOAT, 0, true);
+    const channel = (path, output, interpolation) => {
+      animation.channels.push({ sampler: animation.samplers.push({ input, output, interpolation }) - 1, target: { node, path } });
+    };
+    channel('translation', store(keys.splines, 'VEC3', FLOAT), 'CUBICSPLINE');
+    if (solution.turning) channel('rotation', store(keys.turns, 'VEC4', FLOAT), 'LINEAR');
+  });
+  const extras = {
+    plaus: meta.plaus, scene: meta.scene, scenario: meta.scenario, scenario_hash: meta.hash, seed: meta.seed, sample: solution.id, iteration: solution.iteration,
+    log_p: solution.log_p, log_prior: solution.log_prior, log_constraint: solution.log_constraint,
+    scalars: Object.fromEntries(meta.scalars.map(({ name }, k) => [name, solution.scalars[k]])),
+  };
+  json.nodes.push({ name: animation.name, children, extras });
+  json.scenes.push({ name: animation.name, nodes: [json.nodes.length - 1], extras });
+  json.animations.push({ ...animation, extras });
+  json.buffers = [{ byteLength: length }];
+  return container(json, chunks, length);
+}
+
+// Normals were sent as bytes: make them unit vectors again.
+function unit(normals) {
+  const out = new Float32Array(normals.length);
+  for (let k = 0; k < normals.length; k += 3) {
+    const size = Math.hypot(normals[k], normals[k + 1], normals[k + 2]) || 1;
+    for (let axis = 0; axis < 3; axis++) out[k + axis] = normals[k + axis] / size;
+  }
+  return out;
+}
+
+// Times, [tangent in, value, tangent out] and orientations: at frames, at begins of pieces, and between where a body turns fast.
+function keysOf(solution, track, fps) {
+  const open = solution.open(), first = open.firsts[track], count = solution.tracks[track][2], end = solution.duration;
+  const times = new Set([0, end].map(Math.fround));
+  for (let frame = 0; frame / fps < end; frame++) times.add(Math.fround(frame / fps));
+  for (let k = first; k < first + count; k++) if (open.start[k] >= 0 && open.start[k] <= end) times.add(Math.fround(open.start[k]));
+  const sorted = [...times].sort((a, b) => a - b), dense = [];
+  sorted.forEach((time, index) => {
+    dense.push(time);
+    const next = sorted[index + 1], k = solution.piece(track, time);
+    if (next === undefined || !open.spin) return;
+    const rate = Math.hypot(...open.spin.subarray(3 * k, 3 * k + 3)) + Math.abs(open.own[k]), parts = Math.ceil(rate * (next - time));
+    for (let part = 1; part < parts; part++) dense.push(Math.fround(time + ((next - time) * part) / parts));
+  });
+  const distinct = [...new Set(dense)];
+  const splines = new Float32Array(9 * distinct.length), turns = new Float32Array(4 * distinct.length);
+  const p = new THREE.Vector3(), v = new THREE.Vector3(), q = new THREE.Quaternion(), before = new THREE.Quaternion();
+  distinct.forEach((time, index) => {
+    const k = solution.piece(track, time), earlier = open.start[k] === time && k > first ? k - 1 : k;
+    solution.pose(track, time, p, q);
+    splines.set([...solution.velocity(track, time, earlier, v), ...p, ...solution.velocity(track, time, k, v)], 9 * index);
+    if (index && q.dot(before) < 0) q.set(-q.x, -q.y, -q.z, -q.w);
+    before.copy(q);
+    turns.set([q.x, q.y, q.z, q.w], 4 * index);
+  });
+  return { times: new Float32Array(distinct), splines, turns };
+}
+
+function container(json, chunks, length) {
+  let text = JSON.stringify(json);
+  text += ' '.repeat((4 - (new TextEncoder().encode(text).length % 4)) % 4);
+  const head = new TextEncoder().encode(text), file = new Uint8Array(28 + head.length + length), view = new DataView(file.buffer);
+  const words = [0x46546c67, 2, file.length, head.length, 0x4e4f534a];
+  words.forEach((word, k) => view.setUint32(4 * k, word, true));
+  file.set(head, 20);
+  view.setUint32(20 + head.length, length, true);
+  view.setUint32(24 + head.length, 0x004e4942, true);
+  let at = 28 + head.length;
+  for (const chunk of chunks) { file.set(chunk, at); at += chunk.length; }
+  return file;
+}

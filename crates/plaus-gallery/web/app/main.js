@@ -1,0 +1,191 @@
+// The page: what is chosen, what is drawn when.
+
+class App {
+  constructor(meta, bytes) {
+    this.meta = meta;
+    this.solutions = meta.samples.map((_, index) => new Solution(meta, bytes, index));
+    this.passing = new Set(this.solutions);
+    this.listed = this.solutions;
+    this.starred = new Set(this.remembered());
+    this.trails = true;
+    this.animateAll = false;
+    this.a = this.solutions[0];
+    this.b = this.hovered = null;
+    const logs = this.solutions.map((s) => s.log_p);
+    [this.lowest, this.highest] = [Math.min(...logs), Math.max(...logs)];
+    this.stage = new Stage(meta, bytes, this.solutions);
+    this.views = new Views(this.stage);
+    this.views.onRestored = () => { this.player.stale = true; this.tiles.refresh(); };
+    this.theme(this.dark);
+    this.player = new Player(this);
+    this.tiles = new Tiles(this);
+    this.details = new Details(this);
+    this.map = new SolutionMap(this);
+    this.filters = new Filters(this);
+    this.filters.apply();
+    this.choose(this.a, false, false);
+    this.keys();
+    document.getElementById('theme').addEventListener('click', () => this.theme(!this.dark));
+    document.getElementById('help-open').addEventListener('click', () => document.getElementById('help').showModal());
+    const chosen = meta.candidates < meta.distinct ? ` (chosen among ${meta.candidates.toLocaleString()})` : '';
+    document.getElementById('summary').textContent =
+      `${this.solutions.length} of ${meta.distinct.toLocaleString()} distinct solutions${chosen} · ${meta.scenario} · seed ${meta.seed}`;
+  }
+
+  logShare(solution) { return (solution.log_p - this.lowest) / Math.max(this.highest - this.lowest, 1e-9); }
+
+  get dark() { return document.documentElement.dataset.theme === 'dark'; }
+
+  theme(dark) {
+    document.documentElement.dataset.theme = dark ? 'dark' : 'light';
+    this.stage.theme(dark);
+    this.tiles?.refresh();
+    this.map?.draw();
+    if (this.player) { this.player.stale = true; this.player.drawMarks(); }
+    this.wake();
+  }
+
+  // Chooses a solution, or, `beside` the chosen one, another to compare it with.
+  choose(solution, beside, play = true) {
+    if (beside && solution !== this.a) this.b = this.b === solution ? null : solution;
+    else this.a = solution;
+    if (this.b === this.a) this.b = null;
+    if (this.pinning && !beside && solution !== this.pinning) { this.b = this.pinning; this.pinning = null; }
+    const span = (text, kind) => { const b = Object.assign(document.createElement('b'), { textContent: text, className: kind }); const s = document.createElement('span'); s.append(b); return s; };
+    const legend = document.getElementById('legend');
+    legend.replaceChildren(...(this.b ? [span(`A ${this.a.id}`, ''), span(`B ${this.b.id}`, 'b')] : [span(this.a.id, '')]));
+    if (this.pinning) legend.append(span(`B ${this.pinning.id}: now choose A`, 'b'));
+    this.player.load(play);
+    this.details.show();
+    this.tiles.mark();
+    this.map.draw();
+  }
+
+  compare() {
+    if (this.b) { this.b = null; this.pinning = null; } else this.pinning = this.pinning ? null : this.a;
+    this.choose(this.a, false, false);
+  }
+
+  hover(solution, from, event) {
+    if (this.hovered !== solution) {
+      const before = this.hovered;
+      if (before && this.hoveredFrom === 'tile') this.tiles.stale.add(before);
+      Object.assign(this, { hovered: solution, hoveredFrom: from, hoveredSince: performance.now() });
+      this.map.draw();
+    }
+    const preview = document.getElementById('preview');
+    preview.hidden = !(solution && from === 'map');
+    if (!preview.hidden) {
+      preview.lastElementChild.textContent = `${solution.id} · log p ${solution.log_p.toFixed(2)}`;
+      preview.style.left = `${Math.max(8, Math.min(event.clientX - 260, window.innerWidth - 250))}px`;
+      preview.style.top = `${Math.max(8, Math.min(event.clientY - 80, window.innerHeight - 200))}px`;
+    }
+    this.wake();
+  }
+
+  star(solution) {
+    if (!this.starred.delete(solution.id)) this.starred.add(solution.id);
+    try { localStorage.setItem(this.memory, JSON.stringify([...this.starred])); } catch { /* a page from disk may not remember */ }
+    this.tiles.mark();
+    this.details.show();
+    this.map.draw();
+    if (this.filters.starredOnly) this.filters.apply();
+  }
+
+  get memory() { return `plaus-stars-${this.meta.hash}-${this.meta.seed}`; }
+
+  remembered() {
+    try {
+      const known = new Set(this.meta.samples.map((s) => s.id));
+      return JSON.parse(localStorage.getItem(this.memory) ?? '[]').filter((id) => known.has(id));
+    } catch { return []; }
+  }
+
+  show(solutions) {
+    this.listed = solutions;
+    this.passing = new Set(solutions);
+    this.tiles.show(solutions);
+    this.map.draw();
+  }
+
+  setAnimateAll(on) {
+    this.animateAll = on;
+    document.getElementById('animate-all').classList.toggle('on', on);
+    this.tiles.refresh();
+  }
+
+  toggleTrails() {
+    this.trails = document.getElementById('trails').classList.toggle('on');
+    this.player.stale = true;
+    this.wake();
+  }
+
+  move(step) {
+    const list = this.listed;
+    if (!list.length) return;
+    const at = list.indexOf(this.a), next = list[(at + step + list.length) % list.length];
+    this.choose(next, false);
+    this.tiles.tile(next).scrollIntoView({ block: 'nearest' });
+  }
+
+  keys() {
+    const { player } = this;
+    const actions = {
+      ' ': () => player.toggle(), b: () => this.compare(), s: () => this.star(this.a), t: () => this.toggleTrails(), r: () => player.reset(), m: () => this.map.toggle(),
+      a: () => this.setAnimateAll(!this.animateAll), d: () => this.details.download(), c: () => this.details.copy(), j: () => this.move(1), k: () => this.move(-1),
+      ArrowLeft: (shift) => (shift ? player.jump(-1) : (player.pause(), player.seek(player.time - 1 / 60))),
+      ArrowRight: (shift) => (shift ? player.jump(1) : (player.pause(), player.seek(player.time + 1 / 60))),
+      '?': () => document.getElementById('help').showModal(),
+    };
+    addEventListener('keydown', (event) => {
+      const on = event.target.closest?.('button, select, dialog, input');
+      if (event.ctrlKey || event.metaKey || event.altKey || (on && (on.tagName !== 'BUTTON' || event.key === ' '))) return;
+      const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+      if (!action) return;
+      event.preventDefault();
+      action(event.shiftKey);
+    });
+  }
+
+  // Draws while something moves, then sleeps.
+  wake() {
+    if (this.awake) return;
+    this.awake = true;
+    this.last = performance.now();
+    requestAnimationFrame((now) => this.tick(now));
+  }
+
+  tick(now) {
+    const seconds = Math.min(Math.max(now - this.last, 0) / 1000, 0.1);
+    this.last = now;
+    this.player.step(seconds);
+    const { jobs, moving } = this.tiles.jobs(now);
+    const preview = document.getElementById('preview'), previewing = !preview.hidden && this.hovered;
+    if (previewing) {
+      const time = cycle((now - this.hoveredSince) / 1000, this.hovered.duration);
+      jobs.push({ canvas: preview.firstElementChild, solution: this.hovered, time, flash: true });
+    }
+    const main = this.player.job();
+    this.views.draw(main ? [main, ...jobs] : jobs);
+    this.frames = (this.frames ?? 0) + 1;
+    if (this.player.playing || moving || previewing || this.player.stale) requestAnimationFrame((next) => this.tick(next));
+    else this.awake = false;
+  }
+}
+
+async function begin() {
+  const message = document.getElementById('message');
+  document.documentElement.dataset.theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
+  try {
+    const { meta, bytes } = await unpack(document.getElementById('data'));
+    window.gallery = new App(meta, bytes);
+    requestAnimationFrame(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = performance.now().toFixed(0); }));
+    message.textContent = '';
+    window.gallery.player.play();
+  } catch (error) {
+    console.error(error);
+    message.textContent = `This browser cannot show the gallery: ${error.message}. It needs WebGL 2 and DecompressionStream (browsers of 2023 and later).`;
+  }
+}
+
+begin();

@@ -1,0 +1,112 @@
+// Solutions: closed-form pieces of motion, evaluated at any time.
+
+class Solution {
+  constructor(meta, bytes, index) {
+    Object.assign(this, meta.samples[index]);
+    this.index = index;
+    this.meta = meta;
+    this.bytes = bytes;
+    this.columns = null;
+  }
+
+  // Unpacks on first use.
+  open() {
+    if (this.columns) return this.columns;
+    const meta = this.meta, columns = new Columns(this.bytes, this.at);
+    let count = 0;
+    const firsts = this.tracks.map(([, , pieces]) => { const first = count; count += pieces; return first; });
+    const open = { firsts, count };
+    open.start = columns.take(Float32Array, count);
+    const scaled = (n, Kind, scale, low) => {
+      const out = new Float32Array(n * count);
+      for (let axis = 0; axis < n; axis++) {
+        const column = columns.take(Kind, count);
+        for (let k = 0; k < count; k++) out[n * k + axis] = (low ? low[axis] : 0) + column[k] * (low ? scale[axis] : scale);
+      }
+      return out;
+    };
+    const size = meta.high.map((high, axis) => (high - meta.low[axis]) / 65535);
+    open.position = scaled(3, Uint16Array, size, meta.low);
+    open.velocity = scaled(3, Int16Array, meta.velocity / 32767);
+    open.acceleration = scaled(3, Int16Array, meta.acceleration / 32767);
+    if (this.turning) {
+      open.orientation = scaled(4, Int16Array, 1 / 32767);
+      open.spin = scaled(3, Int16Array, meta.spin / 32767);
+      open.own = scaled(1, Int16Array, meta.spin / 32767);
+    }
+    const hits = this.hits;
+    const time = columns.take(Float32Array, hits), speed = columns.take(Float32Array, hits);
+    const pair = [columns.take(Uint16Array, hits), columns.take(Uint16Array, hits)];
+    const shares = [0, 1, 2].map(() => columns.take(Uint16Array, hits));
+    open.impacts = Array.from(time, (t, k) => ({
+      time: t, speed: speed[k], body: meta.names[pair[0][k]], other: meta.names[pair[1][k]],
+      point: [0, 1, 2].map((axis) => meta.low[axis] + shares[axis][k] * size[axis]),
+    }));
+    return (this.columns = open);
+  }
+
+  get impacts() { return this.open().impacts; }
+
+  // The piece of a track that is valid at a time.
+  piece(track, time) {
+    const { firsts, start } = this.open();
+    let low = firsts[track], high = low + this.tracks[track][2] - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (start[middle] <= time) low = middle; else high = middle - 1;
+    }
+    return low;
+  }
+
+  // Position, and orientation where one is asked for, of a track at a time.
+  pose(track, time, position, orientation) {
+    const open = this.open(), k = this.piece(track, time), t = Math.max(time - open.start[k], 0);
+    const p = open.position, v = open.velocity, a = open.acceleration, i = 3 * k;
+    position.set(p[i] + t * (v[i] + 0.5 * t * a[i]), p[i + 1] + t * (v[i + 1] + 0.5 * t * a[i + 1]), p[i + 2] + t * (v[i + 2] + 0.5 * t * a[i + 2]));
+    if (orientation) this.turn(k, t, orientation);
+  }
+
+  velocity(track, time, k, out) {
+    const open = this.open(), t = Math.max(time - open.start[k], 0), i = 3 * k;
+    return out.set(...[0, 1, 2].map((axis) => open.velocity[i + axis] + t * open.acceleration[i + axis]));
+  }
+
+  // Rot(spin·t) · R₀ · Rot(e₃, own·t)
+  turn(k, t, q) {
+    const open = this.open();
+    if (!open.orientation) { q.identity(); return; }
+    q.fromArray(open.orientation, 4 * k).normalize();
+    const [x, y, z] = open.spin.subarray(3 * k, 3 * k + 3), rate = Math.hypot(x, y, z);
+    if (rate > 0) q.premultiply(scratch.q.setFromAxisAngle(scratch.v.set(x / rate, y / rate, z / rate), rate * t));
+    if (open.own[k]) q.multiply(scratch.q.setFromAxisAngle(scratch.v.set(0, 0, 1), open.own[k] * t));
+  }
+}
+
+const scratch = { q: new THREE.Quaternion(), v: new THREE.Vector3() };
+
+// Points along the ways of all bodies, as pairs of ends in order of time: [ends, times, model of each].
+function trailOf(solution) {
+  const segments = [], at = new THREE.Vector3();
+  const budget = Math.max(12, Math.floor(6000 / solution.tracks.length));
+  solution.tracks.forEach(([, model], track) => {
+    const open = solution.open(), first = open.firsts[track], count = solution.tracks[track][2];
+    const bends = Array.from(open.start.subarray(first, first + count));
+    const step = solution.duration / Math.min(budget, 160);
+    const times = [];
+    bends.forEach((from, k) => {
+      const to = Math.min(k + 1 < count ? bends[k + 1] : solution.duration, solution.duration), i = 3 * (first + k);
+      const bent = Math.hypot(...open.acceleration.subarray(i, i + 3)) > 0;
+      const parts = bent ? Math.max(1, Math.ceil((to - from) / step)) : 1;
+      for (let part = 0; part < parts; part++) times.push(from + ((to - from) * part) / parts);
+    });
+    times.push(solution.duration);
+    let last = null;
+    for (const time of times) {
+      solution.pose(track, time, at, null);
+      const here = at.toArray();
+      if (last && Math.hypot(here[0] - last[0], here[1] - last[1], here[2] - last[2]) > 0) segments.push({ ends: [...last, ...here], time, model });
+      last = here;
+    }
+  });
+  return segments.sort((a, b) => a.time - b.time);
+}

@@ -1,0 +1,131 @@
+// The player: time, the scrubber with impacts marked, and the 3D view of the chosen solution.
+
+class Player {
+  constructor(app) {
+    this.app = app;
+    this.time = 0;
+    this.playing = false;
+    this.rest = 0;
+    this.canvas = document.getElementById('stage');
+    this.marks = document.getElementById('marks');
+    this.scrub = document.getElementById('scrub');
+    this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
+    this.controls = new THREE.OrbitControls(this.camera, this.canvas);
+    this.controls.enableDamping = false;
+    this.controls.listenToKeyEvents = () => {};
+    this.controls.addEventListener('change', () => { this.stale = true; app.wake(); });
+    this.stale = true;
+    document.getElementById('play').addEventListener('click', () => this.toggle());
+    document.getElementById('view-reset').addEventListener('click', () => this.reset());
+    document.getElementById('trails').addEventListener('click', () => app.toggleTrails());
+    this.speed = document.getElementById('speed');
+    this.scrub.addEventListener('input', () => { this.pause(); this.seek(+this.scrub.value); });
+    new ResizeObserver(() => { this.fit(); this.drawMarks(); }).observe(this.canvas);
+    this.reset();
+  }
+
+  get duration() { return Math.max(this.app.a.duration, this.app.b?.duration ?? 0); }
+
+  // Keeps the direction and distance that the user chose; fits anew only what they never touched.
+  fit() {
+    const aspect = this.canvas.clientWidth / Math.max(this.canvas.clientHeight, 1);
+    if (!this.touched) return this.reset();
+    this.camera.aspect = aspect;
+    this.camera.updateProjectionMatrix();
+    this.stale = true;
+    this.app.wake();
+  }
+
+  reset() {
+    this.app.views.fitted(this.camera, this.canvas.clientWidth / Math.max(this.canvas.clientHeight, 1));
+    const { low, high } = this.app.stage.frame;
+    this.controls.target.copy(low).lerp(high, 0.5);
+    this.controls.update();
+    this.controls.addEventListener('start', () => { this.touched = true; });
+    this.touched = false;
+    this.stale = true;
+    this.app.wake();
+  }
+
+  // A solution was chosen: begins at its begin, playing.
+  load(play) {
+    this.scrub.max = this.duration;
+    this.seek(0);
+    this.drawMarks();
+    if (play) this.play();
+  }
+
+  play() {
+    if (this.time >= this.duration) this.time = 0;
+    this.playing = true;
+    this.rest = 0;
+    this.label();
+    this.app.wake();
+  }
+
+  pause() {
+    this.playing = false;
+    this.label();
+  }
+
+  toggle() { if (this.playing) this.pause(); else this.play(); }
+
+  label() { document.getElementById('play').textContent = this.playing ? '❚❚' : '▶'; }
+
+  seek(time) {
+    this.time = Math.min(Math.max(time, 0), this.duration);
+    this.scrub.value = this.time;
+    document.getElementById('clock').textContent = `${this.time.toFixed(2)} / ${this.duration.toFixed(2)} s`;
+    this.stale = true;
+    this.app.wake();
+  }
+
+  // To the impact before or after.
+  jump(direction) {
+    const times = this.app.a.impacts.map((hit) => hit.time), slack = 1e-4;
+    const target = direction > 0 ? times.find((t) => t > this.time + slack) : times.findLast((t) => t < this.time - slack);
+    this.pause();
+    this.seek(target ?? (direction > 0 ? this.duration : 0));
+  }
+
+  step(seconds) {
+    if (!this.playing) return;
+    if (this.time >= this.duration) {
+      this.rest += seconds;
+      if (this.rest > 0.8) { this.rest = 0; this.seek(0); }
+      return;
+    }
+    this.seek(this.time + seconds * +this.speed.value);
+  }
+
+  job() {
+    const { app } = this;
+    if (!this.stale) return null;
+    this.stale = false;
+    return { canvas: this.canvas, camera: this.camera, solution: app.a, other: app.b, time: this.time, trails: app.trails, until: true, flash: true };
+  }
+
+  // Impacts as ticks: taller where bodies meet faster.
+  drawMarks() {
+    const { marks, app } = this, ratio = window.devicePixelRatio || 1, width = marks.clientWidth, height = marks.clientHeight;
+    if (!width) return;
+    Object.assign(marks, { width: width * ratio, height: height * ratio });
+    const pen = marks.getContext('2d'), css = getComputedStyle(document.documentElement), handle = 6;
+    pen.scale(ratio, ratio);
+    pen.fillStyle = css.getPropertyValue('--line');
+    pen.fillRect(0, height / 2 - 2, width, 4);
+    const rows = [[app.a, '--accent', -1], [app.b, '--b', 1]];
+    for (const [solution, colour, side] of rows) {
+      if (!solution) continue;
+      const strongest = Math.max(1e-9, ...solution.impacts.map((hit) => hit.speed));
+      pen.fillStyle = css.getPropertyValue(colour);
+      pen.globalAlpha = solution.impacts.length > 200 ? 0.35 : 0.85;
+      for (const { time, speed } of solution.impacts) {
+        const tall = (height / 2 - 3) * (strongest > 1e-9 ? 0.25 + 0.75 * Math.sqrt(speed / strongest) : 0.6);
+        const x = handle + ((width - 2 * handle) * time) / this.duration;
+        pen.fillRect(x - 0.75, side < 0 ? height / 2 - tall : height / 2, 1.5, tall);
+      }
+      pen.globalAlpha = 1;
+    }
+  }
+}

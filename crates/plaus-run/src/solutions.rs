@@ -1,0 +1,51 @@
+//! The distinct satisfying solutions of a run: what a gallery shows, and what `--all-distinct` exports.
+
+use crate::error::RunFileError;
+use crate::read::{Phase, RunOf};
+use crate::tally::SampleId;
+use plaus_mcmc::SolutionClass;
+use plaus_scenes::Scene;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
+/// The first satisfying draw of its class that the sampling phase recorded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solution {
+    /// Which.
+    pub sample: SampleId,
+    /// The iteration that recorded it.
+    pub iteration: u64,
+    /// Its `log p(A)`.
+    pub log_p: f64,
+}
+
+/// One solution a class, ordered by iteration, then chain: the first that was recorded. Warm-up does not count, as it has no sample numbers.
+///
+/// # Errors
+/// [`RunFileError`] where the records are damaged.
+pub fn distinct<S: Scene>(run: &RunOf<'_, S>) -> Result<Vec<Solution>, RunFileError> {
+    let parts: Vec<BTreeMap<SolutionClass, Solution>> =
+        (0..run.chains()).into_par_iter().map(|chain| of_chain(run, chain)).collect::<Result<_, _>>()?;
+    let mut all: Vec<(SolutionClass, Solution)> = parts.into_iter().flatten().collect();
+    all.sort_by_key(|(class, solution)| (*class, solution.iteration, solution.sample));
+    all.dedup_by_key(|(class, _)| *class);
+    let mut solutions: Vec<Solution> = all.into_iter().map(|(_, solution)| solution).collect();
+    solutions.sort_by_key(|solution| (solution.iteration, solution.sample));
+    Ok(solutions)
+}
+
+fn of_chain<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<BTreeMap<SolutionClass, Solution>, RunFileError> {
+    let mut firsts = BTreeMap::new();
+    run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
+        if let Some(Entry::Vacant(place)) = stretch.entry.class.map(|class| firsts.entry(class)) {
+            place.insert(Solution {
+                sample: SampleId { chain, draw: stretch.draw },
+                iteration: run.iteration_of(Phase::Sampling, stretch.draw),
+                log_p: stretch.entry.state.log_p().value(),
+            });
+        }
+        Ok(())
+    })?;
+    Ok(firsts)
+}

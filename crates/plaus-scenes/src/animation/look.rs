@@ -1,0 +1,75 @@
+//! Colours and materials: hints for whoever draws, without influence on anything that is sampled.
+
+use serde::{Deserialize, Serialize};
+
+/// A colour in sRGB, as on the web.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Colour(pub [u8; 3]);
+
+/// What something seems to be made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Material {
+    /// Paper, chalk.
+    Matte,
+    /// Lacquer, plastic, marbles.
+    Glossy,
+    /// Lets light through.
+    Glass,
+    /// Steel.
+    Metal,
+    /// Planed and varnished.
+    Wood,
+    /// Cloth of a gaming table.
+    Felt,
+    /// Not really there: a mark, drawn translucent and without shadow.
+    Mark,
+}
+
+/// Colour and material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Look {
+    /// The colour.
+    pub colour: Colour,
+    /// The material.
+    pub material: Material,
+}
+
+/// Colours that are told apart also by people who do not see all of them (after Okabe & Ito), brightest first.
+const PALETTE: [[u8; 3]; 8] = [
+    [230, 120, 40],
+    [40, 130, 200],
+    [35, 165, 125],
+    [235, 190, 60],
+    [205, 90, 150],
+    [95, 185, 230],
+    [200, 70, 50],
+    [120, 110, 200],
+];
+
+impl Look {
+    /// Varnished wood.
+    pub const WOOD: Self = Self::new([196, 150, 100], Material::Wood);
+    /// Green cloth.
+    pub const FELT: Self = Self::new([38, 104, 74], Material::Felt);
+    /// A window.
+    pub const GLASS: Self = Self::new([205, 225, 235], Material::Glass);
+    /// Light grey, dull.
+    pub const STONE: Self = Self::new([176, 178, 184], Material::Matte);
+    /// White, as pins are.
+    pub const IVORY: Self = Self::new([244, 240, 230], Material::Glossy);
+    /// A place to reach.
+    pub const TARGET: Self = Self::new([60, 190, 110], Material::Mark);
+
+    /// A colour in sRGB, and a material.
+    #[must_use]
+    pub const fn new(colour: [u8; 3], material: Material) -> Self {
+        Self { colour: Colour(colour), material }
+    }
+
+    /// The n-th of colours that are easily told apart, glossy; begins again after eight.
+    #[must_use]
+    pub const fn nth(n: usize) -> Self {
+        Self::new(PALETTE[n % PALETTE.len()], Material::Glossy)
+    }
+}

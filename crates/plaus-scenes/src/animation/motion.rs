@@ -1,0 +1,169 @@
+//! Motion in closed form.
+
+use super::look::Look;
+use super::shape::Shape;
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// A body and its motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Track {
+    /// Stable name, e.g. `ball_0`; unique within an animation.
+    pub name: String,
+    /// What it looks like, in the body's own frame.
+    pub shape: Shape,
+    /// Colour and material.
+    pub look: Look,
+    /// Pieces in order of time; each is valid until the next begins.
+    pub pieces: Vec<Piece>,
+}
+
+/// Motion under constant acceleration from `start` on, turning as `turn` says.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Piece {
+    /// Seconds.
+    pub start: f64,
+    /// Position of the body's origin at `start`.
+    pub position: DVec3,
+    /// Velocity at `start`.
+    pub velocity: DVec3,
+    /// Acceleration throughout.
+    pub acceleration: DVec3,
+    /// How it turns.
+    pub turn: Turn,
+}
+
+/// Turning in closed form: `R(t) = Rot(spin·t) · R(0) · Rot(e₃, own·t)`.
+///
+/// With `own` 0 that is any body at constant angular velocity; with it, the free symmetric top, which precesses about its angular momentum while it spins
+/// about its own third axis.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Turn {
+    /// Orientation at the piece's start, from the body's frame to the world's.
+    pub orientation: DQuat,
+    /// Angular velocity in the world's frame, rad/s.
+    pub spin: DVec3,
+    /// Rate about the body's own third axis, rad/s.
+    pub own: f64,
+}
+
+impl Turn {
+    /// At rest in an orientation.
+    #[must_use]
+    pub fn still(orientation: DQuat) -> Self {
+        Self { orientation, ..Self::default() }
+    }
+
+    /// Orientation after `t` seconds.
+    #[must_use]
+    pub fn after(&self, t: f64) -> DQuat {
+        let mut turned = self.orientation;
+        if self.spin != DVec3::ZERO {
+            turned = DQuat::from_scaled_axis(self.spin * t) * turned;
+        }
+        if self.own != 0.0 {
+            turned *= DQuat::from_rotation_z(self.own * t);
+        }
+        turned.normalize()
+    }
+}
+
+impl Piece {
+    /// Free flight, or any motion under constant acceleration, without turning.
+    #[must_use]
+    pub fn ballistic(start: f64, position: DVec3, velocity: DVec3, acceleration: DVec3) -> Self {
+        Self { start, position, velocity, acceleration, turn: Turn::default() }
+    }
+
+    /// At rest.
+    #[must_use]
+    pub fn resting(start: f64, position: DVec3) -> Self {
+        Self::ballistic(start, position, DVec3::ZERO, DVec3::ZERO)
+    }
+
+    /// The same, turning.
+    #[must_use]
+    pub fn turning(self, turn: Turn) -> Self {
+        Self { turn, ..self }
+    }
+
+    /// Position at `time`, in s; where the piece begins for times before that.
+    #[must_use]
+    pub fn position(&self, time: f64) -> DVec3 {
+        let t = (time - self.start).max(0.0);
+        self.position + t * (self.velocity + 0.5 * t * self.acceleration)
+    }
+
+    /// Velocity at `time`, in m/s.
+    #[must_use]
+    pub fn velocity(&self, time: f64) -> DVec3 {
+        self.velocity + (time - self.start).max(0.0) * self.acceleration
+    }
+
+    /// Orientation at `time`.
+    #[must_use]
+    pub fn orientation(&self, time: f64) -> DQuat {
+        self.turn.after((time - self.start).max(0.0))
+    }
+}
+
+impl Track {
+    /// A body that moves.
+    pub fn new(name: impl Into<String>, shape: Shape, look: Look, pieces: Vec<Piece>) -> Self {
+        Self { name: name.into(), shape, look, pieces }
+    }
+
+    /// The piece that is valid at `time`: the first for times before it, `None` where there is none.
+    #[must_use]
+    pub fn piece(&self, time: f64) -> Option<&Piece> {
+        let next = self.pieces.partition_point(|piece| piece.start <= time);
+        self.pieces.get(next.saturating_sub(1))
+    }
+
+    /// Position at `time`; before the first piece the body is where that begins.
+    #[must_use]
+    pub fn position(&self, time: f64) -> DVec3 {
+        self.piece(time).map_or(DVec3::ZERO, |piece| piece.position(time))
+    }
+
+    /// Orientation at `time`.
+    #[must_use]
+    pub fn orientation(&self, time: f64) -> DQuat {
+        self.piece(time).map_or(DQuat::IDENTITY, |piece| piece.orientation(time))
+    }
+
+    /// Whether the body ever has an orientation other than that of the world.
+    #[must_use]
+    pub fn turns(&self) -> bool {
+        self.pieces.iter().any(|piece| piece.turn != Turn::default())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    #[test]
+    fn a_symmetric_top_turns_about_both_axes() {
+        // The body's third axis lies along world x; it precesses a quarter turn about y and spins half a turn about itself.
+        let lying = DQuat::from_rotation_y(FRAC_PI_2);
+        let turn = Turn { orientation: lying, spin: DVec3::Y * FRAC_PI_2, own: PI };
+        let after = turn.after(1.0);
+        assert!((after * DVec3::Z - DVec3::NEG_Z).length() < 1e-15);
+        assert!((after * DVec3::Y - DVec3::NEG_Y).length() < 1e-15);
+        assert_eq!(turn.after(0.0), lying.normalize());
+    }
+
+    #[test]
+    fn pieces_are_valid_until_the_next_begins() {
+        let fall = Piece::ballistic(0.0, DVec3::Y, DVec3::X, DVec3::new(0.0, -2.0, 0.0));
+        let rest = Piece::resting(1.0, DVec3::X);
+        let track = Track::new("a", Shape::ball(0.1), Look::nth(3), vec![fall, rest]);
+        assert_eq!(track.position(-1.0), DVec3::Y);
+        assert_eq!(track.position(0.5), DVec3::new(0.5, 0.75, 0.0));
+        assert_eq!(fall.velocity(0.5), DVec3::new(1.0, -1.0, 0.0));
+        assert_eq!(track.position(7.0), DVec3::X);
+        assert!(!track.turns());
+    }
+}

@@ -1,0 +1,98 @@
+//! What stands still, and where to look from.
+
+use super::look::Look;
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// A thing that does not move.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Prop {
+    /// Stable name; unique within an animation, also among its bodies.
+    pub name: String,
+    /// Colour and material.
+    pub look: Look,
+    /// Its form.
+    pub form: Form,
+}
+
+/// The form of a thing that does not move, in metres and in the world's frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// A box.
+    Block {
+        /// Its middle.
+        centre: DVec3,
+        /// Half its lengths along its own axes.
+        half: DVec3,
+        /// From its own axes to the world's.
+        orientation: DQuat,
+    },
+    /// A part of a plane, square, seen from the side its normal points to.
+    Plane {
+        /// Its middle.
+        centre: DVec3,
+        /// Unit normal.
+        normal: DVec3,
+        /// Half the square's side.
+        half: f64,
+    },
+    /// Triangles, counter-clockwise as seen from outside.
+    Mesh {
+        /// Corners.
+        vertices: Vec<DVec3>,
+        /// Three corners each.
+        triangles: Vec<[u32; 3]>,
+    },
+    /// Heights over a regular grid in the plane of x and z.
+    Heightfield {
+        /// Position of the first height's foot.
+        origin: DVec3,
+        /// Distance between neighbours along x and along z.
+        step: [f64; 2],
+        /// How many heights follow each other along x before the next row in z begins.
+        columns: u32,
+        /// Heights above the origin's y; a whole number of rows.
+        heights: Vec<f64>,
+    },
+}
+
+/// A place to look from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct View {
+    /// Direction from what is looked at to the eye; of any length.
+    pub from: DVec3,
+    /// Points that should be seen, besides all that moves: two corners of a box.
+    pub frame: Option<[DVec3; 2]>,
+}
+
+impl Prop {
+    /// A thing of any form.
+    pub fn new(name: impl Into<String>, look: Look, form: Form) -> Self {
+        Self { name: name.into(), look, form }
+    }
+
+    /// A box along the world's axes, by its middle and half its lengths.
+    pub fn block(name: impl Into<String>, look: Look, centre: DVec3, half: DVec3) -> Self {
+        Self::new(name, look, Form::Block { centre, half, orientation: DQuat::IDENTITY })
+    }
+
+    /// Marks a box, by its middle and half its lengths, as the place that is to be reached.
+    pub fn target(name: impl Into<String>, centre: DVec3, half: DVec3) -> Self {
+        Self::block(name, Look::TARGET, centre, half)
+    }
+}
+
+impl View {
+    /// Looks from a direction; what moves is to be seen.
+    #[must_use]
+    pub fn from(x: f64, y: f64, z: f64) -> Self {
+        Self { from: DVec3::new(x, y, z), frame: None }
+    }
+
+    /// The same, where a box between two corners is to be seen as well.
+    #[must_use]
+    pub fn showing(self, low: DVec3, high: DVec3) -> Self {
+        Self { frame: Some([low, high]), ..self }
+    }
+}

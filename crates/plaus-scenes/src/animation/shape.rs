@@ -1,0 +1,77 @@
+//! Shapes of bodies.
+
+use super::look::Look;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// The shape of a body about its origin, in metres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// A ball.
+    Sphere {
+        /// Radius.
+        radius: f64,
+        /// Whether it has finger holes about its third axis, so that one sees it turn.
+        holes: bool,
+    },
+    /// A coin whose faces look along the third axis: a ball of a world with two dimensions.
+    Disc {
+        /// Radius.
+        radius: f64,
+        /// From face to face.
+        thickness: f64,
+    },
+    /// A box.
+    Cuboid {
+        /// Half its lengths along the body's axes.
+        half: DVec3,
+        /// Pips of the faces +x, −x, +y, −y, +z, −z, where it is a die.
+        pips: Option<[u8; 6]>,
+    },
+    /// A body of revolution about its third axis: a bowling pin.
+    Revolution {
+        /// Points (distance from the axis, height along it) from the lowest height to the highest; the body is closed at both ends.
+        profile: Vec<[f64; 2]>,
+        /// Painted rings.
+        stripes: Vec<Stripe>,
+    },
+}
+
+/// A painted ring of a body of revolution.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Stripe {
+    /// Height along the axis where it begins, in metres.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Its paint.
+    pub look: Look,
+}
+
+impl Shape {
+    /// A plain ball.
+    #[must_use]
+    pub const fn ball(radius: f64) -> Self {
+        Self::Sphere { radius, holes: false }
+    }
+
+    /// A die whose opposite faces add up to seven: 1 on +z, 2 on +y, 3 on +x.
+    #[must_use]
+    pub fn die(edge: f64) -> Self {
+        Self::Cuboid { half: DVec3::splat(0.5 * edge), pips: Some([3, 4, 2, 5, 1, 6]) }
+    }
+
+    /// Radius of the smallest ball about the origin that holds the body.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        match self {
+            Self::Sphere { radius, .. } => *radius,
+            Self::Disc { radius, thickness } => DVec3::new(*radius, 0.5 * thickness, 0.0).length(),
+            Self::Cuboid { half, .. } => half.length(),
+            Self::Revolution { profile, .. } => {
+                profile.iter().map(|&[r, h]| DVec3::new(r, h, 0.0).length()).fold(0.0, f64::max)
+            }
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! A lazily realised spline field.
+
+use super::cell::{Bounds, Cell, Sample};
+use super::lookup::Lookup;
+use crate::error::WorldError;
+use std::cell::RefCell;
+use std::fmt;
+use std::sync::Arc;
+
+/// Where the control points are: `(i, j)` at `origin + spacing · (i, j)`, endlessly in all directions.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Grid {
+    /// Control point (0, 0), in m.
+    pub origin: [f64; 2],
+    /// Distance of neighbours, in m.
+    pub spacing: f64,
+}
+
+/// A field over the plane. It can be sent to another thread, but not be looked at by two at once: each chain has its own.
+#[derive(Clone)]
+pub struct Spline {
+    name: &'static str,
+    grid: Grid,
+    range: [f64; 2],
+    source: Arc<dyn Fn(i64, i64) -> f64 + Send + Sync>,
+    made: RefCell<Made>,
+}
+
+/// What has been asked for so far.
+#[derive(Clone, Default)]
+struct Made {
+    point_places: Lookup,
+    points: Vec<([i64; 2], f64)>,
+    cell_places: Lookup,
+    cells: Vec<Cell>,
+    last: Option<([i64; 2], u32)>,
+    /// The last rectangle of cells that bounds were asked for.
+    window: Option<([[i64; 2]; 2], Bounds)>,
+    fault: Option<([i64; 2], f64)>,
+}
+
+impl fmt::Debug for Spline {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Spline {{ name: {:?}, grid: {:?}, touched: {} }}", self.name, self.grid, self.touched_count())
+    }
+}
+
+impl Spline {
+    /// A field whose control values come from `source(i, j)`, a pure function with values in `range` (a promise that is checked whenever a point is made; tight
+    /// ranges make detection faster, ±8σ is fine for a Gaussian).
+    ///
+    /// # Errors
+    /// [`WorldError::BadNumber`] where the spacing is not positive or a number is not finite.
+    pub fn new(
+        name: &'static str,
+        grid: Grid,
+        range: [f64; 2],
+        source: impl Fn(i64, i64) -> f64 + Send + Sync + 'static,
+    ) -> Result<Self, WorldError> {
+        if !(grid.spacing > 0.0 && grid.spacing.is_finite()) {
+            return Err(WorldError::BadNumber {
+                field: "grid spacing",
+                value: grid.spacing,
+                expected: "a positive length",
+            });
+        }
+        for value in [grid.origin[0], grid.origin[1], range[0], range[1]] {
+            if !value.is_finite() {
+                return Err(WorldError::BadNumber { field: "grid origin or range", value, expected: "finite numbers" });
+            }
+        }
+        if range[0] > range[1] {
+            return Err(WorldError::BadNumber {
+                field: "range",
+                value: range[0],
+                expected: "a lower end that is not above the upper",
+            });
+        }
+        Ok(Self { name, grid, range, source: Arc::new(source), made: RefCell::default() })
+    }
+
+    /// The grid.
+    #[must_use]
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The range that all control values keep, and so the field.
+    #[must_use]
+    pub fn range(&self) -> [f64; 2] {
+        self.range
+    }
+
+    /// The first control value that was not finite or out of range, if there was one. It counts as the nearer end of the range (or the middle, for NaN).
+    #[must_use]
+    pub fn fault(&self) -> Option<WorldError> {
+        let (key, value) = self.made.borrow().fault?;
+        Some(WorldError::BadControlPoint { field: self.name, i: key[0], j: key[1], value })
+    }
+
+    /// Whether a control value was bad.
+    #[inline]
+    #[must_use]
+    pub fn is_faulty(&self) -> bool {
+        self.made.borrow().fault.is_some()
+    }
+
+    #[inline]
+    fn locate(&self, x: f64, y: f64) -> ([i64; 2], f64, f64) {
+        let (u, v) = ((x - self.grid.origin[0]) / self.grid.spacing, (y - self.grid.origin[1]) / self.grid.spacing);
+        let (i, j) = (floor(u), floor(v));
+        ([i, j], u - i as f64, v - j as f64)
+    }
+
+    /// Value and derivatives at a point.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, x: f64, y: f64) -> Sample {
+        let (key, u, v) = self.locate(x, y);
+        let made = &mut *self.made.borrow_mut();
+        let place = self.cell(made, key);
+        made.cells[place as usize].at(u, v, 1.0 / self.grid.spacing)
+    }
+
+    /// Value at a point.
+    #[inline]
+    #[must_use]
+    pub fn value(&self, x: f64, y: f64) -> f64 {
+        let (key, u, v) = self.locate(x, y);
+        let made = &mut *self.made.borrow_mut();
+        let place = self.cell(made, key);
+        made.cells[place as usize].value(u, v)
+    }
+
+    /// What holds over a rectangle: all the cells that meet it are made, up to [`MOST_CELLS`]; beyond that `None`.
+    #[must_use]
+    pub fn bounds(&self, min: [f64; 2], max: [f64; 2]) -> Option<Bounds> {
+        let (low, ..) = self.locate(min[0], min[1]);
+        let (high, ..) = self.locate(max[0], max[1]);
+        let count =
+            (high[0].checked_sub(low[0])?.checked_add(1)?).checked_mul(high[1].checked_sub(low[1])?.checked_add(1)?)?;
+        if !(1..=MOST_CELLS).contains(&count) {
+            return None;
+        }
+        let made = &mut *self.made.borrow_mut();
+        if let Some((cells, bounds)) = made.window
+            && cells == [low, high]
+        {
+            return Some(bounds);
+        }
+        let mut all = Bounds::NONE;
+        for i in low[0]..=high[0] {
+            for j in low[1]..=high[1] {
+                let place = self.cell(made, [i, j]);
+                all = all.and(&made.cells[place as usize].bounds);
+            }
+        }
+        made.window = Some(([low, high], all));
+        Some(all)
+    }
+
+    /// The control points on which the value at a point depends.
+    #[must_use]
+    pub fn support(&self, x: f64, y: f64) -> [[i64; 2]; 16] {
+        let ([i, j], ..) = self.locate(x, y);
+        std::array::from_fn(|k| [i - 1 + (k / 4) as i64, j - 1 + (k % 4) as i64])
+    }
+
+    /// All control points made so far with their values, in order of their indices.
+    #[must_use]
+    pub fn touched(&self) -> Vec<([i64; 2], f64)> {
+        let mut points = self.made.borrow().points.clone();
+        points.sort_unstable_by_key(|p| p.0);
+        points
+    }
+
+    /// How many control points have been made.
+    #[must_use]
+    pub fn touched_count(&self) -> usize {
+        self.made.borrow().points.len()
+    }
+
+    /// Memory of what has been made, in bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let made = self.made.borrow();
+        made.point_places.bytes()
+            + made.cell_places.bytes()
+            + size_of_val(&made.points[..])
+            + size_of_val(&made.cells[..])
+    }
+
+    /// Gives one control point another value; cells that were made are made anew where it matters. The source is not asked for it again.
+    pub fn set(&mut self, key: [i64; 2], value: f64) {
+        let made = &mut *self.made.borrow_mut();
+        let value = checked(self.range, made, key, value);
+        made.window = None;
+        match made.point_places.get(key) {
+            Some(place) => made.points[place as usize].1 = value,
+            None => made.push_point(key, value),
+        }
+        for k in 0..16_i64 {
+            let cell = [key[0] + 1 - k / 4, key[1] + 1 - k % 4];
+            if let Some(place) = made.cell_places.get(cell) {
+                made.cells[place as usize] = self.make(made, cell);
+            }
+        }
+    }
+
+    #[inline]
+    fn cell(&self, made: &mut Made, key: [i64; 2]) -> u32 {
+        match made.last {
+            Some((last, place)) if last == key => place,
+            _ => {
+                let place = made.cell_places.get(key).unwrap_or_else(|| self.add(made, key));
+                made.last = Some((key, place));
+                place
+            }
+        }
+    }
+
+    #[cold]
+    fn add(&self, made: &mut Made, key: [i64; 2]) -> u32 {
+        let cell = self.make(made, key);
+        let place = made.cells.len() as u32;
+        made.cells.push(cell);
+        made.cell_places.insert(key, place);
+        place
+    }
+
+    fn make(&self, made: &mut Made, [i, j]: [i64; 2]) -> Cell {
+        let mut points = [[0.0; 4]; 4];
+        for (a, row) in points.iter_mut().enumerate() {
+            for (b, p) in row.iter_mut().enumerate() {
+                *p = self.point(made, [i.saturating_add(a as i64 - 1), j.saturating_add(b as i64 - 1)]);
+            }
+        }
+        Cell::new(&points, self.grid.spacing)
+    }
+
+    fn point(&self, made: &mut Made, key: [i64; 2]) -> f64 {
+        if let Some(place) = made.point_places.get(key) {
+            return made.points[place as usize].1;
+        }
+        let value = checked(self.range, made, key, (self.source)(key[0], key[1]));
+        made.push_point(key, value);
+        value
+    }
+}
+
+/// The largest whole number not above `x`, by a cast: a call of the library's is slower on processors without an instruction for it.
+#[inline]
+fn floor(x: f64) -> i64 {
+    let i = x as i64;
+    if i as f64 > x { i.saturating_sub(1) } else { i }
+}
+
+/// The value, or what stands for one that breaks the promise, which is noted.
+fn checked([low, high]: [f64; 2], made: &mut Made, key: [i64; 2], value: f64) -> f64 {
+    if value >= low && value <= high {
+        return value;
+    }
+    made.fault.get_or_insert((key, value));
+    if value.is_nan() { 0.5 * (low + high) } else { value.clamp(low, high) }
+}
+
+impl Made {
+    fn push_point(&mut self, key: [i64; 2], value: f64) {
+        self.point_places.insert(key, self.points.len() as u32);
+        self.points.push((key, value));
+    }
+}
+
+/// Most cells that one request for bounds may make. Default 4096, a square of 64 cells; larger footprints are asked for in pieces.
+pub const MOST_CELLS: i64 = 4096;

@@ -1,0 +1,139 @@
+//! A ball on level ground in closed form: sliding, then rolling, stretch by stretch of the ground's friction.
+//!
+//! While it slides, friction points against the slip `u = v − R ω × n` of its lowest point, whose direction does not change:
+//! `v̇ = −μ g û`, `ω̇ = μ m g R (n × û)/I`, `|u̇| = −μ g (1 + m R²/I)`. So its path is a parabola until the slip is gone, then straight. Where the friction changes (oil, then
+//! dry boards) a new parabola begins: that is a hook. Rolling and spinning resistance are left out.
+//!
+//! Source: textbook, e.g. Hopkins & Patterson, "Bowling frames: Paths of a bowling ball", Am. J. Phys. 45 (1977).
+
+use super::body::{Phase, Turning};
+use super::contact::Touch;
+use super::part::Part;
+use super::{Rigid, Spec};
+use crate::roots::roots_of_quadratic;
+use glam::DVec3;
+
+/// Sine of the slope up to which ground counts as level. Default 1e-12, rounding of a normal.
+const LEVEL: f64 = 1e-12;
+
+/// Slip over `√(g R)` that counts as none. Default 1e-14, rounding of speeds.
+const NO_SLIP: f64 = 1e-14;
+
+/// Starts a closed form, if the body is a ball on one level part.
+pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Touch) -> bool {
+    let spec = &world.specs[index];
+    let part = &world.parts[usize::from(touch.part)];
+    let n = touch.normal;
+    let level = n.cross(world.gravity).length() <= LEVEL * world.strength && n.dot(world.gravity) < 0.0;
+    if !spec.is_ball || !level || matches!(part, Part::Table(_)) || is_leaving(part, body) {
+        return false;
+    }
+    let law = world.law_at(index, touch.part, body.path.x);
+    if body.path.v.dot(n).abs() > world.settle_speed(spec, &law) {
+        return false;
+    }
+    // Slow approach is stopped, slow parting too: the contact lasts.
+    body.path.v -= n * body.path.v.dot(n);
+    let radius = spec.reach;
+    let slip = body.path.v - body.spin.cross(n) * radius;
+    let speed = slip.length();
+    let at = body.path.x;
+    let friction = friction_ahead(part, law.friction, at, body.path.v);
+    let stiff = 1.0 + spec.mass * radius * radius / spec.inertia.moments.x;
+    let (pull, turn, until) = if speed <= NO_SLIP * spec.speed {
+        // Rolling exactly: the spin across the normal follows from the velocity.
+        body.spin = n * body.spin.dot(n) + n.cross(body.path.v) / radius;
+        (DVec3::ZERO, DVec3::ZERO, f64::INFINITY)
+    } else {
+        let u = slip / speed;
+        let force = friction * world.strength;
+        let until = if force > 0.0 { speed / (force * stiff) } else { f64::INFINITY };
+        (u * -force, n.cross(u) * (force * (stiff - 1.0) / radius), until)
+    };
+    if body.path.v == DVec3::ZERO && pull == DVec3::ZERO {
+        body.begin(Phase::Rest, DVec3::ZERO);
+        return true;
+    }
+    body.begin(Phase::Glide, pull);
+    body.spin_rate = turn;
+    body.rolls_after = until.is_finite();
+    body.line = None;
+    if let Some((stretch, line)) = next_line(part, body)
+        && stretch < until
+    {
+        body.rolls_after = false;
+        body.line = Some(line);
+        body.expiry = body.path.t + stretch;
+    } else {
+        body.expiry = body.path.t + until;
+    }
+    if body.expiry <= body.path.t {
+        // So short a stretch that the clock does not show it.
+        end(spec, world.gravity, body);
+        body.expiry = body.path.t + f64::EPSILON * body.path.t.max(spec.rattle);
+    }
+    body.list(std::iter::once(touch.surface()));
+    true
+}
+
+/// Ends a stretch at its time: what rounding has left of the slip is taken away, and the ball is exactly on the line that it reached.
+pub(super) fn end(spec: &Spec, gravity: DVec3, body: &mut Turning) {
+    if body.rolls_after {
+        let n = -gravity / gravity.length();
+        body.spin = n * body.spin.dot(n) + n.cross(body.path.v) / spec.reach;
+        body.rolls_after = false;
+    }
+    if let Some((axis, at)) = body.line.take() {
+        body.path.x[usize::from(axis)] = at;
+    }
+}
+
+/// Whether the ball's centre is at an edge of what bears it and on its way out, or beyond.
+fn is_leaving(part: &Part, body: &Turning) -> bool {
+    let Part::Block { bounds, .. } = part else { return false };
+    let (x, v) = (body.path.x, body.path.v);
+    (0..2).any(|k| {
+        x[k] < bounds.min[k]
+            || x[k] > bounds.max[k]
+            || (x[k] == bounds.min[k] && v[k] < 0.0)
+            || (x[k] == bounds.max[k] && v[k] > 0.0)
+    })
+}
+
+/// The friction of the stretch that a ball is in, or is just entering.
+fn friction_ahead(part: &Part, usual: f64, at: DVec3, v: DVec3) -> f64 {
+    let Part::Block { stretches, .. } = part else { return usual };
+    let entered = |from: f64| at.y > from || (at.y == from && v.y >= 0.0);
+    stretches.iter().rev().find(|s| entered(s.from)).map_or(usual, |s| s.friction)
+}
+
+/// Time until the ball's centre comes over another stretch or over the edge of what bears it, and the line that it reaches then: axis and place.
+fn next_line(part: &Part, body: &Turning) -> Option<(f64, (u8, f64))> {
+    let Part::Block { bounds, stretches, .. } = part else { return None };
+    let (x, v, a) = (body.path.x, body.path.v, body.path.a);
+    let mut soonest: Option<(f64, (u8, f64))> = None;
+    let mut line = |axis: usize, at: f64| {
+        for t in roots_of_quadratic([x[axis] - at, v[axis], 0.5 * a[axis]]).into_iter().flatten() {
+            if t > 0.0 && soonest.is_none_or(|(best, _)| t < best) {
+                soonest = Some((t, (axis as u8, at)));
+            }
+        }
+    };
+    for s in stretches {
+        line(1, s.from);
+    }
+    for axis in 0..2 {
+        line(axis, bounds.min[axis]);
+        line(axis, bounds.max[axis]);
+    }
+    soonest
+}
+
+/// A stretch of a part along y with its own friction, up to the next.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Stretch {
+    /// Where it begins, in m.
+    pub from: f64,
+    /// Coulomb's coefficient there.
+    pub friction: f64,
+}

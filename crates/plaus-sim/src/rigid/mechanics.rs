@@ -1,0 +1,99 @@
+//! Turning bodies as the event loop sees them.
+
+use super::Rigid;
+use super::body::{Phase, Turning};
+use super::part::Part;
+use super::step::{self, RigidScratch};
+use crate::links::Links;
+use crate::mechanics::{Impact, Mechanics};
+use crate::scenery::{Aabb, Surface};
+
+impl Mechanics for Rigid {
+    type Body = Turning;
+    type Scratch = RigidScratch;
+
+    fn len(&self) -> usize {
+        self.specs.len()
+    }
+
+    fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    fn event_budget(&self) -> u64 {
+        self.accuracy.events * self.specs.len() as u64
+    }
+
+    #[inline]
+    fn clock(&self, body: &Turning) -> f64 {
+        body.path.t
+    }
+
+    #[inline]
+    fn expiry(&self, body: &Turning) -> f64 {
+        body.expiry
+    }
+
+    #[inline]
+    fn is_present(&self, body: &Turning) -> bool {
+        !matches!(body.phase, Phase::Waiting | Phase::Gone)
+    }
+
+    #[inline]
+    fn is_resting(&self, body: &Turning) -> bool {
+        matches!(body.phase, Phase::Rest | Phase::Gone)
+    }
+
+    fn is_finite(&self, body: &Turning) -> bool {
+        body.path.x.is_finite()
+            && body.path.v.is_finite()
+            && body.turn.is_finite()
+            && body.spin.is_finite()
+            && !body.expiry.is_nan()
+            && !self.parts.iter().any(Part::is_faulty)
+    }
+
+    #[inline]
+    fn advance(&self, index: usize, body: &mut Turning, time: f64) {
+        body.advance(&self.specs[index], self.gravity, time);
+    }
+
+    #[inline]
+    fn swept(&self, index: usize, body: &Turning, from: f64, until: f64) -> Aabb {
+        let spec = &self.specs[index];
+        // Grown a little, so that rounding cannot hide a touching pair.
+        body.path.bounds(from - body.path.t, until - body.path.t).grown(spec.reach * (1.0 + 1e-9) + spec.gap)
+    }
+
+    #[inline]
+    fn first_surface(&self, index: usize, body: &Turning, until: f64) -> Option<(f64, Surface)> {
+        self.first_touch(index, body, until)
+    }
+
+    fn first_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
+        if bodies.iter().all(|b| b.phase == Phase::Rest) {
+            return None;
+        }
+        self.first_pair(pair, bodies, from, until)
+    }
+
+    fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface) -> Option<Impact> {
+        match surface {
+            Surface::Part { part, point } => self.hit_part(index, body, part, point),
+            _ => None,
+        }
+    }
+
+    fn hit_body(&self, pair: [usize; 2], bodies: [&mut Turning; 2], linked: bool) -> Option<Impact> {
+        self.hit_pair(pair, bodies, linked)
+    }
+
+    #[inline]
+    fn contacts<'b>(&self, body: &'b Turning) -> &'b [Surface] {
+        body.touching()
+    }
+
+    fn settle(&self, members: &[u32], bodies: &mut [Turning], links: &mut Links, scratch: &mut RigidScratch) {
+        step::settle(self, members, bodies, links, scratch);
+    }
+}

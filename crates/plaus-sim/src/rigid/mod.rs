@@ -1,0 +1,348 @@
+//! Worlds of turning bodies: balls and cuboids among planes, boxes and tables with a spline surface.
+//!
+//! A body in the air is on a parabola and rotates freely, both in closed form. It touches when the first of its [feelers](crate::shape::Feeler) comes within
+//! `accuracy.gap` of a part. Impacts follow Stronge's law. A contact whose rebound would be slower than `accuracy.settle` lasts: the body (with all bodies in lasting
+//! contact with it) then moves in short steps whose impulses are found together, until it leaves the ground or is at rest.
+
+mod body;
+mod contact;
+mod detect;
+mod glide;
+mod mechanics;
+mod pair;
+mod part;
+mod rest;
+mod solve;
+mod step;
+mod tumble;
+
+pub use body::{Phase, Start, Turning};
+pub use glide::Stretch;
+pub use part::{Part, Table};
+pub use step::RigidScratch;
+
+use crate::accuracy::Accuracy;
+use crate::error::WorldError;
+use crate::material::{Laws, Material};
+use crate::mechanics::Mechanics;
+use crate::shape::{Feeler, MassProperties, Ring, Shape};
+use crate::simulate::{Outcome, Scratch, simulate};
+use crate::state::State;
+use crate::trace::Observer;
+use glam::DVec3;
+use tumble::Inertia;
+
+/// One body of a world.
+#[derive(Debug, Clone)]
+pub struct BodySpec {
+    /// Its shape about its centre of gravity.
+    pub shape: Shape,
+    /// Its mass and inertia.
+    pub mass: MassProperties,
+    /// What it is made of.
+    pub material: Material,
+}
+
+impl BodySpec {
+    /// A body of uniform density in kg/m³.
+    #[must_use]
+    pub fn solid(shape: Shape, density: f64, material: Material) -> Self {
+        let mass = shape.mass_properties(density);
+        Self { shape, mass, material }
+    }
+}
+
+/// Everything that does not change during a run.
+#[derive(Debug, Clone)]
+pub struct RigidWorld {
+    /// The bodies.
+    pub bodies: Vec<BodySpec>,
+    /// What stands still.
+    pub parts: Vec<Part>,
+    /// Friction and restitution per pair of materials.
+    pub laws: Laws,
+    /// In m/s².
+    pub gravity: DVec3,
+    /// Tolerances.
+    pub accuracy: Accuracy,
+    /// Distance between points of a body's skin that are looked at over a table, over the table's grid spacing. Default 0.5; usual 0.25–1; a bump between them reaches into
+    /// the body by up to about `curvature · (skin · spacing)²/8`; the cost grows as its inverse square.
+    pub skin: f64,
+    /// Height in m below which a body whose centre of gravity is found there, at one of its events, is gone: a pit. `-∞` for none.
+    pub sink: f64,
+    /// When a run ends, in s.
+    pub duration: f64,
+}
+
+/// A checked world with what follows from it.
+#[derive(Debug, Clone)]
+pub struct Rigid {
+    specs: Vec<Spec>,
+    parts: Vec<Part>,
+    laws: Laws,
+    gravity: DVec3,
+    strength: f64,
+    accuracy: Accuracy,
+    sink: f64,
+    duration: f64,
+}
+
+/// A body with what follows from its shape.
+#[derive(Debug, Clone)]
+pub(crate) struct Spec {
+    pub(crate) mass: f64,
+    pub(crate) inertia: Inertia,
+    pub(crate) material: Material,
+    /// The balls of the hull first, then those for uneven ground.
+    feelers: Vec<Feeler>,
+    hull: usize,
+    pub(crate) reach: f64,
+    pub(crate) size: f64,
+    /// `√(g · size)`.
+    pub(crate) speed: f64,
+    /// Time in s within which many events make its contacts last: `accuracy.rattle · √(size/g)`.
+    pub(crate) rattle: f64,
+    /// Gap at which it touches, in m: the preset's over [`step::TOUCHING`].
+    pub(crate) gap: f64,
+    pub(crate) wobble: f64,
+    pub(crate) is_ball: bool,
+    /// Whether it can roll: a ball or a body of revolution.
+    pub(crate) is_round: bool,
+    rings: Vec<Ring>,
+    pub(crate) skin: Skin,
+    /// A capsule along the body's z axis that holds it: heights of its ends, and its radius.
+    pub(crate) capsule: [f64; 3],
+}
+
+/// How a body is looked at by others.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Skin {
+    Ball,
+    Revolved,
+    Cuboid { half: DVec3, rounding: f64 },
+}
+
+/// Points of the first ring, a quarter turn apart from its lowest on; other rings have their lowest only.
+pub(crate) const RIM_POINTS: usize = 4;
+
+impl Rigid {
+    /// Checks a world.
+    ///
+    /// # Errors
+    /// [`WorldError`] naming the body, law or part at fault.
+    pub fn new(world: RigidWorld) -> Result<Self, WorldError> {
+        world.accuracy.check()?;
+        if !world.gravity.is_finite() {
+            return Err(WorldError::BadNumber { field: "gravity", value: f64::NAN, expected: "finite numbers" });
+        }
+        for (field, value) in [("duration", world.duration), ("skin", world.skin)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(WorldError::BadNumber { field, value, expected: "a positive number" });
+            }
+        }
+        let mut spacing = f64::INFINITY;
+        for part in &world.parts {
+            world.laws.require(part.material())?;
+            if let Part::Table(table) = part {
+                table.check()?;
+                spacing = spacing.min(world.skin * table.height.grid().spacing);
+            }
+        }
+        let strength = world.gravity.length();
+        let specs = world
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(k, b)| Spec::new(k, b, &world, spacing, strength))
+            .collect::<Result<_, _>>()?;
+        let RigidWorld { parts, laws, gravity, accuracy, sink, duration, .. } = world;
+        if sink.is_nan() {
+            return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
+        }
+        Ok(Self { specs, parts, laws, gravity, strength, accuracy, sink, duration })
+    }
+
+    /// A state in which every body waits for its release.
+    ///
+    /// # Errors
+    /// [`WorldError`] naming the body whose start is not finite, or that overlaps a part.
+    pub fn state(&self, starts: &[Start]) -> Result<State<Turning>, WorldError> {
+        if starts.len() != self.specs.len() {
+            return Err(WorldError::WrongState { state: starts.len(), world: self.specs.len() });
+        }
+        for (k, start) in starts.iter().enumerate() {
+            self.check_start(k, start)?;
+        }
+        Ok(State::new(starts.iter().map(Turning::waiting).collect()))
+    }
+
+    fn check_start(&self, body: usize, start: &Start) -> Result<(), WorldError> {
+        let bad = |field, value, expected| Err(WorldError::BadBody { body, field, value, expected });
+        for (field, is_finite) in [
+            ("position", start.position.is_finite()),
+            ("velocity", start.velocity.is_finite()),
+            ("spin", start.spin.is_finite()),
+            ("orientation", start.orientation.is_finite()),
+        ] {
+            if !is_finite {
+                return bad(field, f64::NAN, "finite numbers");
+            }
+        }
+        if start.orientation.length() == 0.0 {
+            return bad("orientation", 0.0, "a quaternion that is not zero");
+        }
+        if !(start.time >= 0.0 && start.time.is_finite()) {
+            return bad("start time", start.time, "a time from 0 on");
+        }
+        let waiting = Turning::waiting(start);
+        let spec = &self.specs[body];
+        if let Some((part, depth)) = self.deepest(body, &waiting)
+            && depth > OVERLAP * spec.size
+        {
+            return Err(WorldError::OverlapsScenery { body, surface: format!("part {part}"), depth });
+        }
+        Ok(())
+    }
+
+    /// Runs a state until `until` seconds, the end of the world's duration, rest, or the observer's stop.
+    ///
+    /// # Errors
+    /// [`WorldError::BadControlPoint`] where a field of a table was given a value that is not finite or out of its range; the run stops there.
+    pub fn run(
+        &self,
+        state: &mut State<Turning>,
+        scratch: &mut Scratch<RigidScratch>,
+        until: f64,
+        observer: &mut impl Observer<Self>,
+    ) -> Result<Outcome, WorldError> {
+        let outcome = simulate(self, state, scratch, until, observer);
+        match self.parts.iter().find_map(Part::fault) {
+            Some(fault) => Err(fault),
+            None => Ok(outcome),
+        }
+    }
+
+    /// The fixed parts. A table's control points are asked for through them.
+    #[must_use]
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The fixed parts, to move control points. States that have started do not notice until their next event.
+    pub fn parts_mut(&mut self) -> &mut [Part] {
+        &mut self.parts
+    }
+
+    /// Kinetic plus potential energy of one body at its own clock, in J.
+    #[must_use]
+    pub fn energy(&self, index: usize, body: &Turning) -> f64 {
+        let s = &self.specs[index];
+        let m = if body.phase == Phase::Step { body.ends[0] } else { body.motion_after(s, 0.0) };
+        0.5 * (s.mass * m.v.length_squared() + m.w.dot(s.inertia.momentum(body.turn, m.w)))
+            - s.mass * self.gravity.dot(body.path.x)
+    }
+
+    /// How many bodies there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.len()
+    }
+}
+
+/// Overlap at the start that counts as touching, over the size. Default 1e-6; danger: larger values start bodies inside each other.
+const OVERLAP: f64 = 1e-6;
+
+impl Spec {
+    fn new(body: usize, b: &BodySpec, world: &RigidWorld, spacing: f64, strength: f64) -> Result<Self, WorldError> {
+        let bad = |field, value| WorldError::BadBody { body, field, value, expected: "a positive number" };
+        let MassProperties { mass, inertia } = b.mass;
+        for (field, value) in [
+            ("mass", mass),
+            ("inertia", inertia.x),
+            ("inertia", inertia.y),
+            ("inertia", inertia.z),
+            ("reach", b.shape.reach()),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(bad(field, value));
+            }
+        }
+        world.laws.require(b.material)?;
+        let mut feelers = b.shape.feelers();
+        let hull = feelers.len();
+        if spacing.is_finite() {
+            feelers.extend(b.shape.feelers_between(spacing));
+        }
+        let (size, inertia) = (b.shape.size(), Inertia::new(inertia));
+        let (speed, gap) = ((strength * size).sqrt(), world.accuracy.gap * size / step::TOUCHING);
+        // Without gravity there is no time scale but that of the speeds, which is not known here.
+        let rattle = if strength > 0.0 { world.accuracy.rattle * (size / strength).sqrt() } else { 0.0 };
+        let (reach, wobble) = (b.shape.reach(), inertia.wobble());
+        let (skin, rings) = match &b.shape {
+            Shape::Ball(_) => (Skin::Ball, Vec::new()),
+            Shape::Revolution(r) => (Skin::Revolved, r.rings().to_vec()),
+            Shape::Cuboid(c) => (Skin::Cuboid { half: c.half(), rounding: c.rounding() }, Vec::new()),
+        };
+        let capsule = capsule(&b.shape, reach);
+        let is_ball = matches!(skin, Skin::Ball);
+        let is_round = is_ball || matches!(skin, Skin::Revolved);
+        Ok(Self {
+            mass,
+            inertia,
+            material: b.material,
+            feelers,
+            hull,
+            reach,
+            size,
+            speed,
+            rattle,
+            gap,
+            wobble,
+            is_ball,
+            is_round,
+            rings,
+            skin,
+            capsule,
+        })
+    }
+
+    /// The balls on the axis of a body of revolution.
+    pub(crate) fn row(&self) -> &[Feeler] {
+        &self.feelers[..self.hull]
+    }
+
+    /// How many points can touch a part: feelers of the hull, then points of rings.
+    pub(crate) fn ring_points(&self) -> std::ops::Range<usize> {
+        let count = if self.rings.is_empty() { 0 } else { RIM_POINTS + self.rings.len() - 1 };
+        self.hull..self.hull + count
+    }
+
+    /// A point of a ring as a ball, in body axes, where `up` (in body axes) points away from the part, and how it stands: 0 lowest, 1 and 3 sideways, 2 highest.
+    pub(crate) fn ring_point(&self, point: usize, up: DVec3) -> (Feeler, usize) {
+        let k = point - self.hull;
+        let (ring, quarter) = if k < RIM_POINTS { (&self.rings[0], k) } else { (&self.rings[k + 1 - RIM_POINTS], 0) };
+        let flat = DVec3::new(up.x, up.y, 0.0);
+        let down = if flat == DVec3::ZERO { DVec3::X } else { -flat.normalize() };
+        let along = match quarter {
+            0 => down,
+            1 => DVec3::new(-down.y, down.x, 0.0),
+            2 => -down,
+            _ => DVec3::new(down.y, -down.x, 0.0),
+        };
+        (Feeler { centre: along * ring.circle + DVec3::new(0.0, 0.0, ring.height), radius: ring.radius }, quarter)
+    }
+}
+
+fn capsule(shape: &Shape, reach: f64) -> [f64; 3] {
+    let Shape::Revolution(body) = shape else { return [0.0, 0.0, reach] };
+    let widest =
+        body.row().iter().map(|f| f.radius).chain(body.rings().iter().map(|r| r.circle + r.radius)).fold(0.0, f64::max);
+    // Ends such that the balls there hold the cap and the foot.
+    let top = body.row().iter().map(|f| f.centre.z + f.radius - widest).fold(f64::NEG_INFINITY, f64::max);
+    let low = body.rings().iter().map(|r| {
+        let outer = r.circle + r.radius;
+        r.height - r.radius + (widest * widest - outer * outer).max(0.0).sqrt()
+    });
+    let low = low.chain(body.row().iter().map(|f| f.centre.z - f.radius + widest)).fold(f64::INFINITY, f64::min);
+    [low.min(top), top.max(low), widest]
+}

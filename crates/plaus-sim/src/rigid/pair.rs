@@ -1,0 +1,391 @@
+//! Two bodies: how near they are, when they touch, and their impact.
+//!
+//! Balls and bodies of revolution are looked at as the balls and rings of their skins, cuboids (against balls only) by their faces. First contacts are found by advancement with a
+//! second-order bound on the nearest points' approach; should another pair of points have come first, the overlap is seen and the time bisected.
+
+use super::body::{Motion, Phase, Pose, Turning};
+use super::contact::{impulse, response};
+use super::detect::earliest;
+use super::{Rigid, Skin, Spec};
+use crate::material::Law;
+use crate::mechanics::{Impact, Other};
+use crate::shape::{Feeler, Ring};
+use glam::DVec3;
+
+/// The nearest points of two bodies.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PairTouch {
+    /// Unit normal towards the first.
+    pub(crate) normal: DVec3,
+    /// From each centre of gravity to its nearest point.
+    pub(crate) arms: [DVec3; 2],
+    pub(crate) gap: f64,
+}
+
+/// Most advancements of one search; then the time reached is handed on as an event.
+const MOST_ADVANCES: usize = 100;
+
+/// Bisections of a step that ended in overlap: to 2⁻⁴⁰ of it.
+const BISECTIONS: usize = 40;
+
+/// Distance of the capsules around two bodies, over their size, from which their skins are looked at. Default 0.02.
+const NEAR: f64 = 0.02;
+
+/// Stride over the balls of two rows in the first look; the best local minima are then followed ball by ball.
+const STRIDE: usize = 4;
+
+/// Most local minima followed.
+const FOLLOWED: usize = 4;
+
+/// Two balls, in world axes about the two centres of gravity.
+fn balls(offset: DVec3, [p, q]: [DVec3; 2], [r, s]: [f64; 2]) -> PairTouch {
+    // offset: from the second centre of gravity to the first.
+    let between = offset + p - q;
+    let distance = between.length();
+    let normal = if distance > 0.0 { between / distance } else { DVec3::Z };
+    PairTouch { normal, arms: [p - normal * r, q + normal * s], gap: distance - r - s }
+}
+
+/// The point of a ring's circle nearest to `d` (both about the ring's body), in body axes.
+fn nearest_on_ring(ring: &Ring, d: DVec3) -> DVec3 {
+    let flat = DVec3::new(d.x, d.y, 0.0);
+    let along = if flat == DVec3::ZERO { DVec3::X } else { flat.normalize() };
+    along * ring.circle + DVec3::new(0.0, 0.0, ring.height)
+}
+
+fn nearer(best: &mut Option<PairTouch>, other: PairTouch) {
+    if best.is_none_or(|b| other.gap < b.gap) {
+        *best = Some(other);
+    }
+}
+
+fn swapped(t: PairTouch) -> PairTouch {
+    PairTouch { normal: -t.normal, arms: [t.arms[1], t.arms[0]], gap: t.gap }
+}
+
+impl Rigid {
+    /// Gap at which two bodies touch.
+    pub(super) fn pair_gap(&self, [i, j]: [usize; 2]) -> f64 {
+        self.specs[i].gap.min(self.specs[j].gap)
+    }
+
+    pub(super) fn pair_law(&self, [i, j]: [usize; 2]) -> &Law {
+        self.laws.of(self.specs[i].material, self.specs[j].material)
+    }
+
+    /// Rebound speed up to which a contact of two bodies lasts.
+    pub(super) fn pair_settle_speed(&self, [i, j]: [usize; 2]) -> f64 {
+        let law = self.pair_law([i, j]);
+        self.accuracy.settle * (1.0 - law.restitution) * self.specs[i].speed.min(self.specs[j].speed)
+    }
+
+    /// The nearest points of two bodies.
+    pub(super) fn pair_touch(&self, [i, j]: [usize; 2], [a, b]: [&Pose; 2]) -> PairTouch {
+        let (s, t) = (&self.specs[i], &self.specs[j]);
+        let offset = a.x - b.x;
+        match (&s.skin, &t.skin) {
+            (Skin::Ball, Skin::Ball) => balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]),
+            (Skin::Revolved, Skin::Ball) => revolved_and_ball(s, a, offset, t.reach),
+            (Skin::Ball, Skin::Revolved) => swapped(revolved_and_ball(t, b, -offset, s.reach)),
+            (Skin::Revolved, Skin::Revolved) => two_revolved([s, t], [a, b], offset),
+            (Skin::Cuboid { .. }, Skin::Ball) => cuboid_and_balls(s, a, t, b, offset),
+            (Skin::Cuboid { .. }, _) => cuboid_and_balls(s, a, t, b, offset),
+            (_, Skin::Cuboid { .. }) => swapped(cuboid_and_balls(t, b, s, a, -offset)),
+        }
+    }
+
+    /// First time in `[from, until]` at which two bodies touch while approaching.
+    pub(super) fn first_pair(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
+        let [s, t] = pair.map(|k| &self.specs[k]);
+        let level = self.pair_gap(pair);
+        let pull = (bodies[0].path.a - bodies[1].path.a).length();
+        let turning = |spec: &Spec, b: &Turning| {
+            if spec.is_ball { 0.0 } else { b.spin.length_squared() * (1.0 + spec.wobble) * spec.reach }
+        };
+        let m = pull + turning(s, bodies[0]) + turning(t, bodies[1]);
+        let mut tumbles = [bodies[0].tumble(s), bodies[1].tumble(t)];
+        let mut pose = |k: usize, time: f64| {
+            let (spec, b) = ([s, t][k], bodies[k]);
+            let dt = time - b.path.t;
+            let w = if (spec.wobble == 0.0 && b.phase != Phase::Glide) || b.phase == Phase::Step {
+                b.spin
+            } else {
+                b.motion_after(spec, dt).w
+            };
+            Pose { x: b.path.after(dt), r: tumbles[k].at(dt), v: b.path.velocity_after(dt), w }
+        };
+        let mut time = from;
+        // The last time at which they were apart, if they have been.
+        let mut clear = None;
+        for _ in 0..MOST_ADVANCES {
+            let dx = bodies[0].path.at(time) - bodies[1].path.at(time);
+            let distance = dx.length();
+            let away = distance - s.reach - t.reach - level;
+            if away > 0.0 {
+                let dv = bodies[0].path.velocity_after(time - bodies[0].path.t)
+                    - bodies[1].path.velocity_after(time - bodies[1].path.t);
+                // A convex distance: at least this long. Never less than a thousandth of the gap, so that it ends.
+                let step = earliest(away, dx.dot(dv) / distance, pull);
+                time += step + 1e-3 * level / (dv.length() + (pull * level).sqrt()).max(f64::MIN_POSITIVE);
+                if time >= until || time.is_nan() {
+                    return None;
+                }
+                clear = Some(time);
+                continue;
+            }
+            let (a, b) = (pose(0, time), pose(1, time));
+            let (apart, rate) = capsules([s, t], [&a, &b]);
+            if apart - level > NEAR * s.size.min(t.size) {
+                clear = Some(time);
+                if time >= until || time.is_nan() {
+                    return None;
+                }
+                time = (time + earliest(apart - level, rate, m)).min(until);
+                continue;
+            }
+            let touch = self.pair_touch(pair, [&a, &b]);
+            let f = touch.gap - 0.5 * level;
+            let rate = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
+            if f < -2.0 * level
+                && let Some(clear) = clear
+            {
+                // Another pair of points came first: back to where they touch.
+                let (mut low, mut high) = (clear, time);
+                for _ in 0..BISECTIONS {
+                    let middle = 0.5 * (low + high);
+                    let (a, b) = (pose(0, middle), pose(1, middle));
+                    if self.pair_touch(pair, [&a, &b]).gap > 0.5 * level { low = middle } else { high = middle }
+                }
+                return Some(high);
+            }
+            if f <= 0.5 * level && rate < 0.0 {
+                return Some(time);
+            }
+            if f > 0.0 {
+                clear = Some(time);
+            }
+            if time >= until || time.is_nan() {
+                return None;
+            }
+            // The end is looked at too: what was not the nearest pair of points may have met by then.
+            time = (time + earliest(f, rate, m)).min(until);
+        }
+        Some(time)
+    }
+
+    /// Impact of two bodies at their nearest points.
+    pub(super) fn hit_pair(&self, pair: [usize; 2], [a, b]: [&mut Turning; 2], linked: bool) -> Option<Impact> {
+        let [s, t] = pair.map(|k| &self.specs[k]);
+        let time = a.path.t;
+        let (mut p, mut q) = (a.pose(), b.pose());
+        let touch = self.pair_touch(pair, [&p, &q]);
+        let vigour = a.vigour(s) + b.vigour(t);
+        let mut u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
+        if u.dot(touch.normal) >= 0.0 && !linked && (a.listed != time || b.listed != time) {
+            a.take_drift();
+            b.take_drift();
+            (p, q) = (a.pose(), b.pose());
+            u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
+        }
+        let approach = -u.dot(touch.normal);
+        let law = self.pair_law(pair);
+        let settles = self.pair_settle_speed(pair);
+        let lasting = law.restitution * approach <= settles || a.is_hurried() || b.is_hurried();
+        if !linked
+            && approach <= 0.0
+            && touch.gap <= super::step::TOUCHING * self.pair_gap(pair)
+            && (a.is_hurried() || b.is_hurried())
+        {
+            // Found again and again without an approach, as where two pairs of points are equally near: their group is to deal with it.
+            for (index, body) in [(pair[0], &mut *a), (pair[1], &mut *b)] {
+                if body.phase != Phase::Flight {
+                    body.phase = Phase::Step;
+                }
+                self.list_touches(index, body);
+            }
+            let point = p.x + touch.arms[0];
+            return Some(Impact {
+                time,
+                body: pair[0],
+                other: Other::Body(pair[1]),
+                point,
+                normal: touch.normal,
+                impulse: DVec3::ZERO,
+                approach,
+                lasting: true,
+            });
+        }
+        if approach <= 0.0 || touch.gap > super::step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
+            return None;
+        }
+        let (ia, ib) = (s.inertia.inverse(&p.r), t.inertia.inverse(&q.r));
+        let k = response(1.0 / s.mass, &ia, touch.arms[0]) + response(1.0 / t.mass, &ib, touch.arms[1]);
+        let e = if lasting { 0.0 } else { law.restitution };
+        let impulse = impulse(&k, u, touch.normal, e, law.friction, self.accuracy.slip_turn);
+        for (index, body, spec, inverse, arm, push) in
+            [(pair[0], &mut *a, s, ia, touch.arms[0], impulse), (pair[1], &mut *b, t, ib, touch.arms[1], -impulse)]
+        {
+            body.path.v += push / spec.mass;
+            body.spin += inverse * arm.cross(push);
+            body.ends[0] = Motion { v: body.path.v, w: body.spin };
+            if body.phase != Phase::Flight {
+                body.phase = Phase::Step;
+            }
+            self.list_touches(index, body);
+        }
+        let after = a.vigour(s) + b.vigour(t);
+        if after > vigour {
+            let part = (vigour / after).sqrt();
+            a.slow_down(part);
+            b.slow_down(part);
+        }
+        let point = p.x + touch.arms[0];
+        Some(Impact {
+            time,
+            body: pair[0],
+            other: Other::Body(pair[1]),
+            point,
+            normal: touch.normal,
+            impulse,
+            approach,
+            lasting,
+        })
+    }
+}
+
+/// A body of revolution and a ball; `offset` from the ball's centre to the body's.
+fn revolved_and_ball(s: &Spec, a: &Pose, offset: DVec3, radius: f64) -> PairTouch {
+    let d = a.r.transpose() * -offset;
+    let mut best: Option<(f64, DVec3, f64)> = None;
+    let mut consider = |centre: DVec3, r: f64| {
+        let gap = (d - centre).length() - r;
+        if best.is_none_or(|b| gap < b.0) {
+            best = Some((gap, centre, r));
+        }
+    };
+    for f in s.row() {
+        consider(f.centre, f.radius);
+    }
+    for ring in &s.rings {
+        consider(nearest_on_ring(ring, d), ring.radius);
+    }
+    let (_, centre, r) = best.unwrap_or((0.0, DVec3::ZERO, s.reach));
+    balls(offset, [a.r * centre, DVec3::ZERO], [r, radius])
+}
+
+fn two_revolved([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], offset: DVec3) -> PairTouch {
+    let (e, g) = (a.r.z_axis, b.r.z_axis);
+    let (row, col) = (s.row(), t.row());
+    let gap = |k: usize, l: usize| {
+        let (p, q): (&Feeler, &Feeler) = (&row[k], &col[l]);
+        (offset + e * p.centre.z - g * q.centre.z).length() - p.radius - q.radius
+    };
+    let mut best: Option<PairTouch> = None;
+    let mut starts = [(f64::INFINITY, 0, 0); FOLLOWED];
+    for k in (0..row.len()).step_by(STRIDE) {
+        let mut along = (f64::INFINITY, 0);
+        for l in (0..col.len()).step_by(STRIDE) {
+            let f = gap(k, l);
+            if f < along.0 {
+                along = (f, l);
+            }
+        }
+        // The best of this row of the table, kept if among the best few.
+        let worst = starts.iter_mut().max_by(|x, y| x.0.total_cmp(&y.0));
+        if let Some(worst) = worst
+            && along.0 < worst.0
+        {
+            *worst = (along.0, k, along.1);
+        }
+    }
+    starts.sort_by(|x, y| x.0.total_cmp(&y.0));
+    for &(f, k, l) in &starts {
+        // Balls between the looked-at ones stand out by a few millimetres at most: far starts cannot win.
+        if !f.is_finite() || f > starts[0].0 + 0.2 * (s.size + t.size) {
+            continue;
+        }
+        let (mut k, mut l, mut f) = (k, l, f);
+        for _ in 0..row.len() + col.len() {
+            let (before, now) = ((k, l), f);
+            for (i, j) in [
+                (k.wrapping_sub(1), l),
+                (k + 1, l),
+                (k, l.wrapping_sub(1)),
+                (k, l + 1),
+                (k.wrapping_sub(1), l + 1),
+                (k + 1, l.wrapping_sub(1)),
+                (k + 1, l + 1),
+                (k.wrapping_sub(1), l.wrapping_sub(1)),
+            ] {
+                if i < row.len() && j < col.len() {
+                    let other = gap(i, j);
+                    if other < f {
+                        (k, l, f) = (i, j, other);
+                    }
+                }
+            }
+            if (k, l) == before || f >= now {
+                break;
+            }
+        }
+        nearer(&mut best, balls(offset, [e * row[k].centre.z, g * col[l].centre.z], [row[k].radius, col[l].radius]));
+    }
+    // Rings of each against the balls of the other.
+    let mut best = best.unwrap_or(balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]));
+    for (first, spec, pose, other, axis, to) in [(true, s, a, t, g, -offset), (false, t, b, s, e, offset)] {
+        // `to`: from this body to the other.
+        for f in other.row().iter().step_by(2) {
+            let centre = axis * f.centre.z;
+            let d = pose.r.transpose() * (to + centre);
+            for ring in &spec.rings {
+                let on = nearest_on_ring(ring, d);
+                if (d - on).length() - ring.radius - f.radius < best.gap {
+                    let arms = if first { [pose.r * on, centre] } else { [centre, pose.r * on] };
+                    let radii = if first { [ring.radius, f.radius] } else { [f.radius, ring.radius] };
+                    best = balls(offset, arms, radii);
+                }
+            }
+        }
+    }
+    best
+}
+
+/// A cuboid and the balls of another body; `offset` from the other to the cuboid.
+fn cuboid_and_balls(s: &Spec, a: &Pose, t: &Spec, b: &Pose, offset: DVec3) -> PairTouch {
+    let Skin::Cuboid { half, rounding } = s.skin else { return balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]) };
+    let core = half - rounding;
+    let mut best: Option<PairTouch> = None;
+    for f in &t.feelers[..t.hull] {
+        let arm = b.r * f.centre;
+        let d = a.r.transpose() * (arm - offset);
+        let on = d.clamp(-core, core);
+        nearer(&mut best, balls(offset, [a.r * on, arm], [rounding, f.radius]));
+    }
+    best.unwrap_or(balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]))
+}
+
+/// Distance of the capsules around two bodies, a lower bound on their gap, and its rate.
+fn capsules([s, t]: [&Spec; 2], [a, b]: [&Pose; 2]) -> (f64, f64) {
+    let ends =
+        |spec: &Spec, pose: &Pose| [pose.x + pose.r.z_axis * spec.capsule[0], pose.x + pose.r.z_axis * spec.capsule[1]];
+    let [p, q] = nearest_on_segments(ends(s, a), ends(t, b));
+    let between = p - q;
+    let distance = between.length();
+    let rate = (a.velocity(p - a.x) - b.velocity(q - b.x)).dot(between) / distance;
+    (distance - s.capsule[2] - t.capsule[2], rate)
+}
+
+/// Nearest points of two segments (Ericson, *Real-Time Collision Detection*, §5.1.9).
+fn nearest_on_segments([p1, q1]: [DVec3; 2], [p2, q2]: [DVec3; 2]) -> [DVec3; 2] {
+    let (d1, d2, r) = (q1 - p1, q2 - p2, p1 - p2);
+    let (a, e, f) = (d1.length_squared(), d2.length_squared(), d2.dot(r));
+    let part = |x: f64, of: f64| if of > 0.0 { (x / of).clamp(0.0, 1.0) } else { 0.0 };
+    let (c, b) = (d1.dot(r), d1.dot(d2));
+    let mut s = part(b * f - c * e, a * e - b * b);
+    let mut t = if e > 0.0 { (b * s + f) / e } else { 0.0 };
+    if !(0.0..=1.0).contains(&t) {
+        t = t.clamp(0.0, 1.0);
+    }
+    s = if a > 0.0 { ((b * t - c) / a).clamp(0.0, 1.0) } else { s };
+    [p1 + d1 * s, p2 + d2 * t]
+}

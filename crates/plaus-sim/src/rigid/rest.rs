@@ -1,0 +1,86 @@
+//! Rest: slow bodies that their contacts can hold.
+
+use super::Rigid;
+use super::contact::Touch;
+use super::part::Part;
+use super::solve::sweep;
+use super::step::RigidScratch;
+use glam::DVec3;
+
+/// Whether all bodies of a group are slow enough to be looked at.
+pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
+    group.places.iter().all(|p| {
+        let spec = &world.specs[p.body];
+        let limit = world.accuracy.rest_speed * spec.speed;
+        p.start.v.length() <= limit && p.start.w.length() * spec.reach <= limit
+    })
+}
+
+/// Whether contacts can hold bodies that do not move. `h` is the length of a step.
+pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> bool {
+    if !group.leaving.is_empty() || !h.is_finite() {
+        return false;
+    }
+    // Another step puts right what the last one left.
+    if group.touches.iter().any(|(k, t)| t.gap < -overlap(world, t) * world.specs[group.places[*k].body].gap) {
+        return false;
+    }
+    if let [place] = &group.places[..] {
+        let spec = &world.specs[place.body];
+        if spec.is_ball {
+            let [(_, only)] = &group.touches[..] else { return false };
+            return only.normal.cross(world.gravity).length() <= 1e-9 * world.strength
+                && place.start.v == DVec3::ZERO
+                && place.start.w == DVec3::ZERO;
+        }
+        if group.touches.len() < 3 && !(spec.is_round && lies(&group.touches, place.start.r.z_axis, spec.size)) {
+            return false;
+        }
+        let normal = group.touches.first().map_or(DVec3::Z, |t| t.1.normal);
+        if group.touches.len() >= 3 && group.touches.iter().all(|t| t.1.normal == normal) {
+            // Flat ground: the centre of gravity above the points, and not steeper than friction allows.
+            let first = &group.touches[0].1;
+            let law = world.law_at(place.body, first.part, place.start.x + first.arm);
+            let press = -world.gravity.dot(normal);
+            let slide = (world.gravity + normal * press).length();
+            return slide <= law.friction * press && is_above(&group.touches, world.gravity / world.strength);
+        }
+    }
+    group.prepare(world, |_, _| (world.gravity * h, DVec3::ZERO));
+    let limit = world.accuracy.rest_residual * world.strength * h;
+    sweep(&mut group.contacts, &mut group.members, 0.03 * limit, world.accuracy.sweeps);
+    group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= limit)
+}
+
+/// Whether a body of revolution lies on two points of its side, on which it can only roll.
+fn lies(touches: &[(usize, Touch)], axis: DVec3, size: f64) -> bool {
+    let along = |t: &(usize, Touch)| t.1.arm.dot(axis);
+    touches.iter().any(|a| touches.iter().any(|b| along(a) - along(b) > 0.5 * size))
+}
+
+/// Whether the line of gravity through the centre of gravity meets the hull of the points: no half plane holds them all.
+fn is_above(touches: &[(usize, Touch)], down: DVec3) -> bool {
+    let flat = |t: &(usize, Touch)| t.1.arm - down * t.1.arm.dot(down);
+    touches.iter().all(|a| {
+        let p = flat(a);
+        let margin = MARGIN * p.length_squared();
+        let (mut left, mut right, mut opposite) = (false, false, false);
+        for b in touches {
+            let q = flat(b);
+            let side = p.cross(q).dot(down);
+            left |= side > margin;
+            right |= side < -margin;
+            opposite |= side.abs() <= margin && p.dot(q) < 0.0;
+        }
+        (left && right) || (opposite && (left || right))
+    })
+}
+
+/// Overlap that rest may keep, over the gap at which bodies touch; it is lifted out when the body lies down. Little on flat parts, where steps get rid of it; the preset's whole gap on
+/// uneven ones, where a body may be wedged.
+fn overlap(world: &Rigid, touch: &Touch) -> f64 {
+    if matches!(world.parts[usize::from(touch.part)], Part::Table(_)) { super::step::TOUCHING } else { 0.25 }
+}
+
+/// Sine of the angle below which points count as opposite. Default 1e-6.
+const MARGIN: f64 = 1e-6;

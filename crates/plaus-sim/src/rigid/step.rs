@@ -1,0 +1,391 @@
+//! Lasting contact: what bodies that touch something do next, in steps on their group's own adaptive clock.
+//!
+//! A step is a half kick of gravity and contact impulses, a straight drift at constant angular velocity, and another half kick (RATTLE's order). The first impulses
+//! are such that every loaded point ends the drift at the gap that it is to keep, found in [`PASSES`] passes over the true geometry; the second such that no point
+//! approaches. Impacts of other points during the drift are found exactly on the path that is really taken. Energy is never let grow.
+
+use super::body::{Motion, Phase, Pose, Turning};
+use super::contact::{Touch, response};
+use super::glide;
+use super::pair::PairTouch;
+use super::part::Part;
+use super::rest;
+use super::solve::{Contact, Member, sweep};
+use super::tumble::{drift, rotation};
+use super::{Rigid, Spec};
+use crate::links::Links;
+use glam::{DMat3, DQuat, DVec3};
+
+/// Work space of a group's step.
+#[derive(Debug, Default)]
+pub struct RigidScratch {
+    pub(super) members: Vec<Member>,
+    pub(super) places: Vec<Place>,
+    /// Points on fixed parts.
+    pub(super) touches: Vec<(usize, Touch)>,
+    /// Forces at those points in the last step.
+    loads: Vec<DVec3>,
+    /// Points that touch but separate.
+    pub(super) leaving: Vec<(usize, Touch)>,
+    /// Points between bodies.
+    pub(super) pairs: Vec<([usize; 2], PairTouch)>,
+    /// Of the touches first, then of the pairs.
+    pub(super) contacts: Vec<Contact>,
+}
+
+/// A member's pose and orientation at the start and at the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) body: usize,
+    pub(super) start: Pose,
+    turn: DQuat,
+    end: Pose,
+    end_turn: DQuat,
+}
+
+/// Passes over the end of a step: the first predicts where points get to, the others correct.
+const PASSES: usize = 2;
+
+/// Gap that lasting contacts keep, over the gap at which bodies touch. Default 0.75; below 1, so that they go on touching.
+const KEEP: f64 = 0.75;
+
+/// Gap up to which a point counts as touching, over the gap at which bodies touch: what a step leaves is not looked at as a new impact. This is the preset's gap.
+pub(super) const TOUCHING: f64 = 2.0;
+
+/// How often a step is shortened so that points which just left are not back within it. Each aims at half their speed.
+const SHORTENINGS: usize = 4;
+
+/// Distance from the gap that is to be kept within which a step needs no correction, over the gap. Default 0.2.
+const CLOSE: f64 = 0.2;
+
+/// Largest speed with which a point is pushed out of an overlap, over that below which bounces last. Default 1; only the drift has it, not the velocities.
+const PUSH: f64 = 1.0;
+
+/// Least part that one shortening leaves of a step.
+const SHORTEST: f64 = 0.1;
+
+/// Decides how a group goes on.
+pub(super) fn settle(
+    world: &Rigid,
+    group: &[u32],
+    bodies: &mut [Turning],
+    links: &mut Links,
+    scratch: &mut RigidScratch,
+) {
+    let mut is_over = true;
+    for &k in group {
+        let body = &mut bodies[k as usize];
+        if body.path.x.z < world.sink && body.phase != Phase::Waiting {
+            (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);
+            body.begin(Phase::Gone, DVec3::ZERO);
+            links.retain(|l| !l.contains(&k));
+        }
+        is_over &= matches!(body.phase, Phase::Rest | Phase::Gone);
+    }
+    if is_over {
+        return;
+    }
+    scratch.gather(world, group, bodies, links);
+    if let ([place], [(_, touch)], []) = (&scratch.places[..], &scratch.touches[..], &scratch.leaving[..])
+        && glide::begin(world, place.body, &mut bodies[place.body], touch)
+    {
+        return;
+    }
+    if scratch.places.is_empty() {
+        return;
+    }
+    let mut h = scratch.step_length(world);
+    if rest::is_slow(world, scratch) && rest::is_supported(world, scratch, h) {
+        scratch.lie_down(bodies);
+        return;
+    }
+    for _ in 0..SHORTENINGS {
+        scratch.step(world, h);
+        match scratch.returns() {
+            Some(part) => h *= part,
+            None => return scratch.write(bodies, h),
+        }
+    }
+    // Bounces too fast for any step: they count as lasting.
+    scratch.loads.clear();
+    scratch.touches.append(&mut scratch.leaving);
+    scratch.touches.sort_by_key(|t| t.0);
+    scratch.step(world, h);
+    scratch.write(bodies, h);
+}
+
+impl RigidScratch {
+    /// Finds the lasting contacts of a group. Bodies without any fly.
+    fn gather(&mut self, world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
+        self.places.clear();
+        self.touches.clear();
+        self.loads.clear();
+        self.leaving.clear();
+        self.pairs.clear();
+        for &k in group {
+            for j in links.of(k).filter(|&j| j > k) {
+                let (i, j) = (k as usize, j as usize);
+                let (a, b) = (bodies[i].pose(), bodies[j].pose());
+                let touch = world.pair_touch([i, j], [&a, &b]);
+                let speed = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
+                let slow = speed <= world.pair_settle_speed([i, j]) || bodies[i].is_hurried() || bodies[j].is_hurried();
+                if slow && touch.gap <= TOUCHING * world.pair_gap([i, j]) {
+                    self.pairs.push(([i, j], touch));
+                }
+            }
+        }
+        links.retain(|[i, j]| !group.contains(&i) || self.pairs.iter().any(|p| p.0 == [i as usize, j as usize]));
+        for &k in group {
+            let index = k as usize;
+            if bodies[index].phase == Phase::Gone {
+                continue;
+            }
+            let (spec, pose, hurried) = (&world.specs[index], bodies[index].pose(), bodies[index].is_hurried());
+            let (at, before) = (self.places.len(), self.touches.len());
+            world.for_touches(index, &pose, TOUCHING * spec.gap, |t| {
+                let law = world.law_at(index, t.part, pose.x + t.arm);
+                if hurried || pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law) {
+                    self.touches.push((at, t));
+                    self.loads.push(bodies[index].load(t.surface()));
+                } else {
+                    self.leaving.push((at, t));
+                }
+            });
+            let body = &mut bodies[index];
+            body.listed = f64::NEG_INFINITY;
+            let linked = self.pairs.iter().any(|p| p.0.contains(&index));
+            if self.touches.len() == before && !linked {
+                self.leaving.retain(|l| l.0 != at);
+                body.list(std::iter::empty());
+                body.begin(Phase::Flight, world.gravity);
+                continue;
+            }
+            self.places.push(Place { body: index, start: pose, turn: body.turn, end: pose, end_turn: body.turn });
+        }
+        for p in &mut self.pairs {
+            p.0 = p.0.map(|k| self.places.iter().position(|q| q.body == k).unwrap_or(0));
+        }
+    }
+
+    fn step_length(&self, world: &Rigid) -> f64 {
+        let mut time = f64::INFINITY;
+        for p in &self.places {
+            let spec = &world.specs[p.body];
+            time = time
+                .min((spec.size / world.strength).sqrt())
+                .min(spec.size / p.start.v.length().max(world.accuracy.settle * spec.speed) * LONGEST)
+                .min(1.0 / p.start.w.length());
+        }
+        for (k, t) in &self.touches {
+            let p = &self.places[*k];
+            if let Part::Table(table) = &world.parts[usize::from(t.part)] {
+                let at = p.start.x + t.arm;
+                let bend = table.height.at(at.x, at.y).bend;
+                let bend = bend[0].abs().max(bend[2].abs()) + bend[1].abs();
+                let speed = p.start.velocity(t.arm).length();
+                time = time.min(1.0 / (world.strength * bend).sqrt()).min(1.0 / (bend * speed));
+            }
+        }
+        for ([a, b], t) in &self.pairs {
+            let (p, q) = (&self.places[*a], &self.places[*b]);
+            let speed = (p.start.velocity(t.arms[0]) - q.start.velocity(t.arms[1])).length();
+            time = time.min(world.specs[p.body].size.min(world.specs[q.body].size) / speed);
+        }
+        if world.strength == 0.0 && !time.is_finite() {
+            time = world.duration;
+        }
+        world.accuracy.step * time
+    }
+
+    /// Whether the drift of a step brings a point back that is just leaving, and by what part the step is too long then.
+    fn returns(&self) -> Option<f64> {
+        let mut worst = 1.0_f64;
+        for (k, t) in &self.leaving {
+            let p = &self.places[*k];
+            let before = p.start.velocity(t.arm).dot(t.normal);
+            let drifting = (p.end.v + p.end.w.cross(t.arm)).dot(t.normal);
+            if drifting < 0.25 * before {
+                worst = worst.min((0.5 * before / (before - drifting)).max(SHORTEST));
+            }
+        }
+        (worst < 1.0).then_some(worst)
+    }
+
+    fn member(spec: &Spec, r: &DMat3, v: DVec3, w: DVec3) -> Member {
+        let inverse_inertia = spec.inertia.inverse(r);
+        Member { inverse_mass: 1.0 / spec.mass, inverse_inertia, v, w, reach: spec.reach, last: [DVec3::ZERO; 2] }
+    }
+
+    /// Members at their starts with the velocities that `free` gives, and contacts without impulses.
+    pub(super) fn prepare(&mut self, world: &Rigid, free: impl Fn(&Spec, &Place) -> (DVec3, DVec3)) {
+        self.members.clear();
+        self.members.extend(self.places.iter().map(|p| {
+            let spec = &world.specs[p.body];
+            let (v, w) = free(spec, p);
+            Self::member(spec, &p.start.r, v, w)
+        }));
+        self.contacts.clear();
+        for (a, t) in &self.touches {
+            let (p, m) = (&self.places[*a], &self.members[*a]);
+            let law = world.law_at(p.body, t.part, p.start.x + t.arm);
+            let k = response(m.inverse_mass, &m.inverse_inertia, t.arm);
+            self.contacts.push(Contact::new(*a, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k));
+        }
+        for ([a, b], t) in &self.pairs {
+            self.contacts.push(self.pair_contact(world, [*a, *b], t));
+        }
+    }
+
+    fn pair_contact(&self, world: &Rigid, [a, b]: [usize; 2], t: &PairTouch) -> Contact {
+        let (m, n) = (&self.members[a], &self.members[b]);
+        let k = response(m.inverse_mass, &m.inverse_inertia, t.arms[0])
+            + response(n.inverse_mass, &n.inverse_inertia, t.arms[1]);
+        let friction = world.pair_law([self.places[a].body, self.places[b].body]).friction;
+        Contact::new(a, Some(b), t.arms, t.normal, friction, k)
+    }
+
+    /// One step of `h` seconds from the starts; the ends are left in `places` (drift) and `members` (final velocities).
+    fn step(&mut self, world: &Rigid, h: f64) {
+        let enough = world.accuracy.sweep_tolerance * world.strength * h;
+        let half_kick = world.gravity * (0.5 * h);
+        let half_spin = |spec: &Spec, turn: DQuat, w: DVec3| {
+            if spec.wobble == 0.0 { w } else { drift(&spec.inertia, turn, w, 0.5 * h).1 }
+        };
+        self.prepare(world, |spec, p| (p.start.v + half_kick, half_spin(spec, p.turn, p.start.w)));
+        // What a point may still fall, and how far turning alone lifts it towards its own circle.
+        for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
+            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
+            let rise = if spec.is_round { 0.0 } else { p.start.w.cross(p.start.w.cross(t.arm)).dot(t.normal) };
+            c.target = ((KEEP * spec.gap - t.gap) / h).min(PUSH * world.accuracy.settle * spec.speed) - 0.5 * h * rise;
+        }
+        let first_pair = self.touches.len();
+        for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
+            let both = ab.map(|k| self.places[k].body);
+            c.target = ((KEEP * world.pair_gap(both) - t.gap) / h)
+                .min(PUSH * world.accuracy.settle * world.specs[both[0]].speed);
+        }
+        // The last step's forces are a good guess.
+        for (c, &load) in self.contacts.iter_mut().zip(&self.loads) {
+            if load != DVec3::ZERO {
+                c.impulse = load * (0.5 * h);
+                c.push(&mut self.members, c.impulse);
+            }
+        }
+        for pass in 0..PASSES {
+            sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
+            for (p, m) in self.places.iter_mut().zip(&self.members) {
+                p.end_turn = (rotation(m.w * h) * p.turn).normalize();
+                p.end = Pose { x: p.start.x + m.v * h, r: DMat3::from_quat(p.end_turn), v: m.v, w: m.w };
+            }
+            if pass + 1 < PASSES {
+                let mut off = false;
+                for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
+                    let p = &self.places[*k];
+                    let spec = &world.specs[p.body];
+                    let missing = (KEEP * spec.gap - world.touch(p.body, &p.end, t.part, t.point).gap) / h;
+                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * spec.gap;
+                    c.target += missing.min(PUSH * world.accuracy.settle * spec.speed);
+                }
+                for (c, (ab, _)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
+                    let [p, q] = ab.map(|k| &self.places[k]);
+                    let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
+                    let missing = (KEEP * world.pair_gap([p.body, q.body]) - after.gap) / h;
+                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO)
+                        && missing.abs() * h > CLOSE * world.pair_gap([p.body, q.body]);
+                    c.target += missing.min(PUSH * world.accuracy.settle * world.specs[p.body].speed);
+                }
+                if !off {
+                    break;
+                }
+            }
+        }
+        self.second_kick(world, half_kick, half_spin);
+        sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
+        self.guard_energy(world);
+    }
+
+    /// The second kick, over the points that still touch at the ends.
+    fn second_kick(&mut self, world: &Rigid, half_kick: DVec3, half_spin: impl Fn(&Spec, DQuat, DVec3) -> DVec3) {
+        for (m, p) in self.members.iter_mut().zip(&self.places) {
+            let spec = &world.specs[p.body];
+            *m = Self::member(spec, &p.end.r, p.end.v + half_kick, half_spin(spec, p.end_turn, p.end.w));
+        }
+        for c in 0..self.contacts.len() {
+            let old = self.contacts[c];
+            let (mut next, gap, touching) = if let Some((a, t)) = self.touches.get(c) {
+                let (p, m) = (&self.places[*a], &self.members[*a]);
+                let after = world.touch(p.body, &p.end, t.part, t.point);
+                let k = response(m.inverse_mass, &m.inverse_inertia, after.arm);
+                (
+                    Contact::new(*a, None, [after.arm, DVec3::ZERO], after.normal, old.friction, k),
+                    after.gap,
+                    world.specs[p.body].gap,
+                )
+            } else {
+                let ab = self.pairs[c - self.touches.len()].0;
+                let [p, q] = ab.map(|k| &self.places[k]);
+                let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
+                (self.pair_contact(world, ab, &after), after.gap, world.pair_gap([p.body, q.body]))
+            };
+            if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
+                next.impulse = old.impulse;
+                next.push(&mut self.members, next.impulse);
+            } else {
+                // It has left: no impulse, whatever its velocity.
+                next.target = -f64::MAX;
+            }
+            self.contacts[c] = next;
+        }
+    }
+
+    /// A group's energy never grows, whatever the step's error.
+    fn guard_energy(&mut self, world: &Rigid) {
+        let kinetic = |spec: &Spec, turn, v: DVec3, w: DVec3| {
+            0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)))
+        };
+        let (mut before, mut after) = (0.0, 0.0);
+        for (p, m) in self.places.iter().zip(&self.members) {
+            let spec = &world.specs[p.body];
+            before += kinetic(spec, p.turn, p.start.v, p.start.w) + spec.mass * world.gravity.dot(p.end.x - p.start.x);
+            after += kinetic(spec, p.end_turn, m.v, m.w);
+        }
+        if after > before {
+            let part = (before.max(0.0) / after).sqrt();
+            for m in &mut self.members {
+                m.v *= part;
+                m.w *= part;
+            }
+        }
+    }
+
+    /// Rest: without velocity, and lifted out of what overlap steps have left.
+    fn lie_down(&self, bodies: &mut [Turning]) {
+        for (k, p) in self.places.iter().enumerate() {
+            let body = &mut bodies[p.body];
+            body.set_motion(Motion::default());
+            body.begin(Phase::Rest, DVec3::ZERO);
+            let deepest =
+                self.touches.iter().filter(|t| t.0 == k && t.1.gap < 0.0).min_by(|a, b| a.1.gap.total_cmp(&b.1.gap));
+            if let Some((_, t)) = deepest {
+                body.path.x -= t.normal * t.gap;
+            }
+            body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface()));
+        }
+    }
+
+    fn write(&self, bodies: &mut [Turning], h: f64) {
+        for (k, (p, m)) in self.places.iter().zip(&self.members).enumerate() {
+            let body = &mut bodies[p.body];
+            let forces = self.contacts.iter().zip(&self.touches).filter(|(_, t)| t.0 == k);
+            body.set_loads(forces.map(|(c, _)| c.impulse * (2.0 / h)));
+            body.ends = [Motion { v: p.start.v, w: p.start.w }, Motion { v: m.v, w: m.w }];
+            (body.path.v, body.spin) = (p.end.v, p.end.w);
+            body.begin(Phase::Step, DVec3::ZERO);
+            body.expiry = body.path.t + h;
+            body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface()));
+        }
+    }
+}
+
+/// Sizes that a body may move within the unit of a step's length.
+const LONGEST: f64 = 4.0;

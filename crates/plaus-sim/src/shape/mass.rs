@@ -1,0 +1,27 @@
+//! Mass and inertia.
+
+use glam::DVec3;
+
+/// Mass and principal moments of inertia about the centre of gravity.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct MassProperties {
+    /// In kg.
+    pub mass: f64,
+    /// About the body's three axes, in kg m².
+    pub inertia: DVec3,
+}
+
+impl MassProperties {
+    /// A solid sphere.
+    #[must_use]
+    pub fn ball(radius: f64, density: f64) -> Self {
+        let mass = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius * density;
+        Self { mass, inertia: DVec3::splat(0.4 * mass * radius * radius) }
+    }
+
+    /// The same shape with another mass.
+    #[must_use]
+    pub fn with_mass(self, mass: f64) -> Self {
+        Self { mass, inertia: self.inertia * (mass / self.mass) }
+    }
+}

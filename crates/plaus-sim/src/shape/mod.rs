@@ -1,0 +1,88 @@
+//! Shapes of turning bodies, their mass properties, and the points and balls that make up their skin.
+//!
+//! A shape is described to the simulator as **feelers**: balls fixed in the body whose union has the shape's skin wherever it can touch something. A sharp corner is a
+//! ball of radius 0, a rounded one has its rounding radius, a sphere is a single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot.
+
+mod cuboid;
+mod mass;
+mod revolution;
+
+pub use cuboid::Cuboid;
+pub use mass::MassProperties;
+pub use revolution::{Profile, Revolution, Ring};
+
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A ball fixed in a body: centre in m from the centre of gravity along the body's axes, and radius in m.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Feeler {
+    /// Centre.
+    pub centre: DVec3,
+    /// Radius; 0 for a sharp corner.
+    pub radius: f64,
+}
+
+/// The shape of a turning body about its centre of gravity, with the body's axes along its principal axes.
+#[derive(Debug, Clone)]
+pub enum Shape {
+    /// A sphere of this radius in m.
+    Ball(f64),
+    /// A cuboid.
+    Cuboid(Cuboid),
+    /// A body of revolution about its z axis.
+    Revolution(Arc<Revolution>),
+}
+
+impl Shape {
+    /// Radius of the sphere around the centre of gravity that holds the shape, in m.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        match self {
+            Self::Ball(radius) => *radius,
+            Self::Cuboid(c) => (c.half() - c.rounding()).length() + c.rounding(),
+            Self::Revolution(r) => r.reach(),
+        }
+    }
+
+    /// The length that tolerances are measured in: the shape's least half width, in m.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        match self {
+            Self::Ball(radius) => *radius,
+            Self::Cuboid(c) => c.half().min_element(),
+            Self::Revolution(r) => r.rings()[0].circle,
+        }
+    }
+
+    /// The balls whose hull is the shape: enough for flat ground.
+    #[must_use]
+    pub fn feelers(&self) -> Vec<Feeler> {
+        match self {
+            Self::Ball(radius) => vec![Feeler { centre: DVec3::ZERO, radius: *radius }],
+            Self::Cuboid(c) => c.corners().into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect(),
+            Self::Revolution(r) => r.row().to_vec(),
+        }
+    }
+
+    /// More balls between those of [`feelers`](Self::feelers), so that no point of the skin is farther than about `spacing` from one: for uneven ground.
+    #[must_use]
+    pub fn feelers_between(&self, spacing: f64) -> Vec<Feeler> {
+        match self {
+            Self::Ball(_) | Self::Revolution(_) => Vec::new(),
+            Self::Cuboid(c) => {
+                c.between(spacing).into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect()
+            }
+        }
+    }
+
+    /// Mass, and moments of inertia about the body's axes, for a uniform density in kg/m³.
+    #[must_use]
+    pub fn mass_properties(&self, density: f64) -> MassProperties {
+        match self {
+            Self::Ball(radius) => MassProperties::ball(*radius, density),
+            Self::Cuboid(c) => c.mass_properties(density),
+            Self::Revolution(r) => r.mass_properties(density),
+        }
+    }
+}

@@ -1,0 +1,398 @@
+//! Bodies of revolution about their z axis, from a meridian profile.
+//!
+//! The profile is a flat foot, a rounded rim, and a cubic spline of the radius over the height up to a cap that is part of a sphere. Mass, centre of gravity and inertia are
+//! integrated exactly over the spline's pieces (they are polynomials) and by closed forms over rim and cap. The skin is made of balls on the axis that touch it
+//! from inside, `stations` of them, and of rings: the rim of the foot and the flank above it, where balls on the axis would stick out below.
+
+use super::{Feeler, MassProperties};
+use crate::error::WorldError;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// A circle about the axis, thickened to a ring.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Ring {
+    /// Height over the centre of gravity in m.
+    pub height: f64,
+    /// Radius of the circle in m.
+    pub circle: f64,
+    /// Radius of the ring's section in m.
+    pub radius: f64,
+}
+
+/// The meridian profile of a body of revolution, from its foot upwards; lengths in m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// Radius of the flat of the foot.
+    pub foot: f64,
+    /// Rounding of the foot's rim.
+    pub rim: f64,
+    /// Heights and radii, from low to high; the last is where the cap begins, with its largest radius.
+    pub points: Vec<[f64; 2]>,
+    /// Height of the top.
+    pub top: f64,
+}
+
+/// A body of revolution about its centre of gravity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Revolution {
+    row: Vec<Feeler>,
+    rings: Vec<Ring>,
+    reach: f64,
+    /// Centre of gravity over the foot, volume, and second moments of the volume about it.
+    balance: f64,
+    volume: f64,
+    across: f64,
+    along: f64,
+}
+
+/// A cubic piece of the radius: `c₀ + c₁ s + c₂ s² + c₃ s³`, `s` from 0 to `length` above `base`.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    base: f64,
+    length: f64,
+    c: [f64; 4],
+}
+
+const INCH: f64 = 0.0254;
+
+impl Profile {
+    /// The regulation pin: diameters at heights from USBC's drawing, with a foot of 2.031 in, its rim rounded by 5/32 in, and a head of radius 1.2735 in.
+    #[must_use]
+    pub fn pin() -> Self {
+        let table = [
+            [0.75, 2.828],
+            [2.25, 3.906],
+            [3.375, 4.510],
+            [4.5, 4.766],
+            [5.875, 4.563],
+            [7.25, 3.703],
+            [8.625, 2.472],
+            [9.375, 1.965],
+            [10.0, 1.797],
+            [10.875, 1.870],
+            [11.75, 2.094],
+            [12.625, 2.406],
+            [13.5, 2.547],
+        ];
+        let points = table.map(|[height, diameter]| [height * INCH, 0.5 * diameter * INCH]).to_vec();
+        Self { foot: 0.5 * 2.031 * INCH, rim: 5.0 / 32.0 * INCH, points, top: 15.0 * INCH }
+    }
+
+    fn check(&self) -> Result<(), WorldError> {
+        let bad = |field, value| {
+            Err(WorldError::BadNumber { field, value, expected: "a profile that rises from a foot to a cap" })
+        };
+        for (field, value) in [("foot", self.foot), ("rim", self.rim), ("top", self.top)] {
+            if !(value > 0.0 && value.is_finite()) {
+                return bad(field, value);
+            }
+        }
+        if self.points.len() < 3 {
+            return bad("points of the profile", self.points.len() as f64);
+        }
+        let mut last = self.rim;
+        for &[height, radius] in &self.points {
+            if !(height > last && height < self.top) {
+                return bad("height in the profile", height);
+            }
+            if !(radius > 0.0 && radius.is_finite()) {
+                return bad("radius in the profile", radius);
+            }
+            last = height;
+        }
+        Ok(())
+    }
+
+    /// The spline: from the rim, which it leaves in its own direction, to the beginning of the cap, where it is vertical.
+    fn pieces(&self) -> Vec<Piece> {
+        let [z1, r1] = self.points[0];
+        // The rim's tangent towards the first point: where it leaves the rim depends on the slope, a few rounds settle it.
+        let mut slope = 0.0_f64;
+        let mut start = [0.0; 2];
+        for _ in 0..60 {
+            let c = 1.0 / (1.0 + slope * slope).sqrt();
+            start = [self.rim * (1.0 - slope * c), self.foot + self.rim * c];
+            slope = (r1 - start[1]) / (z1 - start[0]);
+        }
+        let mut knots = vec![start];
+        knots.extend_from_slice(&self.points);
+        let slopes = clamped_slopes(&knots, slope);
+        let pieces = knots.windows(2).zip(slopes.windows(2)).map(|(k, s)| {
+            let length = k[1][0] - k[0][0];
+            let rise = (k[1][1] - k[0][1]) / length;
+            let c2 = (3.0 * rise - 2.0 * s[0] - s[1]) / length;
+            let c3 = (s[0] + s[1] - 2.0 * rise) / (length * length);
+            Piece { base: k[0][0], length, c: [k[0][1], s[0], c2, c3] }
+        });
+        pieces.collect()
+    }
+}
+
+/// Slopes at the knots of the twice differentiable cubic spline with given slope at the lower end and none at the upper.
+fn clamped_slopes(knots: &[[f64; 2]], first: f64) -> Vec<f64> {
+    let n = knots.len();
+    let h: Vec<f64> = knots.windows(2).map(|k| k[1][0] - k[0][0]).collect();
+    let d: Vec<f64> = knots.windows(2).map(|k| (k[1][1] - k[0][1]) / (k[1][0] - k[0][0])).collect();
+    // Thomas' algorithm on h_i s_{i-1} + 2 (h_{i-1} + h_i) s_i + h_{i-1} s_{i+1} = 3 (h_i d_{i-1} + h_{i-1} d_i).
+    let (mut upper, mut right) = (vec![0.0; n], vec![0.0; n]);
+    right[0] = first;
+    for i in 1..n - 1 {
+        let diagonal = 2.0 * (h[i - 1] + h[i]) - h[i] * upper[i - 1];
+        upper[i] = h[i - 1] / diagonal;
+        right[i] = (3.0 * (h[i] * d[i - 1] + h[i - 1] * d[i]) - h[i] * right[i - 1]) / diagonal;
+    }
+    let mut slopes = vec![0.0; n];
+    for i in (0..n - 1).rev() {
+        slopes[i] = right[i] - upper[i] * slopes[i + 1];
+    }
+    slopes
+}
+
+/// `∫ z^k r^m dz` over `s` in `[0, length]` of a piece, by Gauss–Legendre with eight points: exact up to degree 15, and `r⁴ z²` has degree 14.
+fn integral(p: &Piece, k: usize, m: usize) -> f64 {
+    const NODES: [[f64; 2]; 4] = [
+        [0.183_434_642_495_649_8, 0.362_683_783_378_362],
+        [0.525_532_409_916_329, 0.313_706_645_877_887_27],
+        [0.796_666_477_413_626_7, 0.222_381_034_453_374_48],
+        [0.960_289_856_497_536_3, 0.101_228_536_290_376_26],
+    ];
+    let f = |s: f64| {
+        let (z, r) = (p.base + s, p.radius(s));
+        (0..k).map(|_| z).product::<f64>() * (0..m).map(|_| r).product::<f64>()
+    };
+    let half = 0.5 * p.length;
+    NODES.iter().map(|[x, w]| w * (f(half * (1.0 - x)) + f(half * (1.0 + x)))).sum::<f64>() * half
+}
+
+impl Piece {
+    fn radius(&self, s: f64) -> f64 {
+        self.c[0] + s * (self.c[1] + s * (self.c[2] + s * self.c[3]))
+    }
+
+    fn slope(&self, s: f64) -> f64 {
+        self.c[1] + s * (2.0 * self.c[2] + s * (3.0 * self.c[3]))
+    }
+}
+
+impl Revolution {
+    /// A body of revolution whose skin is made of about `stations` balls. Usual 24–64; between two of them the skin lies too deep by up to about `spacing²/(8 radius)`.
+    ///
+    /// # Errors
+    /// [`WorldError::BadNumber`] where the profile does not rise from its foot to its cap.
+    pub fn new(profile: &Profile, stations: usize) -> Result<Self, WorldError> {
+        profile.check()?;
+        let pieces = profile.pieces();
+        let [_, cap] = profile.points[profile.points.len() - 1];
+        let cap_centre = profile.top - cap;
+        // Moments ∫ z^k r^m of all parts: spline, a neck of constant radius below the cap, the half ball, and the foot with its rim.
+        let moment = |k: usize, m: usize| {
+            let spline: f64 = pieces.iter().map(|p| integral(p, k, m)).sum();
+            let neck_base = profile.points[profile.points.len() - 1][0];
+            let neck = Piece { base: neck_base, length: cap_centre - neck_base, c: [cap, 0.0, 0.0, 0.0] };
+            spline + integral(&neck, k, m) + head(cap_centre, cap, k, m) + rim(profile, pieces[0].base, k, m)
+        };
+        let volume = PI * moment(0, 2);
+        let balance = PI * moment(1, 2) / volume;
+        let along = 0.5 * PI * moment(0, 4);
+        let across = 0.5 * along + PI * moment(2, 2) - volume * balance * balance;
+        let (row, flank) =
+            row(&pieces, stations, balance, Feeler { centre: DVec3::new(0.0, 0.0, cap_centre - balance), radius: cap });
+        let mut rings = vec![Ring { height: profile.rim - balance, circle: profile.foot, radius: profile.rim }];
+        rings.extend(flank_rings(&pieces, flank, profile.rim, balance));
+        let reach =
+            row.iter().map(|f| f.centre.length() + f.radius).chain(rings.iter().map(Ring::reach)).fold(0.0, f64::max);
+        Ok(Self { row, rings, reach, balance, volume, across, along })
+    }
+
+    /// The balls of the skin from below to above; all on the axis.
+    #[must_use]
+    pub fn row(&self) -> &[Feeler] {
+        &self.row
+    }
+
+    /// The rings of the skin; the first is the rim of the foot.
+    #[must_use]
+    pub fn rings(&self) -> &[Ring] {
+        &self.rings
+    }
+
+    /// Radius of the sphere around the centre of gravity that holds the body.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// Height of the centre of gravity over the foot, in m.
+    #[must_use]
+    pub fn balance(&self) -> f64 {
+        self.balance
+    }
+
+    /// Mass and inertia for a uniform density.
+    #[must_use]
+    pub fn mass_properties(&self, density: f64) -> MassProperties {
+        MassProperties {
+            mass: density * self.volume,
+            inertia: DVec3::new(self.across, self.across, self.along) * density,
+        }
+    }
+}
+
+impl Ring {
+    fn reach(&self) -> f64 {
+        (self.height * self.height + self.circle * self.circle).sqrt() + self.radius
+    }
+}
+
+/// Half a ball above `centre`: `∫ z^k (R² − s²)^(m/2) ds`.
+fn head(centre: f64, radius: f64, k: usize, m: usize) -> f64 {
+    let r = radius;
+    let (r2, r3) = (r * r, r * r * r);
+    // Moments of s against the section's power: m = 2 or 4, k up to 2.
+    let s = |j: usize| match (j, m) {
+        (0, 2) => 2.0 * r3 / 3.0,
+        (1, 2) => r2 * r2 / 4.0,
+        (2, 2) => 2.0 * r3 * r2 / 15.0,
+        _ => 8.0 * r3 * r2 / 15.0,
+    };
+    match k {
+        0 => s(0),
+        1 => centre * s(0) + s(1),
+        _ => centre * centre * s(0) + 2.0 * centre * s(1) + s(2),
+    }
+}
+
+/// The slice between the floor and the height where the spline leaves the rim, whose radius is `foot + √(rim² − (rim − z)²)`: a sum over fine slices.
+fn rim(profile: &Profile, height: f64, k: usize, m: usize) -> f64 {
+    // The square root's end at the floor is removed by z = height · x²; the rest is smooth.
+    const SLICES: usize = 64;
+    let piece_sum: f64 = (0..SLICES)
+        .map(|i| {
+            let x = (i as f64 + 0.5) / SLICES as f64;
+            let z = height * x * x;
+            let depth = profile.rim - z;
+            let r = profile.foot + (profile.rim * profile.rim - depth * depth).max(0.0).sqrt();
+            (0..k).map(|_| z).product::<f64>() * (0..m).map(|_| r).product::<f64>() * 2.0 * x * height / SLICES as f64
+        })
+        .sum();
+    piece_sum
+}
+
+/// Balls on the axis that touch the profile, evenly over its height, and the height below which they would stick out of the foot.
+fn row(pieces: &[Piece], stations: usize, balance: f64, cap: Feeler) -> (Vec<Feeler>, f64) {
+    let (base, end) = (pieces[0].base, pieces[pieces.len() - 1].base + pieces[pieces.len() - 1].length);
+    let mut row = Vec::new();
+    let mut flank = base;
+    for k in 0..stations {
+        let z = base + (end - base) * (k as f64 / stations as f64);
+        let p = pieces.iter().rev().find(|p| p.base <= z).unwrap_or(&pieces[0]);
+        let (r, slope) = (p.radius(z - p.base), p.slope(z - p.base));
+        let (centre, radius) = (z + r * slope, r * (1.0 + slope * slope).sqrt());
+        if centre - radius <= 0.0 {
+            flank = z;
+        } else {
+            row.push(Feeler { centre: DVec3::new(0.0, 0.0, centre - balance), radius });
+        }
+    }
+    row.push(cap);
+    (row, flank)
+}
+
+/// Rings that touch the profile from inside, from the rim up to the first ball.
+fn flank_rings(pieces: &[Piece], flank: f64, thickness: f64, balance: f64) -> Vec<Ring> {
+    const COUNT: usize = 3;
+    let base = pieces[0].base;
+    (1..=COUNT)
+        .map(|k| {
+            let z = base + (flank - base) * (k as f64 / COUNT as f64);
+            let p = pieces.iter().rev().find(|p| p.base <= z).unwrap_or(&pieces[0]);
+            let (r, slope) = (p.radius(z - p.base), p.slope(z - p.base));
+            let c = 1.0 / (1.0 + slope * slope).sqrt();
+            Ring { height: z + thickness * slope * c - balance, circle: r - thickness * c, radius: thickness }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_regulation_pin() {
+        let pin = Revolution::new(&Profile::pin(), 40).unwrap();
+        let p = pin.mass_properties(1.0);
+        // Maple of about 700 kg/m³ gives 3 lb 6 oz to 3 lb 10 oz (1.53–1.64 kg); the centre of gravity is 5 40/64 to 5 60/64 in high.
+        assert!((1.53 / 800.0..1.64 / 600.0).contains(&p.mass), "volume {}", p.mass);
+        let inches = pin.balance() / INCH;
+        assert!((5.5..6.0).contains(&inches), "centre of gravity at {inches} in");
+        assert!(p.inertia.x > 4.0 * p.inertia.z);
+    }
+
+    /// Against a plain sum over 200,000 slices of the same profile; 1e-5 is what its midpoint rule leaves at the rim's square root.
+    #[test]
+    fn moments_agree_with_a_plain_sum() {
+        let profile = Profile::pin();
+        let pin = Revolution::new(&profile, 40).unwrap();
+        let pieces = profile.pieces();
+        let cap = profile.points.last().unwrap()[1];
+        let radius = |z: f64| {
+            if z < pieces[0].base {
+                profile.foot + (profile.rim * profile.rim - (profile.rim - z) * (profile.rim - z)).sqrt()
+            } else if z < profile.points.last().unwrap()[0] {
+                let p = pieces.iter().rev().find(|p| p.base <= z).unwrap();
+                p.radius(z - p.base)
+            } else {
+                let s = (z - (profile.top - cap)).max(0.0);
+                (cap * cap - s * s).sqrt()
+            }
+        };
+        let n = 200_000;
+        let h = profile.top / f64::from(n);
+        let (mut v, mut vz, mut vzz, mut quartic) = (0.0, 0.0, 0.0, 0.0);
+        for k in 0..n {
+            let z = h * (f64::from(k) + 0.5);
+            let r2 = radius(z) * radius(z);
+            v += PI * r2 * h;
+            vz += PI * r2 * z * h;
+            vzz += PI * r2 * z * z * h;
+            quartic += PI * r2 * r2 * h;
+        }
+        let p = pin.mass_properties(1.0);
+        let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-5, "{a} for {b}");
+        close(p.mass, v);
+        close(pin.balance(), vz / v);
+        close(p.inertia.z, 0.5 * quartic);
+        close(p.inertia.x, 0.25 * quartic + vzz - vz * vz / v);
+    }
+
+    #[test]
+    fn the_skin_follows_the_profile() {
+        let profile = Profile::pin();
+        let pin = Revolution::new(&profile, 60).unwrap();
+        // At each table height the balls and rings reach the table's radius to 0.3 mm from inside, and nothing sticks out by more than 0.01 mm.
+        for &[z, r] in &profile.points[..profile.points.len() - 1] {
+            let h = z - pin.balance();
+            let balls =
+                pin.row().iter().map(|f| (f.radius * f.radius - (h - f.centre.z) * (h - f.centre.z)).max(0.0).sqrt());
+            let rings = pin.rings().iter().map(|g| {
+                let inside = g.radius * g.radius - (h - g.height) * (h - g.height);
+                if inside >= 0.0 { g.circle + inside.sqrt() } else { 0.0 }
+            });
+            let widest = balls.chain(rings).fold(0.0, f64::max);
+            // The flank between rings is left open by up to a millimetre.
+            let open = if z < 0.03 { 1e-3 } else { 3e-4 };
+            assert!(widest < r + 1e-5 && widest > r - open, "{widest} for {r} at {z}");
+        }
+        let lowest = pin.row().iter().map(|f| f.centre.z - f.radius).fold(0.0, f64::min);
+        assert!(lowest > -pin.balance(), "no ball below the foot");
+    }
+
+    #[test]
+    fn bad_profiles_are_refused() {
+        let good = Profile::pin();
+        assert!(Revolution::new(&Profile { foot: 0.0, ..good.clone() }, 40).is_err());
+        assert!(Revolution::new(&Profile { top: 0.1, ..good.clone() }, 40).is_err());
+        assert!(Revolution::new(&Profile { points: vec![[0.1, 0.1]], ..good }, 40).is_err());
+    }
+}

@@ -1,0 +1,165 @@
+//! A bowling alley: lane, gutters, kickbacks and pit, ten pins and a ball.
+
+use crate::accuracy::Accuracy;
+use crate::error::WorldError;
+use crate::material::{Law, Laws, Material};
+use crate::rigid::{BodySpec, Part, Rigid, RigidWorld, Start};
+use crate::scenery::{Aabb, Plane};
+use crate::shape::{MassProperties, Profile, Revolution, Shape};
+use glam::{DQuat, DVec3};
+use std::sync::Arc;
+
+const INCH: f64 = 0.0254;
+
+/// An alley along y: the head pin stands at the origin, the ball comes from below in y. Body 0 is the ball, bodies 1–10 the pins by their numbers.
+#[derive(Debug, Clone, Copy)]
+pub struct Alley {
+    /// Radius of the ball in m. Regulation: 0.10795–0.10916.
+    pub ball_radius: f64,
+    /// Mass of the ball in kg. Regulation: at most 7.26.
+    pub ball_mass: f64,
+    /// Radius of gyration of the ball in m. Regulation: 0.0625–0.0711.
+    pub ball_gyration: f64,
+    /// Mass of a pin in kg. Regulation: 1.53–1.64.
+    pub pin_mass: f64,
+    /// Balls that make up a pin's skin.
+    pub stations: usize,
+    /// Between ball and lane.
+    pub ball_lane: Law,
+    /// Between ball and pin.
+    pub ball_pin: Law,
+    /// Between pins.
+    pub pin_pin: Law,
+    /// Between pin and lane, walls and pit.
+    pub pin_lane: Law,
+    /// Tolerances.
+    pub accuracy: Accuracy,
+    /// Length of a run in s.
+    pub duration: f64,
+}
+
+impl Default for Alley {
+    /// A 15 lb ball; the coefficients of pins are not published and chosen among usual ones.
+    fn default() -> Self {
+        Self {
+            ball_radius: 0.1085,
+            ball_mass: 6.8,
+            ball_gyration: 0.066,
+            pin_mass: 1.59,
+            stations: 40,
+            ball_lane: Law::new(0.12, 0.2),
+            ball_pin: Law::new(0.15, 0.7),
+            pin_pin: Law::new(0.2, 0.6),
+            pin_lane: Law::new(0.25, 0.4),
+            accuracy: Accuracy::default(),
+            duration: 5.0,
+        }
+    }
+}
+
+const BALL: Material = Material(0);
+const PIN: Material = Material(1);
+const WOOD: Material = Material(2);
+
+impl Alley {
+    /// Where a pin (1–10) stands, on the lane's surface.
+    #[must_use]
+    pub fn spot(pin: usize) -> DVec3 {
+        let (row, place) = match pin {
+            1 => (0, 0),
+            2..=3 => (1, pin - 2),
+            4..=6 => (2, pin - 4),
+            _ => (3, pin - 7),
+        };
+        // Numbers grow from the bowler's left, which is −x.
+        let x = 12.0 * INCH * (place as f64 - 0.5 * f64::from(row));
+        DVec3::new(x, 6.0 * 3.0_f64.sqrt() * INCH * f64::from(row), 0.0)
+    }
+
+    /// The pin.
+    ///
+    /// # Errors
+    /// [`WorldError`] for impossible numbers.
+    pub fn pin(&self) -> Result<Revolution, WorldError> {
+        Revolution::new(&Profile::pin(), self.stations)
+    }
+
+    /// The world.
+    ///
+    /// # Errors
+    /// [`WorldError`] for impossible numbers.
+    pub fn world(&self) -> Result<Rigid, WorldError> {
+        let pin = Arc::new(self.pin()?);
+        let mass = pin.mass_properties(1.0).with_mass(self.pin_mass);
+        let inertia = DVec3::splat(self.ball_mass * self.ball_gyration * self.ball_gyration);
+        let ball = BodySpec {
+            shape: Shape::Ball(self.ball_radius),
+            mass: MassProperties { mass: self.ball_mass, inertia },
+            material: BALL,
+        };
+        let mut bodies = vec![ball];
+        bodies.extend((0..10).map(|_| BodySpec { shape: Shape::Revolution(Arc::clone(&pin)), mass, material: PIN }));
+        let mut laws = Laws::new(3, self.pin_lane)?;
+        laws.set(BALL, WOOD, self.ball_lane)?;
+        laws.set(BALL, PIN, self.ball_pin)?;
+        laws.set(PIN, PIN, self.pin_pin)?;
+        Rigid::new(RigidWorld {
+            bodies,
+            parts: Self::parts()?,
+            laws,
+            gravity: DVec3::new(0.0, 0.0, -9.81),
+            accuracy: self.accuracy,
+            skin: 1.0,
+            sink: -5.0 * INCH,
+            duration: self.duration,
+        })
+    }
+
+    fn parts() -> Result<Vec<Part>, WorldError> {
+        let block = |min: [f64; 3], max: [f64; 3]| Part::Block {
+            bounds: Aabb { min: DVec3::from(min) * INCH, max: DVec3::from(max) * INCH },
+            material: WOOD,
+            stretches: Vec::new(),
+        };
+        let plane =
+            |point: [f64; 3], normal: DVec3| Ok(Part::Plane(Plane::new(DVec3::from(point) * INCH, normal, WOOD)?));
+        let (half, gutter, end, start) = (20.75, 9.25, 34.1875, -740.0);
+        let wall = half + gutter + 0.0625;
+        Ok(vec![
+            // Lane and deck, then the gutters' floors: deeper at the deck.
+            block([-half, start, -12.0], [half, end, 0.0]),
+            block([-wall, start, -12.0], [-half, -24.0, -1.875]),
+            block([half, start, -12.0], [wall, -24.0, -1.875]),
+            block([-wall, -24.0, -12.0], [-half, end, -3.5]),
+            block([half, -24.0, -12.0], [wall, end, -3.5]),
+            // Kickbacks, pit, and the cushion behind it.
+            plane([-wall, 0.0, 0.0], DVec3::X)?,
+            plane([wall, 0.0, 0.0], -DVec3::X)?,
+            plane([0.0, 0.0, -10.0], DVec3::Z)?,
+            plane([0.0, 66.0, 0.0], -DVec3::Y)?,
+        ])
+    }
+
+    /// The ball at the foul line with its centre at `x`, rolling or sliding towards the pins, and all pins on their spots.
+    ///
+    /// # Errors
+    /// [`WorldError`] for impossible numbers.
+    pub fn starts(&self, distance: f64, x: f64, velocity: DVec3, spin: DVec3) -> Result<Vec<Start>, WorldError> {
+        let up = self.pin()?.balance();
+        let ball = Start {
+            position: DVec3::new(x, -distance, self.ball_radius),
+            orientation: DQuat::IDENTITY,
+            velocity,
+            spin,
+            time: 0.0,
+        };
+        let pins = (1..=10).map(|k| Start::at_rest(Self::spot(k) + DVec3::new(0.0, 0.0, up)));
+        Ok(std::iter::once(ball).chain(pins).collect())
+    }
+
+    /// Whether a pin still stands upright near its spot.
+    #[must_use]
+    pub fn stands(pin: usize, x: DVec3, up: DVec3) -> bool {
+        up.z > 0.9 && (x - Self::spot(pin)).truncate().length() < 0.06 && x.z > 0.1
+    }
+}

@@ -1,0 +1,114 @@
+// Opens galleries from file:// in headless Chromium, offline, and uses them: node check_gallery.mjs SHOTS_FOLDER PAGE.html …
+import { mkdirSync, readFileSync } from 'node:fs';
+import { basename, join, resolve } from 'node:path';
+import chromium from '@sparticuz/chromium';
+import { chromium as playwright } from 'playwright-core';
+import validator from 'gltf-validator';
+
+const [shots, ...pages] = process.argv.slice(2);
+mkdirSync(shots, { recursive: true });
+// Chromium comes inside a package of the registry; no other download is needed. WebGL is drawn by the processor.
+const args = ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage'];
+const executablePath = process.env.PLAUS_CHROMIUM ?? (await chromium.executablePath());
+const browser = await playwright.launch({ executablePath, headless: true, args });
+const wrong = [];
+for (const page of pages) {
+  for (const look of [{ name: 'desktop', width: 1360, height: 900, colorScheme: 'light' }, { name: 'phone', width: 390, height: 844, colorScheme: 'dark' }]) {
+    const name = `${basename(page, '.html')}-${look.name}`;
+    try {
+      await visit(page, look, name);
+    } catch (error) {
+      wrong.push(`${name}: ${error.message}`);
+    }
+  }
+}
+await browser.close();
+for (const line of wrong) console.log(`WRONG ${line}`);
+console.log(`${pages.length} galleries opened, ${wrong.length} wrong`);
+process.exit(wrong.length || !pages.length ? 1 : 0);
+
+async function visit(file, { name: kind, width, height, colorScheme }, name) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme, offline: true, acceptDownloads: true });
+  const page = await context.newPage(), noise = [];
+  page.on('console', (message) => { if (['error', 'warning'].includes(message.type()) && !/GPU stall|software WebGL|GL Driver/i.test(message.text())) noise.push(message.text()); });
+  page.on('pageerror', (error) => noise.push(error.message));
+  page.on('request', (request) => { if (!/^(file|data|blob):/.test(request.url())) noise.push(`asks for ${request.url()}`); });
+  await page.goto(`file://${resolve(file)}`);
+  await page.waitForSelector('html[data-ready]', { state: 'attached', timeout: 60000 });
+  const ready = await page.evaluate(() => document.documentElement.dataset.ready);
+  const demand = (truth, what) => { if (!truth) throw new Error(what); };
+  const picture = async (selector) => (await page.locator(selector).first().evaluate((canvas) => canvas.toDataURL()));
+
+  // It plays by itself: pictures differ, and are not empty.
+  const first = await picture('#stage');
+  await page.waitForTimeout(700);
+  const second = await picture('#stage');
+  demand(first !== second, 'the player stands still');
+  demand(second.length > 3000, 'the player is empty');
+  const begin = await page.evaluate(() => [gallery.frames, performance.now()]);
+  await page.waitForTimeout(1500);
+  const playing = await rate(page, begin);
+  await page.screenshot({ path: join(shots, `${name}.png`) });
+  await page.locator('body').press(' ');
+  demand(await page.evaluate(() => !gallery.player.playing), 'the space bar does not pause');
+  const time = await page.evaluate(() => gallery.player.time);
+  await page.locator('body').press('Shift+ArrowLeft');
+  demand((await page.evaluate(() => gallery.player.time)) !== time, 'the arrow does not go to an impact');
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  demand(wide <= 0, `the page is ${wide} pixels too wide`);
+
+  // Tiles: all have pictures; the one pointed at moves.
+  const tiles = page.locator('.tile'), all = await tiles.count();
+  demand(all === await page.evaluate(() => gallery.solutions.length), 'without a filter, not all solutions are shown');
+  await tiles.nth(0).scrollIntoViewIfNeeded();
+  await page.waitForTimeout(1500);
+  const still = await picture('.tile canvas');
+  demand(still.length > 1000, 'a tile is empty');
+  await tiles.nth(0).hover();
+  const over = await page.evaluate(() => [gallery.frames, performance.now()]);
+  await page.waitForTimeout(800);
+  demand((await picture('.tile canvas')) !== still, 'the tile pointed at stands still');
+  const hovered = await rate(page, over);
+
+  // Choosing, comparing, starring, filtering, sorting.
+  if (all > 2) {
+    const id = await tiles.nth(2).getAttribute('data-id');
+    await tiles.nth(2).locator('p').click();
+    demand((await page.locator('#command').textContent()).endsWith(`--sample ${id}`), 'the command is not of the chosen tile');
+    await tiles.nth(1).locator('p').click({ modifiers: ['Shift'] });
+    demand((await page.locator('.tile.b').count()) === 1, 'nothing to compare with');
+    await tiles.nth(1).locator('.star').click();
+    await page.locator('#only-starred').click();
+    demand((await tiles.count()) === 1, 'the filter for stars shows others too');
+    await page.locator('#clear').click();
+    await page.locator('.span[data-name="log p"] input').first().evaluate((input) => {
+      input.value = (+input.min + +input.max) / 2;
+      input.dispatchEvent(new Event('input', { bubbles: true }));
+    });
+    const fewer = await tiles.count();
+    demand(fewer > 0 && fewer < all, `${fewer} of ${all} solutions have log p in the upper half`);
+    await page.locator('#clear').click();
+    await page.locator('#sort').selectOption('+0');
+    const logs = await page.evaluate(() => gallery.listed.map((solution) => solution.log_p));
+    demand(logs.every((value, k) => !k || logs[k - 1] <= value), 'not sorted by log p');
+  }
+  await page.locator('#map').scrollIntoViewIfNeeded();
+  const dot = await page.evaluate(() => gallery.map.layout()[0]);
+  await page.locator('#map').hover({ position: { x: dot[0], y: dot[1] } });
+  await page.waitForTimeout(300);
+  demand(await page.locator('#preview').isVisible(), 'the map shows no preview');
+  await page.screenshot({ path: join(shots, `${name}-map.png`) });
+
+  // The download is what the validator accepts.
+  const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#download').click()]);
+  const { issues } = await validator.validateBytes(new Uint8Array(readFileSync(await download.path())));
+  demand(issues.numErrors === 0, `the download has ${issues.numErrors} errors: ${JSON.stringify(issues.messages.slice(0, 3))}`);
+  demand(noise.length === 0, `the console says: ${noise.slice(0, 3).join(' | ')}`);
+  console.log(`ok ${name}: ready after ${ready} ms, ${all} tiles, plays at ${playing}/s, tile pointed at ${hovered}/s, ${kind}; download ${issues.numWarnings} warnings`);
+  await context.close();
+}
+
+async function rate(page, [frames, since]) {
+  const [now, at] = await page.evaluate(() => [gallery.frames, performance.now()]);
+  return ((1000 * (now - frames)) / (at - since)).toFixed(0);
+}

@@ -1,0 +1,56 @@
+// Reads GLB files with the Khronos validator and with three.js, and compares what three.js plays with a table of poses: node check_glb.mjs A.glb A.poses.csv …
+import { readFileSync } from 'node:fs';
+import validator from 'gltf-validator';
+
+globalThis.self ??= globalThis; // what three.js expects of a browser
+const { AnimationMixer, Quaternion, Vector3 } = await import('three');
+const { GLTFLoader } = await import('three/examples/jsm/loaders/GLTFLoader.js');
+
+const files = process.argv.slice(2);
+let failed = 0, checked = 0;
+for (let k = 0; k < files.length; k += 2) {
+  const bytes = new Uint8Array(readFileSync(files[k]));
+  const { issues } = await validator.validateBytes(bytes);
+  const said = issues.messages.map(({ severity, code, pointer, message }) => `  ${severity} ${code} ${pointer ?? ''} ${message}`);
+  const { worst, keys, size, bodies } = await play(bytes, readFileSync(files[k + 1], 'utf8'));
+  const wrong = issues.numErrors > 0 || !(worst.key <= 1e-5) || !(worst.between <= 1e-3) || !(worst.turn <= 2e-3);
+  failed += wrong;
+  checked++;
+  console.log(`${wrong ? 'WRONG' : 'ok'} ${files[k]}: ${issues.numErrors} errors, ${issues.numWarnings} warnings; ${bodies} bodies, ${keys} poses; worst `
+    + `${worst.key.toExponential(1)} at keys and ${worst.between.toExponential(1)} between, of a scene of ${size.toFixed(2)} m; ${worst.turn.toExponential(1)} rad`);
+  if (issues.numErrors + issues.numWarnings) console.log(said.slice(0, 10).join('\n'));
+}
+console.log(`${checked} GLB files checked, ${failed} wrong`);
+process.exit(failed || !checked ? 1 : 0);
+
+// Plays a file in three.js at the times of the table, and at the middles between frames by the table's doubled rate.
+async function play(bytes, table) {
+  const gltf = await new GLTFLoader().parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength), '');
+  if (gltf.animations.length !== 1) throw new Error(`${gltf.animations.length} animations`);
+  const facts = gltf.scene.userData;
+  for (const name of ['seed', 'sample', 'log_p', 'scalars']) if (!(name in facts)) throw new Error(`extras have no ${name}`);
+  const mixer = new AnimationMixer(gltf.scene), action = mixer.clipAction(gltf.animations[0]);
+  action.clampWhenFinished = true;
+  action.setLoop(2200, 1); // once
+  action.play();
+  const [head, ...lines] = table.trim().split('\n').map((line) => line.split(','));
+  const column = Object.fromEntries(head.map((name, index) => [name, index]));
+  const rows = lines.map((cells) => ({
+    time: +cells[column.t], body: cells[column.body], at: new Vector3(...['x', 'y', 'z'].map((axis) => +cells[column[axis]])),
+    turned: new Quaternion(...['qx', 'qy', 'qz', 'qw'].map((part) => +cells[column[part]])),
+  }));
+  const low = new Vector3(Infinity, Infinity, Infinity), high = low.clone().negate();
+  for (const { at } of rows) { low.min(at); high.max(at); }
+  const size = low.distanceTo(high), worst = { key: 0, between: 0, turn: 0 };
+  // The table has twice the frame rate of the file: times that the file has no key at are between keys.
+  const keyed = new Map(gltf.animations[0].tracks.filter((track) => track.name.endsWith('.position')).map((track) => [track.name.slice(0, -9), new Set(track.times)]));
+  let now = -1;
+  for (const { time, body, at, turned } of rows) {
+    if (time !== now) { mixer.setTime(time); now = time; }
+    const node = gltf.scene.getObjectByName(body);
+    const kind = keyed.get(body).has(Math.fround(time)) ? 'key' : 'between';
+    worst[kind] = Math.max(worst[kind], node.position.distanceTo(at) / size);
+    worst.turn = Math.max(worst.turn, node.quaternion.angleTo(turned) % (2 * Math.PI - 1e-6));
+  }
+  return { worst, keys: rows.length, size, bodies: keyed.size };
+}

@@ -1,0 +1,131 @@
+//! What other programs make of exports and galleries: the Khronos validator, three.js, Pixar's USD, Chromium.
+
+use crate::command::{Command, Failure, plaus, root, target};
+use crate::registry;
+use crate::steps::Done;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Keys a second of the exports, and of the tables that poses between keys are compared with.
+const FPS: [&str; 2] = ["60", "240"];
+/// Samples of each scene that are exported.
+const SAMPLES: [&str; 2] = ["0:0", "0:10"];
+
+fn folder() -> PathBuf {
+    target().join("clients")
+}
+
+/// Samples every scenario, and exports some of each in every format.
+pub(crate) fn export() -> Result<Done, Failure> {
+    let exports = folder().join("exports");
+    if exports.exists() {
+        fs::remove_dir_all(&exports).map_err(Failure::new)?;
+    }
+    fs::create_dir_all(&exports).map_err(Failure::new)?;
+    for scenario in scenarios()? {
+        let name = scenario.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let run = exports.join(format!("{name}.run"));
+        let sampled = plaus(&["sample"]).args([&scenario]).args(["--out"]).args([&run]);
+        // Long enough to have solutions to look at.
+        let short = ["--seed", "1", "--iterations", "2000", "--threads", "2", "--max-time", "180s", "--quiet"];
+        let all = ["--set", "sampler.warmup=0", "--set", "sampler.thin=1"];
+        sampled.args(short).args(all).shown_and_run()?;
+        for sample in SAMPLES {
+            let stem = format!("{name}-{}", sample.replace(':', "-"));
+            let export = |format: &str, file: String, fps: &str| {
+                let command = plaus(&["export"]).args([&run]).args(["--format", format, "--sample", sample, "--out"]);
+                command.args([exports.join(file)]).args(["--fps", fps]).shown_and_run()
+            };
+            export("glb", format!("{stem}.glb"), FPS[0])?;
+            export("usda", format!("{stem}.usda"), FPS[0])?;
+            export("poses", format!("{stem}.poses.csv"), FPS[0])?;
+            export("poses", format!("{stem}.between.csv"), FPS[1])?;
+            export("events", format!("{stem}.events.json"), FPS[0])?;
+        }
+        let page = exports.join(format!("{name}.html"));
+        plaus(&["gallery"]).args([&run]).args(["--out"]).args([&page]).shown_and_run()?;
+    }
+    Ok(Done::Passed)
+}
+
+/// All scenario files.
+fn scenarios() -> Result<Vec<PathBuf>, Failure> {
+    with_ending(&root().join("scenarios"), ".toml")
+}
+
+/// Files of a folder whose names end so.
+fn with_ending(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, Failure> {
+    let entries = fs::read_dir(folder).map_err(Failure::new)?;
+    let paths = entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>();
+    let mut paths = paths.map_err(Failure::new)?;
+    paths.retain(|path| path.to_string_lossy().ends_with(ending));
+    paths.sort();
+    Ok(paths)
+}
+
+/// Exports with the tables that belong to them.
+fn with_tables(ending: &str, table: &str) -> Result<Vec<PathBuf>, Failure> {
+    let files = with_ending(&folder().join("exports"), ending)?;
+    let table_of = |file: &PathBuf| PathBuf::from(file.to_string_lossy().replace(ending, table));
+    Ok(files.iter().flat_map(|file| [file.clone(), table_of(file)]).collect())
+}
+
+/// The Khronos validator and three.js read every GLB.
+pub(crate) fn gltf() -> Result<Done, Failure> {
+    let Some(node) = node()? else { return registry::absent("Node.js packages cannot be installed") };
+    let script = Command::new("node").args([node.join("check_glb.mjs")]).args(with_tables(".glb", ".between.csv")?);
+    script.run().map(|()| Done::Passed)
+}
+
+/// Pixar's own library reads every USDA.
+pub(crate) fn usd() -> Result<Done, Failure> {
+    let script =
+        Command::new("python3").args(["xtask/python/check_usd.py", "--venv"]).args([target().join("usd-venv")]);
+    let script = script.args(with_tables(".usda", ".poses.csv")?);
+    registry::outcome(script.status()?, "USD does not read what plaus wrote")
+}
+
+/// Chromium opens every gallery from disk, offline, and uses it.
+pub(crate) fn gallery() -> Result<Done, Failure> {
+    let Some(node) = node()? else { return registry::absent("Node.js packages cannot be installed") };
+    let temporary = folder().join("tmp");
+    fs::create_dir_all(&temporary).map_err(Failure::new)?;
+    let pages = with_ending(&folder().join("exports"), ".html")?;
+    let script = Command::new("node").args([node.join("check_gallery.mjs"), folder().join("pictures")]).args(pages);
+    script.env("TMPDIR", &temporary.to_string_lossy()).run().map(|()| Done::Passed)
+}
+
+/// The bundle of three.js in the gallery is what its script makes of the packages it names.
+pub(crate) fn bundle() -> Result<Done, Failure> {
+    let files = ["build.mjs", "three.js", "dist/three.iife.js"];
+    let Some(web) = packages("crates/plaus-gallery/web", "web", &files)? else {
+        return registry::absent("Node.js packages cannot be installed");
+    };
+    Command::new("node").args([web.join("build.mjs")]).args(["--check"]).run().map(|()| Done::Passed)
+}
+
+/// A folder with our scripts and the packages they need; `None` where those cannot be installed.
+fn node() -> Result<Option<PathBuf>, Failure> {
+    packages("xtask/node", "node", &["check_glb.mjs", "check_gallery.mjs"])
+}
+
+/// Copies scripts to a folder under target/ and installs the packages they need there.
+fn packages(from: &str, to: &str, scripts: &[&str]) -> Result<Option<PathBuf>, Failure> {
+    let (from, to) = (root().join(from), folder().join(to));
+    fs::create_dir_all(to.join("dist")).map_err(Failure::new)?;
+    for file in scripts.iter().chain(&["package.json", "package-lock.json"]) {
+        fs::copy(from.join(file), to.join(file)).map_err(Failure::new)?;
+    }
+    let (stamp, wanted) = (to.join("installed.json"), fs::read(from.join("package-lock.json")).map_err(Failure::new)?);
+    if fs::read(&stamp).is_ok_and(|found| found == wanted) {
+        return Ok(Some(to));
+    }
+    let install =
+        Command::new("npm").args(["ci", "--no-audit", "--no-fund", "--loglevel=error", "--prefix"]).args([&to]);
+    println!("$ {}", install.shown());
+    if !matches!(install.status(), Ok(0)) {
+        return Ok(None);
+    }
+    fs::write(stamp, wanted).map_err(Failure::new)?;
+    Ok(Some(to))
+}
