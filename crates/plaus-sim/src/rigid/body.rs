@@ -175,12 +175,12 @@ impl Turning {
         };
         let fallen = spec.mass * gravity.dot(self.path.v);
         let (first, last) = (kinetic(self.turn, &self.ends[0]), kinetic(turned(h), &self.ends[1]) - fallen * h);
-        let allowed = first + (last - first) * part + fallen * dt;
+        let allowed = (first + (last - first) * part + fallen * dt).max(0.0);
         let now = kinetic(turned(dt), &m);
         if now <= allowed {
             return m;
         }
-        let slower = (allowed.max(0.0) / now).sqrt();
+        let slower = (allowed / now).sqrt();
         Motion { v: m.v * slower, w: m.w * slower }
     }
 
