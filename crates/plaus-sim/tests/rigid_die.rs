@@ -46,11 +46,11 @@ fn a_die_lands_flat_and_stays() {
         let mut state = world.state(&[start]).unwrap();
         assert_eq!(world.run(&mut state, &mut scratch, 20.0, &mut ()).unwrap(), Outcome::AllAtRest);
         let body = state.bodies()[0].clone();
-        // Three corners at least touch: none is in the table, none farther off than the preset's gap of 1e-5 half edges, and the fourth of a face then at most twice that.
+        // Four corners on the table: none in it, none farther off than the preset's gap of 1e-5 half edges.
         let mut heights: Vec<f64> = corners(&body).map(|c| c.z).collect();
         heights.sort_by(f64::total_cmp);
         assert!(heights[0] > -1e-15, "{heights:?}");
-        assert!(heights[2] <= 1e-5 * 0.008 + 1e-15 && heights[3] <= 2e-5 * 0.008 + 1e-15, "{heights:?}");
+        assert!(heights[3] <= 1e-5 * 0.008, "{heights:?}");
         assert!(heights[4] > 0.0159);
         // Not a bit of drift over a minute.
         let later = world.at(0, &body, state.time() + 60.0);
@@ -187,9 +187,7 @@ fn a_saved_state_goes_on_to_the_same_bits() {
             let mut state = world.state(&[start]).unwrap();
             world.run(&mut state, &mut Scratch::default(), pause, &mut ()).unwrap();
             let saved = serde_json::to_string(&state).unwrap();
-            // Infinite times are no JSON numbers: the round trip is over the clone, the text only has to exist.
-            assert!(saved.len() > 100);
-            let mut state: State<Turning> = state.clone();
+            let mut state: State<Turning> = serde_json::from_str(&saved).unwrap();
             let fresh = die.world(noise).unwrap();
             fresh.run(&mut state, &mut Scratch::default(), 20.0, &mut ()).unwrap();
             let (a, b) = (&whole.bodies()[0], &state.bodies()[0]);

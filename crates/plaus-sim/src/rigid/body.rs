@@ -97,6 +97,9 @@ const MOST_HURRIED: u32 = 16;
 /// Points whose forces are kept: those of a die on a face.
 pub(crate) const MOST_LOADS: usize = 4;
 
+/// A time that never comes; finite, so that every format can hold a state.
+pub(crate) const NEVER: f64 = f64::MAX;
+
 const NOWHERE: Surface = Surface::Part { part: u16::MAX, point: u16::MAX };
 
 impl Turning {
@@ -114,11 +117,11 @@ impl Turning {
             ends: [Motion::default(); 2],
             drifted: Motion::default(),
             hurried: 0,
-            hurried_from: f64::NEG_INFINITY,
+            hurried_from: -NEVER,
             touching: [NOWHERE; MOST_TOUCHES],
             touching_count: 0,
             loads: [DVec3::ZERO; MOST_LOADS],
-            listed: f64::NEG_INFINITY,
+            listed: -NEVER,
         }
     }
 
@@ -175,12 +178,12 @@ impl Turning {
         };
         let fallen = spec.mass * gravity.dot(self.path.v);
         let (first, last) = (kinetic(self.turn, &self.ends[0]), kinetic(turned(h), &self.ends[1]) - fallen * h);
-        let allowed = first + (last - first) * part + fallen * dt;
+        let allowed = (first + (last - first) * part + fallen * dt).max(0.0);
         let now = kinetic(turned(dt), &m);
         if now <= allowed {
             return m;
         }
-        let slower = (allowed.max(0.0) / now).sqrt();
+        let slower = (allowed / now).sqrt();
         Motion { v: m.v * slower, w: m.w * slower }
     }
 
@@ -267,7 +270,7 @@ impl Turning {
     pub(super) fn begin(&mut self, phase: Phase, a: DVec3) {
         self.phase = phase;
         self.path.a = a;
-        self.expiry = f64::INFINITY;
+        self.expiry = NEVER;
     }
 
     pub(super) fn pose(&self) -> Pose {

@@ -6,10 +6,10 @@
 
 use super::body::{Phase, Turning};
 use super::part::{Part, ROUNDS, Table};
-use super::{Rigid, Spec};
+use super::{Rigid, Skin, Spec};
 use crate::field::Bounds;
 use crate::roots::fall_of_quadratic;
-use crate::scenery::{Plane, Surface};
+use crate::scenery::{Aabb, Plane, Surface};
 use crate::shape::Feeler;
 use glam::{DMat3, DVec3};
 
@@ -47,6 +47,8 @@ struct Search<'s> {
     fastest: f64,
     /// Acceleration of a point per its distance from the centre.
     turning: f64,
+    /// The same for points on the axis of a body of revolution.
+    axial: f64,
     until: f64,
     found: Option<(f64, Surface)>,
 }
@@ -67,7 +69,13 @@ impl Rigid {
         };
         let fastest = if spec.wobble == 0.0 || !free { body.spin.length() } else { fastest };
         let turning = fastest * fastest * if free { 1.0 + spec.wobble } else { 1.0 };
-        let mut search = Search { spec, body, fastest, turning, until: until - body.path.t, found: None };
+        // The axis of a top only swings: at |L|/I₁ in flight, with the body in a step.
+        let across = body.spin.reject_from_normalized(body.turn * DVec3::Z).length();
+        let axial = match spec.skin {
+            Skin::Revolved => across * if free { momentum / spec.inertia.moments.x } else { body.spin.length() },
+            _ => turning,
+        };
+        let mut search = Search { spec, body, fastest, turning, axial, until: until - body.path.t, found: None };
         for (k, part) in self.parts.iter().enumerate() {
             match part {
                 Part::Plane(plane) => search.plane(k as u16, plane),
@@ -129,7 +137,7 @@ impl Search<'_> {
             for (k, feeler) in spec.feelers[..spec.hull].iter().enumerate() {
                 let f = height + lever.dot(feeler.centre) - feeler.radius;
                 let rate = fall + swing.dot(feeler.centre);
-                let m = (pull + self.turning * feeler.centre.length()).max(0.0);
+                let m = (pull + self.axial * feeler.centre.length()).max(0.0);
                 // Cheap test first: whether it can be gone before the others at all.
                 if f > 0.0 && step.is_finite() && f + (rate - 0.5 * m * step) * step > 0.0 {
                     continue;
@@ -196,8 +204,20 @@ impl Search<'_> {
     }
 
     fn block(&mut self, part: u16, block: &Part) {
-        let Part::Block { bounds, .. } = block else { return };
+        let Part::Block { bounds, material, .. } = block else { return };
         let (spec, path) = (self.spec, &self.body.path);
+        let swept = path.bounds(0.0, self.until).grown(spec.reach);
+        if !bounds.grown(spec.gap).meets(&swept) {
+            return;
+        }
+        let over = swept.min.x > bounds.min.x
+            && swept.max.x < bounds.max.x
+            && swept.min.y > bounds.min.y
+            && swept.max.y < bounds.max.y;
+        if over && path.x.z > bounds.max.z {
+            // Only its upper side is in question.
+            return self.plane(part, &Plane { normal: DVec3::Z, offset: bounds.max.z, material: *material });
+        }
         let pull = path.a.length();
         let mut tumble = self.body.tumble(spec);
         let mut t = 0.0;
@@ -215,6 +235,13 @@ impl Search<'_> {
             } else {
                 let r = tumble.at(t);
                 let w = self.spin_at(t);
+                if let Some(apart) = self.beside(bounds, &(x, v, w, r), pull) {
+                    t += apart;
+                    if t >= self.until || t.is_nan() {
+                        return;
+                    }
+                    continue;
+                }
                 step = f64::INFINITY;
                 let mut first = (0, f64::INFINITY);
                 for (k, feeler) in spec.feelers[..spec.hull].iter().enumerate() {
@@ -232,7 +259,7 @@ impl Search<'_> {
                         }
                         continue;
                     }
-                    let time = earliest(f, rate, pull + self.turning * feeler.centre.length());
+                    let time = earliest(f, rate, pull + self.axial * feeler.centre.length());
                     if time < step {
                         step = time;
                         first = (k, f);
@@ -259,6 +286,26 @@ impl Search<'_> {
             }
         }
         self.hit(t, part, 0);
+    }
+
+    /// Where the capsule around the body is beyond one side of a box: for how long at least it stays there.
+    fn beside(&self, bounds: &Aabb, (x, v, w, r): &(DVec3, DVec3, DVec3, DMat3), pull: f64) -> Option<f64> {
+        let [low, high, radius] = self.spec.capsule;
+        let arms = [r.z_axis * low, r.z_axis * high];
+        let mut longest: Option<f64> = None;
+        for axis in 0..3 {
+            for (side, face) in [(1.0, bounds.max[axis]), (-1.0, -bounds.min[axis])] {
+                let gap = |arm: &DVec3| side * (x[axis] + arm[axis]) - face - radius;
+                if gap(&arms[0]).min(gap(&arms[1])) > 0.1 * self.spec.size {
+                    let time = |arm: &DVec3| {
+                        earliest(gap(arm), side * (v + w.cross(*arm))[axis], pull + self.axial * arm.length())
+                    };
+                    let both = time(&arms[0]).min(time(&arms[1]));
+                    longest = Some(longest.map_or(both, |l| l.max(both)));
+                }
+            }
+        }
+        longest
     }
 
     fn table(&mut self, part: u16, table: &Table) {

@@ -6,7 +6,7 @@
 //!
 //! Source: textbook, e.g. Hopkins & Patterson, "Bowling frames: Paths of a bowling ball", Am. J. Phys. 45 (1977).
 
-use super::body::{Phase, Turning};
+use super::body::{NEVER, Phase, Turning};
 use super::contact::Touch;
 use super::part::Part;
 use super::{Rigid, Spec};
@@ -65,7 +65,7 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
         body.line = Some(line);
         body.expiry = body.path.t + stretch;
     } else {
-        body.expiry = body.path.t + until;
+        body.expiry = (body.path.t + until).min(NEVER);
     }
     if body.expiry <= body.path.t {
         // So short a stretch that the clock does not show it.

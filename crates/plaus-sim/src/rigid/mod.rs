@@ -1,8 +1,27 @@
-//! Worlds of turning bodies: balls and cuboids among planes, boxes and tables with a spline surface.
+//! Worlds of turning bodies: balls, cuboids and bodies of revolution among planes, boxes and tables with a spline surface.
 //!
-//! A body in the air is on a parabola and rotates freely, both in closed form. It touches when the first of its [feelers](crate::shape::Feeler) comes within
-//! `accuracy.gap` of a part. Impacts follow Stronge's law. A contact whose rebound would be slower than `accuracy.settle` lasts: the body (with all bodies in lasting
-//! contact with it) then moves in short steps whose impulses are found together, until it leaves the ground or is at rest.
+//! A body in the air is on a parabola and rotates freely, both in closed form; a ball on level ground slides and rolls in closed form. A body touches when the first of
+//! its [feelers](crate::shape::Feeler) comes within half of `accuracy.gap` of a part. Impacts follow Stronge's law. A contact whose rebound would be slower than
+//! `accuracy.settle` lasts: the body, with all bodies in lasting contact with it, then moves in short steps whose impulses are found together, until it leaves
+//! the ground or is at rest.
+//!
+//! What is approximate: a body of revolution is a row of balls and rings (see [`crate::shape::Revolution`]); bumps of a table are felt at the feelers only
+//! ([`RigidWorld::skin`]); two cuboids do not collide with each other's edges, only a cuboid with balls and bodies of revolution; the direction of a slip within an impact and the
+//! steps of lasting contact follow the preset. Energy grows only by what pushing a body out of an overlap takes, less than a thousandth of its weight times its size at the standard
+//! preset. Rolling and spinning resistance of a law are not used here.
+//!
+//! ```
+//! use glam::DVec3;
+//! use plaus_sim::worlds::DieOnTable;
+//! use plaus_sim::{Outcome, Scratch, rigid::Start};
+//!
+//! let world = DieOnTable::default().world(|_, _| 0.0)?;
+//! let start = Start { spin: DVec3::new(9.0, -4.0, 2.0), ..Start::at_rest(DVec3::new(0.0, 0.0, 0.1)) };
+//! let mut state = world.state(&[start])?;
+//! assert_eq!(world.run(&mut state, &mut Scratch::default(), 20.0, &mut ())?, Outcome::AllAtRest);
+//! assert!((state.bodies()[0].path.x.z - 0.008).abs() < 1e-6);
+//! # Ok::<(), plaus_sim::WorldError>(())
+//! ```
 
 mod body;
 mod contact;

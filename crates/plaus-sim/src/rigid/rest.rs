@@ -2,10 +2,9 @@
 
 use super::Rigid;
 use super::contact::Touch;
-use super::part::Part;
 use super::solve::sweep;
 use super::step::RigidScratch;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Whether all bodies of a group are slow enough to be looked at.
 pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
@@ -21,8 +20,8 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if !group.leaving.is_empty() || !h.is_finite() {
         return false;
     }
-    // Another step puts right what the last one left.
-    if group.touches.iter().any(|(k, t)| t.gap < -overlap(world, t) * world.specs[group.places[*k].body].gap) {
+    // Another step makes less of an overlap larger than what can be tidied.
+    if group.touches.iter().any(|(k, t)| t.gap < -OVERLAP * world.specs[group.places[*k].body].size) {
         return false;
     }
     if let [place] = &group.places[..] {
@@ -76,10 +75,34 @@ fn is_above(touches: &[(usize, Touch)], down: DVec3) -> bool {
     })
 }
 
-/// Overlap that rest may keep, over the gap at which bodies touch; it is lifted out when the body lies down. Little on flat parts, where steps get rid of it; the preset's whole gap on
-/// uneven ones, where a body may be wedged.
-fn overlap(world: &Rigid, touch: &Touch) -> f64 {
-    if matches!(world.parts[usize::from(touch.part)], Part::Table(_)) { super::step::TOUCHING } else { 0.25 }
+/// Overlap over the size up to which a body may lie down; it is lifted out of it. Default 1e-3, a hundred times what steps of the draft preset leave.
+const OVERLAP: f64 = 1e-3;
+
+/// Shift and small turn that bring the touching points of a body on flat ground to gap 0: least squares, exact for three points and for the corners of a face.
+pub(super) fn flatten<'t>(touches: impl Iterator<Item = &'t Touch> + Clone) -> Option<(DVec3, DVec3)> {
+    let normal = touches.clone().next()?.normal;
+    if touches.clone().count() < 3 || touches.clone().any(|t| t.normal != normal) {
+        return None;
+    }
+    let (first, second) = normal.any_orthonormal_pair();
+    let size = touches.clone().map(|t| t.arm.length()).fold(0.0, f64::max);
+    // Unknowns: shift along the normal, and turns about the two tangents times the size.
+    let row = |t: &Touch| {
+        let lever = t.arm.cross(normal) / size;
+        DVec3::new(1.0, first.dot(lever), second.dot(lever))
+    };
+    let (mut matrix, mut right) = (DMat3::ZERO, DVec3::ZERO);
+    for t in touches {
+        let r = row(t);
+        matrix += DMat3::from_cols(r * r.x, r * r.y, r * r.z);
+        right -= r * t.gap;
+    }
+    // Points on one line leave a turn open.
+    if matrix.determinant().abs() <= 1e-9 {
+        return None;
+    }
+    let s = matrix.inverse() * right;
+    Some((normal * s.x, (first * s.y + second * s.z) / size))
 }
 
 /// Sine of the angle below which points count as opposite. Default 1e-6.

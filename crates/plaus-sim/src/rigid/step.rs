@@ -4,7 +4,7 @@
 //! are such that every loaded point ends the drift at the gap that it is to keep, found in [`PASSES`] passes over the true geometry; the second such that no point
 //! approaches. Impacts of other points during the drift are found exactly on the path that is really taken. Energy is never let grow.
 
-use super::body::{Motion, Phase, Pose, Turning};
+use super::body::{Motion, NEVER, Phase, Pose, Turning};
 use super::contact::{Touch, response};
 use super::glide;
 use super::pair::PairTouch;
@@ -42,6 +42,12 @@ pub(super) struct Place {
     end: Pose,
     end_turn: DQuat,
 }
+
+/// Spread of the gaps at rest, over the gap at which bodies touch, that is left as it is. Default 1e-3; rounding is far below.
+const TIDY: f64 = 1e-3;
+
+/// Rounds of lifting a body out of overlaps when it lies down: each deals with its deepest point.
+const LIFTS: usize = 4;
 
 /// Passes over the end of a step: the first predicts where points get to, the others correct.
 const PASSES: usize = 2;
@@ -96,7 +102,7 @@ pub(super) fn settle(
     }
     let mut h = scratch.step_length(world);
     if rest::is_slow(world, scratch) && rest::is_supported(world, scratch, h) {
-        scratch.lie_down(bodies);
+        scratch.lie_down(world, bodies);
         return;
     }
     for _ in 0..SHORTENINGS {
@@ -152,7 +158,7 @@ impl RigidScratch {
                 }
             });
             let body = &mut bodies[index];
-            body.listed = f64::NEG_INFINITY;
+            body.listed = -NEVER;
             let linked = self.pairs.iter().any(|p| p.0.contains(&index));
             if self.touches.len() == before && !linked {
                 self.leaving.retain(|l| l.0 != at);
@@ -358,18 +364,33 @@ impl RigidScratch {
         }
     }
 
-    /// Rest: without velocity, and lifted out of what overlap steps have left.
-    fn lie_down(&self, bodies: &mut [Turning]) {
+    /// Rest: without velocity, flat where the ground is, and lifted out of what overlap steps have left.
+    fn lie_down(&self, world: &Rigid, bodies: &mut [Turning]) {
         for (k, p) in self.places.iter().enumerate() {
             let body = &mut bodies[p.body];
             body.set_motion(Motion::default());
             body.begin(Phase::Rest, DVec3::ZERO);
-            let deepest =
-                self.touches.iter().filter(|t| t.0 == k && t.1.gap < 0.0).min_by(|a, b| a.1.gap.total_cmp(&b.1.gap));
-            if let Some((_, t)) = deepest {
-                body.path.x -= t.normal * t.gap;
+            let touches = || self.touches.iter().filter(|t| t.0 == k).map(|t| &t.1);
+            body.list(touches().map(Touch::surface));
+            let tidy = TIDY * world.specs[p.body].gap;
+            let (low, high) =
+                touches().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| (l.min(t.gap), h.max(t.gap)));
+            if low >= -tidy && high - low <= tidy {
+                continue;
             }
-            body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface()));
+            if let Some((shift, turn)) = rest::flatten(touches()) {
+                body.path.x += shift;
+                body.turn = (rotation(turn) * body.turn).normalize();
+            }
+            // Straight up, where that helps: it brings no other point of uneven ground nearer.
+            let up = if world.strength > 0.0 { -world.gravity / world.strength } else { DVec3::ZERO };
+            for _ in 0..LIFTS {
+                let pose = body.pose();
+                let again = touches().map(|t| world.touch(p.body, &pose, t.part, t.point)).filter(|t| t.gap < 0.0);
+                let Some(t) = again.min_by(|a, b| a.gap.total_cmp(&b.gap)) else { break };
+                let rise = up.dot(t.normal);
+                body.path.x -= if rise > 0.1 { up * (t.gap / rise) } else { t.normal * t.gap };
+            }
         }
     }
 
