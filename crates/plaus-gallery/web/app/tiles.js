@@ -70,7 +70,7 @@ class Tiles {
     if (app.hovered && app.hoveredFrom === 'tile' && this.tiles.has(app.hovered)) moving.add(app.hovered);
     for (const solution of moving) {
       const since = app.animateAll ? now : now - app.hoveredSince;
-      jobs.push({ canvas: this.canvas(solution), solution, time: cycle(since / 1000, solution.duration), trails: true, flash: true });
+      jobs.push({ canvas: this.canvas(solution), solution, time: cycle(since / 1000, solution.duration), trails: true, flash: true, moving: true });
       this.stale.add(solution);
     }
     let budget = software ? 3 : 12;
