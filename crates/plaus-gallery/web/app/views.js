@@ -1,6 +1,6 @@
 // One WebGL context for all pictures: each is drawn into a scissored part of its canvas, then copied to where it is seen.
 
-// Pixels per pixel, along a side, of pictures that move: the next where the one before is too slow.
+// Pixels per pixel, along a side, of large pictures that move: the next where the one before is too slow.
 const DETAILS = [1, 0.75, 0.58, 0.45, 0.36];
 
 class Views {
@@ -45,7 +45,7 @@ class Views {
     let batch = [], x = 0, y = 0, row = 0;
     const flush = () => { if (batch.length) this.drawBatch(batch); batch = []; x = y = row = 0; };
     for (const job of jobs) {
-      const { canvas } = job, scale = this.ratio * (job.moving ? DETAILS[this.detail] : 1);
+      const { canvas } = job, scale = this.ratio * (job.moving && canvas.clientWidth > 300 ? DETAILS[this.detail] : 1);
       const width = Math.round(canvas.clientWidth * scale), height = Math.round(canvas.clientHeight * scale);
       if (!width || !height) continue;
       if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
