@@ -48,9 +48,10 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   const begin = await page.evaluate(() => [gallery.frames, performance.now()]);
   await page.waitForTimeout(1500);
   const playing = await rate(page, begin);
-  await page.screenshot({ path: join(shots, `${name}.png`) });
   await page.locator('body').press(' ');
   demand(await page.evaluate(() => !gallery.player.playing), 'the space bar does not pause');
+  await page.waitForTimeout(300); // stopped pictures are drawn with all detail
+  await page.screenshot({ path: join(shots, `${name}.png`) });
   const time = await page.evaluate(() => gallery.player.time);
   await page.locator('body').press('Shift+ArrowLeft');
   demand((await page.evaluate(() => gallery.player.time)) !== time, 'the arrow does not go to an impact');

@@ -1,6 +1,6 @@
 //! What other programs make of exports and galleries: the Khronos validator, three.js, Pixar's USD, Chromium.
 
-use crate::command::{Command, Failure, plaus, root, target};
+use crate::command::{Command, Failure, cargo, plaus, root, target};
 use crate::registry;
 use crate::steps::Done;
 use std::fs;
@@ -22,6 +22,9 @@ pub(crate) fn export() -> Result<Done, Failure> {
         fs::remove_dir_all(&exports).map_err(Failure::new)?;
     }
     fs::create_dir_all(&exports).map_err(Failure::new)?;
+    // Every shape and way of turning there is, whatever the scenes have of them.
+    let example = ["run", "--quiet", "--package", "plaus-export", "--example", "tumbling", "--"];
+    cargo(&example).args([&exports]).shown_and_run()?;
     for scenario in scenarios()? {
         let name = scenario.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let run = exports.join(format!("{name}.run"));

@@ -9,9 +9,11 @@ mod console;
 mod failure;
 mod interrupt;
 mod label;
+mod plots;
 mod progress;
 mod report;
 mod scenario_file;
+mod svg;
 mod table;
 
 use clap::Parser;

@@ -1,8 +1,8 @@
 // What the gallery uses of three.js; build.mjs makes one classic script of it, as modules cannot be loaded from file://.
 export {
-  ACESFilmicToneMapping, AmbientLight, Box3, BufferAttribute, BufferGeometry, CanvasTexture, CircleGeometry, Color, DirectionalLight,
+  ACESFilmicToneMapping, AmbientLight, BasicShadowMap, Box3, BufferAttribute, BufferGeometry, CanvasTexture, CircleGeometry, Color, DirectionalLight,
   DoubleSide, DynamicDrawUsage, Float32BufferAttribute, Group, HemisphereLight, InstancedMesh, Line, LineBasicMaterial, LineSegments,
-  Matrix4, Mesh, MeshBasicMaterial, MeshPhysicalMaterial, MeshStandardMaterial, NoToneMapping, PCFShadowMap, PCFSoftShadowMap,
+  Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, MeshPhongMaterial, MeshStandardMaterial, NoToneMapping, PCFShadowMap, PCFSoftShadowMap,
   PerspectiveCamera, PlaneGeometry, PMREMGenerator, Points, PointsMaterial, Quaternion, RepeatWrapping, Scene, ShadowMaterial, SRGBColorSpace,
   RingGeometry, SphereGeometry, Vector2, Vector3, VSMShadowMap, WebGLRenderer, REVISION,
 } from 'three';

@@ -2,7 +2,7 @@
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
-use crate::report;
+use crate::{plots, report};
 use plaus_run::{Folder, Phase, Run, RunOf, RunVisitor};
 use plaus_scenes::Scene;
 use std::path::PathBuf;
@@ -15,6 +15,21 @@ pub(crate) struct Args {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
+    /// Draw traces, autocorrelations, ranks and acceptance into this folder, as SVG
+    #[arg(long, value_name = "FOLDER")]
+    plots: Option<PathBuf>,
+    /// Replace the folder of plots, if plaus made it
+    #[arg(long, requires = "plots")]
+    force: bool,
+}
+
+struct Plots<'a>(&'a std::path::Path, bool);
+
+impl RunVisitor for Plots<'_> {
+    type Output = Result<usize, plaus_run::Error>;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+        plots::write(&run, self.0, self.1)
+    }
 }
 
 /// Counts the draws of each chain.
@@ -35,6 +50,11 @@ impl Args {
         }
         if run.visit(CountDraws)? == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
+        }
+        if let Some(folder) = &self.plots {
+            let out = folder.display().to_string();
+            let made = run.visit(Plots(folder, self.force))?.map_err(|error| Failure::from(error).about(&out))?;
+            console::note_line(&format!("{out}: {made} plots"));
         }
         let diagnosis = report::diagnose(&run, None)?;
         let manifest = run.manifest();

@@ -1,5 +1,5 @@
 //! An animation with everything in it, and a reader of GLB that evaluates splines as the specification says.
-#![allow(dead_code, unreachable_pub)]
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use glam::{DQuat, DVec3, Quat, Vec3};
 use gltf::animation::Property;

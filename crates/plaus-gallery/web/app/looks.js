@@ -57,12 +57,15 @@ function materialOf(look, ghost) {
   const [metalness, roughness, opacity] = SURFACES[look.material] ?? SURFACES.matte;
   const colour = new THREE.Color().setRGB(...look.colour.map((c) => c / 255), THREE.SRGBColorSpace);
   if (ghost) colour.set('#2f9bff');
-  const settings = { color: colour, metalness, roughness, envMapIntensity: 0.55 };
+  // Without a graphics card every pixel counts: simpler laws of reflection.
+  const shiny = roughness < 0.4, settings = { color: colour };
+  if (!software) Object.assign(settings, { metalness, roughness, envMapIntensity: 0.55 });
+  else if (shiny) Object.assign(settings, { shininess: 60, specular: 0x555555 });
   const seen = ghost ? 0.5 : opacity;
   if (seen < 1) Object.assign(settings, { transparent: true, opacity: seen, depthWrite: ghost });
   if (look.material === 'glass') settings.side = THREE.DoubleSide;
   if (look.material === 'wood' && !ghost) Object.assign(settings, { map: grain(look.colour), color: 0xffffff });
-  const material = new THREE.MeshStandardMaterial(settings);
+  const Kind = !software ? THREE.MeshStandardMaterial : shiny ? THREE.MeshPhongMaterial : THREE.MeshLambertMaterial, material = new Kind(settings);
   materials.set(key, material);
   return material;
 }

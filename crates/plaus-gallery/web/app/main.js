@@ -156,16 +156,17 @@ class App {
   }
 
   tick(now) {
-    const seconds = Math.min(Math.max(now - this.last, 0) / 1000, 0.1);
+    const passed = Math.min(Math.max(now - this.last, 0), 200), seconds = passed / 1000;
     this.last = now;
     this.player.step(seconds);
     const { jobs, moving } = this.tiles.jobs(now);
     const preview = document.getElementById('preview'), previewing = !preview.hidden && this.hovered;
     if (previewing) {
       const time = cycle((now - this.hoveredSince) / 1000, this.hovered.duration);
-      jobs.push({ canvas: preview.firstElementChild, solution: this.hovered, time, flash: true });
+      jobs.push({ canvas: preview.firstElementChild, solution: this.hovered, time, flash: true, moving: true });
     }
     const main = this.player.job();
+    if ((main?.moving || jobs.some((job) => job.moving)) && this.frames) this.views.pace(passed);
     this.views.draw(main ? [main, ...jobs] : jobs);
     this.frames = (this.frames ?? 0) + 1;
     if (this.player.playing || moving || previewing || this.player.stale) requestAnimationFrame((next) => this.tick(next));

@@ -12,8 +12,9 @@ class Player {
     this.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
     this.controls = new THREE.OrbitControls(this.camera, this.canvas);
     this.controls.enableDamping = false;
-    this.controls.listenToKeyEvents = () => {};
     this.controls.addEventListener('change', () => { this.stale = true; app.wake(); });
+    this.controls.addEventListener('start', () => { this.touched = this.turning = true; });
+    this.controls.addEventListener('end', () => { this.turning = false; this.stale = true; app.wake(); });
     this.stale = true;
     document.getElementById('play').addEventListener('click', () => this.toggle());
     document.getElementById('view-reset').addEventListener('click', () => this.reset());
@@ -41,7 +42,6 @@ class Player {
     const { low, high } = this.app.stage.frame;
     this.controls.target.copy(low).lerp(high, 0.5);
     this.controls.update();
-    this.controls.addEventListener('start', () => { this.touched = true; });
     this.touched = false;
     this.stale = true;
     this.app.wake();
@@ -65,6 +65,8 @@ class Player {
 
   pause() {
     this.playing = false;
+    this.stale = true;
+    this.app.wake();
     this.label();
   }
 
@@ -102,7 +104,7 @@ class Player {
     const { app } = this;
     if (!this.stale) return null;
     this.stale = false;
-    return { canvas: this.canvas, camera: this.camera, solution: app.a, other: app.b, time: this.time, trails: app.trails, until: true, flash: true };
+    return { canvas: this.canvas, camera: this.camera, solution: app.a, other: app.b, time: this.time, trails: app.trails, until: true, flash: true, moving: this.playing || this.turning };
   }
 
   // Impacts as ticks: taller where bodies meet faster.

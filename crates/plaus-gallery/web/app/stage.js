@@ -107,7 +107,7 @@ class Stage {
     // Shadows need something to fall on, also beside the table.
     let floor = low.y;
     for (const index of this.solutions[0]?.props ?? []) floor = Math.min(floor, this.prop(index).geometry.boundingBox.min.y);
-    this.ground = new THREE.Mesh(new THREE.CircleGeometry(6 * this.size, 64), new THREE.ShadowMaterial({ opacity: 0.28 }));
+    this.ground = new THREE.Mesh(new THREE.CircleGeometry((software ? 1.5 : 6) * this.size, 64), new THREE.ShadowMaterial({ opacity: 0.28 }));
     this.ground.rotation.x = -Math.PI / 2;
     this.ground.position.set(middle.x, floor - 0.002 * this.size, middle.z);
     this.ground.receiveShadow = true;

@@ -70,10 +70,11 @@ class Tiles {
     if (app.hovered && app.hoveredFrom === 'tile' && this.tiles.has(app.hovered)) moving.add(app.hovered);
     for (const solution of moving) {
       const since = app.animateAll ? now : now - app.hoveredSince;
-      jobs.push({ canvas: this.canvas(solution), solution, time: cycle(since / 1000, solution.duration), trails: true, flash: true });
+      jobs.push({ canvas: this.canvas(solution), solution, time: cycle(since / 1000, solution.duration), trails: true, flash: true, moving: true });
       this.stale.add(solution);
     }
-    let budget = software ? 3 : 12;
+    // What moves comes first.
+    let budget = moving.size || app.player.playing ? 1 : software ? 3 : 12;
     for (const solution of this.stale) {
       if (moving.has(solution)) continue;
       if (!this.visible.has(solution)) { this.stale.delete(solution); continue; }

@@ -1,5 +1,8 @@
 // One WebGL context for all pictures: each is drawn into a scissored part of its canvas, then copied to where it is seen.
 
+// Pixels per pixel, along a side, of large pictures that move: the next where the one before is too slow.
+const DETAILS = [1, 0.75, 0.58, 0.45, 0.36];
+
 class Views {
   constructor(stage) {
     this.stage = stage;
@@ -11,8 +14,10 @@ class Views {
     renderer.toneMapping = THREE.ACESFilmicToneMapping;
     renderer.toneMappingExposure = 1.15;
     renderer.shadowMap.enabled = true;
-    renderer.shadowMap.type = THREE.PCFShadowMap;
+    renderer.shadowMap.type = software ? THREE.BasicShadowMap : THREE.PCFShadowMap;
     this.width = this.height = 0;
+    this.detail = 0;
+    this.slow = 0;
     this.lost = false;
     renderer.domElement.addEventListener('webglcontextlost', (event) => { event.preventDefault(); this.lost = true; });
     renderer.domElement.addEventListener('webglcontextrestored', () => { this.lost = false; this.onRestored?.(); });
@@ -25,6 +30,13 @@ class Views {
 
   get ratio() { return software ? 1 : Math.min(window.devicePixelRatio || 1, 2); }
 
+  // While pictures move, they lose detail until enough of them are drawn; `milliseconds` have passed since the last.
+  pace(milliseconds) {
+    this.slow = 0.8 * this.slow + 0.2 * milliseconds;
+    if (this.slow > 42 && this.detail < DETAILS.length - 1) { this.detail++; this.slow = 28; }
+    else if (this.slow < 19 && this.detail > 0) { this.detail--; this.slow = 28; }
+  }
+
   // Draws all jobs: { canvas, camera?, solution, time, … } as Stage.pose takes them.
   draw(jobs) {
     if (this.lost) return;
@@ -33,7 +45,8 @@ class Views {
     let batch = [], x = 0, y = 0, row = 0;
     const flush = () => { if (batch.length) this.drawBatch(batch); batch = []; x = y = row = 0; };
     for (const job of jobs) {
-      const { canvas } = job, width = Math.round(canvas.clientWidth * this.ratio), height = Math.round(canvas.clientHeight * this.ratio);
+      const { canvas } = job, scale = this.ratio * (job.moving && canvas.clientWidth > 300 ? DETAILS[this.detail] : 1);
+      const width = Math.round(canvas.clientWidth * scale), height = Math.round(canvas.clientHeight * scale);
       if (!width || !height) continue;
       if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
       if (x && x + width > wide) { x = 0; y += row; row = 0; }
@@ -66,7 +79,7 @@ class Views {
     for (const { job, x, y, width: w, height: h } of batch) {
       const camera = job.camera ?? this.fitted(this.camera, w / h);
       stage.pose({ ...job, camera });
-      for (const { line } of stage.trails.values()) if (line.visible) line.material.resolution.set(w / this.ratio, h / this.ratio);
+      for (const { line } of stage.trails.values()) if (line.visible) line.material.resolution.set(job.canvas.clientWidth, job.canvas.clientHeight);
       renderer.setViewport(x, y, w, h);
       renderer.setScissor(x, y, w, h);
       renderer.clear();

@@ -1,0 +1,117 @@
+//! Just enough SVG for diagnostic plots.
+
+use std::fmt::Write as _;
+
+/// Width and height of a panel with its labels, and margins: left, right, top, bottom.
+const PANEL: [f64; 2] = [380.0, 300.0];
+const MARGIN: [f64; 4] = [62.0, 14.0, 30.0, 44.0];
+/// Colours that are told apart also by people who do not see all of them (Okabe & Ito).
+const COLOURS: [&str; 6] = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9"];
+
+/// A picture in the making. Writing to a string cannot fail.
+pub(crate) struct Svg(String);
+
+/// A panel with the ranges of its axes.
+pub(crate) struct Frame {
+    left: f64,
+    x: [f64; 2],
+    y: [f64; 2],
+}
+
+impl Frame {
+    /// The n-th panel from the left.
+    pub(crate) fn new(number: u32, x: [f64; 2], y: [f64; 2]) -> Self {
+        // A range that is empty, or none, gets some room.
+        let room = |[low, high]: [f64; 2]| match (low.is_finite() && high.is_finite(), high > low) {
+            (true, true) => [low, high],
+            (true, false) => [low - 0.5, low + 0.5],
+            _ => [0.0, 1.0],
+        };
+        Self { left: f64::from(number) * PANEL[0], x: room(x), y: room(y) }
+    }
+
+    fn place(&self, x: f64, y: f64) -> (f64, f64) {
+        let [left, right, top, bottom] = MARGIN;
+        let (width, height) = (PANEL[0] - left - right, PANEL[1] - top - bottom);
+        let share = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
+        (self.left + left + width * share(x, self.x), top + height * (1.0 - share(y, self.y)))
+    }
+}
+
+impl Svg {
+    pub(crate) fn new(width: usize, height: usize) -> Self {
+        Self(format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+             font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+        ))
+    }
+
+    pub(crate) fn axes(&mut self, frame: &Frame, title: &str, along: &str) {
+        let ((left, bottom), (right, top)) = (frame.place(frame.x[0], frame.y[0]), frame.place(frame.x[1], frame.y[1]));
+        let _ =
+            writeln!(self.0, "<path d=\"M{left:.1} {top:.1}V{bottom:.1}H{right:.1}\" fill=\"none\" stroke=\"#555\"/>");
+        let middle = 0.5 * (left + right);
+        self.text(middle, top - 10.0, "middle", title);
+        self.text(middle, bottom + 34.0, "middle", along);
+        self.text(left, bottom + 16.0, "start", &short(frame.x[0]));
+        self.text(right, bottom + 16.0, "end", &short(frame.x[1]));
+        self.text(left - 6.0, bottom, "end", &short(frame.y[0]));
+        self.text(left - 6.0, top + 8.0, "end", &short(frame.y[1]));
+    }
+
+    /// A dashed line across.
+    pub(crate) fn level(&mut self, frame: &Frame, y: f64) {
+        let ((left, at), (right, _)) = (frame.place(frame.x[0], y), frame.place(frame.x[1], y));
+        let _ =
+            writeln!(self.0, "<path d=\"M{left:.1} {at:.1}H{right:.1}\" stroke=\"#999\" stroke-dasharray=\"4 4\"/>");
+    }
+
+    /// A line of the n-th colour; broken where there is no number.
+    pub(crate) fn line(&mut self, frame: &Frame, number: usize, points: impl IntoIterator<Item = (f64, f64)>) {
+        let (mut path, mut pen) = (String::new(), 'M');
+        for (x, y) in points {
+            let (x, y) = frame.place(x, y);
+            if !(x.is_finite() && y.is_finite()) {
+                pen = 'M';
+                continue;
+            }
+            let _ = write!(path, "{pen}{x:.1} {y:.1}");
+            pen = 'L';
+        }
+        let colour = COLOURS[number % COLOURS.len()];
+        let _ = writeln!(self.0, "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-opacity=\".75\"/>");
+    }
+
+    /// A horizontal bar with a name before and words behind it.
+    pub(crate) fn bar(&mut self, row: usize, name: &str, share: f64, words: &str) {
+        let (y, width) = (24.0 + 34.0 * row as f64, 200.0 * share);
+        self.text(130.0, y + 15.0, "end", name);
+        let _ = writeln!(self.0, "<rect x=\"140\" y=\"{y}\" width=\"200\" height=\"20\" fill=\"#eee\"/>");
+        let _ =
+            writeln!(self.0, "<rect x=\"140\" y=\"{y}\" width=\"{width:.1}\" height=\"20\" fill=\"{}\"/>", COLOURS[0]);
+        self.text(350.0, y + 15.0, "start", words);
+    }
+
+    fn text(&mut self, x: f64, y: f64, anchor: &str, text: &str) {
+        let text = text.replace('&', "&amp;").replace('<', "&lt;");
+        let _ =
+            writeln!(self.0, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" fill=\"#222\">{text}</text>");
+    }
+
+    pub(crate) fn finish(mut self) -> String {
+        self.0.push_str("</svg>\n");
+        self.0
+    }
+}
+
+/// A number with four digits.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    match size {
+        _ if value == 0.0 => "0".to_owned(),
+        _ if !(1e-3..1e6).contains(&size) => format!("{value:.2e}"),
+        _ if size >= 100.0 => format!("{value:.0}"),
+        _ if size >= 1.0 => format!("{value:.2}"),
+        _ => format!("{value:.4}"),
+    }
+}
