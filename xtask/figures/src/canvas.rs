@@ -1,6 +1,6 @@
 //! A figure as SVG and PNG, with its font inside.
 //!
-//! plotters rounds coordinates to whole pixels, so figures are drawn [`FINE`] times as large as they are shown.
+//! plotters rounds coordinates to whole pixels, so figures are drawn `FINE` times as large as they are shown.
 
 use crate::Result;
 use plotters::coord::Shift;
