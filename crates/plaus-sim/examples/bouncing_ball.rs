@@ -1,5 +1,7 @@
-//! A ball that falls, bounces and rests, against the exact answer: `cargo run -p plaus-sim --example bouncing_ball`.
+//! A ball that falls, bounces and rests, against the exact answer: `cargo run -p plaus-sim --example bouncing_ball -- [PATH]`.
 #![allow(clippy::print_stdout, reason = "an example: it prints")]
+
+mod measure;
 
 use glam::DVec3;
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
@@ -39,7 +41,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         state.bodies()[0].path.t,
         trace.impacts.len()
     );
-    std::fs::write("target/bouncing_ball.json", serde_json::to_string(&trace)?)?;
-    println!("wrote target/bouncing_ball.json: {} motions and all impacts", trace.motions[0].len());
+    let path = std::env::args().nth(1).unwrap_or("target/bouncing_ball.json".into());
+    measure::write_trace(&path, &trace)?;
+    println!("wrote {path}: {} motions and all impacts", trace.motions[0].len());
     Ok(())
 }

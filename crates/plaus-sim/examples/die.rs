@@ -1,76 +1,102 @@
-//! Throws a die many times on a flat and on a bumpy table, and prints how it fell, how much work that was, and how long it took.
+//! Throws a die many times on a flat and on bumpy tables, and prints how it fell, how much work that was, and how long it took. The first throw on a bumpy table is
+//! written as JSON, all its motions and impacts.
 //!
-//! `cargo run --release -p plaus-sim --example die -- [throws] [bumps] [preset]`
-#![allow(clippy::disallowed_methods, clippy::print_stdout, clippy::unwrap_used)]
+//! `cargo run --release -p plaus-sim --example die -- [throws] [bumps] [preset] [--trace PATH]`
+#![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
+
+mod measure;
 
 use glam::DVec3;
+use measure::{Digest, Stopwatch, write_trace};
 use plaus_dist::{Purpose, Seed, open_unit};
+use plaus_sim::trace::Trace;
 use plaus_sim::worlds::DieOnTable;
-use plaus_sim::{Accuracy, Outcome, Preset, Scratch};
-use std::time::Instant;
+use plaus_sim::{Accuracy, Outcome, Preset, Scratch, WorldError};
+use std::error::Error;
 
-fn main() {
-    let mut args = std::env::args().skip(1);
-    let throws: usize = args.next().map_or(2000, |a| a.parse().unwrap());
-    let only: Option<f64> = args.next().map(|a| a.parse().unwrap());
-    let named = args.next();
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut args: Vec<String> = std::env::args().skip(1).collect();
+    let path = match args.iter().position(|a| a == "--trace") {
+        Some(at) => args.drain(at..).nth(1),
+        None => None,
+    };
+    let path = path.unwrap_or("target/die.json".into());
+    let throws: usize = args.first().map_or(Ok(500), |a| a.parse())?;
+    let only: Option<f64> = args.get(1).map(|a| a.parse()).transpose()?;
+    let is_asked = |p: &Preset| args.get(2).map_or(*p != Preset::Reference, |name| name == p.name());
     println!(
-        "{:>9} {:>6} {:>8} {:>8} {:>7} {:>8} {:>8} {:>6} {:>6}  faces",
-        "preset", "bumps", "median", "90 %", "events", "impacts", "ns/event", "rest", "other"
+        "{:>9} {:>6} {:>8} {:>8} {:>8} {:>7} {:>8} {:>6} {:>6}  {:<16}  faces",
+        "preset", "bumps", "median", "90 %", "cpu/thr", "events", "impacts", "rest", "other", "digest"
     );
     for bumps in [0.0, 0.1, 0.3].into_iter().filter(|b| only.is_none_or(|o| o == *b)) {
-        for preset in
-            Preset::ALL.into_iter().filter(|p| named.as_ref().map_or(*p != Preset::Reference, |n| n == p.name()))
-        {
-            row(preset, bumps, throws);
+        for preset in Preset::ALL.into_iter().filter(is_asked) {
+            row(preset, bumps, throws)?;
         }
     }
+    let die = DieOnTable { bumps: only.unwrap_or(0.1), ..DieOnTable::default() };
+    let mut rng = Seed(1).chain(0).at(0, Purpose::START);
+    let world = die.world(noise)?;
+    let mut state = world.state(&[die.throw(|| open_unit(&mut rng))])?;
+    let mut trace = Trace::default();
+    let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut trace)?;
+    write_trace(&path, &trace)?;
+    println!(
+        "wrote {path}: {} motions and {} impacts, {outcome:?} at {:.3} s",
+        trace.motions[0].len(),
+        trace.impacts.len(),
+        state.time()
+    );
+    Ok(())
 }
 
+/// Near enough to a Gaussian: a sum of four uniforms.
 fn noise(i: i64, j: i64) -> f64 {
     let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
     h ^= h >> 31;
     h = h.wrapping_mul(0xbf58_476d_1ce4_e5b9);
     h ^= h >> 29;
-    // Near enough to a Gaussian: a sum of four uniforms.
     let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
     (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
 }
 
-fn row(preset: Preset, bumps: f64, throws: usize) {
+fn row(preset: Preset, bumps: f64, throws: usize) -> Result<(), WorldError> {
     let die = DieOnTable { bumps, accuracy: Accuracy::preset(preset), ..DieOnTable::default() };
     let mut rng = Seed(1).chain(0).at(0, Purpose::START);
     let mut scratch = Scratch::default();
-    let (mut times, mut events, mut impacts, mut rest, mut other) = (Vec::new(), 0, 0, 0, 0);
-    let mut faces = [0; 6];
+    let (mut events, mut impacts, mut rest, mut other) = (0, 0, 0, 0);
+    let (mut faces, mut digest) = ([0; 6], Digest::new());
+    let mut watch = Stopwatch::start();
     for _ in 0..throws {
         let start = die.throw(|| open_unit(&mut rng));
-        let clock = Instant::now();
-        let world = die.world(noise).unwrap();
-        let mut state = world.state(&[start]).unwrap();
-        let outcome = world.run(&mut state, &mut scratch, 20.0, &mut ()).unwrap();
-        times.push(clock.elapsed().as_secs_f64());
+        // The table is new for each throw, as it is for a sampler.
+        let (state, outcome) = watch.time(|| {
+            let world = die.world(noise)?;
+            let mut state = world.state(&[start])?;
+            let outcome = world.run(&mut state, &mut scratch, 20.0, &mut ())?;
+            Ok::<_, WorldError>((state, outcome))
+        })?;
         events += state.counts().events;
         impacts += state.counts().impacts;
         let body = &state.bodies()[0];
+        digest.add_all(body.path.x.to_array().into_iter().chain(body.turn.to_array()));
         if outcome == Outcome::AllAtRest {
             rest += 1;
         } else {
             other += 1;
         }
         let up = body.turn.conjugate() * DVec3::Z;
-        let k = (0..3).max_by(|&a, &b| up[a].abs().total_cmp(&up[b].abs())).unwrap();
+        let k = (0..3).fold(0, |best, k| if up[k].abs() > up[best].abs() { k } else { best });
         faces[2 * k + usize::from(up[k] > 0.0)] += 1;
     }
-    let total: f64 = times.iter().sum();
-    times.sort_by(f64::total_cmp);
     println!(
-        "{:>9} {bumps:>6} {:>6.1}us {:>6.1}us {:>7.1} {:>8.1} {:>8.0} {rest:>6} {other:>6}  {faces:?}",
+        "{:>9} {bumps:>6} {:>6.1}us {:>6.1}us {:>6.1}us {:>7.1} {:>8.1} {rest:>6} {other:>6}  {:016x}  {faces:?}",
         preset.name(),
-        1e6 * times[throws / 2],
-        1e6 * times[throws * 9 / 10],
+        1e6 * watch.quantile(0.5),
+        1e6 * watch.quantile(0.9),
+        1e6 * watch.mean(),
         events as f64 / throws as f64,
         impacts as f64 / throws as f64,
-        1e9 * total / events as f64
+        digest.get()
     );
+    Ok(())
 }

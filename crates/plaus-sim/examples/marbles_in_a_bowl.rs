@@ -1,5 +1,7 @@
-//! Marbles that roll to rest in a bowl: `cargo run -p plaus-sim --example marbles_in_a_bowl`.
+//! Marbles that roll to rest in a bowl: `cargo run -p plaus-sim --example marbles_in_a_bowl -- [PATH]`.
 #![allow(clippy::print_stdout, reason = "an example: it prints")]
+
+mod measure;
 
 use glam::DVec3;
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
@@ -49,7 +51,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     println!("{outcome:?} at {:.3} s; {:?}", state.time(), state.counts());
-    std::fs::write("target/marbles_in_a_bowl.json", serde_json::to_string(&trace)?)?;
-    println!("wrote target/marbles_in_a_bowl.json");
+    let path = std::env::args().nth(1).unwrap_or("target/marbles_in_a_bowl.json".into());
+    measure::write_trace(&path, &trace)?;
+    println!("wrote {path}");
     Ok(())
 }

@@ -11,6 +11,12 @@ use std::sync::Arc;
 
 const INCH: f64 = 0.0254;
 
+/// In m/s².
+pub(super) const GRAVITY: f64 = 9.81;
+
+/// Where the deck ends and the pit begins: y in m.
+pub(super) const END: f64 = 34.1875 * INCH;
+
 /// An alley along y: the head pin stands at the origin, the ball comes from below in y. Body 0 is the ball, bodies 1–10 the pins by their numbers.
 #[derive(Debug, Clone, Copy)]
 pub struct Alley {
@@ -107,7 +113,7 @@ impl Alley {
             bodies,
             parts: Self::parts()?,
             laws,
-            gravity: DVec3::new(0.0, 0.0, -9.81),
+            gravity: DVec3::new(0.0, 0.0, -GRAVITY),
             accuracy: self.accuracy,
             skin: 1.0,
             sink: -5.0 * INCH,
@@ -123,7 +129,7 @@ impl Alley {
         };
         let plane =
             |point: [f64; 3], normal: DVec3| Ok(Part::Plane(Plane::new(DVec3::from(point) * INCH, normal, WOOD)?));
-        let (half, gutter, end, start) = (20.75, 9.25, 34.1875, -740.0);
+        let (half, gutter, end, start) = (20.75, 9.25, END / INCH, -740.0);
         let wall = half + gutter + 0.0625;
         Ok(vec![
             // Lane and deck, then the gutters' floors: deeper at the deck.

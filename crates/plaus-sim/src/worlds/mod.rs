@@ -3,9 +3,11 @@
 mod alley;
 mod bins;
 mod table;
+mod verdict;
 mod watch;
 
 pub use alley::Alley;
 pub use bins::{Bins, drops};
 pub use table::DieOnTable;
+pub use verdict::Verdict;
 pub use watch::Watch;

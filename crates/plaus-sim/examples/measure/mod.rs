@@ -1,0 +1,79 @@
+//! What the measuring examples share: a clock, quantiles, a digest of outcomes, and where a trace goes.
+#![allow(clippy::disallowed_methods, dead_code, unreachable_pub, reason = "shared by programs that use parts of it, and measuring reads the clock")]
+
+use serde::Serialize;
+use std::error::Error;
+use std::time::Instant;
+
+/// Time on the wall per piece of work, and on the processor over all of it: other programs make the first longer, not the second.
+pub struct Stopwatch {
+    pieces: Vec<f64>,
+    on_processor: Option<f64>,
+}
+
+impl Stopwatch {
+    pub fn start() -> Self {
+        Self { pieces: Vec::new(), on_processor: processor_time() }
+    }
+
+    pub fn time<T>(&mut self, work: impl FnOnce() -> T) -> T {
+        let clock = Instant::now();
+        let result = work();
+        self.pieces.push(clock.elapsed().as_secs_f64());
+        result
+    }
+
+    /// Part `p` of the pieces took no longer, in s.
+    pub fn quantile(&self, p: f64) -> f64 {
+        let mut sorted = self.pieces.clone();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get((p * sorted.len() as f64) as usize).copied().unwrap_or(f64::NAN)
+    }
+
+    /// Processor time per piece in s, everything between the pieces included; wall-clock time where the system does not say.
+    pub fn mean(&self) -> f64 {
+        let all = match (self.on_processor, processor_time()) {
+            (Some(from), Some(to)) => to - from,
+            _ => self.pieces.iter().sum(),
+        };
+        all / self.pieces.len() as f64
+    }
+}
+
+/// Seconds that this thread has been on a processor (Linux).
+fn processor_time() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    Some(1e-9 * text.split(' ').next()?.parse::<f64>().ok()?)
+}
+
+/// FNV-1a over the bits of outcomes: two builds whose digests agree made the same outcomes.
+pub struct Digest(u64);
+
+impl Digest {
+    pub fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    pub fn add(&mut self, bits: u64) {
+        for byte in bits.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+        }
+    }
+
+    pub fn add_all(&mut self, values: impl IntoIterator<Item = f64>) {
+        values.into_iter().for_each(|v| self.add(v.to_bits()));
+    }
+
+    pub fn get(&self) -> u64 {
+        self.0
+    }
+}
+
+/// Writes a trace as JSON.
+pub fn write_trace(path: &str, trace: &impl Serialize) -> Result<(), Box<dyn Error>> {
+    if let Some(folder) = std::path::Path::new(path).parent() {
+        std::fs::create_dir_all(folder)?;
+    }
+    std::fs::write(path, serde_json::to_string(trace)?)?;
+    Ok(())
+}
