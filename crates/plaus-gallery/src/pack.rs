@@ -66,6 +66,7 @@ pub(crate) fn pack<S: Scene>(run: &RunOf<'_, S>, replays: &[Replay], maps: &Maps
         "spin": ranges.spin,
         "from": view.map(|view| view.from.to_array()),
         "frame": view.and_then(|view| view.frame).map(|corners| corners.map(|corner| corner.to_array())),
+        "alone": view.is_some_and(|view| view.alone),
         "samples": samples,
     });
     Packed { meta, bytes: bytes.0, title: format!("{} · plaus", manifest.scene) }

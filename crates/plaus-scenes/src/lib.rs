@@ -25,6 +25,7 @@
 
 pub mod animation;
 pub mod ball2d;
+pub mod bowling;
 pub mod registry;
 pub mod rules;
 pub mod scenario;

@@ -86,7 +86,7 @@ fn by_hand(mut x: DVec3, mut v: DVec3, mut w: DVec3, stretches: &[(f64, f64)], u
 
 #[test]
 fn a_hook_under_oil_and_dry_boards() {
-    let map = vec![Stretch { from: -1.0, friction: 0.04 }, Stretch { from: 12.0, friction: 0.20 }];
+    let map = vec![Stretch { from: -1.0, friction: Some(0.04) }, Stretch { from: 12.0, friction: Some(0.20) }];
     let world = lane(map, GYRATION);
     // A right-hander's release: 8 m/s, 30 rad/s mostly sideways.
     let (v, w) = (DVec3::new(0.25, 8.0, 0.0), DVec3::new(-12.0, -27.0, 6.0));
@@ -103,7 +103,7 @@ fn a_hook_under_oil_and_dry_boards() {
 
 #[test]
 fn the_mirrored_ball_runs_the_mirrored_path() {
-    let map = vec![Stretch { from: -1.0, friction: 0.04 }, Stretch { from: 12.0, friction: 0.20 }];
+    let map = vec![Stretch { from: -1.0, friction: Some(0.04) }, Stretch { from: 12.0, friction: Some(0.20) }];
     let world = lane(map, GYRATION);
     let end = |side: f64| {
         let (v, w) = (DVec3::new(side * 0.25, 8.0, 0.0), DVec3::new(-12.0, side * -27.0, side * 6.0));

@@ -18,6 +18,10 @@ class Stage {
   // The box most solutions stay in, with what the scene wants to be seen.
   commonFrame() {
     const { solutions, meta } = this, low = new THREE.Vector3(), high = new THREE.Vector3();
+    if (meta.alone) {
+      const [a, b] = meta.frame.map((corner) => new THREE.Vector3().fromArray(corner));
+      return { low: a.clone().min(b), high: a.max(b) };
+    }
     const at = (values, share) => values.sort((a, b) => a - b)[Math.round(share * (values.length - 1))];
     for (let axis = 0; axis < 3; axis++) {
       low.setComponent(axis, at(solutions.map((s) => s.box[0][axis]), 0.1));

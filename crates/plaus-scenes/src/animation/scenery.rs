@@ -64,6 +64,8 @@ pub struct View {
     pub from: DVec3,
     /// Points that should be seen, besides all that moves: two corners of a box.
     pub frame: Option<[DVec3; 2]>,
+    /// Whether that box is all that must be seen, wherever bodies go.
+    pub alone: bool,
 }
 
 impl Prop {
@@ -87,12 +89,18 @@ impl View {
     /// Looks from a direction; what moves is to be seen.
     #[must_use]
     pub fn from(x: f64, y: f64, z: f64) -> Self {
-        Self { from: DVec3::new(x, y, z), frame: None }
+        Self { from: DVec3::new(x, y, z), frame: None, alone: false }
     }
 
     /// The same, where a box between two corners is to be seen as well.
     #[must_use]
     pub fn showing(self, low: DVec3, high: DVec3) -> Self {
         Self { frame: Some([low, high]), ..self }
+    }
+
+    /// The same, where a box between two corners is all that must be seen.
+    #[must_use]
+    pub fn only(self, low: DVec3, high: DVec3) -> Self {
+        Self { frame: Some([low, high]), alone: true, ..self }
     }
 }

@@ -143,7 +143,7 @@ impl Rigid {
             Part::Table(table) => table.law(point, law),
             Part::Block { stretches, .. } => {
                 let here = stretches.iter().rev().find(|s| point.y >= s.from);
-                Law { friction: here.map_or(law.friction, |s| s.friction), ..*law }
+                Law { friction: here.and_then(|s| s.friction).unwrap_or(law.friction), ..*law }
             }
             _ => *law,
         }

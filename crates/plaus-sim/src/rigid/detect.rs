@@ -206,6 +206,10 @@ impl Search<'_> {
     fn block(&mut self, part: u16, block: &Part) {
         let Part::Block { bounds, material, .. } = block else { return };
         let (spec, path) = (self.spec, &self.body.path);
+        if spec.is_ball && self.lasts(part, 0) {
+            // Its only point; that it leaves the box is an event of its motion.
+            return;
+        }
         let swept = path.bounds(0.0, self.until).grown(spec.reach);
         if !bounds.grown(spec.gap).meets(&swept) {
             return;

@@ -104,7 +104,7 @@ fn is_leaving(part: &Part, body: &Turning) -> bool {
 fn friction_ahead(part: &Part, usual: f64, at: DVec3, v: DVec3) -> f64 {
     let Part::Block { stretches, .. } = part else { return usual };
     let entered = |from: f64| at.y > from || (at.y == from && v.y >= 0.0);
-    stretches.iter().rev().find(|s| entered(s.from)).map_or(usual, |s| s.friction)
+    stretches.iter().rev().find(|s| entered(s.from)).and_then(|s| s.friction).unwrap_or(usual)
 }
 
 /// Time until the ball's centre comes over another stretch or over the edge of what bears it, and the line that it reaches then: axis and place.
@@ -134,6 +134,6 @@ fn next_line(part: &Part, body: &Turning) -> Option<(f64, (u8, f64))> {
 pub struct Stretch {
     /// Where it begins, in m.
     pub from: f64,
-    /// Coulomb's coefficient there.
-    pub friction: f64,
+    /// Coulomb's coefficient there; `None`: that of the materials.
+    pub friction: Option<f64>,
 }

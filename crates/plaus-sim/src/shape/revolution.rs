@@ -104,6 +104,32 @@ impl Profile {
         Ok(())
     }
 
+    /// About so many points (radius, height over the foot) on the meridian from the foot's edge to the top, for drawing: closer where it bends more.
+    ///
+    /// # Errors
+    /// [`WorldError::BadNumber`] where the profile does not rise from its foot to its cap.
+    pub fn outline(&self, points: usize) -> Result<Vec<[f64; 2]>, WorldError> {
+        self.check()?;
+        let (pieces, [_, cap]) = (self.pieces(), self.points[self.points.len() - 1]);
+        let share = |count: usize| (0..count).map(move |k| k as f64 / count as f64);
+        let mut outline: Vec<[f64; 2]> = share(4)
+            .map(|s| {
+                let height = pieces[0].base * s * s;
+                [self.foot + (self.rim * self.rim - (self.rim - height) * (self.rim - height)).max(0.0).sqrt(), height]
+            })
+            .collect();
+        let each = (points / (pieces.len() + 4)).max(1);
+        for piece in &pieces {
+            outline.extend(share(each).map(|s| [piece.radius(s * piece.length), piece.base + s * piece.length]));
+        }
+        let (angles, centre) = (4 * each, self.top - cap);
+        outline.extend(share(angles).chain([1.0]).map(|s| {
+            let (sin, cos) = plaus_dist::math::sin_cos(s * std::f64::consts::FRAC_PI_2);
+            [cap * cos, centre + cap * sin]
+        }));
+        Ok(outline)
+    }
+
     /// The spline: from the rim, which it leaves in its own direction, to the beginning of the cap, where it is vertical.
     fn pieces(&self) -> Vec<Piece> {
         let [z1, r1] = self.points[0];

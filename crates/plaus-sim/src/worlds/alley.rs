@@ -3,7 +3,7 @@
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::{Law, Laws, Material};
-use crate::rigid::{BodySpec, Part, Rigid, RigidWorld, Start};
+use crate::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Stretch};
 use crate::scenery::{Aabb, Plane};
 use crate::shape::{MassProperties, Profile, Revolution, Shape};
 use glam::{DQuat, DVec3};
@@ -17,7 +17,8 @@ pub(super) const GRAVITY: f64 = 9.81;
 /// Where the deck ends and the pit begins: y in m.
 pub(super) const END: f64 = 34.1875 * INCH;
 
-/// An alley along y: the head pin stands at the origin, the ball comes from below in y. Body 0 is the ball, bodies 1–10 the pins by their numbers.
+/// An alley along y: the head pin's spot is the origin, the ball comes from below in y. Body 0 is the ball, the others are the pins that are set up, in ascending order
+/// of their numbers: with all ten, body k is pin k.
 #[derive(Debug, Clone, Copy)]
 pub struct Alley {
     /// Radius of the ball in m. Regulation: 0.10795–0.10916.
@@ -42,6 +43,12 @@ pub struct Alley {
     pub accuracy: Accuracy,
     /// Length of a run in s.
     pub duration: f64,
+    /// Which pins are set up; pin k is entry k − 1.
+    pub standing: [bool; 10],
+    /// Length of the lane in m, from the foul line on, that is oiled.
+    pub oil: f64,
+    /// Coefficient of friction between ball and oiled lane.
+    pub oil_friction: f64,
 }
 
 impl Default for Alley {
@@ -59,6 +66,9 @@ impl Default for Alley {
             pin_lane: Law::new(0.25, 0.4),
             accuracy: Accuracy::default(),
             duration: 5.0,
+            standing: [true; 10],
+            oil: 0.0,
+            oil_friction: 0.04,
         }
     }
 }
@@ -68,6 +78,18 @@ const PIN: Material = Material(1);
 const WOOD: Material = Material(2);
 
 impl Alley {
+    /// Width of the lane in m.
+    pub const WIDTH: f64 = 41.5 * INCH;
+
+    /// From the foul line to the head pin's spot in m.
+    pub const LENGTH: f64 = 60.0 * 12.0 * INCH;
+
+    /// Numbers of the pins that are set up, in ascending order: those of bodies 1, 2, …
+    pub fn set_up(&self) -> impl Iterator<Item = usize> {
+        let standing = self.standing;
+        (1..=10).filter(move |pin| standing[pin - 1])
+    }
+
     /// Where a pin (1–10) stands, on the lane's surface.
     #[must_use]
     pub fn spot(pin: usize) -> DVec3 {
@@ -95,7 +117,14 @@ impl Alley {
     /// # Errors
     /// [`WorldError`] for impossible numbers.
     pub fn world(&self) -> Result<Rigid, WorldError> {
-        let pin = Arc::new(self.pin()?);
+        self.world_of(&Arc::new(self.pin()?))
+    }
+
+    /// The world, with [`Alley::pin`] made before: for many worlds that differ in the ball.
+    ///
+    /// # Errors
+    /// [`WorldError`] for impossible numbers.
+    pub fn world_of(&self, pin: &Arc<Revolution>) -> Result<Rigid, WorldError> {
         let mass = pin.mass_properties(1.0).with_mass(self.pin_mass);
         let inertia = DVec3::splat(self.ball_mass * self.ball_gyration * self.ball_gyration);
         let ball = BodySpec {
@@ -104,14 +133,18 @@ impl Alley {
             material: BALL,
         };
         let mut bodies = vec![ball];
-        bodies.extend((0..10).map(|_| BodySpec { shape: Shape::Revolution(Arc::clone(&pin)), mass, material: PIN }));
+        bodies.extend(self.set_up().map(|_| BodySpec {
+            shape: Shape::Revolution(Arc::clone(pin)),
+            mass,
+            material: PIN,
+        }));
         let mut laws = Laws::new(3, self.pin_lane)?;
         laws.set(BALL, WOOD, self.ball_lane)?;
         laws.set(BALL, PIN, self.ball_pin)?;
         laws.set(PIN, PIN, self.pin_pin)?;
         Rigid::new(RigidWorld {
             bodies,
-            parts: Self::parts()?,
+            parts: self.parts()?,
             laws,
             gravity: DVec3::new(0.0, 0.0, -GRAVITY),
             accuracy: self.accuracy,
@@ -121,7 +154,11 @@ impl Alley {
         })
     }
 
-    fn parts() -> Result<Vec<Part>, WorldError> {
+    fn parts(&self) -> Result<Vec<Part>, WorldError> {
+        let (half, gutter, end, start) = (0.5 * Self::WIDTH / INCH, 9.25, END / INCH, -740.0);
+        let oiled = Stretch { from: start * INCH, friction: Some(self.oil_friction) };
+        let dry = Stretch { from: self.oil - Self::LENGTH, friction: None };
+        let stretches = if self.oil > 0.0 { vec![oiled, dry] } else { Vec::new() };
         let block = |min: [f64; 3], max: [f64; 3]| Part::Block {
             bounds: Aabb { min: DVec3::from(min) * INCH, max: DVec3::from(max) * INCH },
             material: WOOD,
@@ -129,11 +166,14 @@ impl Alley {
         };
         let plane =
             |point: [f64; 3], normal: DVec3| Ok(Part::Plane(Plane::new(DVec3::from(point) * INCH, normal, WOOD)?));
-        let (half, gutter, end, start) = (20.75, 9.25, END / INCH, -740.0);
         let wall = half + gutter + 0.0625;
         Ok(vec![
             // Lane and deck, then the gutters' floors: deeper at the deck.
-            block([-half, start, -12.0], [half, end, 0.0]),
+            Part::Block {
+                bounds: Aabb { min: DVec3::new(-half, start, -12.0) * INCH, max: DVec3::new(half, end, 0.0) * INCH },
+                material: WOOD,
+                stretches,
+            },
             block([-wall, start, -12.0], [-half, -24.0, -1.875]),
             block([half, start, -12.0], [wall, -24.0, -1.875]),
             block([-wall, -24.0, -12.0], [-half, end, -3.5]),
@@ -146,7 +186,7 @@ impl Alley {
         ])
     }
 
-    /// The ball at the foul line with its centre at `x`, rolling or sliding towards the pins, and all pins on their spots.
+    /// The ball on the lane with its centre at `x`, `distance` m before the head pin's spot, rolling or sliding towards the pins, and all pins on their spots.
     ///
     /// # Errors
     /// [`WorldError`] for impossible numbers.
@@ -159,7 +199,7 @@ impl Alley {
             spin,
             time: 0.0,
         };
-        let pins = (1..=10).map(|k| Start::at_rest(Self::spot(k) + DVec3::new(0.0, 0.0, up)));
+        let pins = self.set_up().map(|k| Start::at_rest(Self::spot(k) + DVec3::new(0.0, 0.0, up)));
         Ok(std::iter::once(ball).chain(pins).collect())
     }
 

@@ -5,6 +5,7 @@ use super::alley::{END, GRAVITY};
 use crate::error::WorldError;
 use crate::mechanics::Mechanics;
 use crate::rigid::{Phase, Rigid, Turning};
+use crate::shape::Revolution;
 use crate::state::State;
 use glam::DVec3;
 
@@ -53,13 +54,24 @@ impl Verdict {
     /// # Errors
     /// [`WorldError`] for impossible numbers.
     pub fn new(alley: &Alley) -> Result<Self, WorldError> {
-        let pin = alley.pin()?;
+        Ok(Self::of(alley, &alley.pin()?))
+    }
+
+    /// The same, with [`Alley::pin`] made before.
+    #[must_use]
+    pub fn of(alley: &Alley, pin: &Revolution) -> Self {
         let rim = pin.rings()[0];
         let raised = (rim.height * rim.height + rim.circle * rim.circle).sqrt() + rim.height;
         // A pin that lies rests on its belly and its head: its middle is no lower than the thinner of them is thick.
         let head = pin.row().last().map_or(0.0, |cap| cap.radius);
         let lowest = [(alley.ball_mass, alley.ball_radius), (alley.pin_mass, head)];
-        Ok(Self { tipping: alley.pin_mass * GRAVITY * raised, lowest })
+        Self { tipping: alley.pin_mass * GRAVITY * raised, lowest }
+    }
+
+    /// Whether a pin has fallen for good, or is gone.
+    #[must_use]
+    pub fn has_fallen(pin: &Turning) -> bool {
+        pin.phase == Phase::Gone || (pin.turn * DVec3::Z).z < FALLEN
     }
 
     /// Whether which pins stand can no longer change. Body 0 is the ball, the others are pins.
@@ -67,7 +79,7 @@ impl Verdict {
     pub fn is_final(&self, world: &Rigid, state: &State<Turning>) -> bool {
         let mut standing = false;
         for pin in state.bodies().iter().skip(1) {
-            let has_fallen = pin.phase == Phase::Gone || (pin.turn * DVec3::Z).z < FALLEN;
+            let has_fallen = Self::has_fallen(pin);
             if !has_fallen && pin.phase != Phase::Rest {
                 return false;
             }

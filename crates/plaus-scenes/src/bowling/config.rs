@@ -1,0 +1,272 @@
+//! Scenario keys of bowling.
+
+use super::release::Release;
+use crate::spelling::AccuracyPreset;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A ball is bowled at ten-pins, and those pins should be left standing that are asked for (Chenney & Forsyth 2000, section 5.2 and appendix A).
+///
+/// Pins have their usual numbers: 1 is the head pin, 7 to 10 the last row from the bowler's left. x runs across the lane to the bowler's right, y along it;
+/// the head pin's spot is the origin.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// Pins that stand at the start.
+    #[schemars(length(min = 1, max = 10), inner(range(min = 1, max = 10)))]
+    pub pins: Vec<u32>,
+    /// Pins, of those, that should stand at the end; none for a strike or a spare.
+    #[schemars(length(min = 0, max = 10), inner(range(min = 1, max = 10)))]
+    pub leave: Vec<u32>,
+    /// ln λ, the reward in nats for each pin that ends as it should, and for each that stands as it should and has not moved far.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat"))]
+    pub ln_lambda: f64,
+    /// How far a pin may stand from where it was set to be rewarded for not having moved far. The default is the radius of a pin's base.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 2000.0, "x-unit" = "mm"))]
+    pub moved_far_mm: f64,
+    /// Which pins are rewarded for not having moved far.
+    pub rewarded: Rewarded,
+    /// Which laws the ball's delivery has: the paper's, or that of the real game.
+    pub delivery: Delivery,
+    /// What of the delivery's laws is otherwise.
+    pub release: Release,
+    /// Standard deviation of each coordinate of a pin's place about its spot.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 20.0, "x-unit" = "mm"))]
+    pub pin_sigma_mm: f64,
+    /// Mass of a pin. Regulation: 1.53 to 1.64.
+    #[schemars(extend("minimum" = 0.1, "maximum" = 20.0, "x-unit" = "kg"))]
+    pub pin_kg: f64,
+    /// What happens where things touch.
+    pub contact: Contact,
+    /// Time from the ball's release after which what still moves is taken as it is.
+    #[schemars(extend("minimum" = 1.0, "maximum" = 60.0, "x-unit" = "s"))]
+    pub duration_s: f64,
+    /// How much of the ball's way before the head pin an animation shows; it begins where that does.
+    #[schemars(extend("minimum" = 0.5, "maximum" = 18.3, "x-unit" = "m"))]
+    pub shown_m: f64,
+    /// How exact the simulation is.
+    pub accuracy: AccuracyPreset,
+    /// Which moves: "mixed", or the "paper"'s.
+    pub moves: Moves,
+    /// Relative weights of the moves.
+    pub weights: Weights,
+    /// Sizes of the moves' steps.
+    pub steps: Steps,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            pins: (1..=10).collect(),
+            leave: Vec::new(),
+            ln_lambda: 2.5,
+            moved_far_mm: 25.8,
+            rewarded: Rewarded::default(),
+            delivery: Delivery::default(),
+            release: Release::default(),
+            pin_sigma_mm: 1.0,
+            pin_kg: 1.59,
+            contact: Contact::default(),
+            duration_s: 8.0,
+            shown_m: 4.0,
+            accuracy: AccuracyPreset::default(),
+            moves: Moves::default(),
+            weights: Weights::default(),
+            steps: Steps::default(),
+        }
+    }
+}
+
+/// Which pins are rewarded for not having moved far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Rewarded {
+    /// Pins that should stand.
+    #[default]
+    MeantToStand,
+    /// Any pin that stands, as the paper's text can be read. It then rewards a ball in the gutter, which moves no pin, as much as a strike.
+    AnyStanding,
+}
+
+/// A set of laws of the delivery.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Delivery {
+    /// The paper's appendix A.1: a solid ball of 176 to 220 mm, released anywhere across the lane without spin but a little about the vertical, on a lane with the same friction
+    /// everywhere. Its largest ball is larger than the rules allow.
+    #[default]
+    Paper,
+    /// Balls within the rules, at speeds and with the spin of good players, on a lane that is oiled for its first 12 m.
+    Regulation,
+}
+
+/// What happens where things touch. Between pins there are no published coefficients.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Contact {
+    /// Coulomb's coefficient of friction between the ball and the lane, where there is no oil. Unset: 0.12 for the paper's delivery, 0.2 for regulation.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub lane_friction: Option<f64>,
+    /// Length of the lane, from the foul line on, that is oiled. Unset: 0 for the paper's delivery, 12 for regulation.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 18.2, "x-unit" = "m"))]
+    pub oil_m: Option<f64>,
+    /// Coefficient of friction between the ball and the oiled lane.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub oil_friction: f64,
+    /// Restitution between the ball and the lane: rebound speed over approach speed.
+    #[schemars(range(min = 0.0, max = 0.95))]
+    pub lane_restitution: f64,
+    /// Friction between the ball and a pin.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub ball_pin_friction: f64,
+    /// Restitution between the ball and a pin; the rules ask for 0.65 to 0.78.
+    #[schemars(range(min = 0.0, max = 0.95))]
+    pub ball_pin_restitution: f64,
+    /// Friction between pins.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub pin_pin_friction: f64,
+    /// Restitution between pins.
+    #[schemars(range(min = 0.0, max = 0.95))]
+    pub pin_pin_restitution: f64,
+    /// Friction between a pin and lane, gutters and walls.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub pin_lane_friction: f64,
+    /// Restitution between a pin and lane, gutters and walls.
+    #[schemars(range(min = 0.0, max = 0.95))]
+    pub pin_lane_restitution: f64,
+}
+
+impl Default for Contact {
+    fn default() -> Self {
+        Self {
+            lane_friction: None,
+            oil_m: None,
+            oil_friction: 0.04,
+            lane_restitution: 0.2,
+            ball_pin_friction: 0.15,
+            ball_pin_restitution: 0.7,
+            pin_pin_friction: 0.2,
+            pin_pin_restitution: 0.6,
+            pin_lane_friction: 0.25,
+            pin_lane_restitution: 0.4,
+        }
+    }
+}
+
+/// Which moves the chain makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Moves {
+    /// All moves, by `weights`.
+    #[default]
+    Mixed,
+    /// The paper's with its weights: 0.05, 0.075, 0.075, 0.2, 0.2, 0.2 and 0.2.
+    Paper,
+}
+
+/// Relative weights of the moves of "mixed".
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Weights {
+    /// The paper's: everything is drawn anew.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub change_all: f64,
+    /// The paper's: the ball's radius is shifted.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub change_radius: f64,
+    /// The paper's: the ball's density is shifted, and with it its radius of gyration where that is uncertain.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub change_density: f64,
+    /// The paper's: where the ball is released is shifted.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub change_position: f64,
+    /// The paper's: the ball's velocity is changed.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub change_velocity: f64,
+    /// The paper's: the ball's spin is changed.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub change_spin: f64,
+    /// The paper's: some pins are shifted.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub change_pins: f64,
+    /// One quantity of the ball is drawn anew.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub redraw: f64,
+    /// Some pins are set anew.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub redraw_pins: f64,
+    /// Everything is shifted a little, by steps of any size down to a ten-thousandth of the paper's: what a shot that has many collisions hangs on.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub refine: f64,
+    /// Left and right are exchanged. Without effect where the pins to stand are not the same from both sides.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub mirror: f64,
+}
+
+impl Weights {
+    /// The paper's.
+    #[must_use]
+    pub fn paper() -> Self {
+        Self {
+            change_all: 0.05,
+            change_radius: 0.075,
+            change_density: 0.075,
+            change_position: 0.2,
+            change_velocity: 0.2,
+            change_spin: 0.2,
+            change_pins: 0.2,
+            redraw: 0.0,
+            redraw_pins: 0.0,
+            refine: 0.0,
+            mirror: 0.0,
+        }
+    }
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self {
+            change_all: 0.05,
+            change_radius: 0.04,
+            change_density: 0.04,
+            change_position: 0.1,
+            change_velocity: 0.1,
+            change_spin: 0.05,
+            change_pins: 0.1,
+            redraw: 0.12,
+            redraw_pins: 0.1,
+            refine: 0.25,
+            mirror: 0.05,
+        }
+    }
+}
+
+/// Sizes of the moves' steps. The paper's are the defaults: each of its steps is a half of the standard deviation, or a fifth of the interval, of what it shifts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Steps {
+    /// Standard deviation of the shift of a quantity with a Gaussian law, over that law's.
+    #[schemars(range(min = 1e-9, max = 10.0))]
+    pub gaussian: f64,
+    /// Standard deviation of the shift of a quantity with a uniform law, over its interval's width.
+    #[schemars(range(min = 1e-9, max = 10.0))]
+    pub uniform: f64,
+    /// Probability that `change_pins` shifts a pin.
+    #[schemars(range(min = 0.000001, max = 1.0))]
+    pub pin_chance: f64,
+    /// Standard deviation of the length of such a shift, in a random direction.
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 100.0, "x-unit" = "mm"))]
+    pub pin_mm: f64,
+    /// Probability that `redraw_pins` sets a pin anew.
+    #[schemars(range(min = 0.000001, max = 1.0))]
+    pub redraw_chance: f64,
+    /// The least factor on the steps of `refine`; the logarithm of the factor is uniform from this one's to 0.
+    #[schemars(range(min = 1e-12, max = 0.99))]
+    pub finest: f64,
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        Self { gaussian: 0.5, uniform: 0.2, pin_chance: 0.5, pin_mm: 0.5, redraw_chance: 0.3, finest: 1e-4 }
+    }
+}

@@ -1,0 +1,271 @@
+//! One shot: from a draw to the pins that are left.
+
+use super::config::{Config, Delivery};
+use super::draw::Shot;
+use super::rack::Rack;
+use super::release::Quantity;
+use glam::{DQuat, DVec3};
+use plaus_dist::math;
+use plaus_mcmc::ModelError;
+use plaus_sim::material::Law;
+use plaus_sim::mechanics::{Impact, Other};
+use plaus_sim::rigid::{Rigid, RigidScratch, Start, Turning};
+use plaus_sim::shape::Revolution;
+use plaus_sim::trace::{Observer, Trace};
+use plaus_sim::worlds::{Alley, Verdict};
+use plaus_sim::{Outcome, Scratch, State, WorldError};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Width of the lane in m.
+pub(super) const WIDTH: f64 = Alley::WIDTH;
+
+/// What all shots of a scenario have in common.
+#[derive(Debug)]
+pub(super) struct Lane {
+    alley: Alley,
+    pin: Arc<Revolution>,
+    pins: Vec<usize>,
+}
+
+/// What a shot left.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Rest {
+    /// What became of each pin that was set up, in ascending order of their numbers.
+    pub pins: Vec<Fate>,
+    /// Where and how the ball met the first pin, if it did.
+    pub entry: Option<Entry>,
+    /// Numbers of the pins that the ball itself struck, in the order in which it did.
+    pub struck: Vec<u8>,
+    /// Whether the simulation came to its end within the simulator's budget of events. Where it did not, the draw has probability 0.
+    pub complete: bool,
+}
+
+/// What became of a pin.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Fate {
+    /// It stands, so far in m from where it was set.
+    Standing(f64),
+    /// It has fallen, or is gone.
+    Down,
+}
+
+/// How a ball met the first pin.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    /// Place of the ball's centre across the lane in m.
+    pub across: f64,
+    /// Angle of its path to the lane's direction in degrees, to the bowler's right.
+    pub angle: f64,
+}
+
+impl Fate {
+    /// Whether the pin stands.
+    #[must_use]
+    pub fn stands(self) -> bool {
+        matches!(self, Self::Standing(_))
+    }
+}
+
+/// Whether the ball has left the lane before its end. By the rules of the game it is dead then, whatever it may still do.
+fn is_in_gutter(ball: &Turning) -> bool {
+    ball.path.x.x.abs() >= 0.5 * WIDTH && ball.path.x.y < 0.0
+}
+
+/// Some of the pins that were set up, by their places in the rack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Pins(u16);
+
+impl Pins {
+    pub(super) fn contains(self, place: usize) -> bool {
+        self.0 >> place & 1 == 1
+    }
+
+    fn insert(&mut self, place: usize) {
+        self.0 |= 1 << place;
+    }
+}
+
+/// Memory of a chain's simulations.
+#[derive(Debug, Default)]
+pub struct Work {
+    scratch: Scratch<RigidScratch>,
+}
+
+impl Lane {
+    pub(super) fn new(config: &Config, rack: &Rack) -> Result<Self, WorldError> {
+        let contact = &config.contact;
+        let (friction, oil) = match config.delivery {
+            Delivery::Paper => (0.12, 0.0),
+            Delivery::Regulation => (0.2, 12.0),
+        };
+        let mut alley = Alley {
+            pin_mass: config.pin_kg,
+            ball_lane: Law::new(contact.lane_friction.unwrap_or(friction), contact.lane_restitution),
+            ball_pin: Law::new(contact.ball_pin_friction, contact.ball_pin_restitution),
+            pin_pin: Law::new(contact.pin_pin_friction, contact.pin_pin_restitution),
+            pin_lane: Law::new(contact.pin_lane_friction, contact.pin_lane_restitution),
+            oil: contact.oil_m.unwrap_or(oil),
+            oil_friction: contact.oil_friction,
+            accuracy: config.accuracy.tolerances(),
+            duration: config.duration_s,
+            standing: [false; 10],
+            ..Alley::default()
+        };
+        for pin in rack.pins() {
+            alley.standing[pin - 1] = true;
+        }
+        let lane = Self { pin: Arc::new(alley.pin()?), alley, pins: rack.pins().to_vec() };
+        // What the configuration got wrong is said now, not in the middle of a run.
+        lane.alley.world_of(&lane.pin)?;
+        Ok(lane)
+    }
+
+    /// The alley with the ball of a draw.
+    fn alley(&self, draw: &Shot) -> Alley {
+        let radius = draw.get(Quantity::Radius);
+        Alley {
+            ball_radius: radius,
+            ball_mass: draw.get(Quantity::Density) * 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius,
+            ball_gyration: draw.get(Quantity::Gyration) * radius,
+            ..self.alley
+        }
+    }
+
+    /// The world of a draw, and where everything starts.
+    pub(super) fn world(&self, draw: &Shot) -> Result<(Rigid, Vec<Start>), WorldError> {
+        let position = DVec3::new(draw.get(Quantity::Across), -Alley::LENGTH, draw.get(Quantity::Height));
+        let ball = Start {
+            position,
+            orientation: DQuat::IDENTITY,
+            velocity: DVec3::new(draw.get(Quantity::Drift), draw.get(Quantity::Speed), 0.0),
+            spin: DVec3::new(-draw.get(Quantity::Roll), draw.get(Quantity::Hook), draw.get(Quantity::Twist)),
+            time: 0.0,
+        };
+        let up = self.pin.balance();
+        let pin = |(number, offset): (&usize, &[f64; 2])| {
+            Start::at_rest(Alley::spot(*number) + DVec3::new(offset[0] / 1000.0, offset[1] / 1000.0, up))
+        };
+        let starts = std::iter::once(ball).chain(self.pins.iter().zip(&draw.pins).map(pin)).collect();
+        Ok((self.alley(draw).world_of(&self.pin)?, starts))
+    }
+
+    /// Bowls. Stops as soon as no pin's fate can change, or `hopeless` says so of the pins that are down; then there is no answer.
+    pub(super) fn bowl(
+        &self,
+        draw: &Shot,
+        work: &mut Work,
+        hopeless: impl FnMut(Pins) -> bool,
+        observer: impl Observer<Rigid>,
+    ) -> Result<Option<Rest>, ModelError> {
+        let (world, starts) = self.world(draw).map_err(ModelError::new)?;
+        let mut state = world.state(&starts).map_err(ModelError::new)?;
+        let mut umpire = Umpire::new(&world, Verdict::of(&self.alley(draw), &self.pin), hopeless);
+        let duration = self.alley.duration;
+        let outcome = world
+            .run(&mut state, &mut work.scratch, duration, &mut (&mut umpire, observer))
+            .map_err(ModelError::new)?;
+        if umpire.gave_up {
+            return Ok(None);
+        }
+        if let Outcome::NotFinite { body } = outcome {
+            return Err(ModelError::new(format!("the motion of body {body} is no longer finite")));
+        }
+        let fate = |(place, (body, start)): (usize, (&Turning, &Start))| {
+            if umpire.down.contains(place) {
+                return Fate::Down;
+            }
+            let way = (body.path.at(state.time()) - start.position).truncate();
+            Fate::Standing(way.length())
+        };
+        let pins = state.bodies().iter().zip(&starts).skip(1).enumerate().map(fate).collect();
+        let struck = umpire.struck.iter().map(|&body| self.pins[body - 1] as u8).collect();
+        Ok(Some(Rest { pins, entry: umpire.entry, struck, complete: outcome != Outcome::OutOfEvents }))
+    }
+
+    /// Bowls until everything is at rest, and records it: the world, all motions, and when it ends.
+    pub(super) fn record(&self, draw: &Shot, work: &mut Work) -> Result<(Rigid, Trace<Turning>, f64), ModelError> {
+        let (world, starts) = self.world(draw).map_err(ModelError::new)?;
+        let mut state = world.state(&starts).map_err(ModelError::new)?;
+        let mut trace = Trace::default();
+        world.run(&mut state, &mut work.scratch, self.alley.duration, &mut trace).map_err(ModelError::new)?;
+        let last = trace.motions.iter().filter_map(|motions| motions.last()).map(|motion| motion.path.t);
+        let end = last.fold(0.0, f64::max);
+        Ok((world, trace, end))
+    }
+
+    /// Name of a body.
+    pub(super) fn name(&self, body: usize) -> String {
+        if body == 0 { "ball".into() } else { format!("pin_{}", self.pins[body - 1]) }
+    }
+
+    /// The pin's form.
+    pub(super) fn pin(&self) -> &Revolution {
+        &self.pin
+    }
+}
+
+/// Watches a shot: what the ball strikes, and when it is decided.
+struct Umpire<'a, H> {
+    world: &'a Rigid,
+    verdict: Verdict,
+    hopeless: H,
+    gave_up: bool,
+    /// Pins that have fallen, at whatever time: one that rises again is down all the same.
+    down: Pins,
+    /// The ball's latest motion.
+    path: Option<plaus_sim::motion::Parabola>,
+    entry: Option<Entry>,
+    /// Bodies that the ball struck.
+    struck: Vec<usize>,
+}
+
+impl<'a, H> Umpire<'a, H> {
+    fn new(world: &'a Rigid, verdict: Verdict, hopeless: H) -> Self {
+        Self {
+            world,
+            verdict,
+            hopeless,
+            gave_up: false,
+            down: Pins::default(),
+            path: None,
+            entry: None,
+            struck: Vec::new(),
+        }
+    }
+}
+
+impl<H: FnMut(Pins) -> bool> Observer<Rigid> for Umpire<'_, H> {
+    fn impact(&mut self, impact: &Impact) {
+        let (0, Other::Body(pin)) = (impact.body, impact.other) else { return };
+        if self.struck.contains(&pin) {
+            return;
+        }
+        self.struck.push(pin);
+        if let (None, Some(path)) = (self.entry, self.path) {
+            let velocity = path.velocity_after(impact.time - path.t);
+            let angle = math::atan2(velocity.x, velocity.y).to_degrees();
+            self.entry = Some(Entry { across: path.at(impact.time).x, angle });
+        }
+    }
+
+    fn motion(&mut self, index: usize, body: &Turning) {
+        if index == 0 && self.entry.is_none() {
+            self.path = Some(body.path);
+        }
+    }
+
+    fn proceed(&mut self, state: &State<Turning>) -> bool {
+        if self.struck.is_empty() && is_in_gutter(&state.bodies()[0]) {
+            return false;
+        }
+        let before = self.down;
+        for (place, pin) in state.bodies()[1..].iter().enumerate() {
+            if Verdict::has_fallen(pin) {
+                self.down.insert(place);
+            }
+        }
+        self.gave_up = self.down != before && (self.hopeless)(self.down);
+        !self.gave_up && !self.verdict.is_final(self.world, state)
+    }
+}

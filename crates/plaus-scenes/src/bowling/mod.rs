@@ -1,0 +1,194 @@
+//! Bowling (section 5.2, appendix A): which pins are left is demanded; the ball, its delivery and the places of the pins are uncertain.
+
+mod animate;
+mod config;
+mod draw;
+mod lane;
+mod moves;
+mod props;
+mod rack;
+mod release;
+
+pub use config::{Config, Contact, Delivery, Moves, Rewarded, Steps, Weights};
+pub use draw::{Prior, Shot};
+pub use lane::{Entry, Fate, Rest, Work};
+pub use moves::{ChangeAll, ChangeBall, ChangePins, Mirror, Redraw, RedrawPins, Refine};
+pub use rack::Rack;
+pub use release::{Law, Laws, Quantity, Release};
+
+use crate::animation::Animation;
+use crate::rules::Rules;
+use crate::scene::{ConfigError, Role, Scalar, Scene};
+use lane::{Lane, Pins};
+use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
+use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
+
+/// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, k the pins that end as they should, m those that stand as they should and have not moved far.
+#[derive(Debug)]
+pub struct Bowling {
+    config: Config,
+    rack: Rack,
+    prior: Prior,
+    goal: Gibbs,
+    lane: Lane,
+}
+
+impl Bowling {
+    /// The scene of a configuration.
+    ///
+    /// # Errors
+    /// [`ConfigError`] where pins are asked for that there are not, or the numbers make no world.
+    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        let rack = Rack::new(config)?;
+        let goal = Gibbs::from_ln_lambda(config.ln_lambda)
+            .map_err(|error| ConfigError::new("world.bowling.ln_lambda", error))?;
+        let prior = Prior::new(config, rack.pins().len())?;
+        let lane = Lane::new(config, &rack).map_err(|error| ConfigError::new("world.bowling", error))?;
+        Ok(Self { config: config.clone(), rack, prior, goal, lane })
+    }
+
+    /// The configuration.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Which pins are set up, and which of them should be left.
+    #[must_use]
+    pub fn rack(&self) -> &Rack {
+        &self.rack
+    }
+
+    /// The law of a draw without the constraint.
+    #[must_use]
+    pub fn prior(&self) -> &Prior {
+        &self.prior
+    }
+
+    /// k and m.
+    #[must_use]
+    pub fn counts(&self, rest: &Rest) -> (u64, u64) {
+        let far = self.config.moved_far_mm / 1000.0;
+        let (mut k, mut m) = (0, 0);
+        for (fate, &leave) in rest.pins.iter().zip(self.rack.leave()) {
+            k += u64::from(fate.stands() == leave);
+            let counts = leave || self.config.rewarded == Rewarded::AnyStanding;
+            m += u64::from(counts && matches!(fate, Fate::Standing(way) if *way <= far));
+        }
+        (k, m)
+    }
+
+    /// The most that k + m can still become once these pins are down, by their places in the rack.
+    fn most(&self, down: Pins) -> u64 {
+        let one = |(place, leave): (usize, &bool)| match (down.contains(place), leave) {
+            (true, true) => 0,
+            (false, true) => 2,
+            // Down as it should, or, where any standing pin is rewarded, standing.
+            (_, false) => 1,
+        };
+        self.rack.leave().iter().enumerate().map(one).sum()
+    }
+
+    /// Whether every pin ended as it should, and none that should stand has moved far.
+    #[must_use]
+    pub fn is_satisfied(&self, rest: &Rest) -> bool {
+        let far = self.config.moved_far_mm / 1000.0;
+        let mut pins = rest.pins.iter().zip(self.rack.leave());
+        rest.complete
+            && pins.all(|(fate, &leave)| match fate {
+                Fate::Standing(way) => leave && *way <= far,
+                Fate::Down => !leave,
+            })
+    }
+}
+
+impl Target for Bowling {
+    type Draw = Shot;
+    type Outcome = Rest;
+    type Scratch = Work;
+
+    fn start(&self, stream: &mut Stream) -> Shot {
+        let mut draw = Shot { ball: [0.0; 10], pins: Vec::new() };
+        self.prior.sample(false, &mut draw, stream);
+        draw
+    }
+
+    fn log_prior(&self, draw: &Shot) -> Result<LogDensity, ModelError> {
+        Ok(self.prior.log_density(draw)?)
+    }
+
+    fn simulate(
+        &self,
+        draw: &Shot,
+        _: Option<&StateOf<Self>>,
+        floor: LogPotential,
+        work: &mut Work,
+    ) -> Result<Simulated<Rest>, ModelError> {
+        let hopeless = |down| self.goal.log_potential(self.most(down)) <= floor;
+        let rest = self.lane.bowl(draw, work, hopeless, &mut ())?;
+        Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
+    }
+
+    fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
+        if !rest.complete {
+            return Ok(LogPotential::ZERO);
+        }
+        let (k, m) = self.counts(rest);
+        Ok(self.goal.log_potential(k + m))
+    }
+}
+
+/// Two solutions are the same where the ball met the first pin on the same board of the lane and struck the same pins in the same order.
+impl Goal for Bowling {
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+        let rest = &state.outcome;
+        let struck = rest.struck.iter().map(|&pin| i64::from(pin));
+        self.is_satisfied(rest).then(|| SolutionClass::of(std::iter::once(board(rest) as i64).chain(struck)))
+    }
+}
+
+/// Boards of a lane.
+const BOARDS: f64 = 39.0;
+
+/// The board, counted from the bowler's right as bowlers do, over which the ball's centre was when it met the first pin; 0 where it met none.
+fn board(rest: &Rest) -> f64 {
+    rest.entry.map_or(0.0, |entry| ((0.5 - entry.across / lane::WIDTH) * BOARDS).floor() + 1.0)
+}
+
+impl Scene for Bowling {
+    fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
+        let weights = match self.config.moves {
+            Moves::Paper => Weights::paper(),
+            Moves::Mixed => self.config.weights,
+        };
+        Mixture::new(moves::all(&self.config, &weights, rules))
+            .map_err(|error| ConfigError::new("world.bowling.weights", error))
+    }
+
+    fn scalars(&self) -> Vec<Scalar> {
+        let scalar = |name: &str, unit, role| Scalar { name: name.into(), unit, role };
+        let outcomes = [("k", ""), ("m", ""), ("pinfall", ""), ("board", ""), ("angle", "°")];
+        let ball = self.prior.laws().uncertain().map(Quantity::name);
+        let outcomes = outcomes.map(|(name, unit)| scalar(name, unit, Role::Outcome));
+        outcomes.into_iter().chain(ball.map(|(name, unit)| scalar(name, unit, Role::Draw))).collect()
+    }
+
+    /// Where the ball met no pin, the board and the angle are 0.
+    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
+        if let [k, m, pinfall, at, angle, ball @ ..] = values {
+            let rest = &state.outcome;
+            let counts = self.counts(rest);
+            (*k, *m) = (counts.0 as f64, counts.1 as f64);
+            *pinfall = rest.pins.iter().filter(|fate| !fate.stands()).count() as f64;
+            *at = board(rest);
+            *angle = rest.entry.map_or(0.0, |entry| entry.angle);
+            for (value, quantity) in ball.iter_mut().zip(self.prior.laws().uncertain()) {
+                *value = state.draw.get(quantity);
+            }
+        }
+    }
+
+    fn animate(&self, draw: &Shot) -> Result<Animation, ModelError> {
+        animate::animate(&self.lane, draw, self.config.shown_m)
+    }
+}

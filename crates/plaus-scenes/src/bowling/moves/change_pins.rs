@@ -1,0 +1,47 @@
+//! Some pins shifted.
+
+use super::step;
+use crate::bowling::{Bowling, Shot};
+use plaus_dist::{LogRatio, Stream, open_unit};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+
+/// Each pin, with probability `chance`, is shifted in a random direction by a length N(0, `sd`) mm. Symmetric.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChangePins {
+    /// Probability that a pin is shifted.
+    pub chance: f64,
+    /// Standard deviation of the length, mm.
+    pub sd: f64,
+}
+
+impl Move<Bowling> for ChangePins {
+    fn name(&self) -> &'static str {
+        "change_pins"
+    }
+
+    fn propose(
+        &self,
+        _: &Bowling,
+        current: &StateOf<Bowling>,
+        candidate: &mut Shot,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        for offset in &mut candidate.pins {
+            if open_unit(stream) < self.chance {
+                let by = step(self.sd, stream);
+                *offset = [offset[0] + by[0], offset[1] + by[1]];
+            }
+        }
+        Ok(if candidate.pins == current.draw.pins { Proposal::Stay } else { Proposal::SYMMETRIC })
+    }
+
+    fn log_ratio(
+        &self,
+        _: &Bowling,
+        _: &StateOf<Bowling>,
+        _: &StateOf<Bowling>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::ONE)
+    }
+}

@@ -1,0 +1,313 @@
+//! The laws of a delivery: which quantities of the ball are uncertain, and how.
+
+use super::config::{Config, Delivery};
+use crate::scene::ConfigError;
+use plaus_dist::{
+    Density, Gaussian, LogDensity, NotANumber, ParamError, Sample, Stream, TruncatedGaussian, WrappedUniform,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What differs from the chosen delivery's laws. Unset keys are the delivery's own; a standard deviation of 0, or an interval of one value, means that the quantity is
+/// not uncertain.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Release {
+    /// Least radius of the ball.
+    #[schemars(extend("minimum" = 10.0, "maximum" = 500.0, "x-unit" = "mm"))]
+    pub radius_min_mm: Option<f64>,
+    /// Largest radius of the ball. Regulation: 107.95 to 109.16.
+    #[schemars(extend("minimum" = 10.0, "maximum" = 500.0, "x-unit" = "mm"))]
+    pub radius_max_mm: Option<f64>,
+    /// Least density of the ball.
+    #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³"))]
+    pub density_min: Option<f64>,
+    /// Largest density of the ball. Regulation: 1331, so that the largest ball has no more than 7.26 kg.
+    #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³"))]
+    pub density_max: Option<f64>,
+    /// Least radius of gyration over the ball's radius; a solid ball has 0.6325.
+    #[schemars(range(min = 0.1, max = 1.0))]
+    pub gyration_min: Option<f64>,
+    /// Largest radius of gyration over the ball's radius.
+    #[schemars(range(min = 0.1, max = 1.0))]
+    pub gyration_max: Option<f64>,
+    /// How far from the middle of the lane the ball's centre may be when it is released.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 0.6, "x-unit" = "m"))]
+    pub across_m: Option<f64>,
+    /// Mean height of the ball's centre above the lane, over its largest radius. It never starts inside the lane.
+    #[schemars(range(min = 0.0, max = 20.0))]
+    pub height_mean: Option<f64>,
+    /// Standard deviation of that height, over the largest radius.
+    #[schemars(range(min = 0.0, max = 20.0))]
+    pub height_sd: Option<f64>,
+    /// Mean speed along the lane.
+    #[schemars(extend("minimum" = 0.1, "maximum" = 100.0, "x-unit" = "m/s"))]
+    pub speed_mean: Option<f64>,
+    /// Standard deviation of the speed along the lane.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "m/s"))]
+    pub speed_sd: Option<f64>,
+    /// Mean speed across the lane, to the bowler's right.
+    #[schemars(extend("minimum" = -100.0, "maximum" = 100.0, "x-unit" = "m/s"))]
+    pub drift_mean: Option<f64>,
+    /// Standard deviation of the speed across the lane.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "m/s"))]
+    pub drift_sd: Option<f64>,
+    /// Mean angular velocity about the axis across the lane, of forward roll: a ball that rolls has its speed over its radius.
+    #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
+    pub roll_mean: Option<f64>,
+    /// Standard deviation of the forward roll.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
+    pub roll_sd: Option<f64>,
+    /// Mean angular velocity about the axis along the lane: what makes the ball hook, to the bowler's right where positive.
+    #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
+    pub hook_mean: Option<f64>,
+    /// Standard deviation of the hook.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
+    pub hook_sd: Option<f64>,
+    /// Mean angular velocity about the vertical, anticlockwise from above.
+    #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
+    pub twist_mean: Option<f64>,
+    /// Standard deviation of the angular velocity about the vertical.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
+    pub twist_sd: Option<f64>,
+}
+
+/// A quantity of the ball; its value's index in [`super::Shot::ball`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// Radius in m.
+    Radius,
+    /// Density in kg/m³.
+    Density,
+    /// Radius of gyration over radius.
+    Gyration,
+    /// Place of the centre across the lane in m.
+    Across,
+    /// Height of the centre above the lane in m.
+    Height,
+    /// Speed along the lane in m/s.
+    Speed,
+    /// Speed across the lane in m/s.
+    Drift,
+    /// Angular velocity of forward roll, about −x, in rad/s.
+    Roll,
+    /// Angular velocity about +y in rad/s.
+    Hook,
+    /// Angular velocity about the vertical in rad/s.
+    Twist,
+}
+
+impl Quantity {
+    /// All of them, in the order of their indices.
+    pub const ALL: [Self; 10] = [
+        Self::Radius,
+        Self::Density,
+        Self::Gyration,
+        Self::Across,
+        Self::Height,
+        Self::Speed,
+        Self::Drift,
+        Self::Roll,
+        Self::Hook,
+        Self::Twist,
+    ];
+
+    /// Its name in tables, and its unit.
+    #[must_use]
+    pub fn name(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Radius => ("radius", "m"),
+            Self::Density => ("density", "kg/m³"),
+            Self::Gyration => ("gyration", ""),
+            Self::Across => ("across", "m"),
+            Self::Height => ("height", "m"),
+            Self::Speed => ("speed", "m/s"),
+            Self::Drift => ("drift", "m/s"),
+            Self::Roll => ("roll", "rad/s"),
+            Self::Hook => ("hook", "rad/s"),
+            Self::Twist => ("twist", "rad/s"),
+        }
+    }
+
+    /// What it becomes when left and right are exchanged.
+    #[must_use]
+    pub fn mirrored(self, value: f64) -> f64 {
+        match self {
+            Self::Across | Self::Drift | Self::Hook | Self::Twist => -value,
+            _ => value,
+        }
+    }
+}
+
+/// The law of one quantity.
+#[derive(Debug, Clone, Copy)]
+pub enum Law {
+    /// Always this value.
+    Fixed(f64),
+    /// Uniform; moves that leave the interval on one side enter it on the other.
+    Uniform(WrappedUniform),
+    /// Gaussian.
+    Gaussian(Gaussian),
+    /// Gaussian of this mean and standard deviation, but not below the ball's radius.
+    AboveRadius(f64, f64),
+}
+
+/// Laws of all quantities.
+#[derive(Debug, Clone)]
+pub struct Laws([Law; 10]);
+
+impl Laws {
+    /// The laws that a configuration asks for.
+    ///
+    /// # Errors
+    /// [`ConfigError`] where an interval ends before it begins, or a ball is too large for its place.
+    pub(super) fn new(config: &Config) -> Result<Self, ConfigError> {
+        let (release, base) = (&config.release, preset(config.delivery));
+        let bad = |key: &str, message: String| ConfigError::new(format!("world.bowling.release.{key}"), message);
+        let wrong = |key: &'static str| move |error: ParamError| bad(key, error.to_string());
+        let or = |set: Option<f64>, own: Option<f64>| set.or(own).unwrap_or(0.0);
+        let interval = |key: &'static str, low: f64, high: f64| match low.total_cmp(&high) {
+            std::cmp::Ordering::Less => WrappedUniform::new(low, high).map(Law::Uniform).map_err(wrong(key)),
+            std::cmp::Ordering::Equal => Ok(Law::Fixed(low)),
+            std::cmp::Ordering::Greater => {
+                Err(bad(key, format!("the interval ends at {high}, before it begins at {low}")))
+            }
+        };
+        let gaussian = |key: &'static str, mean: f64, sd: f64| {
+            if sd > 0.0 { Gaussian::new(mean, sd).map(Law::Gaussian).map_err(wrong(key)) } else { Ok(Law::Fixed(mean)) }
+        };
+        let least = or(release.radius_min_mm, base.radius_min_mm) / 1000.0;
+        let largest = or(release.radius_max_mm, base.radius_max_mm) / 1000.0;
+        let across = or(release.across_m, base.across_m);
+        if 2.0 * largest > super::lane::WIDTH {
+            let most = 500.0 * super::lane::WIDTH;
+            return Err(bad(
+                "radius_max_mm",
+                format!("a ball of this radius is wider than the lane: at most {most:.1}"),
+            ));
+        }
+        let (mean, sd) =
+            (largest * or(release.height_mean, base.height_mean), largest * or(release.height_sd, base.height_sd));
+        let height = if sd > 0.0 {
+            // The interval is longest, and its mass least, for the largest ball.
+            TruncatedGaussian::new(mean, sd, largest, f64::INFINITY).map_err(wrong("height_mean"))?;
+            Law::AboveRadius(mean, sd)
+        } else if mean >= largest {
+            Law::Fixed(mean)
+        } else {
+            return Err(bad(
+                "height_mean",
+                "without uncertainty at least 1, or the largest ball starts inside the lane".into(),
+            ));
+        };
+        Ok(Self([
+            interval("radius_max_mm", least, largest)?,
+            interval(
+                "density_max",
+                or(release.density_min, base.density_min),
+                or(release.density_max, base.density_max),
+            )?,
+            interval(
+                "gyration_max",
+                or(release.gyration_min, base.gyration_min),
+                or(release.gyration_max, base.gyration_max),
+            )?,
+            interval("across_m", -across, across)?,
+            height,
+            gaussian("speed_sd", or(release.speed_mean, base.speed_mean), or(release.speed_sd, base.speed_sd))?,
+            gaussian("drift_sd", or(release.drift_mean, base.drift_mean), or(release.drift_sd, base.drift_sd))?,
+            gaussian("roll_sd", or(release.roll_mean, base.roll_mean), or(release.roll_sd, base.roll_sd))?,
+            gaussian("hook_sd", or(release.hook_mean, base.hook_mean), or(release.hook_sd, base.hook_sd))?,
+            gaussian("twist_sd", or(release.twist_mean, base.twist_mean), or(release.twist_sd, base.twist_sd))?,
+        ]))
+    }
+
+    /// The law of a quantity.
+    #[must_use]
+    pub fn of(&self, quantity: Quantity) -> &Law {
+        &self.0[quantity as usize]
+    }
+
+    /// Quantities that are uncertain.
+    pub fn uncertain(&self) -> impl Iterator<Item = Quantity> {
+        Quantity::ALL.into_iter().filter(|quantity| !matches!(self.of(*quantity), Law::Fixed(_)))
+    }
+
+    /// Draws one quantity, given the values of those before it.
+    pub fn sample(&self, quantity: Quantity, ball: &[f64; 10], stream: &mut Stream) -> f64 {
+        match self.of(quantity) {
+            Law::Fixed(value) => *value,
+            Law::Uniform(law) => law.sample(stream),
+            Law::Gaussian(law) => law.sample(stream),
+            Law::AboveRadius(mean, sd) => above(*mean, *sd, ball[0]).map_or(*mean, |law| law.sample(stream)),
+        }
+    }
+
+    /// Log density of one quantity's value, given those of the others; 0 for one that is not uncertain and has its value.
+    ///
+    /// # Errors
+    /// [`NotANumber`] where a value is NaN.
+    pub fn log_density(&self, quantity: Quantity, ball: &[f64; 10]) -> Result<LogDensity, NotANumber> {
+        let x = ball[quantity as usize];
+        match self.of(quantity) {
+            Law::Fixed(value) => Ok(if x.to_bits() == value.to_bits() { LogDensity::ONE } else { LogDensity::ZERO }),
+            Law::Uniform(law) => law.log_density(&x),
+            Law::Gaussian(law) => law.log_density(&x),
+            Law::AboveRadius(mean, sd) => {
+                above(*mean, *sd, ball[0]).map_or(Ok(LogDensity::ZERO), |law| law.log_density(&x))
+            }
+        }
+    }
+}
+
+/// The law of the height of a ball of this radius; `None` for radii that no ball has.
+fn above(mean: f64, sd: f64, radius: f64) -> Option<TruncatedGaussian> {
+    TruncatedGaussian::new(mean, sd, radius, f64::INFINITY).ok()
+}
+
+/// The keys of a delivery.
+fn preset(delivery: Delivery) -> Release {
+    let paper = Release {
+        radius_min_mm: Some(88.0),
+        radius_max_mm: Some(110.0),
+        density_min: Some(1152.0),
+        density_max: Some(1440.0),
+        // A solid ball: √(2/5).
+        gyration_min: Some(0.632_455_532_033_675_9),
+        gyration_max: Some(0.632_455_532_033_675_9),
+        across_m: Some(super::lane::WIDTH / 2.0),
+        height_mean: Some(1.1),
+        height_sd: Some(0.1),
+        speed_mean: Some(7.0),
+        speed_sd: Some(1.0),
+        drift_sd: Some(0.1),
+        twist_sd: Some(0.2),
+        ..Release::default()
+    };
+    match delivery {
+        Delivery::Paper => paper,
+        Delivery::Regulation => Release {
+            radius_min_mm: Some(107.95),
+            radius_max_mm: Some(109.16),
+            // 5.4 kg (12 lb) for the smallest, 7.26 kg (16 lb) for the largest.
+            density_min: Some(1025.0),
+            density_max: Some(1331.0),
+            // 2.46 to 2.80 inches.
+            gyration_min: Some(0.576),
+            gyration_max: Some(0.655),
+            across_m: Some(0.42),
+            height_mean: Some(1.1),
+            height_sd: Some(0.1),
+            speed_mean: Some(8.0),
+            speed_sd: Some(0.5),
+            drift_mean: Some(0.0),
+            drift_sd: Some(0.3),
+            roll_mean: Some(25.0),
+            roll_sd: Some(10.0),
+            hook_mean: Some(0.0),
+            hook_sd: Some(20.0),
+            twist_mean: Some(0.0),
+            twist_sd: Some(8.0),
+        },
+    }
+}
