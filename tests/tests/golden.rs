@@ -21,6 +21,9 @@ const CASES: &[Case] = &[
     ("ball2d-paper", "ball2d.toml", &["world.ball2d.moves=paper"], 400),
     ("ball2d-as-printed", "ball2d.toml", &["sampler.rules.preset=as-printed"], 400),
     ("ball2d-64-bounces", "ball2d.toml", &["world.ball2d.collisions=64", "world.ball2d.downward=mirror"], 100),
+    ("bowling-strike", "bowling-strike.toml", &[], 12),
+    ("bowling-paper", "bowling-leave-6-7.toml", &["moves=paper", "preset=as-printed"], 12),
+    ("bowling-regulation", "bowling-spare-7-10.toml", &[], 20),
     ("spelling-hi", "spelling-hi.toml", &[], 300),
     ("spelling-hi-paper", "spelling-hi.toml", &["world.spelling.moves=paper"], 300),
     (

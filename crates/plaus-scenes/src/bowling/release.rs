@@ -14,10 +14,10 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct Release {
     /// Least radius of the ball.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 500.0, "x-unit" = "mm"))]
+    #[schemars(extend("minimum" = 10.0, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub radius_min_mm: Option<f64>,
     /// Largest radius of the ball. Regulation: 107.95 to 109.16.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 500.0, "x-unit" = "mm"))]
+    #[schemars(extend("minimum" = 10.0, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub radius_max_mm: Option<f64>,
     /// Least density of the ball.
     #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³"))]
@@ -250,7 +250,8 @@ impl Laws {
     pub fn log_density(&self, quantity: Quantity, ball: &[f64; 10]) -> Result<LogDensity, NotANumber> {
         let x = ball[quantity as usize];
         match self.of(quantity) {
-            Law::Fixed(value) => Ok(if x.to_bits() == value.to_bits() { LogDensity::ONE } else { LogDensity::ZERO }),
+            // The mirror image of 0 is −0.
+            Law::Fixed(value) => Ok(if x - value == 0.0 { LogDensity::ONE } else { LogDensity::ZERO }),
             Law::Uniform(law) => law.log_density(&x),
             Law::Gaussian(law) => law.log_density(&x),
             Law::AboveRadius(mean, sd) => {

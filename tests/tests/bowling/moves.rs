@@ -1,0 +1,142 @@
+//! Every move leaves the prior and the constrained target as they are; moves that are wrong in the ways in which one goes wrong do not.
+
+use super::straight::{AnyMove, Straight, all_moves, small, statistics};
+use plaus_dist::{LogPotential, Stream};
+use plaus_mcmc::check::{OneStep, OneStepReport, Ratios, any_of, one_step, prior, ratios, rejection, visited};
+use plaus_mcmc::view::lend;
+use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, StateOf};
+use plaus_scenes::bowling::{
+    Bowling, ChangeAll, ChangeBall, Delivery, Mirror, Quantity, Redraw, RedrawPins, Shot, Steps,
+};
+use plaus_scenes::{Rules, Scene};
+
+const PLAN: OneStep = OneStep { seed: plaus_dist::Seed(0), samples: 20_000, steps: 1, cells: 16, false_alarm: 1e-6 };
+
+/// One step of `kernel` alone from exact draws: of the prior where λ = 1, and else of the target.
+fn step(scene: &Bowling, kernel: AnyMove) -> OneStepReport {
+    let toy = Straight(scene);
+    let moves = lend::<Straight>(Mixture::of(kernel)).unwrap();
+    if scene.config().ln_lambda == 0.0 {
+        return one_step(&toy, &moves, prior(&toy), &statistics(scene), PLAN).unwrap();
+    }
+    // Three pins, and one that has not moved far.
+    let bound = LogPotential::new(scene.config().ln_lambda * 4.0).unwrap();
+    one_step(&toy, &moves, rejection(&toy, bound), &statistics(scene), PLAN).unwrap()
+}
+
+#[test]
+fn every_move_leaves_prior_and_target_invariant() {
+    for ln_lambda in [0.0, 1.0] {
+        let scene = small(ln_lambda, Delivery::Regulation);
+        for kernel in all_moves() {
+            let report = step(&scene, kernel);
+            assert!(report.passed(), "{report}");
+            assert!(report.accepted() > 500, "{report}");
+        }
+    }
+}
+
+#[test]
+fn ratios_agree_with_their_reverse() {
+    for delivery in [Delivery::Paper, Delivery::Regulation] {
+        let scene = small(1.0, delivery);
+        let toy = Straight(&scene);
+        let mixture = lend::<Straight>(scene.moves(&Rules::exact()).unwrap()).unwrap();
+        let states = visited(&toy, &mixture, plaus_dist::Seed(5), 5, 2000).unwrap();
+        for kernel in all_moves() {
+            let moves = lend::<Straight>(Mixture::of(kernel)).unwrap();
+            let (_, lent) = moves.iter().next().unwrap();
+            let report = ratios(&toy, lent, any_of(&states), Ratios::default()).unwrap();
+            assert!(report.passed(), "{report}");
+        }
+    }
+}
+
+/// What is done to a right move to make it wrong.
+#[derive(Clone, Copy, Debug)]
+enum Fault {
+    /// Whatever the ratio, 1 is used.
+    Symmetric,
+    /// A radius that leaves its interval comes back at its end.
+    Clamps,
+    /// Steps of the speed have a mean.
+    Leans,
+    /// The image in the mirror keeps its drift.
+    Forgets,
+}
+
+struct Faulty(AnyMove, Fault);
+
+impl Move<Bowling> for Faulty {
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    fn propose(
+        &self,
+        target: &Bowling,
+        current: &StateOf<Bowling>,
+        candidate: &mut Shot,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let proposal = self.0.propose(target, current, candidate, stream)?;
+        if proposal == Proposal::Stay {
+            return Ok(proposal);
+        }
+        let [radius, speed, drift] = [Quantity::Radius, Quantity::Speed, Quantity::Drift].map(|q| q as usize);
+        match self.1 {
+            Fault::Symmetric => return Ok(Proposal::SYMMETRIC),
+            Fault::Clamps => {
+                // A step of more than half the interval went around.
+                let step = candidate.ball[radius] - current.draw.ball[radius];
+                if step.abs() > 0.5 * (0.10916 - 0.10795) {
+                    candidate.ball[radius] = if step > 0.0 { 0.10795 } else { 0.10916_f64.next_down() };
+                }
+            }
+            Fault::Leans => candidate.ball[speed] += 0.1,
+            // Any other map that is not its own inverse: drifts of one sign only.
+            Fault::Forgets => candidate.ball[drift] = current.draw.ball[drift].abs(),
+        }
+        Ok(proposal)
+    }
+
+    fn log_ratio(
+        &self,
+        target: &Bowling,
+        from: &StateOf<Bowling>,
+        to: &StateOf<Bowling>,
+        path: Path,
+    ) -> Result<plaus_dist::LogRatio, ModelError> {
+        self.0.log_ratio(target, from, to, path)
+    }
+}
+
+#[test]
+fn wrong_twins_are_caught() {
+    let steps = Steps::default();
+    let ball = |quantities| -> AnyMove { Box::new(ChangeBall { name: "change", quantities, steps }) };
+    let twins: Vec<AnyMove> = vec![
+        // The paper's errata.
+        Box::new(ChangeAll { symmetric: true, radial_offsets: false }),
+        Box::new(ChangeAll { symmetric: false, radial_offsets: true }),
+        Box::new(Redraw { symmetric: true }),
+        Box::new(Faulty(Box::new(RedrawPins { chance: 0.3 }), Fault::Symmetric)),
+        Box::new(Faulty(ball(&[Quantity::Radius]), Fault::Clamps)),
+        Box::new(Faulty(ball(&[Quantity::Speed, Quantity::Drift]), Fault::Leans)),
+        Box::new(Faulty(Box::new(Mirror), Fault::Forgets)),
+    ];
+    for twin in twins {
+        let report = step(&small(0.0, Delivery::Regulation), twin);
+        assert!(!report.passed(), "not caught: {report}");
+    }
+}
+
+/// A height drawn for one radius is no draw for another: the truncation's mass must be in the ratio. At the paper's height the ball touches the lane one standard
+/// deviation below the mean, for the largest radius.
+#[test]
+fn a_shift_of_the_radius_keeps_the_height_s_law() {
+    let scene = super::straight::scene(|config| config.ln_lambda = 0.0);
+    let steps = Steps::default();
+    let report = step(&scene, Box::new(ChangeBall { name: "change_radius", quantities: &[Quantity::Radius], steps }));
+    assert!(report.passed() && report.accepted() > 10_000, "{report}");
+}

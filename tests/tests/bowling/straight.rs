@@ -1,0 +1,132 @@
+//! The scene with a simulator simple enough to trust: the ball keeps its direction, and pins in its way fall. Moves cannot tell the difference, and thousands of shots
+//! cost nothing.
+
+use plaus_dist::{LogDensity, LogPotential, Stream};
+use plaus_mcmc::check::Statistic;
+use plaus_mcmc::view::View;
+use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target};
+use plaus_scenes::bowling::{
+    Bowling, ChangeAll, ChangeBall, ChangePins, Config, Delivery, Entry, Fate, Mirror, Quantity, Redraw, RedrawPins,
+    Refine, Rest, Shot, Steps,
+};
+
+pub(crate) type AnyMove = Box<dyn Move<Bowling>>;
+pub(crate) type Bowled = State<Shot, Rest>;
+
+/// Pins whose centre comes closer to the ball's straight way than its radius fall. Offsets count ten times, so that they matter.
+pub(crate) struct Straight<'a>(pub &'a Bowling);
+
+/// Place of a pin's spot across the lane, and beyond the head pin, in m.
+fn spot(pin: usize) -> [f64; 2] {
+    let (row, place) = match pin {
+        1 => (0, 0),
+        2..=3 => (1, pin - 2),
+        4..=6 => (2, pin - 4),
+        _ => (3, pin - 7),
+    };
+    [0.3048 * (place as f64 - 0.5 * f64::from(row)), 0.264 * f64::from(row)]
+}
+
+impl Target for Straight<'_> {
+    type Draw = Shot;
+    type Outcome = Rest;
+    type Scratch = ();
+
+    fn start(&self, stream: &mut Stream) -> Shot {
+        self.0.start(stream)
+    }
+
+    fn log_prior(&self, draw: &Shot) -> Result<LogDensity, ModelError> {
+        self.0.log_prior(draw)
+    }
+
+    fn simulate(
+        &self,
+        draw: &Shot,
+        _: Option<&StateOf<Self>>,
+        _: LogPotential,
+        (): &mut (),
+    ) -> Result<Simulated<Rest>, ModelError> {
+        let slope = (draw.get(Quantity::Drift) + 0.01 * draw.get(Quantity::Hook)) / draw.get(Quantity::Speed);
+        let mut rest = Rest { pins: Vec::new(), entry: None, struck: Vec::new(), complete: true };
+        for (pin, offset) in self.0.rack().pins().iter().zip(&draw.pins) {
+            let [x, y] = spot(*pin);
+            let way = draw.get(Quantity::Across) + slope * (18.3 + y) - x - 0.01 * offset[0];
+            let is_struck = way.abs() < draw.get(Quantity::Radius);
+            let moved = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt() / 1000.0;
+            rest.pins.push(if is_struck { Fate::Down } else { Fate::Standing(moved) });
+            if is_struck {
+                rest.struck.push(*pin as u8);
+                rest.entry.get_or_insert(Entry { across: x + way, angle: slope.to_degrees() });
+            }
+        }
+        Ok(Simulated::Complete(rest))
+    }
+
+    fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
+        self.0.log_constraint(rest)
+    }
+}
+
+impl View for Straight<'_> {
+    type Seen = Bowling;
+
+    fn seen(&self) -> &Bowling {
+        self.0
+    }
+}
+
+pub(crate) fn scene(change: impl FnOnce(&mut Config)) -> Bowling {
+    let mut config = Config::default();
+    change(&mut config);
+    Bowling::new(&config).unwrap()
+}
+
+/// Three pins, which look the same in the mirror, one to be left; all quantities of the ball uncertain where `delivery` is regulation.
+pub(crate) fn small(ln_lambda: f64, delivery: Delivery) -> Bowling {
+    scene(|config| {
+        config.pins = vec![1, 4, 6];
+        config.leave = vec![1];
+        config.ln_lambda = ln_lambda;
+        config.moved_far_mm = 1.2;
+        config.delivery = delivery;
+    })
+}
+
+/// Every move there is, with settings that make each of its ways likely.
+pub(crate) fn all_moves() -> Vec<AnyMove> {
+    use Quantity::{Across, Density, Drift, Gyration, Height, Hook, Radius, Roll, Speed, Twist};
+    let steps = Steps::default();
+    let ball = |quantities| -> AnyMove { Box::new(ChangeBall { name: "change", quantities, steps }) };
+    vec![
+        Box::new(ChangeAll::default()),
+        ball(&[Radius]),
+        ball(&[Density, Gyration]),
+        ball(&[Across, Height]),
+        ball(&[Speed, Drift]),
+        ball(&[Roll, Hook, Twist]),
+        Box::new(ChangePins { chance: 0.5, sd: 0.5 }),
+        Box::new(Redraw::default()),
+        Box::new(RedrawPins { chance: 0.3 }),
+        Box::new(Refine { steps }),
+        Box::new(Mirror),
+    ]
+}
+
+/// What must keep its law: the ball's quantities, two offsets, and what became of the pins.
+pub(crate) fn statistics(scene: &Bowling) -> Vec<Statistic<'_, Shot, Rest>> {
+    let quantity =
+        |quantity: Quantity| Statistic::new(quantity.name().0, move |state: &Bowled| state.draw.get(quantity));
+    let mut all: Vec<_> = scene.prior().laws().uncertain().map(quantity).collect();
+    all.push(Statistic::new("over the lane", |state: &Bowled| {
+        state.draw.get(Quantity::Height) - state.draw.get(Quantity::Radius)
+    }));
+    all.push(Statistic::new("an offset", |state: &Bowled| state.draw.pins[0][0]));
+    all.push(Statistic::new("another", |state: &Bowled| state.draw.pins[2][1]));
+    all.push(Statistic::new("k + m", |state: &Bowled| {
+        let (k, m) = scene.counts(&state.outcome);
+        (k + m) as f64
+    }));
+    all.push(Statistic::new("first down", |state: &Bowled| f64::from(u8::from(!state.outcome.pins[0].stands()))));
+    all
+}
