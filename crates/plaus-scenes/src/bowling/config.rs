@@ -134,6 +134,13 @@ pub struct Contact {
     /// Restitution between a pin and lane, gutters and walls.
     #[schemars(range(min = 0.0, max = 0.95))]
     pub pin_lane_restitution: f64,
+    /// Resistance to rolling of a pin: torque over load times the distance from its centre of gravity to where it touches. Without any, a nudged pin runs around on the rim of its foot for
+    /// ever.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub pin_rolling: f64,
+    /// Resistance to spinning about the vertical of a pin, likewise.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub pin_spinning: f64,
 }
 
 impl Default for Contact {
@@ -149,6 +156,8 @@ impl Default for Contact {
             pin_pin_restitution: 0.6,
             pin_lane_friction: 0.25,
             pin_lane_restitution: 0.4,
+            pin_rolling: 0.02,
+            pin_spinning: 0.01,
         }
     }
 }

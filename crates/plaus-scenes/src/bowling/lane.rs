@@ -104,7 +104,8 @@ impl Lane {
             ball_lane: Law::new(contact.lane_friction.unwrap_or(friction), contact.lane_restitution),
             ball_pin: Law::new(contact.ball_pin_friction, contact.ball_pin_restitution),
             pin_pin: Law::new(contact.pin_pin_friction, contact.pin_pin_restitution),
-            pin_lane: Law::new(contact.pin_lane_friction, contact.pin_lane_restitution),
+            pin_lane: Law::new(contact.pin_lane_friction, contact.pin_lane_restitution)
+                .with_resistance(contact.pin_rolling, contact.pin_spinning),
             oil: contact.oil_m.unwrap_or(oil),
             oil_friction: contact.oil_friction,
             accuracy: config.accuracy.tolerances(),

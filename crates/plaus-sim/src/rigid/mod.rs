@@ -8,7 +8,7 @@
 //! What is approximate: a body of revolution is a row of balls and rings (see [`crate::shape::Revolution`]); bumps of a table are felt at the feelers only
 //! ([`RigidWorld::skin`]); two cuboids do not collide with each other's edges, only a cuboid with balls and bodies of revolution; the direction of a slip within an impact and the
 //! steps of lasting contact follow the preset. Energy grows only by what pushing a body out of an overlap takes, less than a thousandth of its weight times its size at the standard
-//! preset. Rolling and spinning resistance of a law are not used here.
+//! preset. Rolling and spinning resistance act in the steps of lasting contact on fixed parts, not between bodies nor on a ball that glides.
 //!
 //! ```
 //! use glam::DVec3;
@@ -30,6 +30,7 @@ mod glide;
 mod mechanics;
 mod pair;
 mod part;
+mod resist;
 mod rest;
 mod solve;
 mod step;

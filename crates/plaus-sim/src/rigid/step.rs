@@ -9,6 +9,7 @@ use super::contact::{Touch, response};
 use super::glide;
 use super::pair::PairTouch;
 use super::part::Part;
+use super::resist::resist;
 use super::rest;
 use super::solve::{Contact, Member, sweep};
 use super::tumble::{drift, rotation};
@@ -31,6 +32,8 @@ pub struct RigidScratch {
     pub(super) pairs: Vec<([usize; 2], PairTouch)>,
     /// Of the touches first, then of the pairs.
     pub(super) contacts: Vec<Contact>,
+    /// Whether the last step lifted bodies by more than the energy that they had.
+    climbed: bool,
 }
 
 /// A member's pose and orientation at the start and at the end of a step.
@@ -107,7 +110,7 @@ pub(super) fn settle(
     }
     for _ in 0..SHORTENINGS {
         scratch.step(world, h);
-        match scratch.returns() {
+        match scratch.returns().or_else(|| scratch.climbs()) {
             Some(part) => h *= part,
             None => return scratch.write(bodies, h),
         }
@@ -201,6 +204,12 @@ impl RigidScratch {
             time = world.duration;
         }
         world.accuracy.step * time
+    }
+
+    /// Whether a step was so long that keeping its points out of the ground lifted bodies higher than their energy can: a pin that rocks over its foot's rim, say. Then
+    /// a shorter one must see where it touches.
+    fn climbs(&self) -> Option<f64> {
+        self.climbed.then_some(0.5)
     }
 
     /// Whether the drift of a step brings a point back that is just leaving, and by what part the step is too long then.
@@ -316,6 +325,7 @@ impl RigidScratch {
             let spec = &world.specs[p.body];
             *m = Self::member(spec, &p.end.r, p.end.v + half_kick, half_spin(spec, p.end_turn, p.end.w));
         }
+        resist(world, &self.places, &self.touches, &self.contacts, &mut self.members);
         for c in 0..self.contacts.len() {
             let old = self.contacts[c];
             let (mut next, gap, touching) = if let Some((a, t)) = self.touches.get(c) {
@@ -355,6 +365,7 @@ impl RigidScratch {
             before += kinetic(spec, p.turn, p.start.v, p.start.w) + spec.mass * world.gravity.dot(p.end.x - p.start.x);
             after += kinetic(spec, p.end_turn, m.v, m.w);
         }
+        self.climbed = before < 0.0;
         if after > before {
             let part = (before.max(0.0) / after).sqrt();
             for m in &mut self.members {

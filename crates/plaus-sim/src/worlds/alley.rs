@@ -63,7 +63,7 @@ impl Default for Alley {
             ball_lane: Law::new(0.12, 0.2),
             ball_pin: Law::new(0.15, 0.7),
             pin_pin: Law::new(0.2, 0.6),
-            pin_lane: Law::new(0.25, 0.4),
+            pin_lane: Law::new(0.25, 0.4).with_resistance(0.02, 0.01),
             accuracy: Accuracy::default(),
             duration: 5.0,
             standing: [true; 10],
