@@ -29,6 +29,8 @@ pub struct RigidScratch {
     pub(super) leaving: Vec<(usize, Touch)>,
     /// Points between bodies.
     pub(super) pairs: Vec<([usize; 2], PairTouch)>,
+    /// Points between bodies in lasting contact that touch but separate.
+    pub(super) parting: Vec<([usize; 2], PairTouch)>,
     /// Of the touches first, then of the pairs.
     pub(super) contacts: Vec<Contact>,
 }
@@ -115,6 +117,7 @@ pub(super) fn settle(
     // Bounces too fast for any step: they count as lasting.
     scratch.loads.clear();
     scratch.touches.append(&mut scratch.leaving);
+    scratch.pairs.append(&mut scratch.parting);
     scratch.touches.sort_by_key(|t| t.0);
     scratch.step(world, h);
     scratch.write(bodies, h);
@@ -128,16 +131,17 @@ impl RigidScratch {
         self.loads.clear();
         self.leaving.clear();
         self.pairs.clear();
+        self.parting.clear();
         for &k in group {
             for j in links.of(k).filter(|&j| j > k) {
                 let (i, j) = (k as usize, j as usize);
                 let (a, b) = (bodies[i].pose(), bodies[j].pose());
-                let touch = world.pair_touch([i, j], [&a, &b]);
-                let speed = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
-                let slow = speed <= world.pair_settle_speed([i, j]) || bodies[i].is_hurried() || bodies[j].is_hurried();
-                if slow && touch.gap <= TOUCHING * world.pair_gap([i, j]) {
-                    self.pairs.push(([i, j], touch));
-                }
+                let hurried = bodies[i].is_hurried() || bodies[j].is_hurried();
+                let limit = world.pair_settle_speed([i, j]);
+                world.for_pair_touches([i, j], [&a, &b], TOUCHING * world.pair_gap([i, j]), |touch| {
+                    let slow = hurried || touch.rate(&a, &b) <= limit;
+                    if slow { &mut self.pairs } else { &mut self.parting }.push(([i, j], touch));
+                });
             }
         }
         links.retain(|[i, j]| !group.contains(&i) || self.pairs.iter().any(|p| p.0 == [i as usize, j as usize]));
@@ -168,7 +172,8 @@ impl RigidScratch {
             }
             self.places.push(Place { body: index, start: pose, turn: body.turn, end: pose, end_turn: body.turn });
         }
-        for p in &mut self.pairs {
+        self.parting.retain(|p| p.0.iter().all(|&k| self.places.iter().any(|q| q.body == k)));
+        for p in self.pairs.iter_mut().chain(&mut self.parting) {
             p.0 = p.0.map(|k| self.places.iter().position(|q| q.body == k).unwrap_or(0));
         }
     }
@@ -210,6 +215,13 @@ impl RigidScratch {
             let p = &self.places[*k];
             let before = p.start.velocity(t.arm).dot(t.normal);
             let drifting = (p.end.v + p.end.w.cross(t.arm)).dot(t.normal);
+            if drifting < 0.25 * before {
+                worst = worst.min((0.5 * before / (before - drifting)).max(SHORTEST));
+            }
+        }
+        for ([a, b], t) in &self.parting {
+            let (p, q) = (&self.places[*a], &self.places[*b]);
+            let (before, drifting) = (t.rate(&p.start, &q.start), t.rate(&p.end, &q.end));
             if drifting < 0.25 * before {
                 worst = worst.min((0.5 * before / (before - drifting)).max(SHORTEST));
             }
@@ -268,7 +280,7 @@ impl RigidScratch {
         for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
             let both = ab.map(|k| self.places[k].body);
             c.target = ((KEEP * world.pair_gap(both) - t.gap) / h)
-                .min(PUSH * world.accuracy.settle * world.specs[both[0]].speed);
+                .min(PUSH * world.pair_push(both));
         }
         // The last step's forces are a good guess.
         for (c, &load) in self.contacts.iter_mut().zip(&self.loads) {
@@ -292,13 +304,13 @@ impl RigidScratch {
                     off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * spec.gap;
                     c.target += missing.min(PUSH * world.accuracy.settle * spec.speed);
                 }
-                for (c, (ab, _)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
+                for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
                     let [p, q] = ab.map(|k| &self.places[k]);
-                    let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
+                    let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
                     let missing = (KEEP * world.pair_gap([p.body, q.body]) - after.gap) / h;
                     off |= (missing > 0.0 || c.impulse != DVec3::ZERO)
                         && missing.abs() * h > CLOSE * world.pair_gap([p.body, q.body]);
-                    c.target += missing.min(PUSH * world.accuracy.settle * world.specs[p.body].speed);
+                    c.target += missing.min(PUSH * world.pair_push([p.body, q.body]));
                 }
                 if !off {
                     break;
@@ -328,9 +340,10 @@ impl RigidScratch {
                     world.specs[p.body].gap,
                 )
             } else {
-                let ab = self.pairs[c - self.touches.len()].0;
+                let (ab, t) = &self.pairs[c - self.touches.len()];
+                let ab = *ab;
                 let [p, q] = ab.map(|k| &self.places[k]);
-                let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
+                let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
                 (self.pair_contact(world, ab, &after), after.gap, world.pair_gap([p.body, q.body]))
             };
             if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
@@ -364,6 +377,18 @@ impl RigidScratch {
         }
     }
 
+    /// Whether cuboids are in lasting contact with each other. They come to rest where they are: what tidies one up could push it into another.
+    pub(super) fn has_cuboids_in_touch(&self) -> bool {
+        self.pairs.iter().any(|p| p.1.feature.is_some())
+    }
+
+    /// The least gap of all contacts, over the gap at which bodies touch.
+    pub(super) fn least_gap(&self, world: &Rigid) -> f64 {
+        let fixed = self.touches.iter().map(|(k, t)| t.gap / world.specs[self.places[*k].body].gap);
+        let pairs = self.pairs.iter().map(|(ab, t)| t.gap / world.pair_gap(ab.map(|k| self.places[k].body)));
+        fixed.chain(pairs).fold(f64::INFINITY, f64::min)
+    }
+
     /// Rest: without velocity, flat where the ground is, and lifted out of what overlap steps have left.
     fn lie_down(&self, world: &Rigid, bodies: &mut [Turning]) {
         for (k, p) in self.places.iter().enumerate() {
@@ -375,7 +400,7 @@ impl RigidScratch {
             let tidy = TIDY * world.specs[p.body].gap;
             let (low, high) =
                 touches().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| (l.min(t.gap), h.max(t.gap)));
-            if low >= -tidy && high - low <= tidy {
+            if (low >= -tidy && high - low <= tidy) || self.has_cuboids_in_touch() {
                 continue;
             }
             if let Some((shift, turn)) = rest::flatten(touches()) {
