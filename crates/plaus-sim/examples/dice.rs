@@ -44,7 +44,7 @@ struct Tally {
     outcomes: [u64; 4],
     /// Deepest overlaps over the size, of dice with each other and with the table.
     deepest: [f64; 2],
-    /// Throws in which dice overlapped by more than a thousandth of their size.
+    /// Throws in which dice overlapped by more than a hundredth of their size.
     deep: u64,
     worst: u64,
     stacked: u64,
@@ -74,10 +74,10 @@ impl Tally {
         self.outcomes[place] += 1;
         let size = 0.5 * die.edges.min_element();
         let deepest = watch.deepest.map(|d| d / size);
-        if place != 0 || deepest[0] > 1e-3 {
-            println!("throw {k}: {outcome:?} at {} s, {:?}, overlaps {:.1e} {:.1e}", state.time(), state.counts(), deepest[0], deepest[1]);
+        if place != 0 || deepest[0] > 1e-2 {
+            println!("throw {k}: {outcome:?} at {} s, {:.1} ms, {:?}, overlaps {:.1e} {:.1e}", state.time(), 1e3 * self.times[self.times.len() - 1], state.counts(), deepest[0], deepest[1]);
         }
-        self.deep += u64::from(deepest[0] > 1e-3);
+        self.deep += u64::from(deepest[0] > 1e-2);
         if deepest[0] > self.deepest[0] {
             self.worst = k;
         }
@@ -93,7 +93,7 @@ impl Tally {
         println!("{what}: {n} throws");
         println!("  at rest, time over, out of events, not finite: {:?}; a die on another at the end: {}", self.outcomes, self.stacked);
         println!(
-            "  deepest overlap over half an edge, ever: {:.1e} of two dice (throw {}), {:.1e} with the table; {} throws beyond 1e-3",
+            "  deepest overlap over half an edge, ever: {:.1e} of two dice (throw {}), {:.1e} with the table; {} throws beyond 1e-2",
             self.deepest[0], self.worst, self.deepest[1], self.deep
         );
         println!(

@@ -12,7 +12,7 @@ use super::body::{Phase, Pose, Turning};
 use super::detect::earliest;
 use super::pair::PairTouch;
 use super::{Rigid, Skin, Spec};
-use crate::shape::cuboid_pair::{CuboidPair, Feature, Placed};
+use crate::shape::cuboid_pair::{CuboidPair, Feature, Meeting, Placed};
 use glam::DVec3;
 
 /// Most advancements of one search; then the time reached is handed on as an event, and the bodies are looked at anew.
@@ -31,17 +31,30 @@ struct Held {
     count: usize,
     /// The corners of each that span them.
     corners: [u8; 2],
+    /// Which pairs of those corners lie in the plane of contact: bit j of entry i for corner i of the first and j of the second.
+    flat: [u8; 8],
 }
 
 impl Held {
-    fn add(&mut self, feature: Feature) {
-        if self.count < MOST_POINTS {
-            self.features[self.count] = Some(feature);
-            self.count += 1;
+    fn new(cuboids: &CuboidPair, nearest: &Meeting, within: f64) -> Self {
+        let mut held = Self::default();
+        cuboids.touching(nearest, within, |m| {
+            if held.count < MOST_POINTS {
+                held.features[held.count] = Some(m.feature);
+                held.count += 1;
+            }
+            for (mask, more) in held.corners.iter_mut().zip(m.feature.corners()) {
+                *mask |= more;
+            }
+        });
+        let n = nearest.normal;
+        let [p, q] = [0, 1].map(|k| cuboids.corners_along(k, n, n));
+        let base = cuboids.offset_along(n) - cuboids.roundings();
+        for (i, mask) in held.flat.iter_mut().enumerate().filter(|(i, _)| held.corners[0] >> i & 1 == 1) {
+            let low = |j: usize| base + p[i].0 - q[j].0 <= within;
+            *mask = (0..8).filter(|&j| low(j)).fold(0, |m, j| m | 1 << j) & held.corners[1];
         }
-        for (mask, more) in self.corners.iter_mut().zip(feature.corners()) {
-            *mask |= more;
-        }
+        held
     }
 
     fn has(&self, feature: Feature) -> bool {
@@ -162,14 +175,16 @@ impl Rigid {
             let cuboids = self.cuboids(pair, [&a, &b])?;
             let nearest = cuboids.nearest();
             if linked && advance == 0 {
-                cuboids.touching(&nearest, super::step::TOUCHING * level, |m| held.add(m.feature));
+                held = Held::new(&cuboids, &nearest, super::step::TOUCHING * level);
             }
             if nearest.gap <= level {
-                let mut hits = false;
+                let mut slowest = f64::INFINITY;
                 cuboids.touching(&nearest, level, |m| {
-                    hits |= !held.has(m.feature) && PairTouch::from(m).rate(&a, &b) < 0.0;
+                    if !held.has(m.feature) {
+                        slowest = PairTouch::from(m).rate(&a, &b).min(slowest);
+                    }
                 });
-                if hits {
+                if slowest < 0.0 {
                     return Some(time);
                 }
             }
@@ -178,8 +193,10 @@ impl Rigid {
             let turn = across.length();
             let search = Advance { cuboids: &cuboids, poses: [&a, &b], normal: nearest.normal, across, level };
             let m = bound + turn * (turn * (distance + reach) + 2.0 * speed);
-            let step = search.time(m, held.corners).min(longest);
-            time += step.max(LEAST * level / speed.max(f64::MIN_POSITIVE));
+            let step = search.time(m, &held.flat).min(longest);
+            // Nothing that touches approaches: an overlap may grow to twice what it is until then.
+            let least = (LEAST * level).max(-nearest.gap);
+            time += step.max(least / speed.max(f64::MIN_POSITIVE));
             if time >= until || time.is_nan() {
                 return None;
             }
@@ -199,8 +216,8 @@ struct Advance<'c> {
 }
 
 impl Advance<'_> {
-    /// How long at least no corner of one gets to the half gap over a corner of the other, but for those corners both of which are held; `m` bounds the accelerations.
-    fn time(&self, m: f64, held: [u8; 2]) -> f64 {
+    /// How long at least no corner of one gets to the half gap over a corner of the other, but for the pairs held; `m` bounds the accelerations.
+    fn time(&self, m: f64, held: &[u8; 8]) -> f64 {
         let [a, b] = self.poses;
         let (n, across) = (self.normal, self.across);
         let base = self.cuboids.offset_along(n) - self.cuboids.roundings() - 0.5 * self.level;
@@ -212,7 +229,7 @@ impl Advance<'_> {
         let mut step = f64::INFINITY;
         for (i, &(p, p_rate)) in corners[0].iter().enumerate() {
             for (j, &(q, q_rate)) in corners[1].iter().enumerate() {
-                if held[0] >> i & 1 == 1 && held[1] >> j & 1 == 1 {
+                if held[i] >> j & 1 == 1 {
                     continue;
                 }
                 let (f, rate) = (base + p - q, base_rate + p_rate - q_rate);

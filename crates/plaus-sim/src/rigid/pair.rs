@@ -6,7 +6,7 @@
 use super::body::{Motion, Phase, Pose, Turning};
 use super::contact::{impulse, response};
 use super::detect::earliest;
-use super::{Rigid, Skin, Spec};
+use super::{Rigid, Skin, Spec, step};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::shape::cuboid_pair::{Feature, Meeting};
@@ -96,9 +96,10 @@ impl Rigid {
         self.accuracy.settle * (1.0 - law.restitution) * self.specs[i].speed.min(self.specs[j].speed)
     }
 
-    /// Speed scale with which an overlap of two bodies is undone.
-    pub(super) fn pair_push(&self, [i, j]: [usize; 2]) -> f64 {
-        self.accuracy.settle * self.specs[i].speed.min(self.specs[j].speed)
+    /// The gap that a point of contact of two bodies is to have at the end of a step of `h` seconds: an overlap is undone at a limited speed.
+    pub(super) fn pair_goal(&self, [i, j]: [usize; 2], gap: f64, h: f64) -> f64 {
+        let fastest = step::PUSH * self.accuracy.settle * self.specs[i].speed.min(self.specs[j].speed);
+        (step::KEEP * self.pair_gap([i, j])).min(gap + fastest * h)
     }
 
     /// The nearest points of two bodies.
@@ -221,7 +222,7 @@ impl Rigid {
         let lasting = law.restitution * approach <= settles || a.is_hurried() || b.is_hurried();
         if !linked
             && approach <= 0.0
-            && touch.gap <= super::step::TOUCHING * self.pair_gap(pair)
+            && touch.gap <= step::TOUCHING * self.pair_gap(pair)
             && (a.is_hurried() || b.is_hurried())
         {
             // Found again and again without an approach, as where two pairs of points are equally near: their group is to deal with it.
@@ -243,7 +244,7 @@ impl Rigid {
                 lasting: true,
             });
         }
-        if approach <= 0.0 || touch.gap > super::step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
+        if approach <= 0.0 || touch.gap > step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
             return None;
         }
         let (ia, ib) = (s.inertia.inverse(&p.r), t.inertia.inverse(&q.r));
