@@ -20,7 +20,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if !group.leaving.is_empty() || !group.parting.is_empty() || !h.is_finite() {
         return false;
     }
-    if group.has_cuboids_in_touch() && group.least_gap(world) < -1.0 {
+    if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 {
         return false;
     }
     // Another step makes less of an overlap larger than what can be tidied.
