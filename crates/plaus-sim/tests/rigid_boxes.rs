@@ -123,8 +123,8 @@ fn a_die_rests_on_another_while_its_middle_is_over_it() {
             assert_eq!((upper.path.x.z - 0.024).abs() < 1e-6, stays, "over {over}: {}", upper.path.x);
             let gap = world.gap([0, 1], [lower, upper]);
             if stays {
-                // On it, not in it, and not farther off than the preset's gap.
-                assert!((0.0..=1e-5 * 0.008).contains(&gap), "{gap}");
+                // On it, not in it but for rounding, and not farther off than the preset's gap.
+                assert!((-1e-16..=1e-5 * 0.008).contains(&gap), "{gap}");
                 assert!((upper.turn * DVec3::Z).z > 1.0 - 1e-9);
                 // Not a bit of drift over a minute.
                 let later = world.at(1, upper, state.time() + 60.0);
