@@ -112,7 +112,10 @@ fn sizes_from_a_tenth_of_a_millimetre_to_a_hundred_metres() {
     }
     // All together: a grain, a crate, a house.
     let bodies = [1e-4, 1.0, 1e2].map(|s| cuboid(DVec3::splat(2.0 * s), 0.0, 1000.0)).to_vec();
-    let at = |x: f64, z: f64| Start { orientation: DQuat::from_xyzw(0.1, 0.2, 0.0, 1.0), ..Start::at_rest(DVec3::new(x, 0.0, z)) };
+    let at = |x: f64, z: f64| Start {
+        orientation: DQuat::from_xyzw(0.1, 0.2, 0.0, 1.0),
+        ..Start::at_rest(DVec3::new(x, 0.0, z))
+    };
     check(world(bodies, Law::new(0.3, 0.5)), &[at(0.0, 4.0), at(0.0, 2.0), at(-180.0, 190.0)]);
 }
 
@@ -215,7 +218,8 @@ fn relabelling_permutes_flights_and_impacts() {
         let ((plain, a), (shuffled, b)) = (run([0, 1]), run([1, 0]));
         impacts += plain.counts().impacts;
         for label in 0..2 {
-            let (p, q) = (a.at(label, &plain.bodies()[label], 0.15), b.at(1 - label, &shuffled.bodies()[1 - label], 0.15));
+            let (p, q) =
+                (a.at(label, &plain.bodies()[label], 0.15), b.at(1 - label, &shuffled.bodies()[1 - label], 0.15));
             assert_eq!((p.path.x, p.path.v, p.turn, p.spin), (q.path.x, q.path.v, q.turn, q.spin), "throw {k}");
         }
     }

@@ -233,7 +233,8 @@ impl Rigid {
             let turn = across.length();
             let search = Advance { cuboids: &cuboids, poses: [&a, &b], normal: nearest.normal, across, level };
             let m = bound + turn * (turn * (distance + reach) + 2.0 * speed);
-            let step = search.time(m, &held.flat).min(longest).min(if linked { (until - from) / LOOKS } else { longest });
+            let step =
+                search.time(m, &held.flat).min(longest).min(if linked { (until - from) / LOOKS } else { longest });
             // Nothing that touches approaches: an overlap may grow to twice what it is until then.
             let least = (LEAST * level).max(-nearest.gap);
             time += step.max(least / speed.max(f64::MIN_POSITIVE));
