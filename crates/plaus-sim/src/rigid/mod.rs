@@ -31,6 +31,7 @@ mod mechanics;
 mod pair;
 mod part;
 mod rest;
+mod rim;
 mod solve;
 mod step;
 mod tumble;
@@ -115,6 +116,8 @@ pub(crate) struct Spec {
     /// The balls of the hull first, then those for uneven ground.
     feelers: Vec<Feeler>,
     hull: usize,
+    /// Distances from the centre of gravity of the hull's balls, then of the rings' circles.
+    arms: Vec<f64>,
     pub(crate) reach: f64,
     pub(crate) size: f64,
     /// `√(g · size)`.
@@ -303,6 +306,8 @@ impl Spec {
             Shape::Cuboid(c) => (Skin::Cuboid { half: c.half(), rounding: c.rounding() }, Vec::new()),
         };
         let capsule = capsule(&b.shape, reach);
+        let arms = feelers[..hull].iter().map(|f| f.centre.length());
+        let arms = arms.chain(rings.iter().map(|r| (r.circle * r.circle + r.height * r.height).sqrt())).collect();
         let is_ball = matches!(skin, Skin::Ball);
         let is_round = is_ball || matches!(skin, Skin::Revolved);
         Ok(Self {
@@ -311,6 +316,7 @@ impl Spec {
             material: b.material,
             feelers,
             hull,
+            arms,
             reach,
             size,
             speed,
@@ -334,6 +340,17 @@ impl Spec {
     pub(crate) fn ring_points(&self) -> std::ops::Range<usize> {
         let count = if self.rings.is_empty() { 0 } else { RIM_POINTS + self.rings.len() - 1 };
         self.hull..self.hull + count
+    }
+
+    /// The ring that a point belongs to.
+    pub(crate) fn ring_of(&self, point: usize) -> Option<&Ring> {
+        let k = point.checked_sub(self.hull)?;
+        self.rings.get((k + 1).saturating_sub(RIM_POINTS))
+    }
+
+    /// A point that can touch a part, as a ball in body axes; `up` (in body axes) points away from the part.
+    pub(crate) fn point(&self, point: usize, up: DVec3) -> Feeler {
+        if self.ring_of(point).is_some() { self.ring_point(point, up).0 } else { self.feelers[point] }
     }
 
     /// A point of a ring as a ball, in body axes, where `up` (in body axes) points away from the part, and how it stands: 0 lowest, 1 and 3 sideways, 2 highest.

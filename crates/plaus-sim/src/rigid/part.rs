@@ -5,7 +5,8 @@ use crate::error::WorldError;
 use crate::field::Spline;
 use crate::material::{Law, Material};
 use crate::scenery::{Aabb, Plane};
-use glam::DVec3;
+use crate::shape::Ring;
+use glam::{DMat3, DVec3};
 
 /// A fixed part of the world.
 #[derive(Debug, Clone)]
@@ -123,6 +124,15 @@ impl Part {
         }
     }
 
+    /// The direction in world axes against which the lowest point of a ring of a body is meant: that in which the ring is nearest to the part.
+    pub(crate) fn up_at_ring(&self, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
+        match self {
+            Self::Plane(plane) => plane.normal,
+            Self::Block { bounds, .. } => up_at_ring(bounds, ring, x, r),
+            Self::Table(table) => table.foot(x, ROUNDS).normal,
+        }
+    }
+
     /// Whether any field of it was given a bad value.
     pub(crate) fn fault(&self) -> Option<WorldError> {
         match self {
@@ -138,6 +148,70 @@ impl Part {
         }
     }
 }
+
+/// A side of a box, and how far a point is beyond it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Side {
+    pub(crate) axis: usize,
+    pub(crate) normal: DVec3,
+    pub(crate) offset: f64,
+    pub(crate) beyond: f64,
+}
+
+/// The sides of a box that a point is beyond.
+fn sides_before(bounds: &Aabb, x: DVec3) -> impl Iterator<Item = Side> {
+    let bounds = *bounds;
+    let sides = DVec3::AXES.into_iter().enumerate().flat_map(move |(axis, e)| {
+        [(e, bounds.max[axis]), (-e, -bounds.min[axis])].map(|(normal, offset)| (axis, normal, offset))
+    });
+    sides.filter_map(move |(axis, normal, offset)| {
+        let beyond = normal.dot(x) - offset;
+        (beyond > 0.0).then_some(Side { axis, normal, offset, beyond })
+    })
+}
+
+/// The side of a box that a point is farthest beyond; none where it is inside.
+pub(crate) fn farthest_side(bounds: &Aabb, x: DVec3) -> Option<Side> {
+    sides_before(bounds, x).fold(None, |far: Option<Side>, s| if far.is_some_and(|f| f.beyond >= s.beyond) { far } else { Some(s) })
+}
+
+/// Whether a point is within the edges of a side of a box.
+pub(crate) fn is_over(bounds: &Aabb, axis: usize, p: DVec3) -> bool {
+    (0..3).all(|k| k == axis || (p[k] >= bounds.min[k] && p[k] <= bounds.max[k]))
+}
+
+/// Where a ring is nearest to a box: against the side that its body is before, else the nearest found from the feet of a few of its points.
+fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
+    let middle = x + r.z_axis * ring.height;
+    let lowest = |up: DVec3| {
+        let flat = up - r.z_axis * up.dot(r.z_axis);
+        middle - flat.normalize_or(r.x_axis) * ring.circle
+    };
+    if let Some(side) = farthest_side(bounds, x)
+        && is_over(bounds, side.axis, lowest(side.normal))
+    {
+        return side.normal;
+    }
+    let mut best = (f64::INFINITY, DVec3::Z);
+    let mut consider = |up: DVec3| {
+        let foot = block_foot(bounds, lowest(up));
+        if foot.distance < best.0 {
+            best = (foot.distance, up);
+        }
+        foot.normal
+    };
+    for side in sides_before(bounds, x).chain(sides_before(bounds, middle)) {
+        consider(side.normal);
+    }
+    let mut up = block_foot(bounds, middle).normal;
+    for _ in 0..RING_ROUNDS {
+        up = consider(up);
+    }
+    best.1
+}
+
+/// Rounds of looking for a ring's nearest point to an edge. Default 3; each goes to the lowest point against the last one's foot.
+const RING_ROUNDS: usize = 3;
 
 fn block_foot(bounds: &Aabb, p: DVec3) -> Foot {
     let nearest = p.clamp(bounds.min, bounds.max);
