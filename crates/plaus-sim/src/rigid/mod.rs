@@ -348,6 +348,12 @@ impl Spec {
         self.rings.get((k + 1).saturating_sub(RIM_POINTS))
     }
 
+    /// The points of a ring.
+    pub(crate) fn points_of(&self, ring: usize) -> std::ops::Range<usize> {
+        let first = self.hull + if ring == 0 { 0 } else { RIM_POINTS + ring - 1 };
+        first..first + if ring == 0 { RIM_POINTS } else { 1 }
+    }
+
     /// A point that can touch a part, as a ball in body axes; `up` (in body axes) points away from the part.
     pub(crate) fn point(&self, point: usize, up: DVec3) -> Feeler {
         if self.ring_of(point).is_some() { self.ring_point(point, up).0 } else { self.feelers[point] }

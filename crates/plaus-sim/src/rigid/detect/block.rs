@@ -2,7 +2,6 @@
 
 use super::plane::BEYOND;
 use super::{LEANS, MOST_ADVANCES, Search, earliest};
-use crate::rigid::RIM_POINTS;
 use crate::rigid::part::{Part, Side, farthest_side, is_over};
 use crate::scenery::Aabb;
 use crate::shape::Feeler;
@@ -49,10 +48,18 @@ impl Search<'_> {
                     }
                     continue;
                 }
-                step = f64::INFINITY;
+                step = self.until - t;
                 let mut first = (0, f64::INFINITY);
+                let (speed, spin) = (v.length(), w.length());
+                // How far a point at this distance from the centre of gravity can come within a time.
+                let way = |arm: f64, time: f64| {
+                    (speed + spin * arm + 0.5 * (pull + self.turning * arm) * time) * time + spec.gap
+                };
                 for (k, feeler) in spec.feelers[..spec.hull].iter().enumerate() {
                     let arm = r * feeler.centre;
+                    if outside(bounds, x + arm) - feeler.radius > way(spec.arms[k], step) {
+                        continue;
+                    }
                     let foot = block.foot(x + arm, feeler.radius);
                     let f = foot.distance - feeler.radius - 0.5 * spec.gap;
                     let rate = foot.normal.dot(v + w.cross(arm));
@@ -72,19 +79,21 @@ impl Search<'_> {
                         first = (k, f);
                     }
                 }
-                let mut up = DVec3::Z;
-                for k in spec.ring_points() {
-                    if k == spec.hull || k >= spec.hull + RIM_POINTS {
-                        up = spec.ring_of(k).map_or(up, |ring| r.transpose() * block.up_at_ring(ring, x, &r));
+                for (index, ring) in spec.rings.iter().enumerate() {
+                    let near = outside(bounds, x + r.z_axis * ring.height) - ring.circle - ring.radius;
+                    if near > way(spec.arms[spec.hull + index], step) {
+                        continue;
                     }
-                    let (feeler, quarter) = spec.ring_point(k, up);
-                    let arm = r * feeler.centre;
-                    let foot = block.foot(x + arm, feeler.radius);
-                    let (lever, swing) = (r.transpose() * foot.normal, r.transpose() * foot.normal.cross(w));
-                    let height = foot.distance - lever.dot(feeler.centre) - 0.5 * spec.gap;
-                    let gap =
-                        ring_gap(&feeler, quarter, (lever, swing), height, foot.normal.dot(v), (pull, self.turning));
-                    self.ring_at_edge(part, k, gap, &mut step, &mut first);
+                    let up = r.transpose() * block.up_at_ring(ring, x, &r);
+                    for k in spec.points_of(index) {
+                        let (feeler, quarter) = spec.ring_point(k, up);
+                        let foot = block.foot(x + r * feeler.centre, feeler.radius);
+                        let (lever, swing) = (r.transpose() * foot.normal, r.transpose() * foot.normal.cross(w));
+                        let height = foot.distance - lever.dot(feeler.centre) - 0.5 * spec.gap;
+                        let fall = foot.normal.dot(v);
+                        let gap = ring_gap(&feeler, quarter, (lever, swing), height, fall, (pull, self.turning));
+                        self.ring_at_edge(part, k, gap, &mut step, &mut first);
+                    }
                 }
                 if step == 0.0 {
                     return self.hit(t, part, first.0);
@@ -143,6 +152,11 @@ impl Search<'_> {
         }
         longest
     }
+}
+
+/// How far a point is at least from a box: its distance from the farthest side, negative inside.
+fn outside(bounds: &Aabb, p: DVec3) -> f64 {
+    (bounds.min - p).max(p - bounds.max).max_element()
 }
 
 /// Gap of a point of a ring, its rate, the rate to reckon with, and a bound on its acceleration. The point moves round the ring as the body leans, which adds `ρ ω²` over the sine of the lean; for

@@ -8,6 +8,9 @@ use crate::roots::fall_of_quadratic;
 use crate::scenery::Aabb;
 use glam::{DMat3, DVec2, DVec3};
 
+/// Distance of the capsule around a body from a plane, over the body's size, from which its skin is looked at. Default 0.05; smaller values look at capsules more often.
+const NEAR: f64 = 0.05;
+
 /// Stands for a point behind the plane beyond the edges.
 pub(super) const BEYOND: usize = usize::MAX;
 
@@ -103,6 +106,14 @@ impl Search<'_> {
                 pull,
             };
             let mut next = Next { step: self.until - t, first: None, is_beyond: false };
+            match self.capsule(&look, next.step) {
+                Some(apart) if t + apart >= self.until => return None,
+                Some(apart) => {
+                    t += apart;
+                    continue;
+                }
+                None => {}
+            }
             self.balls(&look, &mut next);
             for k in 0..spec.rings.len() {
                 self.ring(&look, k, &mut next);
@@ -120,6 +131,22 @@ impl Search<'_> {
             }
         }
         Some((t, if edges.is_some() { BEYOND } else { 0 }))
+    }
+
+    /// For how long at least the capsule around the body stays clear of the plane, where that is worth a step of the search.
+    fn capsule(&self, look: &Look, step: f64) -> Option<f64> {
+        let [low, high, radius] = self.spec.capsule;
+        let mut soonest = f64::INFINITY;
+        for end in [low, high] {
+            let f = look.height + look.lever.z * end - radius;
+            let (rate, m) = (look.fall + look.swing.z * end, (look.pull + self.axial * end.abs()).max(0.0));
+            let clear = f > 0.0 && f + (rate - 0.5 * m * step) * step > 0.0;
+            if !clear && f <= NEAR * self.spec.size {
+                return None;
+            }
+            soonest = soonest.min(if clear { step } else { earliest(f, rate, m) });
+        }
+        Some(soonest)
     }
 
     fn balls(&self, look: &Look, next: &mut Next) {
@@ -143,7 +170,7 @@ impl Search<'_> {
     /// The lowest point of a ring; of the rim also those sideways and the highest, which may touch while the lowest does.
     fn ring(&self, look: &Look, index: usize, next: &mut Next) {
         let (spec, ring) = (self.spec, &self.spec.rings[index]);
-        let point = spec.hull + if index == 0 { 0 } else { RIM_POINTS + index - 1 };
+        let point = spec.points_of(index).start;
         let (p, q) = (look.lever.truncate(), look.swing.truncate());
         let m = (look.pull + self.turning * spec.arms[spec.hull + index]).max(0.0);
         let middle = look.height + look.lever.z * ring.height - ring.radius;
