@@ -180,7 +180,7 @@ pub(crate) fn is_over(bounds: &Aabb, axis: usize, p: DVec3) -> bool {
     (0..3).all(|k| k == axis || (p[k] >= bounds.min[k] && p[k] <= bounds.max[k]))
 }
 
-/// Where a ring is nearest to a box: against the side that its body is before, else the nearest found from the feet of a few of its points.
+/// Up where a ring's point nearest to a box is down: the normal of the side that its body is before where that point is over the side, else found from foot to foot.
 fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
     let middle = x + r.z_axis * ring.height;
     let lowest = |up: DVec3| {
@@ -192,26 +192,31 @@ fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
     {
         return side.normal;
     }
-    let mut best = (f64::INFINITY, DVec3::Z);
-    let mut consider = |up: DVec3| {
-        let foot = block_foot(bounds, lowest(up));
-        if foot.distance < best.0 {
-            best = (foot.distance, up);
-        }
-        foot.normal
-    };
+    let mut best = (f64::INFINITY, middle);
     for side in sides_before(bounds, x).chain(sides_before(bounds, middle)) {
-        consider(side.normal);
+        let point = lowest(side.normal);
+        let distance = block_foot(bounds, point).distance;
+        if distance < best.0 {
+            best = (distance, point);
+        }
     }
-    let mut up = block_foot(bounds, middle).normal;
+    // From the point's foot to the ring's point nearest to that, and again: no step leads away.
+    let mut point = best.1;
     for _ in 0..RING_ROUNDS {
-        up = consider(up);
+        let foot = block_foot(bounds, point);
+        let out = point - foot.normal * foot.distance - middle;
+        let flat = out - r.z_axis * out.dot(r.z_axis);
+        let next = middle + flat.normalize_or(r.x_axis) * ring.circle;
+        if next == point {
+            break;
+        }
+        point = next;
     }
-    best.1
+    middle - point
 }
 
-/// Rounds of looking for a ring's nearest point to an edge. Default 3; each goes to the lowest point against the last one's foot.
-const RING_ROUNDS: usize = 3;
+/// Rounds of looking for a ring's nearest point to an edge. Default 6; an error of an angle then left is far below that between the points of a rim.
+const RING_ROUNDS: usize = 6;
 
 fn block_foot(bounds: &Aabb, p: DVec3) -> Foot {
     let nearest = p.clamp(bounds.min, bounds.max);

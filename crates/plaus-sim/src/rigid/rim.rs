@@ -23,7 +23,8 @@ const ROUNDS: usize = 4;
 const BISECTIONS: usize = 40;
 
 impl Low {
-    fn at(&self, t: f64) -> f64 {
+    /// The bound on the gap after `t`.
+    pub(super) fn at(&self, t: f64) -> f64 {
         self.middle + (self.rate - 0.5 * self.m * t) * t - self.circle * (self.p + self.q * t).length()
     }
 

@@ -2,10 +2,12 @@
 
 use super::plane::BEYOND;
 use super::{LEANS, MOST_ADVANCES, Search, earliest};
+use crate::rigid::body::Phase;
+use crate::rigid::rim;
 use crate::rigid::part::{Part, Side, farthest_side, is_over};
 use crate::scenery::Aabb;
 use crate::shape::Feeler;
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 impl Search<'_> {
     pub(super) fn block(&mut self, part: u16, block: &Part) {
@@ -85,6 +87,7 @@ impl Search<'_> {
                         continue;
                     }
                     let up = r.transpose() * block.up_at_ring(ring, x, &r);
+                    let first_of = spec.points_of(index).start;
                     for k in spec.points_of(index) {
                         let (feeler, quarter) = spec.ring_point(k, up);
                         let foot = block.foot(x + r * feeler.centre, feeler.radius);
@@ -92,6 +95,23 @@ impl Search<'_> {
                         let height = foot.distance - lever.dot(feeler.centre) - 0.5 * spec.gap;
                         let fall = foot.normal.dot(v);
                         let gap = ring_gap(&feeler, quarter, (lever, swing), height, fall, (pull, self.turning));
+                        let (p, q) = (lever.truncate(), swing.truncate());
+                        if k == first_of && p != DVec2::ZERO && !self.lasts(part, k) {
+                            // The box is behind the plane through the foot, and so farther from all of the ring than that plane.
+                            let middle = height + lever.z * ring.height - ring.radius;
+                            let m = pull + self.turning * spec.arms[spec.hull + index];
+                            let low =
+                                rim::Low { middle, rate: fall + swing.z * ring.height, circle: ring.circle, p, q, m };
+                            if gap[0] - low.at(0.0) <= 1e-6 * spec.gap {
+                                self.ring_by_plane(k, gap, &low, &mut step, &mut first);
+                            } else {
+                                self.ring_at_edge(part, k, gap, &mut step, &mut first);
+                            }
+                            if self.body.phase == Phase::Flight {
+                                break;
+                            }
+                            continue;
+                        }
                         self.ring_at_edge(part, k, gap, &mut step, &mut first);
                     }
                 }
@@ -112,6 +132,22 @@ impl Search<'_> {
         let (x, r) = (self.body.path.after(time), self.body.tumble(self.spec).at(time));
         let feeler = self.spec.point(point, r.transpose() * side.normal);
         is_over(bounds, side.axis, x + r * feeler.centre)
+    }
+
+    /// Whether the lowest point of a ring comes first, against the plane through its foot.
+    fn ring_by_plane(
+        &self,
+        k: usize,
+        [f, rate, ..]: [f64; 4],
+        low: &rim::Low,
+        step: &mut f64,
+        first: &mut (usize, f64),
+    ) {
+        let is_now = f <= 0.5 * self.spec.gap && rate < 0.0;
+        let time = if is_now { 0.0 } else { low.earliest(*step) };
+        if time < *step || (is_now && f < first.1) {
+            (*step, *first) = (time, (k, f));
+        }
     }
 
     /// Whether a point of a ring comes first.

@@ -3,6 +3,7 @@
 use super::{LEANS, MOST_ADVANCES, Search, earliest};
 use crate::rigid::body::Phase;
 use crate::rigid::part::is_over;
+use crate::rigid::step::TOUCHING;
 use crate::rigid::{RIM_POINTS, rim};
 use crate::roots::fall_of_quadratic;
 use crate::scenery::Aabb;
@@ -178,13 +179,14 @@ impl Search<'_> {
         if next.outlasts(middle - ring.circle * p.length(), rate - ring.circle * q.length(), m) {
             return;
         }
+        let f = middle - ring.circle * p.length();
+        if f <= TOUCHING * spec.gap {
+            // Other points of the ring are named by where they are to this one.
+            let down = -p.normalize_or(DVec2::X) * ring.circle;
+            next.is_beyond |= look.is_beyond(down.extend(ring.height));
+        }
         if p != DVec2::ZERO && !self.lasts(look.part, point) {
-            let f = middle - ring.circle * p.length();
             let along = rate - ring.circle * p.dot(q) / p.length();
-            if f <= 0.5 * spec.gap {
-                let down = -p / p.length() * ring.circle;
-                next.is_beyond |= look.is_beyond(down.extend(ring.height));
-            }
             if f <= 0.5 * spec.gap && along < 0.0 {
                 next.now(point, f);
             } else {
