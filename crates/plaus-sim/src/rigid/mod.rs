@@ -116,8 +116,9 @@ pub(crate) struct Spec {
     /// The balls of the hull first, then those for uneven ground.
     feelers: Vec<Feeler>,
     hull: usize,
-    /// Distances from the centre of gravity of the hull's balls, then of the rings' circles.
+    /// Distances from the centre of gravity of the feelers, and of the rings' circles.
     arms: Vec<f64>,
+    ring_arms: Vec<f64>,
     pub(crate) reach: f64,
     pub(crate) size: f64,
     /// `√(g · size)`.
@@ -306,8 +307,8 @@ impl Spec {
             Shape::Cuboid(c) => (Skin::Cuboid { half: c.half(), rounding: c.rounding() }, Vec::new()),
         };
         let capsule = capsule(&b.shape, reach);
-        let arms = feelers[..hull].iter().map(|f| f.centre.length());
-        let arms = arms.chain(rings.iter().map(|r| (r.circle * r.circle + r.height * r.height).sqrt())).collect();
+        let arms = feelers.iter().map(|f| f.centre.length()).collect();
+        let ring_arms = rings.iter().map(|r| (r.circle * r.circle + r.height * r.height).sqrt()).collect();
         let is_ball = matches!(skin, Skin::Ball);
         let is_round = is_ball || matches!(skin, Skin::Revolved);
         Ok(Self {
@@ -317,6 +318,7 @@ impl Spec {
             feelers,
             hull,
             arms,
+            ring_arms,
             reach,
             size,
             speed,

@@ -84,10 +84,10 @@ impl Table {
         let (mut x, mut y) = (p.x, p.y);
         let mut foot = Foot { normal: DVec3::Z, distance: 0.0 };
         for _ in 0..=rounds {
-            let s = self.height.at(x, y);
-            let normal = DVec3::new(-s.slope[0], -s.slope[1], 1.0);
+            let (value, slope) = self.height.slope_at(x, y);
+            let normal = DVec3::new(-slope[0], -slope[1], 1.0);
             let normal = normal / normal.length();
-            foot = Foot { normal, distance: normal.dot(p - DVec3::new(x, y, s.value)) };
+            foot = Foot { normal, distance: normal.dot(p - DVec3::new(x, y, value)) };
             (x, y) = (p.x - normal.x * foot.distance, p.y - normal.y * foot.distance);
         }
         foot

@@ -75,7 +75,7 @@ impl Search<'_> {
                         }
                         continue;
                     }
-                    let time = earliest(f, rate, pull + self.axial * feeler.centre.length());
+                    let time = earliest(f, rate, pull + self.axial * spec.arms[k]);
                     if time < step {
                         step = time;
                         first = (k, f);
@@ -83,7 +83,7 @@ impl Search<'_> {
                 }
                 for (index, ring) in spec.rings.iter().enumerate() {
                     let near = outside(bounds, x + r.z_axis * ring.height) - ring.circle - ring.radius;
-                    if near > way(spec.arms[spec.hull + index], step) {
+                    if near > way(spec.ring_arms[index], step) {
                         continue;
                     }
                     let up = r.transpose() * block.up_at_ring(ring, x, &r);
@@ -99,7 +99,7 @@ impl Search<'_> {
                         if k == first_of && p != DVec2::ZERO && !self.lasts(part, k) {
                             // The box is behind the plane through the foot, and so farther from all of the ring than that plane.
                             let middle = height + lever.z * ring.height - ring.radius;
-                            let m = pull + self.turning * spec.arms[spec.hull + index];
+                            let m = pull + self.turning * spec.ring_arms[index];
                             let low =
                                 rim::Low { middle, rate: fall + swing.z * ring.height, circle: ring.circle, p, q, m };
                             if gap[0] - low.at(0.0) <= 1e-6 * spec.gap {

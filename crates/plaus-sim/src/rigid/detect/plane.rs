@@ -173,7 +173,7 @@ impl Search<'_> {
         let (spec, ring) = (self.spec, &self.spec.rings[index]);
         let point = spec.points_of(index).start;
         let (p, q) = (look.lever.truncate(), look.swing.truncate());
-        let m = (look.pull + self.turning * spec.arms[spec.hull + index]).max(0.0);
+        let m = (look.pull + self.turning * spec.ring_arms[index]).max(0.0);
         let middle = look.height + look.lever.z * ring.height - ring.radius;
         let rate = look.fall + look.swing.z * ring.height;
         if next.outlasts(middle - ring.circle * p.length(), rate - ring.circle * q.length(), m) {

@@ -68,14 +68,19 @@ impl Search<'_> {
         first: &mut Option<(usize, f64)>,
     ) {
         let spec = self.spec;
+        let turning = self.turning * spec.arms[k];
+        let gravity = self.body.path.a;
+        let m_low = (turning - gravity.z).max(0.0);
+        // Against the highest point around first, at the speed that it can have at most.
+        let rise = r.x_axis.z * feeler.centre.x + r.y_axis.z * feeler.centre.y + r.z_axis.z * feeler.centre.z;
+        let low = x.z + rise - feeler.radius - bounds.high;
+        if low > 0.0 && low + (v.z - self.fastest * spec.arms[k] - 0.5 * m_low * *step) * *step > 0.0 {
+            return;
+        }
         let arm = *r * feeler.centre;
         let p = *x + arm;
         let pv = *v + w.cross(arm);
-        let turning = self.turning * feeler.centre.length();
-        let gravity = self.body.path.a;
-        // Against the highest point around first.
         let low = p.z - feeler.radius - bounds.high;
-        let m_low = (turning - gravity.z).max(0.0);
         if low > 0.0 && low + (pv.z - 0.5 * m_low * *step) * *step > 0.0 {
             return;
         }
@@ -83,11 +88,11 @@ impl Search<'_> {
             let foot = table.foot(p, ROUNDS);
             (foot.distance - feeler.radius, foot.normal.dot(pv))
         } else {
-            let s = table.height.at(p.x, p.y);
-            (p.z - s.value, pv.z - s.slope[0] * pv.x - s.slope[1] * pv.y)
+            let (value, slope) = table.height.slope_at(p.x, p.y);
+            (p.z - value, pv.z - slope[0] * pv.x - slope[1] * pv.y)
         };
         let f = f - 0.5 * spec.gap;
-        let speed = v.length() + self.fastest * feeler.centre.length() + gravity.length() * *step;
+        let speed = v.length() + self.fastest * spec.arms[k] + gravity.length() * *step;
         let across = (1.0 + bounds.slope * bounds.slope).sqrt();
         let m = m_low.max(0.0) * across + bounds.bend * speed * speed;
         if f > 0.5 * spec.gap && f + (rate - 0.5 * m * *step) * *step > 0.0 {
