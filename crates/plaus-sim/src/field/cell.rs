@@ -98,6 +98,19 @@ impl Cell {
         }
     }
 
+    /// Value and first derivatives, the same bits as those of [`at`](Self::at).
+    #[inline]
+    pub(super) fn slope_at(&self, u: f64, v: f64, per: f64) -> (f64, [f64; 2]) {
+        let mut rows = [[0.0; 2]; 4];
+        for (row, c) in rows.iter_mut().zip(&self.power) {
+            let [value, slope, _] = horner(c, v);
+            *row = [value, slope];
+        }
+        let column = |k: usize| [rows[0][k], rows[1][k], rows[2][k], rows[3][k]];
+        let (along, across) = (horner(&column(0), u), horner(&column(1), u));
+        (along[0], [along[1] * per, across[0] * per])
+    }
+
     #[inline]
     pub(super) fn value(&self, u: f64, v: f64) -> f64 {
         let row = |c: &[f64; 4]| c[0] + v * (c[1] + v * (c[2] + v * c[3]));

@@ -26,6 +26,9 @@ pub struct Spline {
     made: RefCell<Made>,
 }
 
+/// Control values over a cell, the second index along y.
+type Points = [[f64; 4]; 4];
+
 /// What has been asked for so far.
 #[derive(Clone, Default)]
 struct Made {
@@ -122,6 +125,16 @@ impl Spline {
         made.cells[place as usize].at(u, v, 1.0 / self.grid.spacing)
     }
 
+    /// Value and derivatives along x and y at a point.
+    #[inline]
+    #[must_use]
+    pub fn slope_at(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
+        let (key, u, v) = self.locate(x, y);
+        let made = &mut *self.made.borrow_mut();
+        let place = self.cell(made, key);
+        made.cells[place as usize].slope_at(u, v, 1.0 / self.grid.spacing)
+    }
+
     /// Value at a point.
     #[inline]
     #[must_use]
@@ -150,8 +163,12 @@ impl Spline {
         }
         let mut all = Bounds::NONE;
         for i in low[0]..=high[0] {
+            let mut near = None;
             for j in low[1]..=high[1] {
-                let place = self.cell(made, [i, j]);
+                let place = match made.cell_places.get([i, j]) {
+                    Some(place) => place,
+                    None => self.add(made, [i, j], &mut near),
+                };
                 all = all.and(&made.cells[place as usize].bounds);
             }
         }
@@ -202,7 +219,7 @@ impl Spline {
         for k in 0..16_i64 {
             let cell = [key[0] + 1 - k / 4, key[1] + 1 - k % 4];
             if let Some(place) = made.cell_places.get(cell) {
-                made.cells[place as usize] = self.make(made, cell);
+                made.cells[place as usize] = Cell::new(&self.points(made, cell, None), self.grid.spacing);
             }
         }
     }
@@ -212,30 +229,43 @@ impl Spline {
         match made.last {
             Some((last, place)) if last == key => place,
             _ => {
-                let place = made.cell_places.get(key).unwrap_or_else(|| self.add(made, key));
+                let place = made.cell_places.get(key).unwrap_or_else(|| self.add(made, key, &mut None));
                 made.last = Some((key, place));
                 place
             }
         }
     }
 
+    /// Makes a cell. `near` holds the control values of the last cell that was made here: its neighbour along y has three rows of them.
     #[cold]
-    fn add(&self, made: &mut Made, key: [i64; 2]) -> u32 {
-        let cell = self.make(made, key);
+    fn add(&self, made: &mut Made, key: [i64; 2], near: &mut Option<([i64; 2], Points)>) -> u32 {
+        let points = self.points(made, key, near.take());
+        let cell = Cell::new(&points, self.grid.spacing);
+        *near = Some((key, points));
         let place = made.cells.len() as u32;
         made.cells.push(cell);
         made.cell_places.insert(key, place);
         place
     }
 
-    fn make(&self, made: &mut Made, [i, j]: [i64; 2]) -> Cell {
+    /// The control values over a cell.
+    fn points(&self, made: &mut Made, [i, j]: [i64; 2], near: Option<([i64; 2], Points)>) -> Points {
         let mut points = [[0.0; 4]; 4];
+        let known = match near {
+            Some((key, last)) if key == [i, j - 1] => {
+                for (row, last) in points.iter_mut().zip(&last) {
+                    row[..3].copy_from_slice(&last[1..]);
+                }
+                3
+            }
+            _ => 0,
+        };
         for (a, row) in points.iter_mut().enumerate() {
-            for (b, p) in row.iter_mut().enumerate() {
+            for (b, p) in row.iter_mut().enumerate().skip(known) {
                 *p = self.point(made, [i.saturating_add(a as i64 - 1), j.saturating_add(b as i64 - 1)]);
             }
         }
-        Cell::new(&points, self.grid.spacing)
+        points
     }
 
     fn point(&self, made: &mut Made, key: [i64; 2]) -> f64 {

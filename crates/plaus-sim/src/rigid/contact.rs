@@ -1,7 +1,7 @@
 //! Which points touch, and one point's impact.
 
 use super::body::{Motion, Phase, Pose, Turning};
-use super::part::Part;
+use super::part::{Part, farthest_side};
 use super::{Rigid, Spec};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
@@ -43,14 +43,9 @@ impl Rigid {
     #[inline]
     pub(super) fn touch(&self, index: usize, pose: &Pose, part: u16, point: u16) -> Touch {
         let (spec, part_here, k) = (&self.specs[index], &self.parts[usize::from(part)], usize::from(point));
-        let feeler = if spec.ring_points().contains(&k) {
-            let up = match part_here {
-                Part::Plane(plane) => plane.normal,
-                _ => part_here.foot(pose.x, spec.reach).normal,
-            };
-            spec.ring_point(k, pose.r.transpose() * up).0
-        } else {
-            spec.feelers[k]
+        let feeler = match spec.ring_of(k) {
+            Some(ring) => spec.ring_point(k, pose.r.transpose() * part_here.up_at_ring(ring, pose.x, &pose.r)).0,
+            None => spec.feelers[k],
         };
         let arm = pose.r * feeler.centre;
         let foot = part_here.foot(pose.x + arm, feeler.radius);
@@ -93,7 +88,20 @@ impl Rigid {
                 }
                 Part::Block { bounds, .. } => {
                     if bounds.grown(spec.reach + within).contains(pose.x) {
+                        // The box is part of the half space behind a side: what is not near that is not near the box.
+                        let side = farthest_side(bounds, pose.x);
+                        let (normal, height) = side.map_or((DVec3::ZERO, 0.0), |s| (s.normal, s.beyond));
+                        let lever = pose.r.transpose() * normal;
                         for point in (0..spec.hull).chain(spec.ring_points()) {
+                            let above = match spec.ring_of(point) {
+                                Some(ring) => {
+                                    lever.z * ring.height - ring.circle * lever.truncate().length() - ring.radius
+                                }
+                                None => lever.dot(spec.feelers[point].centre) - spec.feelers[point].radius,
+                            };
+                            if side.is_some() && height + above > within {
+                                continue;
+                            }
                             let touch = self.touch(index, pose, k, point as u16);
                             if touch.gap <= within {
                                 each(touch);

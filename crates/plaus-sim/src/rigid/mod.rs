@@ -33,6 +33,7 @@ mod pair;
 mod part;
 mod resist;
 mod rest;
+mod rim;
 mod solve;
 mod step;
 mod tumble;
@@ -117,6 +118,9 @@ pub(crate) struct Spec {
     /// The balls of the hull first, then those for uneven ground.
     feelers: Vec<Feeler>,
     hull: usize,
+    /// Distances from the centre of gravity of the feelers, and of the rings' circles.
+    arms: Vec<f64>,
+    ring_arms: Vec<f64>,
     pub(crate) reach: f64,
     pub(crate) size: f64,
     /// `√(g · size)`.
@@ -327,6 +331,8 @@ impl Spec {
             Shape::Cuboid(c) => (Skin::Cuboid { half: c.half(), rounding: c.rounding() }, Vec::new()),
         };
         let capsule = capsule(&b.shape, reach);
+        let arms = feelers.iter().map(|f| f.centre.length()).collect();
+        let ring_arms = rings.iter().map(|r| (r.circle * r.circle + r.height * r.height).sqrt()).collect();
         let is_ball = matches!(skin, Skin::Ball);
         let is_round = is_ball || matches!(skin, Skin::Revolved);
         Ok(Self {
@@ -335,6 +341,8 @@ impl Spec {
             material: b.material,
             feelers,
             hull,
+            arms,
+            ring_arms,
             reach,
             size,
             speed,
@@ -358,6 +366,23 @@ impl Spec {
     pub(crate) fn ring_points(&self) -> std::ops::Range<usize> {
         let count = if self.rings.is_empty() { 0 } else { RIM_POINTS + self.rings.len() - 1 };
         self.hull..self.hull + count
+    }
+
+    /// The ring that a point belongs to.
+    pub(crate) fn ring_of(&self, point: usize) -> Option<&Ring> {
+        let k = point.checked_sub(self.hull)?;
+        self.rings.get((k + 1).saturating_sub(RIM_POINTS))
+    }
+
+    /// The points of a ring.
+    pub(crate) fn points_of(&self, ring: usize) -> std::ops::Range<usize> {
+        let first = self.hull + if ring == 0 { 0 } else { RIM_POINTS + ring - 1 };
+        first..first + if ring == 0 { RIM_POINTS } else { 1 }
+    }
+
+    /// A point that can touch a part, as a ball in body axes; `up` (in body axes) points away from the part.
+    pub(crate) fn point(&self, point: usize, up: DVec3) -> Feeler {
+        if self.ring_of(point).is_some() { self.ring_point(point, up).0 } else { self.feelers[point] }
     }
 
     /// A point of a ring as a ball, in body axes, where `up` (in body axes) points away from the part, and how it stands: 0 lowest, 1 and 3 sideways, 2 highest.

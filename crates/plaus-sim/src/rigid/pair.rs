@@ -373,6 +373,12 @@ fn two_revolved([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], offset: DVec3) -> PairTo
             let centre = axis * f.centre.z;
             let d = pose.r.transpose() * (to + centre);
             for ring in &spec.rings {
+                // The ball around the whole ring first.
+                let near = best.gap + f.radius + ring.radius + ring.circle;
+                let up = d.z - ring.height;
+                if near <= 0.0 || d.x * d.x + d.y * d.y + up * up > near * near {
+                    continue;
+                }
                 let on = nearest_on_ring(ring, d);
                 if (d - on).length() - ring.radius - f.radius < best.gap {
                     let arms = if first { [pose.r * on, centre] } else { [centre, pose.r * on] };

@@ -5,7 +5,8 @@ use crate::error::WorldError;
 use crate::field::Spline;
 use crate::material::{Law, Material};
 use crate::scenery::{Aabb, Plane};
-use glam::DVec3;
+use crate::shape::Ring;
+use glam::{DMat3, DVec3};
 
 /// A fixed part of the world.
 #[derive(Debug, Clone)]
@@ -83,10 +84,10 @@ impl Table {
         let (mut x, mut y) = (p.x, p.y);
         let mut foot = Foot { normal: DVec3::Z, distance: 0.0 };
         for _ in 0..=rounds {
-            let s = self.height.at(x, y);
-            let normal = DVec3::new(-s.slope[0], -s.slope[1], 1.0);
+            let (value, slope) = self.height.slope_at(x, y);
+            let normal = DVec3::new(-slope[0], -slope[1], 1.0);
             let normal = normal / normal.length();
-            foot = Foot { normal, distance: normal.dot(p - DVec3::new(x, y, s.value)) };
+            foot = Foot { normal, distance: normal.dot(p - DVec3::new(x, y, value)) };
             (x, y) = (p.x - normal.x * foot.distance, p.y - normal.y * foot.distance);
         }
         foot
@@ -123,6 +124,15 @@ impl Part {
         }
     }
 
+    /// The direction in world axes against which the lowest point of a ring of a body is meant: that in which the ring is nearest to the part.
+    pub(crate) fn up_at_ring(&self, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
+        match self {
+            Self::Plane(plane) => plane.normal,
+            Self::Block { bounds, .. } => up_at_ring(bounds, ring, x, r),
+            Self::Table(table) => table.foot(x, ROUNDS).normal,
+        }
+    }
+
     /// Whether any field of it was given a bad value.
     pub(crate) fn fault(&self) -> Option<WorldError> {
         match self {
@@ -138,6 +148,76 @@ impl Part {
         }
     }
 }
+
+/// A side of a box, and how far a point is beyond it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Side {
+    pub(crate) axis: usize,
+    pub(crate) normal: DVec3,
+    pub(crate) offset: f64,
+    pub(crate) beyond: f64,
+}
+
+/// The sides of a box that a point is beyond.
+fn sides_before(bounds: &Aabb, x: DVec3) -> impl Iterator<Item = Side> {
+    let bounds = *bounds;
+    let sides = DVec3::AXES.into_iter().enumerate().flat_map(move |(axis, e)| {
+        [(e, bounds.max[axis]), (-e, -bounds.min[axis])].map(|(normal, offset)| (axis, normal, offset))
+    });
+    sides.filter_map(move |(axis, normal, offset)| {
+        let beyond = normal.dot(x) - offset;
+        (beyond > 0.0).then_some(Side { axis, normal, offset, beyond })
+    })
+}
+
+/// The side of a box that a point is farthest beyond; none where it is inside.
+pub(crate) fn farthest_side(bounds: &Aabb, x: DVec3) -> Option<Side> {
+    sides_before(bounds, x)
+        .fold(None, |far: Option<Side>, s| if far.is_some_and(|f| f.beyond >= s.beyond) { far } else { Some(s) })
+}
+
+/// Whether a point is within the edges of a side of a box.
+pub(crate) fn is_over(bounds: &Aabb, axis: usize, p: DVec3) -> bool {
+    (0..3).all(|k| k == axis || (p[k] >= bounds.min[k] && p[k] <= bounds.max[k]))
+}
+
+/// Up where a ring's point nearest to a box is down: the normal of the side that its body is before where that point is over the side, else found from foot to foot.
+fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
+    let middle = x + r.z_axis * ring.height;
+    let lowest = |up: DVec3| {
+        let flat = up - r.z_axis * up.dot(r.z_axis);
+        middle - flat.normalize_or(r.x_axis) * ring.circle
+    };
+    if let Some(side) = farthest_side(bounds, x)
+        && is_over(bounds, side.axis, lowest(side.normal))
+    {
+        return side.normal;
+    }
+    let mut best = (f64::INFINITY, middle);
+    for side in sides_before(bounds, x).chain(sides_before(bounds, middle)) {
+        let point = lowest(side.normal);
+        let distance = block_foot(bounds, point).distance;
+        if distance < best.0 {
+            best = (distance, point);
+        }
+    }
+    // From the point's foot to the ring's point nearest to that, and again: no step leads away.
+    let mut point = best.1;
+    for _ in 0..RING_ROUNDS {
+        let foot = block_foot(bounds, point);
+        let out = point - foot.normal * foot.distance - middle;
+        let flat = out - r.z_axis * out.dot(r.z_axis);
+        let next = middle + flat.normalize_or(r.x_axis) * ring.circle;
+        if next == point {
+            break;
+        }
+        point = next;
+    }
+    middle - point
+}
+
+/// Rounds of looking for a ring's nearest point to an edge. Default 6; an error of an angle then left is far below that between the points of a rim.
+const RING_ROUNDS: usize = 6;
 
 fn block_foot(bounds: &Aabb, p: DVec3) -> Foot {
     let nearest = p.clamp(bounds.min, bounds.max);

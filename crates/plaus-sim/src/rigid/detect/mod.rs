@@ -1,0 +1,132 @@
+//! First contact of a turning body with a fixed part, by conservative advancement of second order.
+//!
+//! Each feeler's gap `f` obeys `f(t + τ) ≥ f + f′ τ − M τ²/2`, where `M` bounds its acceleration towards the part: gravity, rotation, and the surface's curvature times speed
+//! squared. The body is advanced by the first root of these parabolas over all feelers, which cannot overshoot and converges quadratically, until a gap is
+//! below `accuracy.gap` and closing. A gap that is small but opening is no event (rule of `crate::roots`); the search goes on from where it can close again.
+
+mod block;
+mod plane;
+mod table;
+
+use super::body::{Phase, Turning};
+use super::part::Part;
+use super::{Rigid, Skin, Spec};
+use crate::roots::fall_of_quadratic;
+use crate::scenery::Surface;
+use glam::DVec3;
+
+/// Most advancements of one search. Where they are spent the nearest point's time is handed on as an event: the body is looked at anew.
+const MOST_ADVANCES: usize = 200;
+
+/// Time until a gap `f` with rate `rate` and acceleration at least `-m` can be gone.
+#[inline]
+pub(super) fn earliest(f: f64, rate: f64, m: f64) -> f64 {
+    if f > 0.0 {
+        let root = (rate * rate + 2.0 * m * f).sqrt();
+        if rate < 0.0 {
+            2.0 * f / (root - rate)
+        } else if m > 0.0 {
+            (rate + root) / m
+        } else {
+            f64::INFINITY
+        }
+    } else if rate <= 0.0 {
+        0.0
+    } else if m > 0.0 {
+        // Overlapping but opening: not before the rate has turned.
+        let discriminant = rate * rate + 2.0 * m * f;
+        (rate + discriminant.max(0.0).sqrt()) / m
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// A search for the first contact of one body.
+struct Search<'s> {
+    spec: &'s Spec,
+    body: &'s Turning,
+    /// Largest angular speed.
+    fastest: f64,
+    /// Acceleration of a point per its distance from the centre.
+    turning: f64,
+    /// The same for points on the axis of a body of revolution.
+    axial: f64,
+    until: f64,
+    found: Option<(f64, Surface)>,
+}
+
+impl Rigid {
+    /// First point of a body that touches a part, not after `until`.
+    pub(super) fn first_touch(&self, index: usize, body: &Turning, until: f64) -> Option<(f64, Surface)> {
+        if !matches!(body.phase, Phase::Flight | Phase::Step | Phase::Glide) {
+            return None;
+        }
+        let spec = &self.specs[index];
+        let free = body.phase == Phase::Flight;
+        let momentum = spec.inertia.momentum(body.turn, body.spin).length();
+        let fastest = if free {
+            (momentum / spec.inertia.moments.min_element()).min(body.spin.length() * (1.0 + spec.wobble))
+        } else {
+            body.spin.length()
+        };
+        let fastest = if spec.wobble == 0.0 || !free { body.spin.length() } else { fastest };
+        let turning = fastest * fastest * if free { 1.0 + spec.wobble } else { 1.0 };
+        // The axis of a top only swings: at |L|/I₁ in flight, with the body in a step.
+        let across = body.spin.reject_from_normalized(body.turn * DVec3::Z).length();
+        let axial = match spec.skin {
+            Skin::Revolved => across * if free { momentum / spec.inertia.moments.x } else { body.spin.length() },
+            _ => turning,
+        };
+        let mut search = Search { spec, body, fastest, turning, axial, until: until - body.path.t, found: None };
+        for (k, part) in self.parts.iter().enumerate() {
+            match part {
+                Part::Plane(plane) => {
+                    if let Some((time, point)) = search.half_space(k as u16, (plane.normal, plane.offset), None) {
+                        search.hit(time, k as u16, point);
+                    }
+                }
+                Part::Block { .. } => search.block(k as u16, part),
+                Part::Table(table) => search.table(k as u16, table),
+            }
+        }
+        let (time, surface) = search.found?;
+        Some((body.path.t + time, surface))
+    }
+}
+
+impl Search<'_> {
+    /// Whether a point of the body is in lasting contact with the part already.
+    #[inline]
+    fn lasts(&self, part: u16, point: usize) -> bool {
+        matches!(self.body.phase, Phase::Step | Phase::Glide)
+            && self.body.touching().contains(&Surface::Part { part, point: point as u16 })
+    }
+
+    fn hit(&mut self, time: f64, part: u16, point: usize) {
+        self.until = time;
+        self.found = Some((time, Surface::Part { part, point: point as u16 }));
+    }
+
+    /// When the sphere around the body comes down to `level` along `normal`.
+    fn approach(&self, normal: DVec3, level: f64) -> Option<f64> {
+        let path = &self.body.path;
+        let height = normal.dot(path.x) - level - self.spec.reach;
+        if height <= 0.0 {
+            return Some(0.0);
+        }
+        fall_of_quadratic([height, normal.dot(path.v), 0.5 * normal.dot(path.a)], self.until)
+    }
+
+    /// Angular velocity after `t`; only a top's moves.
+    #[inline]
+    fn spin_at(&self, t: f64) -> DVec3 {
+        if self.spec.wobble == 0.0 || self.body.phase != Phase::Flight {
+            self.body.spin
+        } else {
+            self.body.motion_after(self.spec, t).w
+        }
+    }
+}
+
+/// Sine of the lean from which the lowest point of a rim is followed. Default 0.02; smaller values take more advancements, larger ones see impacts a little early.
+const LEANS: f64 = 0.02;

@@ -1,0 +1,220 @@
+//! First contact with a half space.
+
+use super::{LEANS, MOST_ADVANCES, Search, earliest};
+use crate::rigid::body::Phase;
+use crate::rigid::part::is_over;
+use crate::rigid::step::TOUCHING;
+use crate::rigid::{RIM_POINTS, rim};
+use crate::roots::fall_of_quadratic;
+use crate::scenery::Aabb;
+use glam::{DMat3, DVec2, DVec3};
+
+/// Distance of the capsule around a body from a plane, over the body's size, from which its skin is looked at. Default 0.05; smaller values look at capsules more often.
+const NEAR: f64 = 0.05;
+
+/// Stands for a point behind the plane beyond the edges.
+pub(super) const BEYOND: usize = usize::MAX;
+
+/// The body against the half space at one time of the search.
+struct Look<'b> {
+    part: u16,
+    /// A box whose side the plane is, and that side's axis.
+    edges: Option<(&'b Aabb, usize)>,
+    x: DVec3,
+    r: DMat3,
+    /// Of the centre of gravity over the plane, less half the gap.
+    height: f64,
+    /// Rate of the height.
+    fall: f64,
+    /// The normal in body axes, and its rate there.
+    lever: DVec3,
+    swing: DVec3,
+    /// Acceleration of the centre of gravity towards the plane.
+    pull: f64,
+}
+
+impl Look<'_> {
+    /// Whether a point (in body axes) that is behind the plane is beyond the edges of the side: then the plane says nothing about when it touches the box.
+    fn is_beyond(&self, centre: DVec3) -> bool {
+        self.edges.is_some_and(|(bounds, axis)| !is_over(bounds, axis, self.x + self.r * centre))
+    }
+}
+
+/// How far the body may go, and what then touches first.
+struct Next {
+    step: f64,
+    first: Option<(usize, f64)>,
+    is_beyond: bool,
+}
+
+impl Next {
+    /// A point with gap `f` cannot touch before `time`.
+    fn not_before(&mut self, time: f64, point: usize, f: f64) {
+        if time < self.step {
+            self.step = time;
+            self.first = Some((point, f));
+        }
+    }
+
+    /// A point touches now; the deepest counts.
+    fn now(&mut self, point: usize, f: f64) {
+        if self.step > 0.0 || self.first.is_none_or(|(_, deepest)| f < deepest) {
+            self.first = Some((point, f));
+        }
+        self.step = 0.0;
+    }
+
+    /// Whether a gap with at most this acceleration cannot be gone within the step.
+    #[inline]
+    fn outlasts(&self, f: f64, rate: f64, m: f64) -> bool {
+        f > 0.0 && f + (rate - 0.5 * m * self.step) * self.step > 0.0
+    }
+}
+
+impl Search<'_> {
+    /// When and with which point the body first comes to a half space of a part; [`BEYOND`] where `edges` are given and it gets behind the plane beyond them.
+    pub(super) fn half_space(
+        &self,
+        part: u16,
+        (n, offset): (DVec3, f64),
+        edges: Option<(&Aabb, usize)>,
+    ) -> Option<(f64, usize)> {
+        let (spec, path) = (self.spec, &self.body.path);
+        let mut t = self.approach(n, offset)?;
+        if spec.is_ball && self.body.phase != Phase::Step {
+            if self.lasts(part, 0) {
+                return None;
+            }
+            let height = n.dot(path.x) - offset - spec.feelers[0].radius - 0.5 * spec.gap;
+            let time = fall_of_quadratic([height, n.dot(path.v), 0.5 * n.dot(path.a)], self.until)?;
+            return Some((time, 0));
+        }
+        let pull = -n.dot(path.a);
+        let mut tumble = self.body.tumble(spec);
+        for _ in 0..MOST_ADVANCES {
+            let r = tumble.at(t);
+            let turned = r.transpose();
+            let x = path.after(t);
+            let look = Look {
+                part,
+                edges,
+                x,
+                r,
+                height: n.dot(x) - offset - 0.5 * spec.gap,
+                fall: n.dot(path.velocity_after(t)),
+                lever: turned * n,
+                swing: turned * n.cross(self.spin_at(t)),
+                pull,
+            };
+            let mut next = Next { step: self.until - t, first: None, is_beyond: false };
+            match self.capsule(&look, next.step) {
+                Some(apart) if t + apart >= self.until => return None,
+                Some(apart) => {
+                    t += apart;
+                    continue;
+                }
+                None => {}
+            }
+            self.balls(&look, &mut next);
+            for k in 0..spec.rings.len() {
+                self.ring(&look, k, &mut next);
+            }
+            if next.is_beyond {
+                return Some((t, BEYOND));
+            }
+            let (first, _) = next.first?;
+            if next.step == 0.0 {
+                return Some((t, first));
+            }
+            t += next.step;
+            if t >= self.until || t.is_nan() {
+                return None;
+            }
+        }
+        Some((t, if edges.is_some() { BEYOND } else { 0 }))
+    }
+
+    /// For how long at least the capsule around the body stays clear of the plane, where that is worth a step of the search.
+    fn capsule(&self, look: &Look, step: f64) -> Option<f64> {
+        let [low, high, radius] = self.spec.capsule;
+        let mut soonest = f64::INFINITY;
+        for end in [low, high] {
+            let f = look.height + look.lever.z * end - radius;
+            let (rate, m) = (look.fall + look.swing.z * end, (look.pull + self.axial * end.abs()).max(0.0));
+            let clear = f > 0.0 && f + (rate - 0.5 * m * step) * step > 0.0;
+            if !clear && f <= NEAR * self.spec.size {
+                return None;
+            }
+            soonest = soonest.min(if clear { step } else { earliest(f, rate, m) });
+        }
+        Some(soonest)
+    }
+
+    fn balls(&self, look: &Look, next: &mut Next) {
+        let spec = self.spec;
+        for (k, feeler) in spec.feelers[..spec.hull].iter().enumerate() {
+            let f = look.height + look.lever.dot(feeler.centre) - feeler.radius;
+            let rate = look.fall + look.swing.dot(feeler.centre);
+            let m = (look.pull + self.axial * spec.arms[k]).max(0.0);
+            if next.outlasts(f, rate, m) || self.lasts(look.part, k) {
+                continue;
+            }
+            next.is_beyond |= f <= 0.5 * spec.gap && look.is_beyond(feeler.centre);
+            if f <= 0.5 * spec.gap && rate < 0.0 {
+                next.now(k, f);
+            } else {
+                next.not_before(earliest(f, rate, m), k, f);
+            }
+        }
+    }
+
+    /// The lowest point of a ring; of the rim also those sideways and the highest, which may touch while the lowest does.
+    fn ring(&self, look: &Look, index: usize, next: &mut Next) {
+        let (spec, ring) = (self.spec, &self.spec.rings[index]);
+        let point = spec.points_of(index).start;
+        let (p, q) = (look.lever.truncate(), look.swing.truncate());
+        let m = (look.pull + self.turning * spec.ring_arms[index]).max(0.0);
+        let middle = look.height + look.lever.z * ring.height - ring.radius;
+        let rate = look.fall + look.swing.z * ring.height;
+        if next.outlasts(middle - ring.circle * p.length(), rate - ring.circle * q.length(), m) {
+            return;
+        }
+        let f = middle - ring.circle * p.length();
+        if f <= TOUCHING * spec.gap {
+            // Other points of the ring are named by where they are to this one.
+            let down = -p.normalize_or(DVec2::X) * ring.circle;
+            next.is_beyond |= look.is_beyond(down.extend(ring.height));
+        }
+        if p != DVec2::ZERO && !self.lasts(look.part, point) {
+            let along = rate - ring.circle * p.dot(q) / p.length();
+            if f <= 0.5 * spec.gap && along < 0.0 {
+                next.now(point, f);
+            } else {
+                let low = rim::Low { middle, rate, circle: ring.circle, p, q, m };
+                next.not_before(low.earliest(next.step), point, f);
+            }
+        }
+        if index == 0 && (p == DVec2::ZERO || self.body.phase != Phase::Flight) {
+            for quarter in usize::from(p != DVec2::ZERO)..RIM_POINTS {
+                self.rim_point(look, point + quarter, [middle, rate, m], next);
+            }
+        }
+    }
+
+    /// A point of the rim that is not its lowest. Those sideways are as high as the rim's middle, whatever way the body turns.
+    fn rim_point(&self, look: &Look, point: usize, [middle, rate, m]: [f64; 3], next: &mut Next) {
+        if self.lasts(look.part, point) {
+            return;
+        }
+        let (feeler, quarter) = self.spec.ring_point(point, look.lever);
+        let f = middle + look.lever.truncate().dot(feeler.centre.truncate());
+        let own = rate + look.swing.truncate().dot(feeler.centre.truncate());
+        if f > 0.5 * self.spec.gap {
+            next.not_before(earliest(f, if quarter.is_multiple_of(2) { own } else { rate }, m), point, f);
+        } else if own < 0.0 {
+            next.now(point, f);
+        } else {
+            next.not_before(earliest(f, own, m / LEANS), point, f);
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! The lowest point of a ring that turns with its body: not a point of the body, so its own second derivative has no bound, but every point of the ring has one.
+
+use super::detect::earliest;
+use glam::DVec2;
+
+/// A ring over a plane. A point of it in direction `u` (in body axes, across the axis) has the gap `middle + circle p·u`, its rate is `rate + circle q·u`, and its
+/// acceleration towards the plane is at most `m`. So after `τ` every point, and with it the lowest, is no lower than `g(τ) = middle + rate τ − circle |p + q τ| − m τ²/2`,
+/// which is concave.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Low {
+    pub(super) middle: f64,
+    pub(super) rate: f64,
+    pub(super) circle: f64,
+    pub(super) p: DVec2,
+    pub(super) q: DVec2,
+    pub(super) m: f64,
+}
+
+/// Rounds of closing in on the first root. Each about squares the error; more save no advancement of the search around it.
+const ROUNDS: usize = 4;
+
+/// Bisections for the time from which an overlapping ring can sink. Default 40: to 2⁻⁴⁰ of the bracket.
+const BISECTIONS: usize = 40;
+
+impl Low {
+    /// The bound on the gap after `t`.
+    pub(super) fn at(&self, t: f64) -> f64 {
+        self.middle + (self.rate - 0.5 * self.m * t) * t - self.circle * (self.p + self.q * t).length()
+    }
+
+    fn slope_at(&self, t: f64) -> f64 {
+        let p = self.p + self.q * t;
+        let length = p.length();
+        let turned = if length > 0.0 { p.dot(self.q) / length } else { self.q.length() };
+        self.rate - self.m * t - self.circle * turned
+    }
+
+    /// A time before which the ring cannot touch while it sinks; not more than `limit` needs to be known.
+    pub(super) fn earliest(&self, limit: f64) -> f64 {
+        let (f, slope) = (self.at(0.0), self.slope_at(0.0));
+        if f <= 0.0 {
+            return self.sinks(slope);
+        }
+        // Below the parabola of the point that is lowest now, above that of the fastest.
+        let mut low = earliest(f, self.rate - self.circle * self.q.length(), self.m);
+        let mut high = earliest(f, slope, self.m).min(limit);
+        if low >= high || self.at(high) > 0.0 {
+            return high.max(low);
+        }
+        let mut at_low = self.at(low);
+        for _ in 0..ROUNDS {
+            if high - low <= 1e-3 * low || at_low <= 0.0 {
+                break;
+            }
+            // The chord of a concave function lies below it, the tangent above.
+            let at_high = self.at(high);
+            let chord = low + (high - low) * (at_low / (at_low - at_high));
+            let falls = self.slope_at(high);
+            if falls < 0.0 {
+                high = (high - at_high / falls).clamp(low, high);
+            }
+            low = chord.clamp(low, high);
+            at_low = self.at(low);
+        }
+        low
+    }
+
+    /// Overlapping but rising: not before some point of the ring can sink again, with the overlap not yet gone.
+    fn sinks(&self, slope: f64) -> f64 {
+        let fastest = self.rate - self.circle * self.q.length();
+        if fastest >= 0.0 {
+            return earliest(self.at(0.0), fastest, self.m);
+        }
+        let (mut low, mut high) = (0.0, if self.m > 0.0 { slope / self.m } else { self.p.length() / self.q.length() });
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            if self.slope_at(middle) >= 0.0 { low = middle } else { high = middle }
+        }
+        high
+    }
+}
