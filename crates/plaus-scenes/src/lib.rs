@@ -25,6 +25,7 @@
 
 pub mod animation;
 pub mod ball2d;
+pub mod dice;
 pub mod registry;
 pub mod rules;
 pub mod scenario;

@@ -52,4 +52,6 @@ scenes! {
     "ball2d" Ball2d => ball2d,
     /// Balls are dropped one after the other into a box of bins and should come to rest so that they spell a word.
     "spelling" Spelling => spelling,
+    /// Dice are thrown onto a table of random height, restitution and friction, and should come to rest where and as demanded.
+    "dice" Dice => dice,
 }

@@ -1,0 +1,130 @@
+//! Every move leaves the prior and the constrained target as they are.
+
+use super::plain::{AnyMove, Plain, all_moves, scene, small, statistics};
+use plaus_dist::{LogPotential, Seed};
+use plaus_mcmc::check::{
+    OneStep, OneStepReport, PriorOnly, Ratios, Statistic, any_of, early_exit, one_step, prior, ratios, rejection,
+    visited,
+};
+use plaus_mcmc::view::lend;
+use plaus_mcmc::{Chain, Mixture, State, Verdict};
+use plaus_scenes::dice::{Dice, Turn, Work};
+use plaus_scenes::{Rules, Scene};
+
+const SAMPLES: u64 = 8_000;
+
+/// One step of `kernel` alone from exact draws of the constrained target.
+pub(crate) fn constrained(dice: &Dice, flat: bool, kernel: AnyMove) -> OneStepReport {
+    let toy = Plain { dice, flat };
+    let moves = lend::<Plain<'_>>(Mixture::of(kernel)).unwrap();
+    let plan = OneStep { samples: SAMPLES, ..OneStep::default() };
+    one_step(&toy, &moves, rejection(&toy, LogPotential::ONE), &statistics(), plan).unwrap()
+}
+
+/// One step from draws of the prior, with the constraint switched off.
+pub(crate) fn free(dice: &Dice, flat: bool, kernel: AnyMove) -> OneStepReport {
+    let whole = small_without_demands(dice);
+    let toy = Plain { dice: &whole, flat };
+    let moves = lend::<Plain<'_>>(Mixture::of(kernel)).unwrap();
+    let plan = OneStep { samples: SAMPLES, ..OneStep::default() };
+    one_step(&toy, &moves, prior(&toy), &statistics(), plan).unwrap()
+}
+
+/// The same scene where what is demanded counts nothing, yet is known to the moves that aim.
+fn small_without_demands(dice: &Dice) -> Dice {
+    let mut config = dice.config().clone();
+    for demand in &mut config.constraints {
+        match demand {
+            plaus_scenes::dice::Constraint::RestAt(at) => at.sigma_mm = 1e5,
+            plaus_scenes::dice::Constraint::FaceUp(up) => up.ln_lambda = 0.0,
+            _ => {}
+        }
+    }
+    Dice::new(&config).unwrap()
+}
+
+#[test]
+fn every_move_leaves_prior_and_target_invariant() {
+    // Tables of their own; one for both; no random field; a puddle.
+    let scenes = [
+        small(|_| ()),
+        small(|config| config.together = true),
+        small(|config| (config.table.bumps_mm, config.table.bounce_sd, config.table.grip_sd) = (0.0, 0.0, 0.0)),
+        small(|config| config.spilt.radius_mm = 60.0),
+    ];
+    for (k, dice) in scenes.iter().enumerate() {
+        for (index, kernel) in all_moves().into_iter().enumerate() {
+            let is_of_points = index == 2 || index == 3;
+            if (dice.fields().is_empty() && is_of_points) || (k == 3 && !is_of_points && index != 6) {
+                continue;
+            }
+            let report = constrained(dice, false, kernel);
+            assert!(report.passed(), "scene {k}: {report}");
+            assert!(report.accepted() > 200, "scene {k}: {report}");
+        }
+    }
+    for kernel in all_moves() {
+        let report = free(&scenes[0], false, kernel);
+        assert!(report.passed(), "{report}");
+    }
+}
+
+#[test]
+fn ratios_agree_with_their_reverse() {
+    for dice in [small(|_| ()), small(|config| config.together = true)] {
+        let toy = Plain { dice: &dice, flat: false };
+        let mixture = lend::<Plain<'_>>(dice.moves(&Rules::exact()).unwrap()).unwrap();
+        let states = visited(&toy, &mixture, Seed(5), 5, 500).unwrap();
+        for kernel in all_moves() {
+            let moves = lend::<Plain<'_>>(Mixture::of(kernel)).unwrap();
+            let (_, lent) = moves.iter().next().unwrap();
+            let report = ratios(&toy, lent, any_of(&states), Ratios { pairs: 2000, ..Ratios::default() }).unwrap();
+            assert!(report.passed(), "{report}");
+        }
+    }
+}
+
+/// Real dice on a real table.
+#[test]
+fn the_mixture_leaves_the_prior_invariant_with_real_dice() {
+    let dice = scene(|_| ());
+    let free = PriorOnly::new(&dice);
+    let moves = lend::<PriorOnly<'_, Dice>>(dice.moves(&Rules::exact()).unwrap()).unwrap();
+    let plan = OneStep { samples: 1000, steps: 2, ..OneStep::default() };
+    let statistics = [
+        Statistic::new("rest x", |state: &super::plain::Thrown| state.outcome.trips[0].position.x),
+        Statistic::new("face", |state: &super::plain::Thrown| f64::from(state.outcome.faces[0])),
+        Statistic::new("impacts", |state: &super::plain::Thrown| state.outcome.trips[0].impacts.len() as f64),
+        Statistic::new("velocity", |state: &super::plain::Thrown| state.draw.throws[0].velocity.x),
+    ];
+    let report = one_step(&free, &moves, prior(&free), &statistics, plan).unwrap();
+    assert!(report.passed(), "{report}");
+}
+
+/// Trips taken from the current state, and simulations given up, change no state.
+#[test]
+fn savings_change_nothing() {
+    let dice = scene(|config| config.dice = 2);
+    let moves = dice.moves(&Rules::exact()).unwrap();
+    let report = early_exit(&dice, &moves, Seed(3), 150).unwrap();
+    assert!(report.passed(), "{report}");
+}
+
+/// Turning the pips changes which face comes up and no bit of the motion; a state is what its draw alone makes of it.
+#[test]
+fn a_turn_of_the_pips_moves_nothing() {
+    let dice = scene(|_| ());
+    let moves = Mixture::of(Box::new(Turn) as AnyMove);
+    let mut chain = Chain::start(&dice, &moves, Seed(1).chain(0)).unwrap();
+    let first = chain.state().outcome.trips[0].clone();
+    let mut faces = std::collections::BTreeSet::new();
+    for _ in 0..400 {
+        if chain.step().unwrap().verdict == Verdict::Accepted {
+            faces.insert(chain.state().outcome.faces[0]);
+        }
+    }
+    assert!(faces.contains(&6) && !faces.contains(&0), "{faces:?}");
+    assert_eq!(chain.state().outcome.trips[0], first);
+    let again = State::evaluate(&dice, chain.state().draw.clone(), &mut Work::default()).unwrap();
+    assert_eq!(&again, chain.state());
+}

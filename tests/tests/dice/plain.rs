@@ -1,0 +1,143 @@
+//! The scene with a simulator simple enough to trust, and fast. Moves cannot tell the difference.
+
+use glam::{DQuat, DVec3};
+use plaus_dist::{LogDensity, LogPotential, Stream};
+use plaus_mcmc::check::Statistic;
+use plaus_mcmc::view::View;
+use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target};
+use plaus_scenes::dice::{
+    Component, Config, Constraint, Dice, Draw, Everything, FaceUp, Field, Near, Point, Rest, RestAt, Rethrow, Scale,
+    Shift, Site, Trip, Turn,
+};
+
+pub(crate) type AnyMove = Box<dyn Move<Dice>>;
+pub(crate) type Thrown = State<Draw, Rest>;
+
+/// A die lands where its velocity brings it in a tenth of a second, moved by the height of the control point there. Where that is above its mean it touches the
+/// table four times there, else once, so that which points are near collisions depends on the draw. It lies as it was thrown, or always on the face
+/// that its first axis points to.
+pub(crate) struct Plain<'a> {
+    pub(crate) dice: &'a Dice,
+    pub(crate) flat: bool,
+}
+
+/// The site below a place.
+fn below(place: DVec3) -> Site {
+    let [i, j] = [place.x, place.y].map(|x| (x / 0.03).round() as i32);
+    Site { field: Field::Height, i, j }
+}
+
+impl Plain<'_> {
+    fn trip(&self, draw: &Draw, die: usize) -> Trip {
+        let throw = &draw.throws[die];
+        let landing = throw.position + 0.1 * throw.velocity;
+        let score = draw.tables[draw.table_of(die)].score(below(landing));
+        let first = throw.position + 0.05 * throw.velocity;
+        let mut impacts = vec![[0.05, first.x, first.y]];
+        for k in 0..if score > 0.0 { 4 } else { 1 } {
+            impacts.push([0.1 + 0.01 * f64::from(k), landing.x, landing.y]);
+        }
+        let on_its_side = DQuat::from_rotation_arc(DVec3::X, DVec3::Z);
+        Trip::resting(
+            landing + DVec3::X * 0.02 * score,
+            if self.flat { on_its_side } else { throw.orientation },
+            impacts,
+        )
+    }
+}
+
+impl Target for Plain<'_> {
+    type Draw = Draw;
+    type Outcome = Rest;
+    type Scratch = ();
+
+    fn start(&self, stream: &mut Stream) -> Draw {
+        self.dice.start(stream)
+    }
+
+    fn log_prior(&self, draw: &Draw) -> Result<LogDensity, ModelError> {
+        self.dice.log_prior(draw)
+    }
+
+    fn simulate(
+        &self,
+        draw: &Draw,
+        _: Option<&StateOf<Self>>,
+        _: LogPotential,
+        (): &mut (),
+    ) -> Result<Simulated<Rest>, ModelError> {
+        let trips = (0..draw.throws.len()).map(|die| self.trip(draw, die)).collect();
+        Ok(Simulated::Complete(self.dice.judge(draw, trips)))
+    }
+
+    fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
+        self.dice.log_constraint(rest)
+    }
+}
+
+impl View for Plain<'_> {
+    type Seen = Dice;
+
+    fn seen(&self) -> &Dice {
+        self.dice
+    }
+}
+
+pub(crate) fn scene(change: impl FnOnce(&mut Config)) -> Dice {
+    let mut config = Config::default();
+    change(&mut config);
+    Dice::new(&config).unwrap()
+}
+
+/// Two dice over few control points; demands that many draws of the prior come near.
+pub(crate) fn small(change: impl FnOnce(&mut Config)) -> Dice {
+    scene(|config| {
+        config.dice = 2;
+        config.table.grid_mm = 30.0;
+        config.throw.place_sd_mm = 20.0;
+        config.constraints = vec![
+            Constraint::RestAt(RestAt { x_mm: -40.0, sigma_mm: 40.0, ..RestAt::default() }),
+            Constraint::RestAt(RestAt { die: 2, x_mm: -60.0, y_mm: 20.0, sigma_mm: 40.0, ..RestAt::default() }),
+            Constraint::FaceUp(FaceUp { ln_lambda: 1.0, within_deg: 45.0, ..FaceUp::default() }),
+        ];
+        change(config);
+    })
+}
+
+/// Every move there is.
+pub(crate) fn all_moves() -> Vec<AnyMove> {
+    let scale = Scale::new(0.3, 1.0);
+    vec![
+        Box::new(Everything::default()),
+        Box::new(Component { scale }),
+        Box::new(Point { scale }),
+        Box::new(Near { scale }),
+        Box::new(Rethrow),
+        Box::new(Turn),
+        Box::new(Shift { sd: 0.02 }),
+    ]
+}
+
+/// What must keep its law: how the dice are thrown, where they lie and what they show, and the table below them.
+pub(crate) fn statistics() -> Vec<Statistic<'static, Draw, Rest>> {
+    let landing = |state: &Thrown, die: usize| {
+        let place = state.outcome.trips[die].impacts[1];
+        DVec3::new(place[1], place[2], 0.0)
+    };
+    let table = |state: &Thrown, die: usize, at: DVec3| state.draw.tables[state.draw.table_of(die)].score(below(at));
+    vec![
+        Statistic::new("x", |state: &Thrown| state.draw.throws[0].position.x),
+        Statistic::new("y", |state: &Thrown| state.draw.throws[1].position.y),
+        Statistic::new("z", |state: &Thrown| state.draw.throws[0].position.z),
+        Statistic::new("velocity", |state: &Thrown| state.draw.throws[0].velocity.y),
+        Statistic::new("spin", |state: &Thrown| state.draw.throws[1].spin.x),
+        Statistic::new("turned", |state: &Thrown| (state.draw.throws[0].orientation * DVec3::X).z),
+        Statistic::new("face", |state: &Thrown| f64::from(state.outcome.faces[0])),
+        Statistic::new("rest x", |state: &Thrown| state.outcome.trips[0].position.x),
+        Statistic::new("rest y", |state: &Thrown| state.outcome.trips[1].position.y),
+        Statistic::new("impacts", |state: &Thrown| state.outcome.trips[0].impacts.len() as f64),
+        Statistic::new("below the die", move |state: &Thrown| table(state, 0, landing(state, 0))),
+        Statistic::new("beside the other", move |state: &Thrown| table(state, 1, landing(state, 1) + DVec3::X * 0.03)),
+        Statistic::new("fixed point", move |state: &Thrown| table(state, 0, DVec3::new(-0.06, 0.0, 0.0))),
+    ]
+}
