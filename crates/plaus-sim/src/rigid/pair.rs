@@ -1,14 +1,15 @@
 //! Two bodies: how near they are, when they touch, and their impact.
 //!
-//! Balls and bodies of revolution are looked at as the balls and rings of their skins, cuboids (against balls only) by their faces. First contacts are found by advancement with a
+//! Balls and bodies of revolution are looked at as the balls and rings of their skins, cuboids by their faces against balls; two cuboids are in `boxes.rs`. First contacts are found by advancement with a
 //! second-order bound on the nearest points' approach; should another pair of points have come first, the overlap is seen and the time bisected.
 
 use super::body::{Motion, Phase, Pose, Turning};
 use super::contact::{impulse, response};
 use super::detect::earliest;
-use super::{Rigid, Skin, Spec};
+use super::{Rigid, Skin, Spec, step};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
+use crate::shape::cuboid_pair::{Feature, Meeting};
 use crate::shape::{Feeler, Ring};
 use glam::DVec3;
 
@@ -20,6 +21,22 @@ pub(crate) struct PairTouch {
     /// From each centre of gravity to its nearest point.
     pub(crate) arms: [DVec3; 2],
     pub(crate) gap: f64,
+    /// What meets there, of two cuboids.
+    pub(crate) feature: Option<Feature>,
+}
+
+impl PairTouch {
+    /// Rate of the gap.
+    #[inline]
+    pub(crate) fn rate(&self, a: &Pose, b: &Pose) -> f64 {
+        (a.velocity(self.arms[0]) - b.velocity(self.arms[1])).dot(self.normal)
+    }
+}
+
+impl From<Meeting> for PairTouch {
+    fn from(m: Meeting) -> Self {
+        Self { normal: m.normal, arms: m.arms, gap: m.gap, feature: Some(m.feature) }
+    }
 }
 
 /// Most advancements of one search; then the time reached is handed on as an event.
@@ -43,7 +60,7 @@ fn balls(offset: DVec3, [p, q]: [DVec3; 2], [r, s]: [f64; 2]) -> PairTouch {
     let between = offset + p - q;
     let distance = between.length();
     let normal = if distance > 0.0 { between / distance } else { DVec3::Z };
-    PairTouch { normal, arms: [p - normal * r, q + normal * s], gap: distance - r - s }
+    PairTouch { normal, arms: [p - normal * r, q + normal * s], gap: distance - r - s, feature: None }
 }
 
 /// The point of a ring's circle nearest to `d` (both about the ring's body), in body axes.
@@ -60,7 +77,7 @@ fn nearer(best: &mut Option<PairTouch>, other: PairTouch) {
 }
 
 fn swapped(t: PairTouch) -> PairTouch {
-    PairTouch { normal: -t.normal, arms: [t.arms[1], t.arms[0]], gap: t.gap }
+    PairTouch { normal: -t.normal, arms: [t.arms[1], t.arms[0]], ..t }
 }
 
 impl Rigid {
@@ -79,16 +96,24 @@ impl Rigid {
         self.accuracy.settle * (1.0 - law.restitution) * self.specs[i].speed.min(self.specs[j].speed)
     }
 
+    /// The gap that a point of contact of two bodies is to have at the end of a step of `h` seconds: an overlap is undone at a limited speed.
+    pub(super) fn pair_goal(&self, [i, j]: [usize; 2], gap: f64, h: f64) -> f64 {
+        let fastest = step::PUSH * self.accuracy.settle * self.specs[i].speed.min(self.specs[j].speed);
+        (step::KEEP * self.pair_gap([i, j])).min(gap + fastest * h)
+    }
+
     /// The nearest points of two bodies.
     pub(super) fn pair_touch(&self, [i, j]: [usize; 2], [a, b]: [&Pose; 2]) -> PairTouch {
         let (s, t) = (&self.specs[i], &self.specs[j]);
+        if let Some(touch) = self.nearest_of_cuboids([i, j], [a, b]) {
+            return touch;
+        }
         let offset = a.x - b.x;
         match (&s.skin, &t.skin) {
             (Skin::Ball, Skin::Ball) => balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]),
             (Skin::Revolved, Skin::Ball) => revolved_and_ball(s, a, offset, t.reach),
             (Skin::Ball, Skin::Revolved) => swapped(revolved_and_ball(t, b, -offset, s.reach)),
             (Skin::Revolved, Skin::Revolved) => two_revolved([s, t], [a, b], offset),
-            (Skin::Cuboid { .. }, Skin::Ball) => cuboid_and_balls(s, a, t, b, offset),
             (Skin::Cuboid { .. }, _) => cuboid_and_balls(s, a, t, b, offset),
             (_, Skin::Cuboid { .. }) => swapped(cuboid_and_balls(t, b, s, a, -offset)),
         }
@@ -96,6 +121,9 @@ impl Rigid {
 
     /// First time in `[from, until]` at which two bodies touch while approaching.
     pub(super) fn first_pair(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
+        if self.are_cuboids(pair) {
+            return self.first_of_cuboids(pair, bodies, [from, until], false);
+        }
         let [s, t] = pair.map(|k| &self.specs[k]);
         let level = self.pair_gap(pair);
         let pull = (bodies[0].path.a - bodies[1].path.a).length();
@@ -178,13 +206,14 @@ impl Rigid {
         let [s, t] = pair.map(|k| &self.specs[k]);
         let time = a.path.t;
         let (mut p, mut q) = (a.pose(), b.pose());
-        let touch = self.pair_touch(pair, [&p, &q]);
+        let mut touch = self.hitting(pair, [&p, &q]);
         let vigour = a.vigour(s) + b.vigour(t);
         let mut u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
         if u.dot(touch.normal) >= 0.0 && !linked && (a.listed != time || b.listed != time) {
             a.take_drift();
             b.take_drift();
             (p, q) = (a.pose(), b.pose());
+            touch = self.hitting(pair, [&p, &q]);
             u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
         }
         let approach = -u.dot(touch.normal);
@@ -193,7 +222,7 @@ impl Rigid {
         let lasting = law.restitution * approach <= settles || a.is_hurried() || b.is_hurried();
         if !linked
             && approach <= 0.0
-            && touch.gap <= super::step::TOUCHING * self.pair_gap(pair)
+            && touch.gap <= step::TOUCHING * self.pair_gap(pair)
             && (a.is_hurried() || b.is_hurried())
         {
             // Found again and again without an approach, as where two pairs of points are equally near: their group is to deal with it.
@@ -215,7 +244,7 @@ impl Rigid {
                 lasting: true,
             });
         }
-        if approach <= 0.0 || touch.gap > super::step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
+        if approach <= 0.0 || touch.gap > step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
             return None;
         }
         let (ia, ib) = (s.inertia.inverse(&p.r), t.inertia.inverse(&q.r));

@@ -17,7 +17,10 @@ pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
 
 /// Whether contacts can hold bodies that do not move. `h` is the length of a step.
 pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> bool {
-    if !group.leaving.is_empty() || !h.is_finite() {
+    if !group.leaving.is_empty() || !group.parting.is_empty() || !h.is_finite() {
+        return false;
+    }
+    if group.has_cuboids_in_touch() && group.least_gap(world) < -1.0 {
         return false;
     }
     // Another step makes less of an overlap larger than what can be tidied.
