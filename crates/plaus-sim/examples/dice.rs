@@ -75,7 +75,14 @@ impl Tally {
         let size = 0.5 * die.edges.min_element();
         let deepest = watch.deepest.map(|d| d / size);
         if place != 0 || deepest[0] > 1e-2 {
-            println!("throw {k}: {outcome:?} at {} s, {:.1} ms, {:?}, overlaps {:.1e} {:.1e}", state.time(), 1e3 * self.times[self.times.len() - 1], state.counts(), deepest[0], deepest[1]);
+            println!(
+                "throw {k}: {outcome:?} at {} s, {:.1} ms, {:?}, overlaps {:.1e} {:.1e}",
+                state.time(),
+                1e3 * self.times[self.times.len() - 1],
+                state.counts(),
+                deepest[0],
+                deepest[1]
+            );
         }
         self.deep += u64::from(deepest[0] > 1e-2);
         if deepest[0] > self.deepest[0] {
@@ -91,7 +98,10 @@ impl Tally {
         let (n, total) = (self.times.len(), self.times.iter().sum::<f64>());
         let at = |part: usize| 1e3 * self.times[n * part / 100];
         println!("{what}: {n} throws");
-        println!("  at rest, time over, out of events, not finite: {:?}; a die on another at the end: {}", self.outcomes, self.stacked);
+        println!(
+            "  at rest, time over, out of events, not finite: {:?}; a die on another at the end: {}",
+            self.outcomes, self.stacked
+        );
         println!(
             "  deepest overlap over half an edge, ever: {:.1e} of two dice (throw {}), {:.1e} with the table; {} throws beyond 1e-2",
             self.deepest[0], self.worst, self.deepest[1], self.deep
@@ -121,7 +131,8 @@ impl Overlaps<'_> {
         for (other, there) in self.last.iter().enumerate() {
             let Some(there) = there.as_ref().filter(|b| other != index && b.path.t <= time) else { continue };
             let there = self.world.at(other, there, time);
-            let (pair, both) = if other < index { ([other, index], [&there, body]) } else { ([index, other], [body, &there]) };
+            let (pair, both) =
+                if other < index { ([other, index], [&there, body]) } else { ([index, other], [body, &there]) };
             self.deepest[0] = self.deepest[0].max(-self.world.gap(pair, both));
         }
     }

@@ -1,6 +1,7 @@
 //! Every move leaves the prior and the constrained target as they are.
 
-use super::plain::{AnyMove, Plain, all_moves, scene, small, statistics};
+use super::plain::{AnyMove, Plain, Thrown, all_moves, scene, small, statistics};
+use super::twins::{Fault, Faulty};
 use plaus_dist::{LogPotential, Seed};
 use plaus_mcmc::check::{
     OneStep, OneStepReport, PriorOnly, Ratios, Statistic, any_of, early_exit, one_step, prior, ratios, rejection,
@@ -8,7 +9,7 @@ use plaus_mcmc::check::{
 };
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Chain, Mixture, State, Verdict};
-use plaus_scenes::dice::{Dice, Turn, Work};
+use plaus_scenes::dice::{Constraint, Dice, FaceUp, Recast, RestAt, Turn, Work};
 use plaus_scenes::{Rules, Scene};
 
 const SAMPLES: u64 = 8_000;
@@ -92,13 +93,53 @@ fn the_mixture_leaves_the_prior_invariant_with_real_dice() {
     let moves = lend::<PriorOnly<'_, Dice>>(dice.moves(&Rules::exact()).unwrap()).unwrap();
     let plan = OneStep { samples: 1000, steps: 2, ..OneStep::default() };
     let statistics = [
-        Statistic::new("rest x", |state: &super::plain::Thrown| state.outcome.trips[0].position.x),
-        Statistic::new("face", |state: &super::plain::Thrown| f64::from(state.outcome.faces[0])),
-        Statistic::new("impacts", |state: &super::plain::Thrown| state.outcome.trips[0].impacts.len() as f64),
-        Statistic::new("velocity", |state: &super::plain::Thrown| state.draw.throws[0].velocity.x),
+        Statistic::new("rest x", |state: &Thrown| state.outcome.trips[0].position.x),
+        Statistic::new("face", |state: &Thrown| f64::from(state.outcome.faces[0])),
+        Statistic::new("impacts", |state: &Thrown| state.outcome.trips[0].impacts.len() as f64),
+        Statistic::new("velocity", |state: &Thrown| state.draw.throws[0].velocity.x),
     ];
     let report = one_step(&free, &moves, prior(&free), &statistics, plan).unwrap();
     assert!(report.passed(), "{report}");
+}
+
+/// A recast relies on the simulator's giving the same trip wherever it begins: real dice, wide demands, on a random table and on a plain one; and its twin without a
+/// ratio.
+#[test]
+fn recasts_leave_the_constrained_target_invariant() {
+    for plain in [false, true] {
+        let dice = scene(|config| {
+            if plain {
+                (config.table.bumps_mm, config.table.bounce_sd, config.table.grip_sd) = (0.0, 0.0, 0.0);
+            }
+            (config.throw.place_sd_mm, config.table.grid_mm) = (60.0, 16.0);
+            config.accuracy = plaus_scenes::dice::AccuracyPreset::Draft;
+            let at = RestAt { sigma_mm: 90.0, ..RestAt::default() };
+            config.constraints =
+                vec![Constraint::RestAt(at), Constraint::FaceUp(FaceUp { ln_lambda: 1.0, ..FaceUp::default() })];
+        });
+        let statistics = [
+            Statistic::new("rest x", |state: &Thrown| {
+                state.outcome.trips[0].position.x + dice.offset(&state.draw, 0).x
+            }),
+            Statistic::new("face", |state: &Thrown| f64::from(state.outcome.faces[0] == 6)),
+            Statistic::new("x", |state: &Thrown| dice.prior().value(&state.draw, 0, 0)),
+            Statistic::new("velocity", |state: &Thrown| state.draw.throws[0].velocity.x),
+        ];
+        let recast = || Recast { sd: 0.08 };
+        let report = |kernel: AnyMove| {
+            let plan = OneStep { samples: 1000, ..OneStep::default() };
+            one_step(&dice, &Mixture::of(kernel), rejection(&dice, LogPotential::ONE), &statistics, plan).unwrap()
+        };
+        let right = report(Box::new(recast()));
+        assert!(right.passed() && right.accepted() > 150, "{right}");
+        let wrong = report(Box::new(Faulty(Box::new(recast()), Fault::Forgets)));
+        assert!(!wrong.passed(), "not caught: {wrong}");
+        let mixture = Mixture::of(Box::new(recast()) as AnyMove);
+        let (_, kernel) = mixture.iter().next().unwrap();
+        let plan = Ratios { pairs: 200, ..Ratios::default() };
+        let report = ratios(&dice, kernel, prior(&dice), plan).unwrap();
+        assert!(report.passed(), "{report}");
+    }
 }
 
 /// Trips taken from the current state, and simulations given up, change no state.
@@ -106,7 +147,7 @@ fn the_mixture_leaves_the_prior_invariant_with_real_dice() {
 fn savings_change_nothing() {
     let dice = scene(|config| config.dice = 2);
     let moves = dice.moves(&Rules::exact()).unwrap();
-    let report = early_exit(&dice, &moves, Seed(3), 150).unwrap();
+    let report = early_exit(&dice, std::sync::Arc::new(moves), Seed(3), 150).unwrap();
     assert!(report.passed(), "{report}");
 }
 

@@ -21,9 +21,12 @@ pub(crate) struct Plain<'a> {
     pub(crate) flat: bool,
 }
 
+/// Distance of control points in [`small`], in m.
+const CELL: f64 = 0.03;
+
 /// The site below a place.
 fn below(place: DVec3) -> Site {
-    let [i, j] = [place.x, place.y].map(|x| (x / 0.03).round() as i32);
+    let [i, j] = [place.x, place.y].map(|x| (x / CELL).round() as i32);
     Site { field: Field::Height, i, j }
 }
 
@@ -126,18 +129,20 @@ pub(crate) fn statistics() -> Vec<Statistic<'static, Draw, Rest>> {
     };
     let table = |state: &Thrown, die: usize, at: DVec3| state.draw.tables[state.draw.table_of(die)].score(below(at));
     vec![
-        Statistic::new("x", |state: &Thrown| state.draw.throws[0].position.x),
-        Statistic::new("y", |state: &Thrown| state.draw.throws[1].position.y),
+        Statistic::new("x", |state: &Thrown| (state.draw.throws[0].position + state.draw.offset(0, CELL)).x),
+        Statistic::new("y", |state: &Thrown| (state.draw.throws[1].position + state.draw.offset(1, CELL)).y),
         Statistic::new("z", |state: &Thrown| state.draw.throws[0].position.z),
         Statistic::new("velocity", |state: &Thrown| state.draw.throws[0].velocity.y),
         Statistic::new("spin", |state: &Thrown| state.draw.throws[1].spin.x),
         Statistic::new("turned", |state: &Thrown| (state.draw.throws[0].orientation * DVec3::X).z),
         Statistic::new("face", |state: &Thrown| f64::from(state.outcome.faces[0])),
-        Statistic::new("rest x", |state: &Thrown| state.outcome.trips[0].position.x),
-        Statistic::new("rest y", |state: &Thrown| state.outcome.trips[1].position.y),
+        Statistic::new("rest x", |state: &Thrown| (state.outcome.trips[0].position + state.draw.offset(0, CELL)).x),
+        Statistic::new("rest y", |state: &Thrown| (state.outcome.trips[1].position + state.draw.offset(1, CELL)).y),
         Statistic::new("impacts", |state: &Thrown| state.outcome.trips[0].impacts.len() as f64),
         Statistic::new("below the die", move |state: &Thrown| table(state, 0, landing(state, 0))),
         Statistic::new("beside the other", move |state: &Thrown| table(state, 1, landing(state, 1) + DVec3::X * 0.03)),
-        Statistic::new("fixed point", move |state: &Thrown| table(state, 0, DVec3::new(-0.06, 0.0, 0.0))),
+        Statistic::new("fixed point", move |state: &Thrown| {
+            table(state, 0, DVec3::new(-0.06, 0.0, 0.0) - state.draw.offset(0, CELL))
+        }),
     ]
 }

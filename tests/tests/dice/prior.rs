@@ -3,7 +3,7 @@
 use super::plain::scene;
 use plaus_dist::{Density, Purpose, Seed, TruncatedGaussian, math};
 use plaus_mcmc::Target;
-use plaus_scenes::dice::{Throw, number};
+use plaus_scenes::dice::{Draw, Throw};
 
 const DRAWS: usize = 40_000;
 
@@ -27,12 +27,14 @@ fn distance(mut values: Vec<f64>, cdf: impl Fn(f64) -> f64) -> f64 {
 fn throws_have_the_stated_laws() {
     let scene = scene(|config| (config.dice, config.throw.z_mm) = (2, 25.0));
     let mut stream = Seed(3).chain(0).at(0, Purpose::START);
-    let throws: Vec<Throw> = (0..DRAWS).map(|_| scene.start(&mut stream).throws[1]).collect();
+    let draws: Vec<Draw> = (0..DRAWS).map(|_| scene.start(&mut stream)).collect();
+    let throws: Vec<Throw> = draws.iter().map(|draw| draw.throws[1]).collect();
     let normal = |z: f64| 0.5 * math::erfc(-z * std::f64::consts::FRAC_1_SQRT_2);
     // Place and velocity of the second of two dice, 40 mm apart.
     let laws = [(0, -0.15, 0.03), (1, 0.02, 0.03), (3, 0.9, 0.2), (4, 0.0, 0.2), (5, -0.2, 0.2), (6, 0.0, 15.0)];
     for (k, mean, sd) in laws.into_iter().chain([(7, 0.0, 15.0), (8, 0.0, 15.0)]) {
-        let gap = distance(throws.iter().map(|throw| number(throw, k)).collect(), |x| normal((x - mean) / sd));
+        let gap =
+            distance(draws.iter().map(|draw| scene.prior().value(draw, 1, k)).collect(), |x| normal((x - mean) / sd));
         assert!(gap < most(), "number {k}: {gap}");
     }
     // Heights are cut off clear of a die of any orientation over the highest bump.

@@ -8,7 +8,7 @@ use plaus_scenes::dice::{Component, Dice, Draw, Everything, Near, Point, Rethrow
 
 /// What is done to a right move to make it wrong.
 #[derive(Clone, Copy, Debug)]
-enum Fault {
+pub(crate) enum Fault {
     /// Whatever the ratio, 1 is used.
     Symmetric,
     /// What is known after the simulation only is forgotten.
@@ -17,7 +17,7 @@ enum Fault {
     Leans,
 }
 
-struct Faulty(AnyMove, Fault);
+pub(crate) struct Faulty(pub(crate) AnyMove, pub(crate) Fault);
 
 impl Move<Dice> for Faulty {
     fn name(&self) -> &str {
@@ -38,7 +38,7 @@ impl Move<Dice> for Faulty {
             Fault::Forgets => Proposal::Candidate { log_ratio: LogRatio::ONE, path, later: None },
             Fault::Leans => {
                 for (table, before) in candidate.tables.iter_mut().zip(&current.draw.tables) {
-                    for (site, score) in table.changed_points() {
+                    for (site, score) in table.changed_points().to_vec() {
                         if score != before.score(site) {
                             table.set(site, score + 0.15);
                         }

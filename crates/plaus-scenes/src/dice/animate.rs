@@ -25,9 +25,11 @@ pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError
         let first = tracks.len();
         let name = |die: usize| format!("die_{}", first + die + 1);
         for (die, motions) in trace.motions.iter().enumerate() {
-            let pieces = pieces(scene, draw, &world, (first, die), motions);
+            let (pieces, offset) =
+                (pieces(scene, draw, &world, (first, die), motions), scene.offset(draw, first + die));
             for motion in motions {
-                extent = [extent[0].min(motion.path.x), extent[1].max(motion.path.x)];
+                let x = motion.path.x + offset;
+                extent = [extent[0].min(x), extent[1].max(x)];
             }
             duration = pieces.last().map_or(duration, |piece| duration.max(piece.start));
             let shape = Shape::Cuboid { half: scene.plan.cuboid.half(), pips: Some(PIPS) };
@@ -39,7 +41,8 @@ pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError
                 Other::Body(other) => name(other),
                 Other::Surface(_) => "table".into(),
             };
-            Impact::new(hit.time, name(hit.body), other, upright(hit.point), upright(hit.normal))
+            let point = hit.point + scene.offset(draw, first + hit.body);
+            Impact::new(hit.time, name(hit.body), other, upright(point), upright(hit.normal))
                 .with_strength(hit.approach, hit.impulse.length())
         }));
     }
@@ -56,6 +59,7 @@ pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError
 /// One die's motions as pieces, with the orientation of its pips.
 fn pieces(scene: &Dice, draw: &Draw, world: &Rigid, (first, die): (usize, usize), motions: &[Turning]) -> Vec<Piece> {
     let pips = &scene.plan.rotations[usize::from(draw.throws[first + die].turn)];
+    let offset = scene.offset(draw, first + die);
     let wobbles = scene.plan.rotations.len() != 24;
     let mut pieces: Vec<Piece> = Vec::with_capacity(motions.len());
     let mut add = |body: &Turning| {
@@ -63,7 +67,8 @@ fn pieces(scene: &Dice, draw: &Draw, world: &Rigid, (first, die): (usize, usize)
         let (velocity, spin) = if moves { (body.path.v, body.spin) } else { (DVec3::ZERO, DVec3::ZERO) };
         let a = if moves { body.path.a } else { DVec3::ZERO };
         let turn = Turn { orientation: (UPRIGHT * pips.pips(body.turn)).normalize(), spin: upright(spin), own: 0.0 };
-        let piece = Piece::ballistic(body.path.t, upright(body.path.x), upright(velocity), upright(a)).turning(turn);
+        let piece =
+            Piece::ballistic(body.path.t, upright(body.path.x + offset), upright(velocity), upright(a)).turning(turn);
         // Of motions that begin at one time the last is the one that is made.
         if pieces.last().is_some_and(|last| last.start == piece.start) {
             pieces.pop();

@@ -249,15 +249,15 @@ impl Constraint {
         }
     }
 
-    /// How well a die's trip meets it. `slot` is the place of what it asked for in the trip's `frames` or `nearest`.
-    pub(super) fn mark(&self, trip: &Trip, pips: &Rotation, slot: usize) -> Mark {
+    /// How well a die's trip, moved by `offset`, meets it. `slot` is the place of what it asked for in the trip's `frames` or `nearest`.
+    pub(super) fn mark(&self, trip: &Trip, pips: &Rotation, slot: usize, offset: DVec3) -> Mark {
         match self {
             Self::RestAt(at) => {
-                let off = (trip.position * 1e3 - DVec3::new(at.x_mm, at.y_mm, 0.0)).truncate().length();
+                let off = ((trip.position + offset) * 1e3 - DVec3::new(at.x_mm, at.y_mm, 0.0)).truncate().length();
                 Mark { log: gauss(off, at.sigma_mm), met: off < at.within_mm }
             }
-            Self::FaceUp(up) => up.mark(trip, pips),
-            Self::PoseAt(pose) => pose.mark(trip, pips, slot),
+            Self::FaceUp(up) => up.mark(trip.orientation, pips),
+            Self::PoseAt(pose) => pose.mark(trip, pips, slot, offset),
             Self::Passes(point) => {
                 let off = 1e3 * trip.nearest.get(slot).copied().unwrap_or(f64::INFINITY);
                 Mark { log: gauss(off, point.sigma_mm), met: off < point.within_mm }
@@ -274,8 +274,8 @@ impl Constraint {
 }
 
 impl FaceUp {
-    fn mark(&self, trip: &Trip, pips: &Rotation) -> Mark {
-        let cosine = pips.cosine(self.face as u8, trip.orientation);
+    pub(super) fn mark(&self, orientation: DQuat, pips: &Rotation) -> Mark {
+        let cosine = pips.cosine(self.face as u8, orientation);
         let angle = math::acos(cosine.clamp(-1.0, 1.0)).to_degrees();
         let met = angle < self.within_deg;
         Mark { log: if met { 0.0 } else { -self.ln_lambda } + gauss(angle, self.angle_sd_deg), met }
@@ -283,9 +283,9 @@ impl FaceUp {
 }
 
 impl PoseAt {
-    fn mark(&self, trip: &Trip, pips: &Rotation, slot: usize) -> Mark {
+    fn mark(&self, trip: &Trip, pips: &Rotation, slot: usize, offset: DVec3) -> Mark {
         let Some(frame) = trip.frames.get(slot) else { return Mark { log: f64::NEG_INFINITY, met: false } };
-        let off = (frame.position * 1e3).distance(DVec3::new(self.x_mm, self.y_mm, self.z_mm));
+        let off = ((frame.position + offset) * 1e3).distance(DVec3::new(self.x_mm, self.y_mm, self.z_mm));
         let vector = DVec3::new(self.turn_x_deg, self.turn_y_deg, self.turn_z_deg) * (std::f64::consts::PI / 180.0);
         // q and −q are one orientation.
         let cosine = pips.pips(frame.orientation).dot(turned(vector)).abs().min(1.0);

@@ -16,7 +16,7 @@ pub const LARGEST_SCORE: f64 = 6.0;
 /// How one die is thrown: SI units, world axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Throw {
-    /// Its middle at time 0, in m.
+    /// Its middle at time 0, in m; where its table has been shifted, it stands that much farther on.
     pub position: DVec3,
     /// Turns the body's axes into the world's.
     pub orientation: DQuat,
@@ -73,9 +73,10 @@ pub struct Site {
 pub struct Realisation {
     /// From which the scores of unchanged points follow.
     pub key: u64,
-    /// By how many cells the table has been shifted along x and y.
+    /// By how many cells the table, with the die thrown onto it, has been shifted along x and y. Indices of points and positions of throws are those without
+    /// the shift, so that it changes no bit of a motion.
     pub shifted: [i32; 2],
-    /// Points that moves have changed, with their scores, in order. Their indices are those they would have without the shift.
+    /// Points that moves have changed, with their scores, in order.
     changed: Vec<(Site, f64)>,
 }
 
@@ -114,6 +115,13 @@ impl Draw {
     pub fn table_of(&self, die: usize) -> usize {
         die.min(self.tables.len().saturating_sub(1))
     }
+
+    /// By how much a die stands farther on than its throw and its trip say, in m; `spacing` is that of control points.
+    #[must_use]
+    pub fn offset(&self, die: usize, spacing: f64) -> DVec3 {
+        let [x, y] = self.tables[self.table_of(die)].shifted.map(|cells| f64::from(cells) * spacing);
+        DVec3::new(x, y, 0.0)
+    }
 }
 
 /// The streams of a table's points, from its key.
@@ -151,10 +159,6 @@ impl Realisation {
         self.changed.clear();
     }
 
-    fn unshifted(&self, site: Site) -> Site {
-        Site { i: site.i.wrapping_sub(self.shifted[0]), j: site.j.wrapping_sub(self.shifted[1]), ..site }
-    }
-
     /// The score of a point. Many are asked for by [`Realisation::source`].
     #[must_use]
     pub fn score(&self, site: Site) -> f64 {
@@ -162,7 +166,6 @@ impl Realisation {
     }
 
     fn look(&self, streams: &ChainStreams, site: Site) -> f64 {
-        let site = self.unshifted(site);
         match self.changed.binary_search_by(|(known, _)| known.cmp(&site)) {
             Ok(place) => self.changed[place].1,
             Err(_) => fresh(streams, site),
@@ -171,7 +174,6 @@ impl Realisation {
 
     /// Gives a point another score.
     pub fn set(&mut self, site: Site, score: f64) {
-        let site = self.unshifted(site);
         match self.changed.binary_search_by(|(known, _)| known.cmp(&site)) {
             Ok(place) => self.changed[place].1 = score,
             Err(place) => self.changed.insert(place, (site, score)),
@@ -180,10 +182,14 @@ impl Realisation {
 
     /// The points that moves have changed, with their scores.
     #[must_use]
-    pub fn changed_points(&self) -> Vec<(Site, f64)> {
-        let [i, j] = self.shifted;
-        let shifted = |site: &Site| Site { i: site.i.wrapping_add(i), j: site.j.wrapping_add(j), ..*site };
-        self.changed.iter().map(|(site, score)| (shifted(site), *score)).collect()
+    pub fn changed_points(&self) -> &[(Site, f64)] {
+        &self.changed
+    }
+
+    /// Whether all points have the scores of another table's, shifted or not.
+    #[must_use]
+    pub fn has_points_of(&self, other: &Self) -> bool {
+        self.key == other.key && self.changed == other.changed
     }
 
     /// How many points moves have changed since the table was drawn.
@@ -208,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn points_are_functions_of_their_address_and_shift_with_the_table() {
+    fn points_are_functions_of_their_address() {
         let mut table = table(1);
         let site = |field, i, j| Site { field, i, j };
         let here = site(Field::Height, -3, 7);
@@ -220,10 +226,10 @@ mod tests {
         let (score, source) = (table.score(here), table.source());
         assert_eq!((source(here), source(site(Field::Height, 0, 0))), (score, 2.5));
         table.shifted = [5, -1];
-        assert_eq!(table.score(site(Field::Height, 2, 6)), score);
-        assert_eq!(table.score(site(Field::Height, 5, -1)), 2.5);
-        table.set(site(Field::Height, 2, 6), -0.5);
-        assert_eq!((table.score(site(Field::Height, 2, 6)), table.changed()), (-0.5, 2));
+        assert_eq!((table.score(here), table.changed_points()), (score, &[(site(Field::Height, 0, 0), 2.5)][..]));
+        table.set(site(Field::Height, 0, 0), -0.5);
+        table.set(here, 1.0);
+        assert_eq!((table.score(site(Field::Height, 0, 0)), table.changed()), (-0.5, 2));
     }
 
     /// Mean, variance and correlation of neighbours over 10⁵ points: five standard errors, a false alarm in 10⁶ for all.

@@ -38,7 +38,7 @@ pub struct Trip {
     pub end: End,
     /// When, in s.
     pub time: f64,
-    /// Where its middle was then, in m.
+    /// Where its middle was then, in m; it stands farther on where its table has been shifted, as do all places of this trip.
     pub position: DVec3,
     /// How its body was turned.
     pub orientation: DQuat,
@@ -52,13 +52,15 @@ pub struct Trip {
     pub met: bool,
     /// Cells and uppermost axes at regular times, for telling solutions apart.
     looks: Vec<Look>,
+    /// The least and the greatest x and y of its middle.
+    extent: [[f64; 2]; 2],
 }
 
-/// The cell that a die lies in, and its body's orientation to the nearest of those with a face uppermost: the face that would show with the pips along the
+/// Where a die is, and its body's orientation to the nearest of those with a face uppermost: the face that would show with the pips along the
 /// body's axes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Look {
-    cell: [i32; 2],
+    at: [f64; 2],
     face: u8,
 }
 
@@ -68,14 +70,24 @@ impl Trip {
     pub fn resting(position: DVec3, orientation: DQuat, impacts: Vec<[f64; 3]>) -> Self {
         let time = impacts.last().map_or(0.0, |last| last[0]);
         let (frames, nearest, looks) = (Vec::new(), Vec::new(), Vec::new());
-        Self { end: End::AtRest, time, position, orientation, impacts, frames, nearest, met: false, looks }
+        let extent = [[position.x, position.y]; 2];
+        Self { end: End::AtRest, time, position, orientation, impacts, frames, nearest, met: false, looks, extent }
     }
 
-    /// The class that this trip continues another's by, with the pips as given.
-    pub(super) fn class(&self, class: SolutionClass, pips: &Rotation) -> SolutionClass {
+    /// Whether its middle stays on a table with these half sides where the trip is moved by `offset`.
+    pub(super) fn stays_on(&self, edge: &[f64; 2], offset: DVec3) -> bool {
+        self.extent.iter().all(|[x, y]| is_on(edge, DVec3::new(*x, *y, 0.0) + offset))
+    }
+
+    /// The class that this trip, moved by `offset`, continues another's by, with the pips as given and cells of a width.
+    pub(super) fn class(&self, class: SolutionClass, pips: &Rotation, cell: f64, offset: DVec3) -> SolutionClass {
         // Which face shows where the body's own face `f` is uppermost.
         let shown = |face: u8| i64::from(pips.uppermost(super::symmetry::facing(face)).0);
-        let looks = self.looks.iter().flat_map(|look| [look.cell[0].into(), look.cell[1].into(), shown(look.face)]);
+        let index = |x: f64| (x / cell).floor() as i64;
+        let looks = self
+            .looks
+            .iter()
+            .flat_map(|look| [index(look.at[0] + offset.x), index(look.at[1] + offset.y), shown(look.face)]);
         looks.fold(class.with(self.looks.len() as i64), SolutionClass::with)
     }
 }
@@ -107,6 +119,8 @@ pub(super) struct Watch<'a> {
     rigid: &'a Rigid,
     asked: Vec<&'a Asked>,
     looking: Looking,
+    /// By how much the dice stand farther on.
+    offset: DVec3,
     /// Each die's motion before the current one's begin.
     last: Vec<Option<Turning>>,
     trips: Vec<Trip>,
@@ -114,8 +128,8 @@ pub(super) struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// Watches the bodies of `rigid`, each with what is asked about it.
-    pub(super) fn new(rigid: &'a Rigid, asked: Vec<&'a Asked>, looking: Looking) -> Self {
+    /// Watches the bodies of `rigid`, each with what is asked about it, which stand farther on by `offset`.
+    pub(super) fn new(rigid: &'a Rigid, asked: Vec<&'a Asked>, looking: Looking, offset: DVec3) -> Self {
         let still = Frame { position: DVec3::ZERO, orientation: DQuat::IDENTITY, velocity: DVec3::ZERO };
         let trip = |asked: &&Asked| Trip {
             end: End::Unfinished,
@@ -127,9 +141,10 @@ impl<'a> Watch<'a> {
             nearest: vec![f64::MAX; asked.points.len()],
             met: false,
             looks: Vec::new(),
+            extent: [[f64::MAX; 2], [f64::MIN; 2]],
         };
         let trips: Vec<Trip> = asked.iter().map(trip).collect();
-        Self { rigid, last: vec![None; trips.len()], asked, looking, trips, left: false }
+        Self { rigid, last: vec![None; trips.len()], asked, looking, trips, offset, left: false }
     }
 
     /// The trips, after a run that ended with the bodies as given.
@@ -139,7 +154,7 @@ impl<'a> Watch<'a> {
             let trip = &mut self.trips[k];
             (trip.time, trip.position, trip.orientation) = (body.path.t, body.path.x, body.turn);
             trip.end = match body.phase {
-                _ if !is_on(&self.looking.edge, body.path.x) => End::Left,
+                _ if !trip.stays_on(&self.looking.edge, self.offset) => End::Left,
                 Phase::Rest => End::AtRest,
                 _ => End::Unfinished,
             };
@@ -166,8 +181,7 @@ impl<'a> Watch<'a> {
         let mut next = trip.looks.len() as f64 * self.looking.every;
         while next < until {
             let at = rigid.at(k, piece, next.max(from));
-            let cell = [at.path.x.x, at.path.x.y].map(|x| (x / self.looking.cell).floor() as i32);
-            trip.looks.push(Look { cell, face: Rotation::IDENTITY.uppermost(at.turn).0 });
+            trip.looks.push(Look { at: [at.path.x.x, at.path.x.y], face: Rotation::IDENTITY.uppermost(at.turn).0 });
             next = trip.looks.len() as f64 * self.looking.every;
         }
         if !asked.points.is_empty() {
@@ -175,8 +189,8 @@ impl<'a> Watch<'a> {
             let mut here = piece.path.x;
             for chord in 1..=chords {
                 let there = piece.path.at(from + (until - from) * f64::from(chord) / f64::from(chords));
-                for (nearest, point) in trip.nearest.iter_mut().zip(&asked.points) {
-                    *nearest = nearest.min(from_chord(*point, here, there));
+                for (nearest, &point) in trip.nearest.iter_mut().zip(&asked.points) {
+                    *nearest = nearest.min(from_chord(point - self.offset, here, there));
                 }
                 here = there;
             }
@@ -213,7 +227,11 @@ impl Observer<Rigid> for Watch<'_> {
         if let Some(last) = self.last[index].take() {
             self.cover(index, &last, body.path.t);
         }
-        self.left |= !is_on(&self.looking.edge, body.path.x);
+        let (trip, x) = (&mut self.trips[index], body.path.x);
+        let [low, high] = &mut trip.extent;
+        *low = [low[0].min(x.x), low[1].min(x.y)];
+        *high = [high[0].max(x.x), high[1].max(x.y)];
+        self.left |= !is_on(&self.looking.edge, x + self.offset);
         self.last[index] = Some(body.clone());
     }
 

@@ -23,19 +23,20 @@ mod surface;
 mod symmetry;
 mod throwing;
 
+pub use crate::spelling::AccuracyPreset;
 pub use config::{Config, Die, MOST_DICE, Moves, Spilt, Steps, Table, Throwing, Weights};
 pub use constraint::{Constraint, FaceUp, FirstImpact, Mark, Passes, PoseAt, RestAt};
 pub use draw::{Draw, Field, LARGEST_SCORE, Realisation, Site, Throw};
 pub use flight::{End, Frame, Trip};
-pub use moves::{Component, Everything, Near, Point, Rethrow, Scale, Shift, Turn};
-pub use prior::{NUMBERS, Prior, number};
+pub use moves::{Component, Everything, Near, Point, Recast, Rethrow, Scale, Shift, Turn};
+pub use prior::{NUMBERS, Prior};
 pub use symmetry::Rotation;
 pub use throwing::Work;
 
 use crate::animation::Animation;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene};
-use plan::Plan;
+use plan::{Demand, Plan};
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
 use serde::{Deserialize, Serialize};
@@ -96,6 +97,12 @@ impl Dice {
         &self.prior
     }
 
+    /// By how much a die stands farther on than its trip says, in m.
+    #[must_use]
+    pub fn offset(&self, draw: &Draw, die: usize) -> glam::DVec3 {
+        draw.offset(die, self.plan.surface.spacing())
+    }
+
     /// The fields of the table that are random.
     #[must_use]
     pub fn fields(&self) -> &[Field] {
@@ -105,7 +112,7 @@ impl Dice {
     /// The value of a control point: metres for heights, else a pure number.
     #[must_use]
     pub fn value(&self, table: &Realisation, site: Site) -> f64 {
-        self.plan.surface.value(site, table.score(site))
+        self.plan.surface.value(table.shifted, site, table.score(site))
     }
 
     /// How many control points the dice of a draw came near, over all tables and fields, and the memory that all they made takes, in bytes.
@@ -139,7 +146,8 @@ impl Dice {
             _ => 0,
         };
         let faces = trips.iter().enumerate().map(face).collect();
-        let marks = self.plan.demands.iter().map(|demand| demand.mark(&trips[demand.die], pips(demand.die))).collect();
+        let mark = |demand: &Demand| demand.mark(&trips[demand.die], pips(demand.die), self.offset(draw, demand.die));
+        let marks = self.plan.demands.iter().map(mark).collect();
         Rest { trips, faces, marks }
     }
 }
@@ -180,9 +188,9 @@ impl Goal for Dice {
     fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
         let rest = &state.outcome;
         rest.satisfied().then(|| {
-            let both = rest.trips.iter().zip(&state.draw.throws);
-            both.fold(SolutionClass::EMPTY, |class, (trip, throw)| {
-                trip.class(class, &self.plan.rotations[usize::from(throw.turn)])
+            rest.trips.iter().enumerate().fold(SolutionClass::EMPTY, |class, (die, trip)| {
+                let pips = &self.plan.rotations[usize::from(state.draw.throws[die].turn)];
+                trip.class(class, pips, self.plan.looking.cell, self.offset(&state.draw, die))
             })
         })
     }
@@ -216,13 +224,13 @@ impl Scene for Dice {
     }
 
     fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
-        let each = state.outcome.trips.iter().zip(&state.outcome.faces).zip(&state.draw.throws);
-        for (((trip, face), throw), values) in each.zip(values.chunks_exact_mut(COLUMNS.len())) {
+        let each = state.outcome.trips.iter().zip(&state.outcome.faces).zip(values.chunks_exact_mut(COLUMNS.len()));
+        for (die, ((trip, face), values)) in each.enumerate() {
             let (rest, thrown) = values.split_at_mut(4);
-            let numbers = [trip.position.x * 1e3, trip.position.y * 1e3, f64::from(*face), trip.impacts.len() as f64];
-            rest.copy_from_slice(&numbers);
+            let at = (trip.position + self.offset(&state.draw, die)) * 1e3;
+            rest.copy_from_slice(&[at.x, at.y, f64::from(*face), trip.impacts.len() as f64]);
             for (k, value) in thrown.iter_mut().enumerate() {
-                *value = number(throw, k) * if k < 3 { 1e3 } else { 1.0 };
+                *value = self.prior.value(&state.draw, die, k) * if k < 3 { 1e3 } else { 1.0 };
             }
         }
     }

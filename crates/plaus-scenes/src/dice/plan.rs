@@ -21,8 +21,8 @@ pub(super) struct Demand {
 }
 
 impl Demand {
-    pub(super) fn mark(&self, trip: &Trip, pips: &Rotation) -> Mark {
-        self.constraint.mark(trip, pips, self.slot)
+    pub(super) fn mark(&self, trip: &Trip, pips: &Rotation, offset: DVec3) -> Mark {
+        self.constraint.mark(trip, pips, self.slot, offset)
     }
 }
 
@@ -104,6 +104,11 @@ impl Plan {
 }
 
 impl Plan {
+    /// Whether each die has a random table of its own, so that both can be shifted together.
+    pub(super) fn carries(&self) -> bool {
+        !self.together && !self.surface.random().is_empty()
+    }
+
     /// The indices of the table's control points along x and y go from minus these to these.
     pub(super) fn reach(&self) -> [i32; 2] {
         self.looking.edge.map(|half| (half / self.surface.spacing()).ceil() as i32)

@@ -23,6 +23,8 @@ pub struct Prior {
     tables: usize,
     /// Dice thrown onto one table begin at least this far apart, in m; else the draw has density 0.
     clear: f64,
+    /// Distance of control points, in m.
+    spacing: f64,
 }
 
 impl Prior {
@@ -52,6 +54,7 @@ impl Prior {
             turns,
             tables: if config.together { 1 } else { config.dice as usize },
             clear: if config.together { clear } else { 0.0 },
+            spacing: config.table.grid_mm * 1e-3,
         })
     }
 
@@ -59,6 +62,22 @@ impl Prior {
     #[must_use]
     pub fn number(&self, die: usize, number: usize) -> &Gaussian {
         &self.numbers[die][number]
+    }
+
+    /// One number of a die's initial conditions as they are, its table's shift included.
+    #[must_use]
+    pub fn value(&self, draw: &Draw, die: usize, which: usize) -> f64 {
+        let value = number(&draw.throws[die], which);
+        if which < 2 { value + draw.offset(die, self.spacing)[which] } else { value }
+    }
+
+    /// Log density of one die's throw but for its place along the table and the cut of heights.
+    ///
+    /// # Errors
+    /// [`NotANumber`] where the throw holds a NaN.
+    pub fn log_density_elsewhere(&self, throw: &Throw, die: usize) -> Result<LogDensity, NotANumber> {
+        let density = |k: usize| self.numbers[die][k].log_density(&number(throw, k));
+        (2..NUMBERS).try_fold(LogDensity::ONE, |sum, k| Ok(sum + density(k)?))
     }
 
     /// How many orientations its symmetry makes equal.
@@ -91,9 +110,9 @@ impl Prior {
     /// [`NotANumber`] where the draw holds a NaN.
     pub fn log_density(&self, draw: &Draw) -> Result<LogDensity, NotANumber> {
         let mut sum = LogDensity::ONE;
-        for (throw, laws) in draw.throws.iter().zip(&self.numbers) {
+        for (die, laws) in self.numbers.iter().enumerate() {
             for (k, law) in laws.iter().enumerate() {
-                let value = number(throw, k);
+                let value = self.value(draw, die, k);
                 sum = sum + if k == 2 { self.height.log_density(&value)? } else { law.log_density(&value)? };
             }
         }
@@ -106,9 +125,8 @@ impl Prior {
     }
 }
 
-/// One number of a throw: place, velocity, angular velocity, each along x, y, z.
-#[must_use]
-pub fn number(throw: &Throw, number: usize) -> f64 {
+/// One number of a throw: place, velocity, angular velocity, each along x, y, z; without its table's shift.
+pub(super) fn number(throw: &Throw, number: usize) -> f64 {
     [throw.position, throw.velocity, throw.spin][number / 3][number % 3]
 }
 

@@ -39,7 +39,8 @@ pub(super) fn props(scene: &Dice, draw: &Draw, [low, high]: [DVec3; 2]) -> Resul
             math::square(place[0] - x) + math::square(place[1] - y)
         };
         let nearest = (1..heights.len()).fold(0, |best, die| if far(die) < far(best) { die } else { best });
-        heights[nearest].value(x, y)
+        let offset = scene.offset(draw, nearest);
+        heights[nearest].value(x - offset.x, y - offset.y)
     };
     if deep > 0.0 {
         let low = [low.x.max(-x), low.y.max(-y)];

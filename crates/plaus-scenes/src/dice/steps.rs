@@ -33,6 +33,10 @@ pub struct Weights {
     /// One die's throw is drawn anew, and so is its table where it has one of its own.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub rethrow: f64,
+    /// A die gets a fresh throw, and a fresh table of its own, at the place from where it comes to rest near its target with a demanded face up. For dice thrown
+    /// alone.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub recast: f64,
     /// A die's throw begins in another of the orientations that its symmetry makes equal: another face comes up, and nothing else changes.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub turn: f64,
@@ -45,13 +49,22 @@ impl Weights {
     /// What is left of them where only the paper's moves are made.
     #[must_use]
     pub fn paper(self) -> Self {
-        Self { near: 0.0, rethrow: 0.0, turn: 0.0, shift: 0.0, ..self }
+        Self { near: 0.0, rethrow: 0.0, recast: 0.0, turn: 0.0, shift: 0.0, ..self }
     }
 }
 
 impl Default for Weights {
     fn default() -> Self {
-        Self { everything: 0.02, component: 0.3, point: 0.05, near: 0.28, rethrow: 0.1, turn: 0.1, shift: 0.15 }
+        Self {
+            everything: 0.01,
+            component: 0.2,
+            point: 0.04,
+            near: 0.2,
+            rethrow: 0.05,
+            recast: 0.2,
+            turn: 0.15,
+            shift: 0.15,
+        }
     }
 }
 
@@ -72,7 +85,7 @@ pub struct Steps {
     /// The largest. 1 draws a value anew.
     #[schemars(range(min = 1e-9, max = 1.0))]
     pub point_most: f64,
-    /// Standard deviation, about the target, of the place that a shift aims at.
+    /// Standard deviation, about the target, of the place that a shift or a recast aims at.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub shift_sd_mm: f64,
 }

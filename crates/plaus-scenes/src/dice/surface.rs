@@ -135,22 +135,28 @@ impl Surface {
         &self.random
     }
 
-    fn is_wet(&self, site: Site) -> bool {
+    /// Whether what was spilt makes the laws depend on the place.
+    pub(super) fn is_patched(&self) -> bool {
+        self.spilt.is_some()
+    }
+
+    fn is_wet(&self, shifted: [i32; 2], site: Site) -> bool {
         self.spilt.is_some_and(|spilt| {
-            let [x, y] = [site.i, site.j].map(|k| f64::from(k) * self.grid.spacing);
+            let there = [site.i.wrapping_add(shifted[0]), site.j.wrapping_add(shifted[1])];
+            let [x, y] = there.map(|k| f64::from(k) * self.grid.spacing);
             let (x, y) = (x - spilt.x_mm * 1e-3, y - spilt.y_mm * 1e-3);
             x * x + y * y <= math::square(spilt.radius_mm * 1e-3)
         })
     }
 
-    /// The value of a control point: metres for heights, else a pure number.
-    pub(super) fn value(&self, site: Site, score: f64) -> f64 {
+    /// The value of a control point of a table that has been shifted by so many cells: metres for heights, else a pure number.
+    pub(super) fn value(&self, shifted: [i32; 2], site: Site, score: f64) -> f64 {
         let patched = match site.field {
             Field::Height => return self.height.at(score),
             Field::Restitution => &self.restitution,
             Field::Friction => &self.friction,
         };
-        if self.is_wet(site) { patched.wet.at(score) } else { patched.dry.at(score) }
+        if self.is_wet(shifted, site) { patched.wet.at(score) } else { patched.dry.at(score) }
     }
 
     /// The sites on which a field at a point depends, but for which field.
@@ -166,10 +172,10 @@ impl Surface {
             Field::Restitution => ("restitution", [0.0, 1.0]),
             Field::Friction => ("friction", [0.0, self.friction.dry.high]),
         };
-        let (laws, source) = (self.clone(), table.source());
+        let (laws, source, shifted) = (self.clone(), table.source(), table.shifted);
         Spline::new(name, self.grid, range, move |i, j| {
             let site = Site { field, i: i as i32, j: j as i32 };
-            laws.value(site, source(site))
+            laws.value(shifted, site, source(site))
         })
     }
 
@@ -241,7 +247,9 @@ mod tests {
         let mut config = Config::default();
         (config.spilt.radius_mm, config.spilt.x_mm) = (20.0, 80.0);
         let surface = Surface::new(&config).unwrap();
-        let at = |i| surface.value(Site { field: Field::Friction, i, j: 0 }, 0.0);
+        let at = |i| surface.value([0; 2], Site { field: Field::Friction, i, j: 0 }, 0.0);
         assert_eq!([at(0), at(7), at(8), at(10), at(12), at(13)], [0.35, 0.35, 0.15, 0.15, 0.15, 0.35]);
+        // Of a shifted table other points lie there.
+        assert_eq!(surface.value([8, 0], Site { field: Field::Friction, i: 0, j: 0 }, 0.0), 0.15);
     }
 }

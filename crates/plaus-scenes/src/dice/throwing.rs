@@ -1,7 +1,7 @@
 //! Simulating a draw: each die alone on its own table, or all on one.
 
 use super::draw::{Draw, Realisation, Throw};
-use super::flight::{Asked, Trip, Watch};
+use super::flight::{Asked, End, Looking, Trip, Watch};
 use super::plan::Plan;
 use super::surface::MATERIAL;
 use super::{Dice, Rest};
@@ -42,15 +42,11 @@ impl Work {
     ) -> Result<Simulated<Rest>, ModelError> {
         let plan = &scene.plan;
         let dice = draw.throws.len();
-        let same = |die: usize| {
-            let state = current.filter(|state| state.draw.throws[die].moves_like(&draw.throws[die]))?;
-            let table = draw.table_of(die);
-            (state.draw.tables[table] == draw.tables[table]).then(|| state.outcome.trips[die].clone())
-        };
+        let same = |die: usize| current.and_then(|state| known(plan, state, draw, die)).cloned();
         let mut trips: Vec<Option<Trip>> = (0..dice).map(same).collect();
         if plan.together {
             if trips.iter().any(Option::is_none) {
-                let all = self.throw(plan, &draw.throws, &draw.tables[0], plan.asked.iter().collect())?;
+                let all = self.throw(plan, &draw.throws, &draw.tables[0], plan.asked.iter().collect(), plan.looking)?;
                 trips = all.into_iter().map(Some).collect();
             }
         } else {
@@ -60,11 +56,23 @@ impl Work {
                         return Ok(Simulated::CannotExceedFloor);
                     }
                     let (thrown, table) = (&draw.throws[die..=die], &draw.tables[die]);
-                    trips[die] = self.throw(plan, thrown, table, vec![&plan.asked[die]])?.pop();
+                    trips[die] = self.throw(plan, thrown, table, vec![&plan.asked[die]], plan.looking)?.pop();
                 }
             }
         }
         Ok(Simulated::Complete(scene.judge(draw, trips.into_iter().flatten().collect())))
+    }
+
+    /// Throws one die onto a table without edges: where it comes to rest, if it does.
+    pub(super) fn try_out(
+        &mut self,
+        plan: &Plan,
+        throw: &Throw,
+        table: &Realisation,
+    ) -> Result<Option<Trip>, ModelError> {
+        let endless = Looking { edge: [f64::INFINITY; 2], ..plan.looking };
+        let trip = self.throw(plan, std::slice::from_ref(throw), table, vec![&Asked::default()], endless)?.pop();
+        Ok(trip.filter(|trip| trip.end == End::AtRest))
     }
 
     /// Throws dice onto a table.
@@ -74,9 +82,12 @@ impl Work {
         throws: &[Throw],
         table: &Realisation,
         asked: Vec<&Asked>,
+        looking: Looking,
     ) -> Result<Vec<Trip>, ModelError> {
         let world = plan.world(throws.len(), table)?;
-        let mut watch = Watch::new(&world, asked, plan.looking);
+        let [x, y] = table.shifted.map(|cells| f64::from(cells) * plan.surface.spacing());
+        let offset = DVec3::new(x, y, 0.0);
+        let mut watch = Watch::new(&world, asked, looking, offset);
         let bodies = self.run(plan, &world, throws, &mut watch)?;
         Ok(watch.finish(&bodies))
     }
@@ -140,17 +151,34 @@ impl Plan {
     }
 }
 
+/// The trip of a die of the current state, where that of another draw has the same bits.
+fn known<'a>(plan: &Plan, state: &'a StateOf<Dice>, draw: &Draw, die: usize) -> Option<&'a Trip> {
+    let (trip, table) = (&state.outcome.trips[die], draw.table_of(die));
+    let (old, new) = (&state.draw.tables[table], &draw.tables[table]);
+    if !state.draw.throws[die].moves_like(&draw.throws[die]) || !old.has_points_of(new) {
+        return None;
+    }
+    // A shift moves all there is, but for what was spilt, points that are to be passed, and the edges of the table.
+    let moved = || {
+        let offset = draw.offset(die, plan.surface.spacing());
+        let anywhere = plan.carries() && !plan.surface.is_patched() && plan.asked[die].points.is_empty();
+        anywhere && trip.end == End::AtRest && trip.stays_on(&plan.looking.edge, offset)
+    };
+    (old.shifted == new.shifted || moved()).then_some(trip)
+}
+
 /// Whether no outcome of the trips still to be made can lift the constraints above `floor`. Unknown terms are at most 0, and sums round monotonically.
 fn cannot_exceed(plan: &Plan, draw: &Draw, trips: &[Option<Trip>], floor: LogPotential) -> Result<bool, ModelError> {
     if floor.is_zero() {
         return Ok(false);
     }
-    if trips.iter().flatten().any(|trip| trip.end != super::End::AtRest) {
+    if trips.iter().flatten().any(|trip| trip.end != End::AtRest) {
         return Ok(true);
     }
     let mark = |demand: &super::plan::Demand| {
         let pips = &plan.rotations[usize::from(draw.throws[demand.die].turn)];
-        trips[demand.die].as_ref().map_or(0.0, |trip| demand.mark(trip, pips).log)
+        let offset = draw.offset(demand.die, plan.surface.spacing());
+        trips[demand.die].as_ref().map_or(0.0, |trip| demand.mark(trip, pips, offset).log)
     };
     let most = plan.demands.iter().fold(0.0, |sum, demand| sum + mark(demand));
     Ok(LogPotential::new(most)? <= floor)

@@ -145,7 +145,8 @@ impl Rigid {
         let reach = s.reach + t.reach;
         // Longest advancement, and what it can add to the relative speed.
         let (longest, gain) = ((reach / pull).sqrt(), (pull * reach).sqrt());
-        let bound = pull + swing[0] * swing[0] * (1.0 + s.wobble) * s.reach + swing[1] * swing[1] * (1.0 + t.wobble) * t.reach;
+        let bound =
+            pull + swing[0] * swing[0] * (1.0 + s.wobble) * s.reach + swing[1] * swing[1] * (1.0 + t.wobble) * t.reach;
         let mut tumbles = [bodies[0].tumble(s), bodies[1].tumble(t)];
         let mut pose = |k: usize, time: f64| {
             let (spec, b) = ([s, t][k], bodies[k]);

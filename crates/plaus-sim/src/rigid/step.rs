@@ -356,8 +356,7 @@ impl RigidScratch {
                     let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
                     let both = [p.body, q.body];
                     let missing = world.pair_goal(both, t.gap, h) - after.gap;
-                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO)
-                        && missing.abs() > CLOSE * world.pair_gap(both);
+                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() > CLOSE * world.pair_gap(both);
                     c.target += missing / h;
                 }
                 if !off {

@@ -2,7 +2,7 @@
 
 use super::Scale;
 use crate::dice::constraint::turned;
-use crate::dice::prior::{NUMBERS, number, number_mut};
+use crate::dice::prior::{NUMBERS, number_mut};
 use crate::dice::{Dice, Draw};
 use glam::DVec3;
 use plaus_dist::stream::below;
@@ -28,7 +28,7 @@ fn ratio(target: &Dice, from: &Draw, to: &Draw, path: Path) -> Result<LogRatio, 
         return Ok(LogRatio::ONE);
     }
     let law = target.prior().number(die, way);
-    let density = |draw: &Draw| law.log_density(&number(&draw.throws[die], way));
+    let density = |draw: &Draw| law.log_density(&target.prior().value(draw, die, way));
     Ok(LogRatio::of(density(from)?, density(to)?)?)
 }
 
@@ -46,11 +46,12 @@ impl Move<Dice> for Component {
     ) -> Result<Proposal, ModelError> {
         let die = below(stream, candidate.throws.len());
         let way = below(stream, WAYS);
+        let old = target.prior().value(candidate, die, way.min(NUMBERS - 1));
         let throw = &mut candidate.throws[die];
         if way < NUMBERS {
             let law = target.prior().number(die, way);
-            let value = number_mut(throw, way);
-            *value = law.mean() + law.sd() * self.scale.step((*value - law.mean()) / law.sd(), stream);
+            let new = law.mean() + law.sd() * self.scale.step((old - law.mean()) / law.sd(), stream);
+            *number_mut(throw, way) += new - old;
         } else {
             let angle = self.scale.sample(stream) * std::f64::consts::PI;
             let vector = DVec3::from_array(std::array::from_fn(|_| standard_normal(stream)));

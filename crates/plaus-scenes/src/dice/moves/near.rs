@@ -3,14 +3,13 @@
 use super::{Scale, change, path, site};
 use crate::dice::{Dice, Draw, Rest, Site};
 use plaus_dist::stream::below;
-use plaus_dist::{LogRatio, Stream, math};
+use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// One of the places where a die touched its table, or lies at last, each as likely; one of the sixteen control points that a field there depends on; and one of
-/// the random fields. That point makes a step that leaves its law as it is.
+/// One of the places where a die touched its table, or lies at last, the k-th of a die with a weight of 1/k: early ones steer, and there are many late ones; one
+/// of the sixteen control points that a field there depends on; and one of the random fields. That point makes a step that leaves its law as it is.
 ///
-/// After the step the die touches elsewhere. The ratio is how often the point comes up among the places of the new animation over how often among those of the old
-/// one, each over the number of places.
+/// After the step the die touches elsewhere. The ratio is the point's share in the weights of the new animation's places over that in the old one's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
     /// Sizes of the steps.
@@ -18,24 +17,25 @@ pub struct Near {
 }
 
 /// Places on a table, of the dice thrown onto it.
-fn places<'a>(draw: &'a Draw, rest: &'a Rest, table: usize) -> impl Iterator<Item = [f64; 2]> + 'a {
+fn places<'a>(draw: &'a Draw, rest: &'a Rest, table: usize) -> impl Iterator<Item = ([f64; 2], f64)> + 'a {
     let of_table = rest.trips.iter().enumerate().filter(move |(die, _)| draw.table_of(*die) == table);
     of_table.flat_map(|(_, trip)| {
         let touched = trip.impacts.iter().map(|&[_, x, y]| [x, y]);
-        touched.chain(std::iter::once([trip.position.x, trip.position.y]))
+        let places = touched.chain(std::iter::once([trip.position.x, trip.position.y]));
+        places.enumerate().map(|(k, place)| (place, 1.0 / (k + 1) as f64))
     })
 }
 
 /// Log probability of choosing a site of a table, but for what is the same for all sites.
 fn log_q(target: &Dice, state: &StateOf<Dice>, table: usize, site: Site) -> f64 {
     let (mut all, mut hits) = (0.0, 0.0);
-    for [x, y] in places(&state.draw, &state.outcome, table) {
-        all += 1.0;
+    for ([x, y], weight) in places(&state.draw, &state.outcome, table) {
+        all += weight;
         if target.plan.surface.support(x, y).any(|at| at == [site.i, site.j]) {
-            hits += 1.0;
+            hits += weight;
         }
     }
-    math::ln(hits / f64::max(all, 1.0))
+    math::ln(hits / all)
 }
 
 /// What a log probability can't exceed: rounding of the logarithm included.
@@ -55,9 +55,14 @@ impl Move<Dice> for Near {
     ) -> Result<Proposal, ModelError> {
         let Some(&field) = target.fields().get(below(stream, target.fields().len())) else { return Ok(Proposal::Stay) };
         let table = below(stream, candidate.tables.len());
-        let count = places(&current.draw, &current.outcome, table).count();
-        let place = places(&current.draw, &current.outcome, table).nth(below(stream, count));
-        let Some([x, y]) = place else { return Ok(Proposal::Stay) };
+        let all = || places(&current.draw, &current.outcome, table);
+        let mut left = all().map(|(_, weight)| weight).sum::<f64>() * open_unit(stream);
+        let chosen = all().find(|(_, weight)| {
+            left -= weight;
+            left < 0.0
+        });
+        // Rounding may pass the last one.
+        let Some(([x, y], _)) = chosen.or_else(|| all().last()) else { return Ok(Proposal::Stay) };
         let Some([i, j]) = target.plan.surface.support(x, y).nth(below(stream, 16)) else { return Ok(Proposal::Stay) };
         let site = Site { field, i, j };
         if !change(candidate, table, site, self.scale, stream) {

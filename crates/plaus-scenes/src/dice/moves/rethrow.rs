@@ -1,7 +1,7 @@
 //! One die thrown anew.
 
-use crate::dice::prior::{NUMBERS, number};
-use crate::dice::{Dice, Draw, Throw};
+use crate::dice::prior::NUMBERS;
+use crate::dice::{Dice, Draw};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, LogDensity, LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
@@ -12,16 +12,13 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 pub struct Rethrow;
 
 /// Log density of a throw, before heights are cut off: neither the old nor the new one is.
-pub(super) fn log_density(target: &Dice, die: usize, throw: &Throw) -> Result<LogDensity, ModelError> {
-    let mut sum = LogDensity::ONE;
-    for k in 0..NUMBERS {
-        sum = sum + target.prior().number(die, k).log_density(&number(throw, k))?;
-    }
-    Ok(sum)
+fn log_density(target: &Dice, draw: &Draw, die: usize) -> Result<LogDensity, ModelError> {
+    let density = |k| target.prior().number(die, k).log_density(&target.prior().value(draw, die, k));
+    (0..NUMBERS).try_fold(LogDensity::ONE, |sum, k| Ok(sum + density(k)?))
 }
 
 fn ratio(target: &Dice, from: &Draw, to: &Draw, die: usize) -> Result<LogRatio, ModelError> {
-    let of = |draw: &Draw| log_density(target, die, &draw.throws[die]);
+    let of = |draw: &Draw| log_density(target, draw, die);
     Ok(LogRatio::of(of(from)?, of(to)?)?)
 }
 

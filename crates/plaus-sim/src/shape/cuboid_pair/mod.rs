@@ -190,8 +190,7 @@ impl CuboidPair {
         let t = s * cosine + along_g;
         let places = [s, t];
         let (s, t) = (clamped(s, first.core[i]), clamped(t, second.core[j]));
-        let meeting =
-            self.meeting([p + e * s, q + g * t], normal, normal.dot(between), Feature::Edges(a, b));
+        let meeting = self.meeting([p + e * s, q + g * t], normal, normal.dot(between), Feature::Edges(a, b));
         (meeting, places)
     }
 
