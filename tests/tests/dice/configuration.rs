@@ -30,7 +30,7 @@ fn errors_name_the_key_and_the_limit() {
     refused(&["table.bounce=1.2"], &["world.dice.table.bounce", "1.2 is out of range"]);
     refused(&["rounding_mm=8"], &["world.dice.die.rounding_mm", "less than half the shortest edge"]);
     refused(
-        &["weights={everything=0,component=0,point=0,near=0,rethrow=0,turn=0,shift=0}"],
+        &["weights={everything=0,component=0,point=0,near=0,rethrow=0,recast=0,turn=0,shift=0}"],
         &["world.dice.weights", "no move has a positive weight"],
     );
 }

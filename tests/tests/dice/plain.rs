@@ -14,7 +14,7 @@ pub(crate) type AnyMove = Box<dyn Move<Dice>>;
 pub(crate) type Thrown = State<Draw, Rest>;
 
 /// A die lands where its velocity brings it in a tenth of a second, moved by the height of the control point there. Where that is above its mean it touches the
-/// table four times there, else once, so that which points are near collisions depends on the draw. It lies as it was thrown, or always on the face
+/// table mostly there, else mostly far behind it, so that which points are near collisions depends on the draw. It lies as it was thrown, or always on the face
 /// that its first axis points to.
 pub(crate) struct Plain<'a> {
     pub(crate) dice: &'a Dice,
@@ -35,11 +35,10 @@ impl Plain<'_> {
         let throw = &draw.throws[die];
         let landing = throw.position + 0.1 * throw.velocity;
         let score = draw.tables[draw.table_of(die)].score(below(landing));
-        let first = throw.position + 0.05 * throw.velocity;
-        let mut impacts = vec![[0.05, first.x, first.y]];
-        for k in 0..if score > 0.0 { 4 } else { 1 } {
-            impacts.push([0.1 + 0.01 * f64::from(k), landing.x, landing.y]);
-        }
+        let first = throw.position - 0.2 * DVec3::X;
+        let [often, once] = if score > 0.0 { [landing, first] } else { [first, landing] };
+        let mut impacts = vec![[0.1, often.x, often.y]; if score > 0.0 { 8 } else { 7 }];
+        impacts.push([0.2, once.x, once.y]);
         let on_its_side = DQuat::from_rotation_arc(DVec3::X, DVec3::Z);
         Trip::resting(
             landing + DVec3::X * 0.02 * score,
@@ -123,24 +122,26 @@ pub(crate) fn all_moves() -> Vec<AnyMove> {
 
 /// What must keep its law: how the dice are thrown, where they lie and what they show, and the table below them.
 pub(crate) fn statistics() -> Vec<Statistic<'static, Draw, Rest>> {
-    let landing = |state: &Thrown, die: usize| {
-        let place = state.outcome.trips[die].impacts[1];
-        DVec3::new(place[1], place[2], 0.0)
-    };
+    let landing = |state: &Thrown, die: usize| state.draw.throws[die].position + 0.1 * state.draw.throws[die].velocity;
     let table = |state: &Thrown, die: usize, at: DVec3| state.draw.tables[state.draw.table_of(die)].score(below(at));
+    fn last(state: &Thrown) -> &plaus_scenes::dice::Throw {
+        state.draw.throws.last().unwrap()
+    }
     vec![
         Statistic::new("x", |state: &Thrown| (state.draw.throws[0].position + state.draw.offset(0, CELL)).x),
-        Statistic::new("y", |state: &Thrown| (state.draw.throws[1].position + state.draw.offset(1, CELL)).y),
+        Statistic::new("y", |state: &Thrown| (last(state).position + state.draw.offset(1, CELL)).y),
         Statistic::new("z", |state: &Thrown| state.draw.throws[0].position.z),
         Statistic::new("velocity", |state: &Thrown| state.draw.throws[0].velocity.y),
-        Statistic::new("spin", |state: &Thrown| state.draw.throws[1].spin.x),
+        Statistic::new("spin", |state: &Thrown| last(state).spin.x),
         Statistic::new("turned", |state: &Thrown| (state.draw.throws[0].orientation * DVec3::X).z),
         Statistic::new("face", |state: &Thrown| f64::from(state.outcome.faces[0])),
         Statistic::new("rest x", |state: &Thrown| (state.outcome.trips[0].position + state.draw.offset(0, CELL)).x),
-        Statistic::new("rest y", |state: &Thrown| (state.outcome.trips[1].position + state.draw.offset(1, CELL)).y),
+        Statistic::new("rest y", |state: &Thrown| {
+            (state.outcome.trips.last().unwrap().position + state.draw.offset(1, CELL)).y
+        }),
         Statistic::new("impacts", |state: &Thrown| state.outcome.trips[0].impacts.len() as f64),
         Statistic::new("below the die", move |state: &Thrown| table(state, 0, landing(state, 0))),
-        Statistic::new("beside the other", move |state: &Thrown| table(state, 1, landing(state, 1) + DVec3::X * 0.03)),
+        Statistic::new("beside it", move |state: &Thrown| table(state, 0, landing(state, 0) + DVec3::X * CELL)),
         Statistic::new("fixed point", move |state: &Thrown| {
             table(state, 0, DVec3::new(-0.06, 0.0, 0.0) - state.draw.offset(0, CELL))
         }),

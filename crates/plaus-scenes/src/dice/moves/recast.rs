@@ -2,7 +2,7 @@
 
 use super::{aimed, log_between};
 use crate::dice::constraint::Constraint;
-use crate::dice::{Dice, Draw, Work};
+use crate::dice::{Dice, Draw, End, Work};
 use glam::DQuat;
 use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogRatio, Stream, math, open_unit, standard_normal};
@@ -14,7 +14,8 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 /// The throw is tried out: how far it leads, d, does not depend on the place where it begins, for each die has a table of its own, of which each place is like any
 /// other. So beginning at the target minus d, up to a Gaussian error, is a proposal with a known density: that of all else under the prior, times that
 /// of the error, times the chance that the pips are turned so. The ratio is that of the old state over that of the new one; it does not depend on the way from one
-/// to the other. On a random table a die begins at a uniform place within a cell, and whole cells are added.
+/// to the other. On a random table a die begins at a uniform place within a cell, and whole cells are added. A die that does not come to rest is neither led
+/// to nor from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recast {
     /// Standard deviation of the place aimed at, along each axis, in m.
@@ -33,6 +34,10 @@ fn weights(target: &Dice, die: usize, orientation: DQuat) -> Vec<f64> {
     let logs: Vec<f64> = target.plan.rotations.iter().map(log).collect();
     let most = logs.iter().fold(f64::NEG_INFINITY, |most, log| most.max(*log));
     logs.into_iter().map(|log| math::exp(log - most)).collect()
+}
+
+fn is_at_rest(state: &StateOf<Dice>, die: usize) -> bool {
+    state.outcome.trips[die].end == End::AtRest
 }
 
 impl Recast {
@@ -63,6 +68,9 @@ impl Recast {
         to: &StateOf<Dice>,
         die: usize,
     ) -> Result<LogRatio, ModelError> {
+        if !is_at_rest(to, die) {
+            return Ok(LogRatio::ZERO);
+        }
         Ok(LogRatio::of(self.log_q(target, from, die)?, self.log_q(target, to, die)?)?)
     }
 }
@@ -81,6 +89,9 @@ impl Move<Dice> for Recast {
     ) -> Result<Proposal, ModelError> {
         let count = aimed(target).count();
         let Some((die, place)) = aimed(target).nth(below(stream, count)) else { return Ok(Proposal::Stay) };
+        if !is_at_rest(current, die) {
+            return Ok(Proposal::Stay);
+        }
         let cell = target.plan.surface.spacing();
         let mut throw = target.prior().throw(die, stream);
         candidate.tables[die].renew(stream);
@@ -127,6 +138,10 @@ impl Move<Dice> for Recast {
         candidate: &StateOf<Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        Ok(LogRatio::of(LogDensity::ONE, self.log_q(target, candidate, path.0 as usize)?)?)
+        let die = path.0 as usize;
+        if !is_at_rest(candidate, die) {
+            return Ok(LogRatio::ZERO);
+        }
+        Ok(LogRatio::of(LogDensity::ONE, self.log_q(target, candidate, die)?)?)
     }
 }
