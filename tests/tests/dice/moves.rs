@@ -131,13 +131,16 @@ fn recasts_leave_the_constrained_target_invariant() {
     assert!(right.passed() && right.accepted() > 150, "{right}");
     let wrong = report(Box::new(Faulty(Box::new(recast()), Fault::Forgets)), 3);
     assert!(!wrong.passed(), "not caught: {wrong}");
-    // On a random table: what is proposed leads where it was tried out to lead.
-    let dice = wide(0.1);
-    let mixture = Mixture::of(Box::new(recast()) as AnyMove);
-    let (_, kernel) = mixture.iter().next().unwrap();
-    let plan = Ratios { pairs: 150, ..Ratios::default() };
-    let report = ratios(&dice, kernel, prior(&dice), plan).unwrap();
-    assert!(report.passed(), "{report}");
+    // On a random table: what is proposed leads where it was tried out to lead; and where something was spilt.
+    let mut config = wide(0.1).config().clone();
+    config.spilt.radius_mm = 80.0;
+    for dice in [wide(0.1), Dice::new(&config).unwrap()] {
+        let mixture = Mixture::of(Box::new(recast()) as AnyMove);
+        let (_, kernel) = mixture.iter().next().unwrap();
+        let plan = Ratios { pairs: 100, ..Ratios::default() };
+        let report = ratios(&dice, kernel, prior(&dice), plan).unwrap();
+        assert!(report.passed(), "{report}");
+    }
 }
 
 /// Trips taken from the current state, and simulations given up, change no state.

@@ -33,8 +33,8 @@ pub struct Weights {
     /// One die's throw is drawn anew, and so is its table where it has one of its own.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub rethrow: f64,
-    /// A die gets a fresh throw, and a fresh table of its own, at the place from where it comes to rest near its target with a demanded face up. For dice thrown
-    /// alone.
+    /// A die gets a fresh throw, and a fresh table where it has one of its own, from the place from where, tried out, it comes to rest near its target with a demanded
+    /// face up.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub recast: f64,
     /// A die's throw begins in another of the orientations that its symmetry makes equal: another face comes up, and nothing else changes.
@@ -85,13 +85,23 @@ pub struct Steps {
     /// The largest. 1 draws a value anew.
     #[schemars(range(min = 1e-9, max = 1.0))]
     pub point_most: f64,
-    /// Standard deviation, about the target, of the place that a shift or a recast aims at.
+    /// Standard deviation, about the target, of the place that a shift aims at.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub shift_sd_mm: f64,
+    /// The same for a recast. Where dice meet, or bumps are large, it should be about as large as what these make of where a die comes to rest.
+    #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
+    pub recast_sd_mm: f64,
 }
 
 impl Default for Steps {
     fn default() -> Self {
-        Self { component_least: 0.001, component_most: 1.0, point_least: 0.01, point_most: 1.0, shift_sd_mm: 5.0 }
+        Self {
+            component_least: 0.001,
+            component_most: 1.0,
+            point_least: 0.01,
+            point_most: 1.0,
+            shift_sd_mm: 5.0,
+            recast_sd_mm: 5.0,
+        }
     }
 }

@@ -179,11 +179,16 @@ impl Surface {
         })
     }
 
+    /// A table without bumps, of mean restitution and friction throughout.
+    pub(super) fn plain(&self) -> Result<Part, WorldError> {
+        Ok(Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL)?))
+    }
+
     /// The table as a part of a world. What is not random is no field.
     pub(super) fn part(&self, table: &Realisation) -> Result<Part, WorldError> {
         let is_field = |field| self.random.contains(&field) || (field != Field::Height && self.spilt.is_some());
         if !Field::ALL.into_iter().any(is_field) {
-            return Ok(Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL)?));
+            return self.plain();
         }
         let mut uneven = Uneven::new(self.spline(Field::Height, table)?, MATERIAL);
         if is_field(Field::Restitution) {

@@ -8,10 +8,10 @@ use super::{Dice, Rest};
 use glam::DVec3;
 use plaus_dist::LogPotential;
 use plaus_mcmc::{ModelError, Simulated, StateOf};
-use plaus_sim::rigid::{BodySpec, Rigid, RigidScratch, RigidWorld, Start, Turning};
+use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidScratch, RigidWorld, Start, Turning};
 use plaus_sim::shape::Shape;
 use plaus_sim::trace::{Observer, Trace};
-use plaus_sim::{Outcome, Scratch};
+use plaus_sim::{Outcome, Scratch, WorldError};
 
 /// Standard gravity, m/s².
 pub(super) const GRAVITY: f64 = 9.806_65;
@@ -63,15 +63,22 @@ impl Work {
         Ok(Simulated::Complete(scene.judge(draw, trips.into_iter().flatten().collect())))
     }
 
-    /// Throws one die onto a table without edges: where it comes to rest, if it does.
+    /// Throws one die onto a table without edges, or one that is plain throughout: where it comes to rest, if it does.
     pub(super) fn try_out(
         &mut self,
         plan: &Plan,
         throw: &Throw,
-        table: &Realisation,
+        table: Option<&Realisation>,
     ) -> Result<Option<Trip>, ModelError> {
         let endless = Looking { edge: [f64::INFINITY; 2], ..plan.looking };
-        let trip = self.throw(plan, std::slice::from_ref(throw), table, vec![&Asked::default()], endless)?.pop();
+        let asked = Asked::default();
+        let world = match table {
+            Some(table) => plan.world(1, plan.surface.part(table))?,
+            None => plan.world(1, plan.surface.plain())?,
+        };
+        let mut watch = Watch::new(&world, vec![&asked], endless, DVec3::ZERO);
+        let bodies = self.run(plan, &world, std::slice::from_ref(throw), &mut watch)?;
+        let trip = watch.finish(&bodies).pop();
         Ok(trip.filter(|trip| trip.end == End::AtRest))
     }
 
@@ -84,7 +91,7 @@ impl Work {
         asked: Vec<&Asked>,
         looking: Looking,
     ) -> Result<Vec<Trip>, ModelError> {
-        let world = plan.world(throws.len(), table)?;
+        let world = plan.world(throws.len(), plan.surface.part(table))?;
         let [x, y] = table.shifted.map(|cells| f64::from(cells) * plan.surface.spacing());
         let offset = DVec3::new(x, y, 0.0);
         let mut watch = Watch::new(&world, asked, looking, offset);
@@ -120,7 +127,7 @@ impl Work {
     pub(super) fn record(&mut self, plan: &Plan, draw: &Draw) -> Result<Vec<(Rigid, Trace<Turning>)>, ModelError> {
         let count = if plan.together { draw.throws.len() } else { 1 };
         let recorded = |(throws, table): (&[Throw], &Realisation)| {
-            let (world, mut trace) = (plan.world(throws.len(), table)?, Trace::default());
+            let (world, mut trace) = (plan.world(throws.len(), plan.surface.part(table))?, Trace::default());
             let bodies = self.run(plan, &world, throws, &mut trace)?;
             for (motions, last) in trace.motions.iter_mut().zip(bodies) {
                 motions.push(last);
@@ -133,12 +140,12 @@ impl Work {
 
 impl Plan {
     /// A world of dice on a table.
-    fn world(&self, dice: usize, table: &Realisation) -> Result<Rigid, ModelError> {
+    fn world(&self, dice: usize, table: Result<Part, WorldError>) -> Result<Rigid, ModelError> {
         let body = BodySpec::solid(Shape::Cuboid(self.cuboid), self.density, MATERIAL);
-        let world = || {
+        let world = move || {
             Rigid::new(RigidWorld {
                 bodies: vec![body; dice],
-                parts: vec![self.surface.part(table)?],
+                parts: vec![table?],
                 laws: self.surface.laws()?,
                 gravity: DVec3::new(0.0, 0.0, -GRAVITY),
                 accuracy: self.accuracy,

@@ -35,8 +35,6 @@ pub(super) fn all(scene: &Dice, rules: &Rules) -> Vec<(f64, Box<dyn Move<Dice>>)
     // A table without anything random has no points to change.
     let if_fields = |weight: f64| if has_fields { weight } else { 0.0 };
     let if_places = |weight: f64| if scene.plan.places.iter().any(Option::is_some) { weight } else { 0.0 };
-    // Dice that meet do not come to rest where each would alone.
-    let if_alone = |weight: f64| if scene.plan.together { 0.0 } else { if_places(weight) };
     let scale = Scale::new(steps.point_least, steps.point_most);
     vec![
         (weights.everything, Box::new(Everything { symmetric: rules.symmetric_redraws() })),
@@ -44,7 +42,7 @@ pub(super) fn all(scene: &Dice, rules: &Rules) -> Vec<(f64, Box<dyn Move<Dice>>)
         (if_fields(weights.point), Box::new(Point { scale })),
         (if_fields(weights.near), Box::new(Near { scale })),
         (weights.rethrow, Box::new(Rethrow)),
-        (if_alone(weights.recast), Box::new(Recast { sd: steps.shift_sd_mm * 1e-3 })),
+        (if_places(weights.recast), Box::new(Recast { sd: steps.recast_sd_mm * 1e-3 })),
         (weights.turn, Box::new(Turn)),
         (if_places(weights.shift), Box::new(Shift { sd: steps.shift_sd_mm * 1e-3 })),
     ]

@@ -2,24 +2,52 @@
 
 use super::{aimed, log_between};
 use crate::dice::constraint::Constraint;
-use crate::dice::{Dice, Draw, End, Work};
-use glam::DQuat;
+use crate::dice::{Dice, Draw, End, Rest, Work};
+use glam::{DQuat, DVec3};
 use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogRatio, Stream, math, open_unit, standard_normal};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// A die gets a fresh throw from the prior, and a fresh table of its own, from a place from where it comes to rest near its target, with its pips turned so that
-/// a demanded face is likely to be up.
+/// A die gets a fresh throw from the prior, and a fresh table where it has one of its own, from a place from where it should come to rest near its target, with its pips
+/// turned so that a demanded face is likely to be up.
 ///
-/// The throw is tried out: how far it leads, d, does not depend on the place where it begins, for each die has a table of its own, of which each place is like any
-/// other. So beginning at the target minus d, up to a Gaussian error, is a proposal with a known density: that of all else under the prior, times that
-/// of the error, times the chance that the pips are turned so. The ratio is that of the old state over that of the new one; it does not depend on the way from one
-/// to the other. On a random table a die begins at a uniform place within a cell, and whole cells are added. A die that does not come to rest is neither led
-/// to nor from.
+/// The throw is tried out to see how far it leads. A die with a random table of its own is tried out on that: it begins at a uniform place within a cell, the table goes
+/// with it by whole cells, and it comes to rest just where it is led. Any other die, and any where something was spilt, is tried out alone on a plain table, and led by any
+/// length; what bumps and other dice do to it is seen when it is simulated.
+///
+/// The density of such a proposal is that of the throw under the prior, but for its place; times that of the error of the place aimed at; times the chance that the
+/// pips are turned so. It depends on the state led to and not on that led from, so the ratio is that of the old state over that of the new one. A die whose try-out does
+/// not come to rest is neither led to nor from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recast {
     /// Standard deviation of the place aimed at, along each axis, in m.
     pub sd: f64,
+}
+
+/// Where a throw should come to rest, and how its body lies then.
+#[derive(Debug, Clone, Copy)]
+struct Led {
+    rest: DVec3,
+    orientation: DQuat,
+}
+
+/// Whether dice are tried out on the tables that they are thrown onto.
+fn is_exact(target: &Dice) -> bool {
+    target.plan.carries() && !target.plan.surface.is_patched()
+}
+
+/// Where a die's throw leads, as a try-out tells; `None` where it does not come to rest.
+fn led(target: &Dice, draw: &Draw, rest: Option<&Rest>, die: usize) -> Result<Option<Led>, ModelError> {
+    let offset = target.offset(draw, die);
+    if is_exact(target) {
+        let trip = rest.map(|rest| &rest.trips[die]).filter(|trip| trip.end == End::AtRest);
+        return Ok(trip.map(|trip| Led { rest: trip.position + offset, orientation: trip.orientation }));
+    }
+    let mut throw = draw.throws[die];
+    let start = DVec3::new(throw.position.x, throw.position.y, 0.0);
+    throw.position -= start;
+    let trip = Work::default().try_out(&target.plan, &throw, None)?;
+    Ok(trip.map(|trip| Led { rest: start + offset + trip.position, orientation: trip.orientation }))
 }
 
 /// Weights of the turns of a die's pips, given how its body lies: what the demands of a face make of them.
@@ -36,43 +64,30 @@ fn weights(target: &Dice, die: usize, orientation: DQuat) -> Vec<f64> {
     logs.into_iter().map(|log| math::exp(log - most)).collect()
 }
 
-fn is_at_rest(state: &StateOf<Dice>, die: usize) -> bool {
-    state.outcome.trips[die].end == End::AtRest
-}
-
 impl Recast {
-    /// Log density of proposing a die's throw as it is in a state, but for what is the same for all states.
-    fn log_q(self, target: &Dice, state: &StateOf<Dice>, die: usize) -> Result<LogDensity, ModelError> {
-        let Some(place) = target.plan.places[die] else { return Ok(LogDensity::ZERO) };
-        let (throw, trip) = (&state.draw.throws[die], &state.outcome.trips[die]);
-        let rest = trip.position + target.offset(&state.draw, die);
+    /// Log density of proposing a die's throw as it is, but for what is the same for all.
+    fn log_q(self, target: &Dice, draw: &Draw, led: Option<Led>, die: usize) -> Result<LogDensity, ModelError> {
+        let (Some(place), Some(led)) = (target.plan.places[die], led) else { return Ok(LogDensity::ZERO) };
         let half = 0.5 * target.plan.surface.spacing();
         let along = |axis: usize| {
-            let off = rest[axis] - place[axis];
-            if target.plan.carries() {
+            let off = led.rest[axis] - place[axis];
+            if is_exact(target) {
                 log_between((off - half) / self.sd, (off + half) / self.sd)
             } else {
                 -0.5 * math::square(off / self.sd)
             }
         };
-        let weights = weights(target, die, trip.orientation);
+        let throw = &draw.throws[die];
+        let weights = weights(target, die, led.orientation);
         let turned = math::ln(weights[usize::from(throw.turn)] / weights.iter().sum::<f64>());
         let elsewhere = target.prior().log_density_elsewhere(throw, die)?;
         Ok(elsewhere + LogDensity::new(along(0) + along(1) + turned)?)
     }
+}
 
-    fn ratio(
-        self,
-        target: &Dice,
-        from: &StateOf<Dice>,
-        to: &StateOf<Dice>,
-        die: usize,
-    ) -> Result<LogRatio, ModelError> {
-        if !is_at_rest(to, die) {
-            return Ok(LogRatio::ZERO);
-        }
-        Ok(LogRatio::of(self.log_q(target, from, die)?, self.log_q(target, to, die)?)?)
-    }
+/// The ratio of two densities; 0 where the first is, whatever the second.
+fn over(from: LogDensity, to: LogDensity) -> Result<LogRatio, ModelError> {
+    if from.is_zero() { Ok(LogRatio::ZERO) } else { Ok(LogRatio::of(from, to)?) }
 }
 
 impl Move<Dice> for Recast {
@@ -89,22 +104,28 @@ impl Move<Dice> for Recast {
     ) -> Result<Proposal, ModelError> {
         let count = aimed(target).count();
         let Some((die, place)) = aimed(target).nth(below(stream, count)) else { return Ok(Proposal::Stay) };
-        if !is_at_rest(current, die) {
-            return Ok(Proposal::Stay);
-        }
-        let cell = target.plan.surface.spacing();
+        let Some(old) = led(target, &current.draw, Some(&current.outcome), die)? else { return Ok(Proposal::Stay) };
+        let (plan, cell) = (&target.plan, target.plan.surface.spacing());
         let mut throw = target.prior().throw(die, stream);
-        candidate.tables[die].renew(stream);
-        (throw.position.x, throw.position.y) = (cell * open_unit(stream), cell * open_unit(stream));
-        let Some(trip) = Work::default().try_out(&target.plan, &throw, &candidate.tables[die])? else {
+        if plan.carries() {
+            candidate.tables[die].renew(stream);
+        }
+        let within = if is_exact(target) { cell } else { 0.0 };
+        (throw.position.x, throw.position.y) = (within * open_unit(stream), within * open_unit(stream));
+        let table = is_exact(target).then(|| &candidate.tables[die]);
+        let Some(trip) = Work::default().try_out(plan, &throw, table)? else {
             return Ok(Proposal::with_ratio(LogRatio::ZERO));
         };
+        let mut rest = trip.position;
         for axis in 0..2 {
             let aim = place[axis] - trip.position[axis] + self.sd * standard_normal(stream);
-            if target.plan.carries() {
-                candidate.tables[die].shifted[axis] = (aim / cell).round() as i32;
+            if is_exact(target) {
+                let cells = (aim / cell).round();
+                candidate.tables[die].shifted[axis] = cells as i32;
+                rest[axis] += cells * cell;
             } else {
                 throw.position[axis] += aim;
+                rest[axis] += aim;
             }
         }
         let weights = weights(target, die, trip.orientation);
@@ -115,10 +136,10 @@ impl Move<Dice> for Recast {
         });
         throw.turn = chosen.unwrap_or(weights.len() - 1) as u8;
         candidate.throws[die] = throw;
-        // What is proposed depends on the state that it comes from in nothing: its density is known when it has been simulated.
-        let log_ratio = LogRatio::of(self.log_q(target, current, die)?, LogDensity::ONE)?;
-        let later = Some(LogRatio::new(f64::INFINITY)?);
-        Ok(Proposal::Candidate { log_ratio, path: Path(die as u64), later })
+        let new = Led { rest, orientation: trip.orientation };
+        let from = self.log_q(target, &current.draw, Some(old), die)?;
+        let log_ratio = over(from, self.log_q(target, candidate, Some(new), die)?)?;
+        Ok(Proposal::Candidate { log_ratio, path: Path(die as u64), later: None })
     }
 
     fn log_ratio(
@@ -128,20 +149,11 @@ impl Move<Dice> for Recast {
         to: &StateOf<Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        self.ratio(target, from, to, path.0 as usize)
-    }
-
-    fn log_ratio_after(
-        &self,
-        target: &Dice,
-        _: &StateOf<Dice>,
-        candidate: &StateOf<Dice>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
         let die = path.0 as usize;
-        if !is_at_rest(candidate, die) {
-            return Ok(LogRatio::ZERO);
-        }
-        Ok(LogRatio::of(LogDensity::ONE, self.log_q(target, candidate, die)?)?)
+        let log_q = |state: &StateOf<Dice>| {
+            let led = led(target, &state.draw, Some(&state.outcome), die)?;
+            self.log_q(target, &state.draw, led, die)
+        };
+        over(log_q(from)?, log_q(to)?)
     }
 }
