@@ -84,6 +84,7 @@ impl Tally {
                 deepest[1]
             );
         }
+        if std::env::args().nth(6).is_some() { for (k, b) in state.bodies().iter().enumerate() { println!("  {k} {:?} t {:.6} x {:.5} v {:.6} w {:.5} up {:.4} links {:?} touching {:?}", b.phase, b.path.t, b.path.x, b.path.v, b.spin, b.turn.conjugate() * glam::DVec3::Z, state.links().of(k as u32).collect::<Vec<_>>(), b.touching()); } }
         self.deep += u64::from(deepest[0] > 1e-2);
         if deepest[0] > self.deepest[0] {
             self.worst = k;

@@ -21,6 +21,12 @@ const MOST_ADVANCES: usize = 200;
 /// Least advancement near contact: the time in which corners move by this part of the gap at which bodies touch. Default 0.1.
 const LEAST: f64 = 0.1;
 
+/// Least number of looks at bodies in lasting contact within one of their steps. Default 8: a point whose corners are held can come into contact only by turning.
+const LOOKS: f64 = 8.0;
+
+/// Halvings of the time between two such looks.
+const BISECTIONS: usize = 30;
+
 /// Most points of a contact that are remembered while bodies stay in touch: an octagon has eight.
 const MOST_POINTS: usize = 16;
 
@@ -60,6 +66,34 @@ impl Held {
     fn has(&self, feature: Feature) -> bool {
         self.features[..self.count].contains(&Some(feature))
     }
+
+    /// Of the points that touch and are not held, the least gap and the least rate.
+    fn newest(&self, cuboids: &CuboidPair, nearest: &Meeting, [a, b]: [&Pose; 2], level: f64) -> New {
+        let mut new = New { gap: f64::INFINITY, rate: f64::INFINITY };
+        // The same points as steps see, of which those within the gap count.
+        cuboids.touching(nearest, super::step::TOUCHING * level, |m| {
+            if m.gap <= level && !self.has(m.feature) {
+                new.gap = new.gap.min(m.gap);
+                new.rate = new.rate.min(PairTouch::from(m).rate(a, b));
+            }
+        });
+        new
+    }
+}
+
+/// What is new among points of contact.
+struct New {
+    gap: f64,
+    rate: f64,
+}
+
+/// The end of the last of [`BISECTIONS`] halves in which `is` becomes true.
+fn bisect(mut low: f64, mut high: f64, mut is: impl FnMut(f64) -> bool) -> f64 {
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if is(middle) { high = middle } else { low = middle }
+    }
+    high
 }
 
 /// Largest angular speed of a body within its current motion.
@@ -156,7 +190,7 @@ impl Rigid {
             Pose { x: b.path.after(dt), r: tumbles[k].at(dt), v: b.path.velocity_after(dt), w }
         };
         let mut held = Held::default();
-        let mut time = from;
+        let (mut time, mut clear) = (from, from);
         for advance in 0..MOST_ADVANCES {
             let offset = bodies[0].path.at(time) - bodies[1].path.at(time);
             let distance = offset.length();
@@ -179,22 +213,27 @@ impl Rigid {
                 held = Held::new(&cuboids, &nearest, super::step::TOUCHING * level);
             }
             if nearest.gap <= level {
-                let mut slowest = f64::INFINITY;
-                cuboids.touching(&nearest, level, |m| {
-                    if !held.has(m.feature) {
-                        slowest = PairTouch::from(m).rate(&a, &b).min(slowest);
-                    }
-                });
-                if slowest < 0.0 {
-                    return Some(time);
+                let new = held.newest(&cuboids, &nearest, [&a, &b], level);
+                if new.rate < 0.0 {
+                    return Some(if new.gap < -level && time > clear {
+                        // A point outside the plane of contact turned into it: back to where it came.
+                        bisect(clear, time, |t| {
+                            let (a, b) = (pose(0, t), pose(1, t));
+                            let cuboids = self.cuboids(pair, [&a, &b]);
+                            cuboids.is_some_and(|c| held.newest(&c, &c.nearest(), [&a, &b], level).gap <= 0.5 * level)
+                        })
+                    } else {
+                        time
+                    });
                 }
             }
+            clear = time;
             let across = cuboids.turning(nearest.feature, nearest.normal, [a.w, b.w]);
             let speed = (a.v - b.v).length() + swing[0] * s.reach + swing[1] * t.reach + gain;
             let turn = across.length();
             let search = Advance { cuboids: &cuboids, poses: [&a, &b], normal: nearest.normal, across, level };
             let m = bound + turn * (turn * (distance + reach) + 2.0 * speed);
-            let step = search.time(m, &held.flat).min(longest);
+            let step = search.time(m, &held.flat).min(longest).min(if linked { (until - from) / LOOKS } else { longest });
             // Nothing that touches approaches: an overlap may grow to twice what it is until then.
             let least = (LEAST * level).max(-nearest.gap);
             time += step.max(least / speed.max(f64::MIN_POSITIVE));

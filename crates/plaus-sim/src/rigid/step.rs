@@ -308,7 +308,7 @@ impl RigidScratch {
 
     /// One step of `h` seconds from the starts; the ends are left in `places` (drift) and `members` (final velocities).
     fn step(&mut self, world: &Rigid, h: f64) {
-        let enough = world.accuracy.sweep_tolerance * world.strength * h;
+        let enough = (world.accuracy.sweep_tolerance * world.strength * h).min(self.fine(world) / h);
         let half_kick = world.gravity * (0.5 * h);
         let half_spin = |spec: &Spec, turn: DQuat, w: DVec3| {
             if spec.wobble == 0.0 { w } else { drift(&spec.inertia, turn, w, 0.5 * h).1 }
@@ -427,6 +427,12 @@ impl RigidScratch {
     /// Whether cuboids are in lasting contact with each other. They come to rest where they are: what tidies one up could push it into another.
     pub(super) fn has_cuboids_in_touch(&self) -> bool {
         self.pairs.iter().any(|p| p.1.feature.is_some())
+    }
+
+    /// How far at most the ends of a step may be off where cuboids touch, in m. What they are off more, others undo, and bodies that lean on each other never come to rest.
+    fn fine(&self, world: &Rigid) -> f64 {
+        let cuboids = self.pairs.iter().filter(|p| p.1.feature.is_some());
+        cuboids.map(|(ab, _)| CLOSE * world.pair_gap(ab.map(|k| self.places[k].body))).fold(f64::INFINITY, f64::min)
     }
 
     /// The least gap of all contacts, over the gap at which bodies touch.

@@ -13,6 +13,8 @@
 
 mod manifold;
 mod nearest;
+#[cfg(test)]
+mod tests;
 
 use glam::{DMat3, DVec3};
 

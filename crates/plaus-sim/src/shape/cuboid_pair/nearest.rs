@@ -1,6 +1,6 @@
 //! The distance of two cuboids.
 
-use super::{CuboidPair, Edge, Meeting, PARALLEL};
+use super::{CuboidPair, Edge, Meeting, PARALLEL, Placed};
 use glam::DVec3;
 
 /// How much farther apart an axis of two edges must keep cores than the faces do, over their size, to be taken: rounding decides nothing. Default 1e-12.
@@ -8,6 +8,9 @@ const SLACK: f64 = 1e-12;
 
 /// Distance over the size below which cores count as touching, so that the direction between their nearest points says nothing. Default 1e-11.
 const TOUCHING: f64 = 1e-11;
+
+/// Distance over the size by which nearest points may be farther apart than what separates the cores. Default 1e-10, above rounding.
+const TIE: f64 = 1e-10;
 
 impl CuboidPair {
     /// The nearest points of two cuboids; of cores that overlap, those along the axis of least overlap.
@@ -29,8 +32,22 @@ impl CuboidPair {
                 return meeting;
             }
         }
-        let (of, corner, region) = self.nearest_corner();
-        self.at_corner(of, corner, region)
+        let (corner_of, corner, region) = self.nearest_corner();
+        let meeting = self.at_corner(corner_of, corner, region);
+        if meeting.gap + self.roundings() <= self.apart(meeting.normal) + TIE * size {
+            return meeting;
+        }
+        // Faces so parallel that edges cross without an axis of their own: the face's axis keeps cores as far apart as they are.
+        self.support_corner(of, axis)
+    }
+
+    /// How far apart cores are along a direction.
+    fn apart(&self, direction: DVec3) -> f64 {
+        let half = |k: usize| {
+            let Placed { axes, core, .. } = &self.cuboids[k];
+            (axes.transpose() * direction * *core).abs().element_sum()
+        };
+        self.offset.dot(direction) - half(0) - half(1)
     }
 
     /// The face whose normal keeps the cores farthest apart: how far, of which cuboid, along which axis.
