@@ -50,6 +50,7 @@ fn run(scene: &Dice, moves: &Mixture<Dice>, seed: u64, iterations: u64) -> Resul
     }
     run.seconds = seconds() - begin;
     run.counts = chain.counts().to_vec();
+    println!("seed {seed}: first solution {:?} (iteration, s), {:.1} s in all", run.first, run.seconds);
     run.changed = chain.state().draw.tables.iter().map(|table| table.changed()).sum();
     Ok(run)
 }

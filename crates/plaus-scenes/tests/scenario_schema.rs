@@ -127,8 +127,8 @@ fn the_schema_uses_only_words_that_are_enforced() {
         for (name, inner) in object {
             assert!(is_names || KNOWN.contains(&name.as_str()), "{name}");
             match inner {
-                Value::Array(parts) => parts.iter().for_each(|part| walk(part, false)),
                 _ if name == "default" && !is_names => {}
+                Value::Array(parts) => parts.iter().for_each(|part| walk(part, false)),
                 inner => walk(inner, !is_names && (name == "properties" || name == "$defs")),
             }
         }

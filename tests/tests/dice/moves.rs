@@ -12,7 +12,7 @@ use plaus_mcmc::{Chain, Mixture, State, Verdict};
 use plaus_scenes::dice::{Constraint, Dice, FaceUp, Recast, RestAt, Shift, Turn, Work};
 use plaus_scenes::{Rules, Scene};
 
-const SAMPLES: u64 = 8_000;
+const SAMPLES: u64 = 6_000;
 
 /// One step of `kernel` alone from exact draws of the constrained target.
 pub(crate) fn constrained(dice: &Dice, flat: bool, kernel: AnyMove) -> OneStepReport {
@@ -55,13 +55,14 @@ fn every_move_leaves_prior_and_target_invariant() {
     ];
     for (k, dice) in scenes.iter().enumerate() {
         for (index, kernel) in all_moves().into_iter().enumerate() {
-            let is_of_points = index == 2 || index == 3;
-            if (dice.fields().is_empty() && is_of_points) || (k == 3 && !is_of_points && index != 6) {
+            // Moves that know of one die at most, and not of its table, are the same on all tables.
+            let concerned: &[usize] = [&[0, 1, 2, 3, 4, 5, 6][..], &[0, 2, 3, 4, 6], &[6], &[3, 6]][k];
+            if !concerned.contains(&index) {
                 continue;
             }
             let report = constrained(dice, false, kernel);
             assert!(report.passed(), "scene {k}: {report}");
-            assert!(report.accepted() > 200, "scene {k}: {report}");
+            assert!(report.accepted() > 150, "scene {k}: {report}");
         }
     }
     for kernel in all_moves() {

@@ -253,8 +253,11 @@ mod tests {
         (config.spilt.radius_mm, config.spilt.x_mm) = (20.0, 80.0);
         let surface = Surface::new(&config).unwrap();
         let at = |i| surface.value([0; 2], Site { field: Field::Friction, i, j: 0 }, 0.0);
-        assert_eq!([at(0), at(7), at(8), at(10), at(12), at(13)], [0.35, 0.35, 0.15, 0.15, 0.15, 0.35]);
+        // Medians; the cut at 0 moves that of the wet part by 8e-5.
+        for (i, median) in [(0, 0.35), (7, 0.35), (8, 0.15), (10, 0.15), (12, 0.15), (13, 0.35)] {
+            assert!((at(i) - median).abs() < 1e-4, "{i}: {}", at(i));
+        }
         // Of a shifted table other points lie there.
-        assert_eq!(surface.value([8, 0], Site { field: Field::Friction, i: 0, j: 0 }, 0.0), 0.15);
+        assert_eq!(surface.value([8, 0], Site { field: Field::Friction, i: 0, j: 0 }, 0.0), at(8));
     }
 }

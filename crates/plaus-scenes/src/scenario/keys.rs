@@ -69,7 +69,7 @@ fn meanings(shape: &Shape) -> Vec<String> {
         }
         Kind::List(item, _) => {
             let key = |(name, shape): &(String, Shape)| match default(shape) {
-                Some(default) => format!("{name} = {default} ({})", shape.range_with_unit()),
+                Some(default) => format!("{name} ({}, default {default})", shape.range_with_unit()),
                 None => name.clone(),
             };
             let keys = |shape: &Shape| shape.keys().iter().map(key).collect::<Vec<_>>().join(", ");

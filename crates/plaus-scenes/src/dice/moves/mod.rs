@@ -116,7 +116,7 @@ fn site(path: Path) -> (usize, Site) {
 mod tests {
     use super::*;
 
-    /// Against Simpson's rule, far out too; five intervals of a hundred steps are exact to 1e-9.
+    /// Against Simpson's rule with 2,000 steps h, far out too: where the integrand falls as exp(−az) its relative error is (ah)⁴/180, 1.4e-8 at a = 50.
     #[test]
     fn shares_between_are_right() {
         for (a, width) in [(-0.8, 1.6), (-3.0, 1.0), (0.0, 0.5), (2.0, 1.6), (-40.0, 1.6), (50.0, 1.6), (300.0, 0.1)] {
@@ -127,7 +127,7 @@ mod tests {
             let weigh = |k: u32| f64::from(if k == 0 || k == 2000 { 1 } else { 2 + 2 * (k % 2) });
             let sum: f64 = (0..=2000).map(|k| weigh(k) * density(a + f64::from(k) * step)).sum();
             let expected = math::ln(sum * step / 3.0 / std::f64::consts::TAU.sqrt()) - 0.5 * near * near;
-            assert!((log_between(a, b) - expected).abs() < 1e-8, "{a}: {} {expected}", log_between(a, b));
+            assert!((log_between(a, b) - expected).abs() < 2e-8, "{a}: {} {expected}", log_between(a, b));
         }
     }
 
