@@ -39,6 +39,11 @@ const CASES: &[Case] = &[
         &["text=A7", "order=queue", "vertices=interior", "count=balls", "accuracy=fine"],
         60,
     ),
+    ("dice-one", "dice-one.toml", &[], 100),
+    ("dice-one-paper", "dice-one.toml", &["moves=paper", "preset=as-printed"], 60),
+    ("dice-one-spilt", "dice-one.toml", &["spilt.radius_mm=60", "edge_x_mm=10", "rounding_mm=0", "accuracy=fine"], 40),
+    ("dice-six", "dice-six.toml", &[], 60),
+    ("dice-six-together", "dice-six-together.toml", &[], 12),
 ];
 
 /// What one iteration left.

@@ -26,6 +26,7 @@
 pub mod animation;
 pub mod ball2d;
 pub mod bowling;
+pub mod dice;
 pub mod registry;
 pub mod rules;
 pub mod scenario;

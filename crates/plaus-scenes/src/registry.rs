@@ -54,4 +54,6 @@ scenes! {
     "bowling" Bowling => bowling,
     /// Balls are dropped one after the other into a box of bins and should come to rest so that they spell a word.
     "spelling" Spelling => spelling,
+    /// Dice are thrown onto a table of random height, restitution and friction, and should come to rest where and as demanded.
+    "dice" Dice => dice,
 }

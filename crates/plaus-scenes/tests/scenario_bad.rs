@@ -222,8 +222,9 @@ fn a_file_without_a_world_says_how_to_add_one() {
     for text in ["", "\u{feff}", "\n\n", "# nothing\r\n", "[sampler]\nseed = 2"] {
         let problem = only(text, &[]);
         assert_eq!((problem.span.as_ref(), problem.line, problem.key.as_str()), (None, None, "world"));
-        let tables = NAMES.iter().map(|name| format!("[world.{name}]"));
-        assert_eq!(problem.help, Some(format!("add a table {}", tables.collect::<Vec<_>>().join(" or "))));
+        let tables: Vec<String> = NAMES.iter().map(|name| format!("[world.{name}]")).collect();
+        let (last, others) = tables.split_last().unwrap();
+        assert_eq!(problem.help, Some(format!("add a table {} or {last}", others.join(", "))));
     }
     assert!(error("", &[]).to_string().starts_with("bad.toml: world: no world"));
 }

@@ -52,6 +52,14 @@ const NASTY: &[&str] = &[
     "999999999999999999999999",
 ];
 
+/// Lists that some scene takes.
+const LISTS: &[&str] = &[
+    "[]",
+    "[{face_up={}}]",
+    "[{rest_at={x_mm=-3.5,within_mm=0.1}},{passes={z_mm=1e-3}}]",
+    "[{first_impact={time_s=0.1}},{pose_at={velocity_sd=1.5}}]",
+];
+
 /// What is put between the tokens of a file.
 const TOKENS: &[&str] = &[
     "a",
@@ -244,6 +252,7 @@ fn valid_override(leaf: Leaf) -> BoxedStrategy<String> {
         }
         "boolean" => any::<bool>().prop_map(|x| x.to_string()).boxed(),
         "string" => select(&["\"\"", "\"HI\"", "\"a b!\"", "\"#.#\"", "\"é\""][..]).prop_map(str::to_owned).boxed(),
+        "array" => select(LISTS).prop_map(str::to_owned).boxed(),
         _ => select(leaf.words()).boxed(),
     };
     value.prop_map(move |value| format!("{key}={value}")).boxed()

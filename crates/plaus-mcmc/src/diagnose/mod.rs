@@ -56,7 +56,6 @@ mod chains;
 mod ess;
 mod mcse;
 mod moments;
-mod normal_quantile;
 mod rank;
 mod rhat;
 mod summary;
@@ -65,6 +64,6 @@ pub use autocorrelation::{AutocorrelationTime, SOKAL_WINDOW, autocorrelation, in
 pub use chains::{DiagnoseError, MIN_DRAWS};
 pub use ess::{ess_bulk, ess_mean, ess_tail};
 pub use mcse::{mcse_mean, mcse_sd};
-pub use normal_quantile::normal_quantile;
+pub use plaus_dist::normal_quantile;
 pub use rhat::rhat;
 pub use summary::{Summary, summarize};

@@ -1,7 +1,7 @@
 //! Ranks instead of values: what makes the diagnostics hold for heavy tails and under any monotone transformation.
 
 use super::moments::extremes;
-use super::normal_quantile::normal_quantile;
+use plaus_dist::normal_quantile;
 
 /// Replaces every draw by the normal quantile of its rank among all draws (Vehtari et al., section 4.1), row after row in one table.
 ///

@@ -47,8 +47,8 @@ pub fn explain(key: &str) -> Result<KeyDoc, Option<String>> {
 
 fn doc(shape: &Shape, key: String) -> KeyDoc {
     let mut description = shape.description.clone();
-    for (word, meaning) in meanings(shape) {
-        description += &format!("\n\"{word}\": {meaning}");
+    for meaning in meanings(shape) {
+        description += &format!("\n{meaning}");
     }
     KeyDoc {
         kind: shape.kind_in_words(),
@@ -60,18 +60,39 @@ fn doc(shape: &Shape, key: String) -> KeyDoc {
     }
 }
 
-/// The words that have a meaning of their own.
-fn meanings(shape: &Shape) -> impl Iterator<Item = &(String, String)> {
-    let words = if let Kind::Words(words) = &shape.kind { words.as_slice() } else { &[] };
-    words.iter().filter(|(_, meaning)| !meaning.is_empty())
+/// What words mean that have a meaning of their own; of a list of tables, what each may hold. One line each.
+fn meanings(shape: &Shape) -> Vec<String> {
+    match &shape.kind {
+        Kind::Words(words) => {
+            let with_meaning = words.iter().filter(|(_, meaning)| !meaning.is_empty());
+            with_meaning.map(|(word, meaning)| format!("\"{word}\": {meaning}")).collect()
+        }
+        Kind::List(item, _) => {
+            let key = |(name, shape): &(String, Shape)| match default(shape) {
+                Some(default) => format!("{name} ({}, default {default})", shape.range_with_unit()),
+                None => name.clone(),
+            };
+            let keys = |shape: &Shape| shape.keys().iter().map(key).collect::<Vec<_>>().join(", ");
+            let choice =
+                |(name, shape): &(String, Shape)| format!("{name}: {} Keys: {}.", shape.description, keys(shape));
+            item.keys().iter().map(choice).collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// The default as TOML, where there is one.
 fn default(shape: &Shape) -> Option<String> {
     let default = shape.default.as_ref().filter(|value| !value.is_null())?;
     let number = default.as_f64().filter(|_| matches!(shape.kind, Kind::Number(_))).map(toml::Value::Float);
-    let value = number.or_else(|| toml::Value::try_from(default).ok())?;
-    Some(value.to_string())
+    Some(match number.or_else(|| toml::Value::try_from(default).ok())? {
+        // A table a line.
+        toml::Value::Array(items) if items.iter().any(toml::Value::is_table) => {
+            let lines: Vec<String> = items.iter().map(|item| format!("    {item},\n")).collect();
+            format!("[\n{}]", lines.concat())
+        }
+        value => value.to_string(),
+    })
 }
 
 /// A commented scenario file: every key with its default, its meaning, unit and range. Reading it gives the scene's default scenario.
@@ -106,8 +127,8 @@ fn entry(text: &mut String, shape: &Shape, name: &str) {
     if let Some(facts) = facts(shape) {
         comment(text, &facts);
     }
-    for (word, meaning) in meanings(shape) {
-        comment(text, &format!("\"{word}\": {meaning}"));
+    for meaning in meanings(shape) {
+        comment(text, &meaning);
     }
     let _ = match default(shape) {
         Some(default) => writeln!(text, "{name} = {default}"),

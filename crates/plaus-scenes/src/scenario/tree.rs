@@ -79,11 +79,22 @@ impl Tree {
         }
     }
 
+    /// The value of a key, or of a place in a list as in `name[2]`.
+    fn get_indexed(&self, name: &str) -> Option<&Self> {
+        let Some((list, place)) = name.strip_suffix(']').and_then(|name| name.split_once('[')) else {
+            return self.get(name);
+        };
+        match &self.get(list)?.data {
+            Data::List(items) => items.get(place.parse::<usize>().ok()?),
+            _ => None,
+        }
+    }
+
     /// The value at a dotted key, or the last on the way there, with its own dotted key.
     pub(super) fn nearest(&self, key: &str) -> (String, &Self) {
         let (mut path, mut tree) = (String::new(), self);
         for name in key.split('.') {
-            match tree.get(name) {
+            match tree.get_indexed(name) {
                 Some(inner) => (path, tree) = (join(&path, name), inner),
                 None => break,
             }

@@ -81,6 +81,7 @@ impl Leaf {
             }
             "boolean" => value.is_boolean() || value.is_null(),
             "string" => value.is_string(),
+            "array" => value.is_array(),
             "word" => self.words().iter().any(|word| value == word),
             kind => panic!("{}: no test for {kind}", self.key),
         }

@@ -1,6 +1,6 @@
 //! The inverse of the standard normal distribution function.
 
-use plaus_dist::math;
+use crate::math;
 
 /// The standard normal quantile at probability `p`: −∞ at 0, +∞ at 1, NaN outside [0, 1].
 ///

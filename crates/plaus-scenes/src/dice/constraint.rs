@@ -1,0 +1,317 @@
+//! What can be demanded of a die, and how well an animation meets it.
+
+use super::Rotation;
+use super::flight::Trip;
+use glam::{DQuat, DVec3};
+use plaus_dist::math;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// One demand. Its log density is 0 where it is met perfectly and negative elsewhere.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Constraint {
+    /// Where a die comes to rest.
+    RestAt(RestAt),
+    /// Which face comes up.
+    FaceUp(FaceUp),
+    /// Where a die is at a time, how it is turned, and how fast it is.
+    PoseAt(PoseAt),
+    /// A point that a die's middle passes.
+    Passes(Passes),
+    /// When a die first touches the table.
+    FirstImpact(FirstImpact),
+}
+
+/// A die comes to rest with its middle over a place: `−½ (distance/sigma)²`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct RestAt {
+    /// Which die, from 1 on.
+    #[schemars(range(min = 1, max = 24))]
+    pub die: u32,
+    /// Place along x.
+    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub x_mm: f64,
+    /// Place along y.
+    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub y_mm: f64,
+    /// Standard deviation along each axis: smaller is stricter.
+    #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub sigma_mm: f64,
+    /// A die closer than this meets it.
+    #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub within_mm: f64,
+}
+
+impl Default for RestAt {
+    fn default() -> Self {
+        Self { die: 1, x_mm: 0.0, y_mm: 0.0, sigma_mm: 4.0, within_mm: 10.0 }
+    }
+}
+
+/// A die comes to rest with a face up: `−ln_lambda` where it does not, `−½ (angle/angle_sd_deg)²` besides where that is given.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct FaceUp {
+    /// Which die, from 1 on.
+    #[schemars(range(min = 1, max = 24))]
+    pub die: u32,
+    /// The face.
+    #[schemars(range(min = 1, max = 6))]
+    pub face: u32,
+    /// What another face costs.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat"))]
+    pub ln_lambda: f64,
+    /// Standard deviation of the angle between the face's normal and the vertical; 0: the angle does not count.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 180.0, "x-unit" = "degree"))]
+    pub angle_sd_deg: f64,
+    /// A die whose face is farther from level than this leans on something: no face is up.
+    #[schemars(extend("minimum" = 0.1, "maximum" = 45.0, "x-unit" = "degree"))]
+    pub within_deg: f64,
+}
+
+impl Default for FaceUp {
+    fn default() -> Self {
+        Self { die: 1, face: 6, ln_lambda: 5.0, angle_sd_deg: 0.0, within_deg: 20.0 }
+    }
+}
+
+/// A die's state at a time: minus half the sum of squares of its distance, its angle and its difference in velocity, each over its spread.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct PoseAt {
+    /// Which die, from 1 on.
+    #[schemars(range(min = 1, max = 24))]
+    pub die: u32,
+    /// When. After it has come to rest a die stays where it is.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 60.0, "x-unit" = "s"))]
+    pub time_s: f64,
+    /// Place of its middle along x.
+    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub x_mm: f64,
+    /// Place along y.
+    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub y_mm: f64,
+    /// Height.
+    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub z_mm: f64,
+    /// Standard deviation along each axis; 0: the place does not count.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub sigma_mm: f64,
+    /// A die closer than this meets it.
+    #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub within_mm: f64,
+    /// How its pips are turned from face 1 up, face 2 along y and face 3 along x: a rotation vector, whose direction is the axis and whose length the
+    /// angle; this is its part along x.
+    #[schemars(extend("minimum" = -360.0, "maximum" = 360.0, "x-unit" = "degree"))]
+    pub turn_x_deg: f64,
+    /// Its part along y.
+    #[schemars(extend("minimum" = -360.0, "maximum" = 360.0, "x-unit" = "degree"))]
+    pub turn_y_deg: f64,
+    /// Its part along z.
+    #[schemars(extend("minimum" = -360.0, "maximum" = 360.0, "x-unit" = "degree"))]
+    pub turn_z_deg: f64,
+    /// Standard deviation of the angle from there; 0: the orientation does not count.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 180.0, "x-unit" = "degree"))]
+    pub angle_sd_deg: f64,
+    /// A die turned less far from there meets it.
+    #[schemars(extend("minimum" = 0.1, "maximum" = 180.0, "x-unit" = "degree"))]
+    pub within_deg: f64,
+    /// Velocity along x.
+    #[schemars(extend("minimum" = -100.0, "maximum" = 100.0, "x-unit" = "m/s"))]
+    pub vx: f64,
+    /// Velocity along y.
+    #[schemars(extend("minimum" = -100.0, "maximum" = 100.0, "x-unit" = "m/s"))]
+    pub vy: f64,
+    /// Velocity upwards.
+    #[schemars(extend("minimum" = -100.0, "maximum" = 100.0, "x-unit" = "m/s"))]
+    pub vz: f64,
+    /// Standard deviation of each component of the velocity; 0: it does not count.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "m/s"))]
+    pub velocity_sd: f64,
+}
+
+impl Default for PoseAt {
+    fn default() -> Self {
+        Self {
+            die: 1,
+            time_s: 0.3,
+            x_mm: 0.0,
+            y_mm: 0.0,
+            z_mm: 30.0,
+            sigma_mm: 5.0,
+            within_mm: 10.0,
+            turn_x_deg: 0.0,
+            turn_y_deg: 0.0,
+            turn_z_deg: 0.0,
+            angle_sd_deg: 0.0,
+            within_deg: 20.0,
+            vx: 0.0,
+            vy: 0.0,
+            vz: 0.0,
+            velocity_sd: 0.0,
+        }
+    }
+}
+
+/// A die's middle passes a point at any time: `−½ (least distance/sigma)²`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Passes {
+    /// Which die, from 1 on.
+    #[schemars(range(min = 1, max = 24))]
+    pub die: u32,
+    /// The point along x.
+    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub x_mm: f64,
+    /// The point along y.
+    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub y_mm: f64,
+    /// Its height.
+    #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub z_mm: f64,
+    /// Standard deviation of the least distance.
+    #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub sigma_mm: f64,
+    /// A die that comes closer than this meets it.
+    #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
+    pub within_mm: f64,
+}
+
+impl Default for Passes {
+    fn default() -> Self {
+        Self { die: 1, x_mm: -50.0, y_mm: 0.0, z_mm: 40.0, sigma_mm: 5.0, within_mm: 10.0 }
+    }
+}
+
+/// A die first touches the table at a time: `−½ (difference/sigma)²`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct FirstImpact {
+    /// Which die, from 1 on.
+    #[schemars(range(min = 1, max = 24))]
+    pub die: u32,
+    /// When.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 60.0, "x-unit" = "s"))]
+    pub time_s: f64,
+    /// Standard deviation.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 60.0, "x-unit" = "s"))]
+    pub sigma_s: f64,
+    /// A first touch closer than this meets it.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 60.0, "x-unit" = "s"))]
+    pub within_s: f64,
+}
+
+impl Default for FirstImpact {
+    fn default() -> Self {
+        Self { die: 1, time_s: 0.12, sigma_s: 0.01, within_s: 0.02 }
+    }
+}
+
+/// How well an animation meets a constraint.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Log density in nats, at most 0.
+    pub log: f64,
+    /// Whether it is met.
+    pub met: bool,
+}
+
+impl Constraint {
+    /// Face 6 at the middle of the table.
+    #[must_use]
+    pub fn examples() -> Vec<Self> {
+        vec![Self::RestAt(RestAt::default()), Self::FaceUp(FaceUp::default())]
+    }
+
+    /// Its name in scenario files.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::RestAt(_) => "rest_at",
+            Self::FaceUp(_) => "face_up",
+            Self::PoseAt(_) => "pose_at",
+            Self::Passes(_) => "passes",
+            Self::FirstImpact(_) => "first_impact",
+        }
+    }
+
+    /// Which die it is about, from 1 on.
+    #[must_use]
+    pub fn die(&self) -> u32 {
+        match self {
+            Self::RestAt(RestAt { die, .. })
+            | Self::FaceUp(FaceUp { die, .. })
+            | Self::PoseAt(PoseAt { die, .. })
+            | Self::Passes(Passes { die, .. })
+            | Self::FirstImpact(FirstImpact { die, .. }) => *die,
+        }
+    }
+
+    /// How well a die's trip, moved by `offset`, meets it. `slot` is the place of what it asked for in the trip's `frames` or `nearest`.
+    pub(super) fn mark(&self, trip: &Trip, pips: &Rotation, slot: usize, offset: DVec3) -> Mark {
+        match self {
+            Self::RestAt(at) => {
+                let off = ((trip.position + offset) * 1e3 - DVec3::new(at.x_mm, at.y_mm, 0.0)).truncate().length();
+                Mark { log: gauss(off, at.sigma_mm), met: off < at.within_mm }
+            }
+            Self::FaceUp(up) => up.mark(trip.orientation, pips),
+            Self::PoseAt(pose) => pose.mark(trip, pips, slot, offset),
+            Self::Passes(point) => {
+                let off = 1e3 * trip.nearest.get(slot).copied().unwrap_or(f64::INFINITY);
+                Mark { log: gauss(off, point.sigma_mm), met: off < point.within_mm }
+            }
+            Self::FirstImpact(at) => match trip.impacts.first() {
+                Some(first) => {
+                    let off = (first[0] - at.time_s).abs();
+                    Mark { log: gauss(off, at.sigma_s), met: off < at.within_s }
+                }
+                None => Mark { log: f64::NEG_INFINITY, met: false },
+            },
+        }
+    }
+}
+
+impl FaceUp {
+    pub(super) fn mark(&self, orientation: DQuat, pips: &Rotation) -> Mark {
+        let cosine = pips.cosine(self.face as u8, orientation);
+        let angle = math::acos(cosine.clamp(-1.0, 1.0)).to_degrees();
+        let met = angle < self.within_deg;
+        Mark { log: if met { 0.0 } else { -self.ln_lambda } + gauss(angle, self.angle_sd_deg), met }
+    }
+}
+
+impl PoseAt {
+    fn mark(&self, trip: &Trip, pips: &Rotation, slot: usize, offset: DVec3) -> Mark {
+        let Some(frame) = trip.frames.get(slot) else { return Mark { log: f64::NEG_INFINITY, met: false } };
+        let off = ((frame.position + offset) * 1e3).distance(DVec3::new(self.x_mm, self.y_mm, self.z_mm));
+        let vector = DVec3::new(self.turn_x_deg, self.turn_y_deg, self.turn_z_deg) * (std::f64::consts::PI / 180.0);
+        // q and −q are one orientation.
+        let cosine = pips.pips(frame.orientation).dot(turned(vector)).abs().min(1.0);
+        let angle = 2.0 * math::acos(cosine).to_degrees();
+        let slip = frame.velocity.distance(DVec3::new(self.vx, self.vy, self.vz));
+        let near = self.sigma_mm == 0.0 || off < self.within_mm;
+        let like = self.angle_sd_deg == 0.0 || angle < self.within_deg;
+        // Within two standard deviations a velocity is as demanded.
+        let quick = self.velocity_sd == 0.0 || slip < 2.0 * self.velocity_sd;
+        let log = gauss(off, self.sigma_mm) + gauss(angle, self.angle_sd_deg) + gauss(slip, self.velocity_sd);
+        Mark { log, met: near && like && quick }
+    }
+}
+
+/// The rotation by a vector.
+pub(super) fn turned(vector: DVec3) -> DQuat {
+    let angle = vector.length();
+    if angle == 0.0 {
+        return DQuat::IDENTITY;
+    }
+    let (sin, cos) = math::sin_cos(0.5 * angle);
+    let axis = vector * (sin / angle);
+    DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)
+}
+
+/// `−½ (x/sd)²`; 0 where `sd` is.
+fn gauss(x: f64, sd: f64) -> f64 {
+    if sd == 0.0 { 0.0 } else { -0.5 * math::square(x / sd) }
+}

@@ -1,0 +1,258 @@
+//! What is random: how each die is thrown, and the tables' control points, which are made only where they are looked at.
+//!
+//! A control point is held as its *score*, a standard normal number that the law of its place turns into a height, a restitution or a friction. The score
+//! of a point that no move has changed is a pure function of the table's key, the field and the point's indices, as if it had been drawn at the start;
+//! so a draw holds only the points that moves have changed, and yet the whole table.
+
+use glam::{DQuat, DVec3};
+use plaus_dist::stream::ChainStreams;
+use plaus_dist::{Purpose, Seed, Stream, standard_normal};
+use rand::Rng;
+use serde::{Deserialize, Serialize};
+
+/// Scores beyond this have density 0: one in 5·10⁸ is, before the cut.
+pub const LARGEST_SCORE: f64 = 6.0;
+
+/// How one die is thrown: SI units, world axes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Throw {
+    /// Its middle at time 0, in m; where its table has been shifted, it stands that much farther on.
+    pub position: DVec3,
+    /// Turns the body's axes into the world's.
+    pub orientation: DQuat,
+    /// In m/s.
+    pub velocity: DVec3,
+    /// Angular velocity in rad/s.
+    pub spin: DVec3,
+    /// Which of the body's symmetries its pips are turned by: an index into [`super::Rotation::of_cuboid`].
+    pub turn: u8,
+}
+
+impl Throw {
+    /// Whether the body moves alike, whatever its pips.
+    #[must_use]
+    pub fn moves_like(&self, other: &Self) -> bool {
+        Self { turn: other.turn, ..*self } == *other
+    }
+}
+
+/// A property of the table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Field {
+    /// Its height.
+    Height,
+    /// Restitution of what hits it.
+    Restitution,
+    /// Friction of what slides on it.
+    Friction,
+}
+
+impl Field {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Height, Self::Restitution, Self::Friction];
+
+    /// Streams of control points have purposes of their own.
+    fn purpose(self) -> Purpose {
+        Purpose(32 + self as u16)
+    }
+}
+
+/// A control point of one field of a table, by its indices on the grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Site {
+    /// Which field.
+    pub field: Field,
+    /// Index along x.
+    pub i: i32,
+    /// Index along y.
+    pub j: i32,
+}
+
+/// A whole table: the scores of all its control points.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub struct Realisation {
+    /// From which the scores of unchanged points follow.
+    pub key: u64,
+    /// By how many cells the table, with the die thrown onto it, has been shifted along x and y. Indices of points and positions of throws are those without
+    /// the shift, so that it changes no bit of a motion.
+    pub shifted: [i32; 2],
+    /// Points that moves have changed, with their scores, in order.
+    changed: Vec<(Site, f64)>,
+}
+
+impl Clone for Realisation {
+    fn clone(&self) -> Self {
+        Self { key: self.key, shifted: self.shifted, changed: self.changed.clone() }
+    }
+    fn clone_from(&mut self, source: &Self) {
+        (self.key, self.shifted) = (source.key, source.shifted);
+        self.changed.clone_from(&source.changed);
+    }
+}
+
+/// The values of all random variables.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub struct Draw {
+    /// One a die.
+    pub throws: Vec<Throw>,
+    /// One a die where each is thrown alone, else one for all.
+    pub tables: Vec<Realisation>,
+}
+
+impl Clone for Draw {
+    fn clone(&self) -> Self {
+        Self { throws: self.throws.clone(), tables: self.tables.clone() }
+    }
+    fn clone_from(&mut self, source: &Self) {
+        self.throws.clone_from(&source.throws);
+        self.tables.clone_from(&source.tables);
+    }
+}
+
+impl Draw {
+    /// The index of the table that a die is thrown onto.
+    #[must_use]
+    pub fn table_of(&self, die: usize) -> usize {
+        die.min(self.tables.len().saturating_sub(1))
+    }
+
+    /// By how much a die stands farther on than its throw and its trip say, in m; `spacing` is that of control points.
+    #[must_use]
+    pub fn offset(&self, die: usize, spacing: f64) -> DVec3 {
+        let [x, y] = self.tables[self.table_of(die)].shifted.map(|cells| f64::from(cells) * spacing);
+        DVec3::new(x, y, 0.0)
+    }
+}
+
+/// The streams of a table's points, from its key.
+fn streams(key: u64) -> ChainStreams {
+    Seed(key).chain(0)
+}
+
+/// The score that a point has at first: a standard normal number within [`LARGEST_SCORE`], whose stream's address are field and indices.
+fn fresh(streams: &ChainStreams, site: Site) -> f64 {
+    // Indices repeat after 2²⁴ cells, farther than any table is large.
+    let index = |k: i32| u64::from(k.cast_unsigned() & 0x00ff_ffff);
+    let mut stream = streams.at(index(site.i) << 24 | index(site.j), site.field.purpose());
+    held(&mut stream)
+}
+
+/// A standard normal number within [`LARGEST_SCORE`].
+fn held(stream: &mut Stream) -> f64 {
+    loop {
+        let score = standard_normal(stream);
+        if score.abs() <= LARGEST_SCORE {
+            return score;
+        }
+    }
+}
+
+impl Realisation {
+    /// A draw from the prior.
+    pub fn new(stream: &mut Stream) -> Self {
+        Self { key: stream.next_u64(), shifted: [0; 2], changed: Vec::new() }
+    }
+
+    /// Draws anew, keeping allocations.
+    pub fn renew(&mut self, stream: &mut Stream) {
+        (self.key, self.shifted) = (stream.next_u64(), [0; 2]);
+        self.changed.clear();
+    }
+
+    /// The score of a point. Many are asked for by [`Realisation::source`].
+    #[must_use]
+    pub fn score(&self, site: Site) -> f64 {
+        self.look(&streams(self.key), site)
+    }
+
+    fn look(&self, streams: &ChainStreams, site: Site) -> f64 {
+        match self.changed.binary_search_by(|(known, _)| known.cmp(&site)) {
+            Ok(place) => self.changed[place].1,
+            Err(_) => fresh(streams, site),
+        }
+    }
+
+    /// Gives a point another score.
+    pub fn set(&mut self, site: Site, score: f64) {
+        match self.changed.binary_search_by(|(known, _)| known.cmp(&site)) {
+            Ok(place) => self.changed[place].1 = score,
+            Err(place) => self.changed.insert(place, (site, score)),
+        }
+    }
+
+    /// The points that moves have changed, with their scores.
+    #[must_use]
+    pub fn changed_points(&self) -> &[(Site, f64)] {
+        &self.changed
+    }
+
+    /// Whether all points have the scores of another table's, shifted or not.
+    #[must_use]
+    pub fn has_points_of(&self, other: &Self) -> bool {
+        self.key == other.key && self.changed == other.changed
+    }
+
+    /// How many points moves have changed since the table was drawn.
+    #[must_use]
+    pub fn changed(&self) -> usize {
+        self.changed.len()
+    }
+
+    /// The scores as a function that owns all it needs.
+    pub fn source(&self) -> impl Fn(Site) -> f64 + Send + Sync + 'static {
+        let (table, streams) = (self.clone(), streams(self.key));
+        move |site| table.look(&streams, site)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(seed: u64) -> Realisation {
+        Realisation::new(&mut Seed(seed).chain(0).at(0, Purpose::START))
+    }
+
+    #[test]
+    fn points_are_functions_of_their_address() {
+        let mut table = table(1);
+        let site = |field, i, j| Site { field, i, j };
+        let here = site(Field::Height, -3, 7);
+        assert_eq!(table.score(here), table.score(here));
+        for other in [site(Field::Friction, -3, 7), site(Field::Height, 7, -3), site(Field::Height, -3, 8)] {
+            assert_ne!(table.score(here), table.score(other));
+        }
+        table.set(site(Field::Height, 0, 0), 2.5);
+        let (score, source) = (table.score(here), table.source());
+        assert_eq!((source(here), source(site(Field::Height, 0, 0))), (score, 2.5));
+        table.shifted = [5, -1];
+        assert_eq!((table.score(here), table.changed_points()), (score, &[(site(Field::Height, 0, 0), 2.5)][..]));
+        table.set(site(Field::Height, 0, 0), -0.5);
+        table.set(here, 1.0);
+        assert_eq!((table.score(site(Field::Height, 0, 0)), table.changed()), (-0.5, 2));
+    }
+
+    /// Mean, variance and correlation of neighbours over 10⁵ points: five standard errors, a false alarm in 10⁶ for all.
+    #[test]
+    fn unchanged_points_are_independent_standard_normal_numbers() {
+        let table = table(2);
+        let source = table.source();
+        let side = 316;
+        let n = f64::from(side * side);
+        let (mut sum, mut squares, mut products) = (0.0, 0.0, [0.0; 3]);
+        for i in 0..side {
+            for j in 0..side {
+                let at = |field, i, j| source(Site { field, i, j });
+                let z = at(Field::Height, i, j);
+                sum += z;
+                squares += z * z;
+                products[0] += z * at(Field::Height, i + 1, j);
+                products[1] += z * at(Field::Height, i, j + 1);
+                products[2] += z * at(Field::Restitution, i, j);
+            }
+        }
+        assert!((sum / n).abs() < 5.2 / n.sqrt(), "{}", sum / n);
+        assert!((squares / n - 1.0).abs() < 5.2 * (2.0 / n).sqrt());
+        assert!(products.iter().all(|p| (p / n).abs() < 5.2 / n.sqrt()), "{products:?}");
+    }
+}

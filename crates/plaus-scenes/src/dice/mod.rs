@@ -1,0 +1,241 @@
+//! Dice on a random table (section 5.4): where they come to rest and which face comes up are demanded; how they are thrown and the table's height,
+//! restitution and friction are uncertain.
+//!
+//! **A table of any size.** Control points are made where a die comes near them and nowhere else. The value of a point that no move has changed is a pure
+//! function of its address (the table's key, which the seed, the chain and the iteration that drew it give; the field; the indices), so it does not matter when, or
+//! whether, it is looked at. The target's density is taken with respect to the law of the whole table: a point that no die touches drops out of every ratio, and
+//! a chain that holds all points from the start makes the same states.
+//!
+//! **What makes two solutions distinct.** Every tenth of a second each die is looked at: in which square of 20 mm it is, and which face is uppermost. Where
+//! that agrees at all times, two solutions count as one.
+
+mod animate;
+mod config;
+mod constraint;
+mod draw;
+mod flight;
+mod moves;
+mod plan;
+mod prior;
+mod props;
+mod steps;
+mod surface;
+mod symmetry;
+mod throwing;
+
+pub use crate::spelling::AccuracyPreset;
+pub use config::{Config, Die, MOST_DICE, Moves, Spilt, Steps, Table, Throwing, Weights};
+pub use constraint::{Constraint, FaceUp, FirstImpact, Mark, Passes, PoseAt, RestAt};
+pub use draw::{Draw, Field, LARGEST_SCORE, Realisation, Site, Throw};
+pub use flight::{End, Frame, Trip};
+pub use moves::{Component, Everything, Near, Point, Recast, Rethrow, Scale, Shift, Turn};
+pub use prior::{NUMBERS, Prior};
+pub use symmetry::Rotation;
+pub use throwing::Work;
+
+use crate::animation::Animation;
+use crate::rules::Rules;
+use crate::scene::{ConfigError, Role, Scalar, Scene};
+use plan::{Demand, Plan};
+use plaus_dist::{LogDensity, LogPotential, Stream};
+use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
+use serde::{Deserialize, Serialize};
+
+/// Dice: `p ∝ Π constraints · Π priors of the throws`, with respect to the law of the tables.
+#[derive(Debug)]
+pub struct Dice {
+    config: Config,
+    plan: Plan,
+    prior: Prior,
+}
+
+/// What became of the dice.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Rest {
+    /// The way of each die.
+    pub trips: Vec<Trip>,
+    /// The face that each die shows; 0 where it does not lie at rest on the table.
+    pub faces: Vec<u8>,
+    /// How well each constraint is met.
+    pub marks: Vec<Mark>,
+}
+
+impl Rest {
+    /// Whether every die lies at rest on the table. Where one does not, the draw has probability 0.
+    #[must_use]
+    pub fn complete(&self) -> bool {
+        self.trips.iter().all(|trip| trip.end == End::AtRest)
+    }
+
+    /// Whether that is so, and every constraint is met.
+    #[must_use]
+    pub fn satisfied(&self) -> bool {
+        self.complete() && self.marks.iter().all(|mark| mark.met)
+    }
+}
+
+impl Dice {
+    /// The scene of a configuration.
+    ///
+    /// # Errors
+    /// [`ConfigError`] where what is demanded lies off the table or is about a die there is not, or the numbers make no world.
+    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        let plan = Plan::new(config)?;
+        let prior = plan.prior(config)?;
+        Ok(Self { config: config.clone(), plan, prior })
+    }
+
+    /// The configuration.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// The law of a draw without the constraints.
+    #[must_use]
+    pub fn prior(&self) -> &Prior {
+        &self.prior
+    }
+
+    /// By how much a die stands farther on than its trip says, in m.
+    #[must_use]
+    pub fn offset(&self, draw: &Draw, die: usize) -> glam::DVec3 {
+        draw.offset(die, self.plan.surface.spacing())
+    }
+
+    /// The fields of the table that are random.
+    #[must_use]
+    pub fn fields(&self) -> &[Field] {
+        self.plan.surface.random()
+    }
+
+    /// The value of a control point: metres for heights, else a pure number.
+    #[must_use]
+    pub fn value(&self, table: &Realisation, site: Site) -> f64 {
+        self.plan.surface.value(table.shifted, site, table.score(site))
+    }
+
+    /// How many control points the dice of a draw came near, over all tables and fields, and the memory that all they made takes, in bytes.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the simulation fails.
+    pub fn touched(&self, draw: &Draw) -> Result<(usize, usize), ModelError> {
+        let recorded = Work::default().record(&self.plan, draw)?;
+        let splines = recorded.iter().flat_map(|(world, _)| world.parts()).flat_map(surface::splines);
+        Ok(splines.fold((0, 0), |(points, bytes), spline| (points + spline.touched_count(), bytes + spline.bytes())))
+    }
+
+    /// The same scene, whose move [`Turn`] takes every die for a cube: wrong for any other cuboid, where it no longer leaves the target as it is. For tests of
+    /// whether a test sees that.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn taken_for_cubes(mut self) -> Self {
+        self.plan.rotations = Rotation::of_cuboid(glam::DVec3::ONE);
+        self
+    }
+
+    /// What follows from the ways of all dice: faces, and how well each constraint is met.
+    ///
+    /// # Panics
+    /// Where there are fewer trips than dice.
+    #[must_use]
+    pub fn judge(&self, draw: &Draw, trips: Vec<Trip>) -> Rest {
+        let pips = |die: usize| &self.plan.rotations[usize::from(draw.throws[die].turn)];
+        let face = |(die, trip): (usize, &Trip)| match trip.end {
+            End::AtRest => pips(die).uppermost(trip.orientation).0,
+            _ => 0,
+        };
+        let faces = trips.iter().enumerate().map(face).collect();
+        let mark = |demand: &Demand| demand.mark(&trips[demand.die], pips(demand.die), self.offset(draw, demand.die));
+        let marks = self.plan.demands.iter().map(mark).collect();
+        Rest { trips, faces, marks }
+    }
+}
+
+impl Target for Dice {
+    type Draw = Draw;
+    type Outcome = Rest;
+    type Scratch = Work;
+
+    fn start(&self, stream: &mut Stream) -> Draw {
+        self.prior.sample(stream)
+    }
+
+    fn log_prior(&self, draw: &Draw) -> Result<LogDensity, ModelError> {
+        Ok(self.prior.log_density(draw)?)
+    }
+
+    fn simulate(
+        &self,
+        draw: &Draw,
+        current: Option<&StateOf<Self>>,
+        floor: LogPotential,
+        work: &mut Work,
+    ) -> Result<Simulated<Rest>, ModelError> {
+        work.simulate(self, draw, current, floor)
+    }
+
+    fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
+        if !rest.complete() {
+            return Ok(LogPotential::ZERO);
+        }
+        // Summed in the order of the constraints: what a bound is summed like.
+        Ok(LogPotential::new(rest.marks.iter().fold(0.0, |sum, mark| sum + mark.log))?)
+    }
+}
+
+impl Goal for Dice {
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+        let rest = &state.outcome;
+        rest.satisfied().then(|| {
+            rest.trips.iter().enumerate().fold(SolutionClass::EMPTY, |class, (die, trip)| {
+                let pips = &self.plan.rotations[usize::from(state.draw.throws[die].turn)];
+                trip.class(class, pips, self.plan.looking.cell, self.offset(&state.draw, die))
+            })
+        })
+    }
+}
+
+/// Names and units of a die's columns: where it lies, what it shows, and how it was thrown.
+const COLUMNS: [(&str, &str, Role); 13] = [
+    ("rest_x", "mm", Role::Outcome),
+    ("rest_y", "mm", Role::Outcome),
+    ("face", "", Role::Outcome),
+    ("impacts", "", Role::Outcome),
+    ("x", "mm", Role::Draw),
+    ("y", "mm", Role::Draw),
+    ("z", "mm", Role::Draw),
+    ("vx", "m/s", Role::Draw),
+    ("vy", "m/s", Role::Draw),
+    ("vz", "m/s", Role::Draw),
+    ("wx", "rad/s", Role::Draw),
+    ("wy", "rad/s", Role::Draw),
+    ("wz", "rad/s", Role::Draw),
+];
+
+impl Scene for Dice {
+    fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
+        Mixture::new(moves::all(self, rules)).map_err(|error| ConfigError::new("world.dice.weights", error))
+    }
+
+    fn scalars(&self) -> Vec<Scalar> {
+        let of = |die: u32| COLUMNS.map(|(name, unit, role)| Scalar { name: format!("{name}_{die}"), unit, role });
+        (1..=self.config.dice).flat_map(of).collect()
+    }
+
+    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
+        let each = state.outcome.trips.iter().zip(&state.outcome.faces).zip(values.chunks_exact_mut(COLUMNS.len()));
+        for (die, ((trip, face), values)) in each.enumerate() {
+            let (rest, thrown) = values.split_at_mut(4);
+            let at = (trip.position + self.offset(&state.draw, die)) * 1e3;
+            rest.copy_from_slice(&[at.x, at.y, f64::from(*face), trip.impacts.len() as f64]);
+            for (k, value) in thrown.iter_mut().enumerate() {
+                *value = self.prior.value(&state.draw, die, k) * if k < 3 { 1e3 } else { 1.0 };
+            }
+        }
+    }
+
+    fn animate(&self, draw: &Draw) -> Result<Animation, ModelError> {
+        animate::animate(self, draw)
+    }
+}

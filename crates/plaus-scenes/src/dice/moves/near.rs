@@ -1,0 +1,97 @@
+//! A control point near a collision.
+
+use super::{Scale, change, path, site};
+use crate::dice::{Dice, Draw, Rest, Site};
+use plaus_dist::stream::below;
+use plaus_dist::{LogRatio, Stream, math, open_unit};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+
+/// One of the places where a die touched its table, or lies at last, the k-th of a die with a weight of 1/k: early ones steer, and there are many late ones; one
+/// of the sixteen control points that a field there depends on; and one of the random fields. That point makes a step that leaves its law as it is.
+///
+/// After the step the die touches elsewhere. The ratio is the point's share in the weights of the new animation's places over that in the old one's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Near {
+    /// Sizes of the steps.
+    pub scale: Scale,
+}
+
+/// Places on a table, of the dice thrown onto it.
+fn places<'a>(draw: &'a Draw, rest: &'a Rest, table: usize) -> impl Iterator<Item = ([f64; 2], f64)> + 'a {
+    let of_table = rest.trips.iter().enumerate().filter(move |(die, _)| draw.table_of(*die) == table);
+    of_table.flat_map(|(_, trip)| {
+        let touched = trip.impacts.iter().map(|&[_, x, y]| [x, y]);
+        let places = touched.chain(std::iter::once([trip.position.x, trip.position.y]));
+        places.enumerate().map(|(k, place)| (place, 1.0 / (k + 1) as f64))
+    })
+}
+
+/// Log probability of choosing a site of a table, but for what is the same for all sites.
+fn log_q(target: &Dice, state: &StateOf<Dice>, table: usize, site: Site) -> f64 {
+    let (mut all, mut hits) = (0.0, 0.0);
+    for ([x, y], weight) in places(&state.draw, &state.outcome, table) {
+        all += weight;
+        if target.plan.surface.support(x, y).any(|at| at == [site.i, site.j]) {
+            hits += weight;
+        }
+    }
+    math::ln(hits / all)
+}
+
+/// What a log probability can't exceed: rounding of the logarithm included.
+const MOST: f64 = 1e-9;
+
+impl Move<Dice> for Near {
+    fn name(&self) -> &'static str {
+        "near"
+    }
+
+    fn propose(
+        &self,
+        target: &Dice,
+        current: &StateOf<Dice>,
+        candidate: &mut Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let Some(&field) = target.fields().get(below(stream, target.fields().len())) else { return Ok(Proposal::Stay) };
+        let table = below(stream, candidate.tables.len());
+        let all = || places(&current.draw, &current.outcome, table);
+        let mut left = all().map(|(_, weight)| weight).sum::<f64>() * open_unit(stream);
+        let chosen = all().find(|(_, weight)| {
+            left -= weight;
+            left < 0.0
+        });
+        // Rounding may pass the last one.
+        let Some(([x, y], _)) = chosen.or_else(|| all().last()) else { return Ok(Proposal::Stay) };
+        let Some([i, j]) = target.plan.surface.support(x, y).nth(below(stream, 16)) else { return Ok(Proposal::Stay) };
+        let site = Site { field, i, j };
+        if !change(candidate, table, site, self.scale, stream) {
+            return Ok(Proposal::with_ratio(LogRatio::ZERO));
+        }
+        let log_ratio = LogRatio::new(-log_q(target, current, table, site))?;
+        Ok(Proposal::Candidate { log_ratio, path: path(table, site), later: Some(LogRatio::new(MOST)?) })
+    }
+
+    fn log_ratio(
+        &self,
+        target: &Dice,
+        from: &StateOf<Dice>,
+        to: &StateOf<Dice>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        let (table, site) = site(path);
+        let forth = LogRatio::new(log_q(target, from, table, site))?;
+        Ok(LogRatio::new(log_q(target, to, table, site))?.times(forth.inverse())?)
+    }
+
+    fn log_ratio_after(
+        &self,
+        target: &Dice,
+        _: &StateOf<Dice>,
+        candidate: &StateOf<Dice>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        let (table, site) = site(path);
+        Ok(LogRatio::new(log_q(target, candidate, table, site))?)
+    }
+}

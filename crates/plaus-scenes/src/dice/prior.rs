@@ -1,0 +1,141 @@
+//! The law of a throw without the constraints.
+
+use super::config::Config;
+use super::draw::{Draw, Realisation, Throw};
+use glam::{DQuat, DVec3};
+use plaus_dist::stream::below;
+use plaus_dist::{
+    Density, Gaussian, LogDensity, NotANumber, ParamError, Sample, Stream, TruncatedGaussian, standard_normal,
+};
+
+/// How many numbers the initial conditions of a die have besides its orientation: place, velocity and angular velocity along three axes.
+pub const NUMBERS: usize = 9;
+
+/// The prior of a draw. Its density is taken with respect to the law of the tables themselves, so that these count 1 whatever they are: a control point
+/// that no die touches drops out by itself, and the ratio of a move that changes one is taken with respect to its law, too.
+#[derive(Debug, Clone)]
+pub struct Prior {
+    /// Of each die: place, velocity, angular velocity.
+    numbers: Vec<[Gaussian; NUMBERS]>,
+    /// The height of release, cut off where a die would reach into the table.
+    height: TruncatedGaussian,
+    turns: usize,
+    tables: usize,
+    /// Dice thrown onto one table begin at least this far apart, in m; else the draw has density 0.
+    clear: f64,
+    /// Distance of control points, in m.
+    spacing: f64,
+}
+
+impl Prior {
+    pub(super) fn new(config: &Config, lowest: f64, turns: usize, clear: f64) -> Result<Self, ParamError> {
+        let throw = &config.throw;
+        let (place, mm) = (throw.place_sd_mm * 1e-3, 1e-3);
+        let height = Gaussian::new(throw.z_mm * mm, throw.height_sd_mm * mm)?;
+        let spin = Gaussian::new(0.0, throw.spin_sd)?;
+        let speed = |mean| Gaussian::new(mean, throw.velocity_sd);
+        let die = |k: u32| {
+            let y = throw.y_mm + throw.apart_mm * (f64::from(k) - 0.5 * f64::from(config.dice - 1));
+            Ok([
+                Gaussian::new(throw.x_mm * mm, place)?,
+                Gaussian::new(y * mm, place)?,
+                height,
+                speed(throw.vx)?,
+                speed(throw.vy)?,
+                speed(throw.vz)?,
+                spin,
+                spin,
+                spin,
+            ])
+        };
+        Ok(Self {
+            numbers: (0..config.dice).map(die).collect::<Result<_, ParamError>>()?,
+            height: TruncatedGaussian::new(height.mean(), height.sd(), lowest, f64::INFINITY)?,
+            turns,
+            tables: if config.together { 1 } else { config.dice as usize },
+            clear: if config.together { clear } else { 0.0 },
+            spacing: config.table.grid_mm * 1e-3,
+        })
+    }
+
+    /// The law of one number of a die's initial conditions, before the height is cut off.
+    #[must_use]
+    pub fn number(&self, die: usize, number: usize) -> &Gaussian {
+        &self.numbers[die][number]
+    }
+
+    /// One number of a die's initial conditions as they are, its table's shift included.
+    #[must_use]
+    pub fn value(&self, draw: &Draw, die: usize, which: usize) -> f64 {
+        let value = number(&draw.throws[die], which);
+        if which < 2 { value + draw.offset(die, self.spacing)[which] } else { value }
+    }
+
+    /// Log density of one die's throw but for its place along the table and the cut of heights.
+    ///
+    /// # Errors
+    /// [`NotANumber`] where the throw holds a NaN.
+    pub fn log_density_elsewhere(&self, throw: &Throw, die: usize) -> Result<LogDensity, NotANumber> {
+        let density = |k: usize| self.numbers[die][k].log_density(&number(throw, k));
+        (2..NUMBERS).try_fold(LogDensity::ONE, |sum, k| Ok(sum + density(k)?))
+    }
+
+    /// How many orientations its symmetry makes equal.
+    #[must_use]
+    pub fn turns(&self) -> usize {
+        self.turns
+    }
+
+    /// One die's throw.
+    pub fn throw(&self, die: usize, stream: &mut Stream) -> Throw {
+        let law = &self.numbers[die];
+        let mut three = |from: usize| DVec3::from_array(std::array::from_fn(|axis| law[from + axis].sample(stream)));
+        let (position, velocity, spin) = (three(0), three(3), three(6));
+        let position = DVec3 { z: self.height.sample(stream), ..position };
+        // A direction in four dimensions, uniform as that of four standard normal numbers.
+        let [x, y, z, w] = std::array::from_fn(|_| standard_normal(stream));
+        let orientation = DQuat::from_xyzw(x, y, z, w).normalize();
+        Throw { position, orientation, velocity, spin, turn: below(stream, self.turns) as u8 }
+    }
+
+    /// A draw from the prior.
+    pub fn sample(&self, stream: &mut Stream) -> Draw {
+        let throws = (0..self.numbers.len()).map(|die| self.throw(die, stream)).collect();
+        Draw { throws, tables: (0..self.tables).map(|_| Realisation::new(stream)).collect() }
+    }
+
+    /// Log density of a draw, where the orientations' law and that of the tables have density 1.
+    ///
+    /// # Errors
+    /// [`NotANumber`] where the draw holds a NaN.
+    pub fn log_density(&self, draw: &Draw) -> Result<LogDensity, NotANumber> {
+        let mut sum = LogDensity::ONE;
+        for (die, laws) in self.numbers.iter().enumerate() {
+            for (k, law) in laws.iter().enumerate() {
+                let value = self.value(draw, die, k);
+                sum = sum + if k == 2 { self.height.log_density(&value)? } else { law.log_density(&value)? };
+            }
+        }
+        for (k, throw) in draw.throws.iter().enumerate() {
+            if draw.throws[..k].iter().any(|other| other.position.distance(throw.position) < self.clear) {
+                return Ok(LogDensity::ZERO);
+            }
+        }
+        Ok(sum)
+    }
+}
+
+/// One number of a throw: place, velocity, angular velocity, each along x, y, z; without its table's shift.
+pub(super) fn number(throw: &Throw, number: usize) -> f64 {
+    [throw.position, throw.velocity, throw.spin][number / 3][number % 3]
+}
+
+/// The same, to change.
+pub(super) fn number_mut(throw: &mut Throw, number: usize) -> &mut f64 {
+    let part = match number / 3 {
+        0 => &mut throw.position,
+        1 => &mut throw.velocity,
+        _ => &mut throw.spin,
+    };
+    &mut part[number % 3]
+}

@@ -1,0 +1,263 @@
+//! The table as the simulator sees it: what the scores of its control points mean, and the world that follows.
+
+use super::config::{Config, Spilt, Table};
+use super::draw::{Field, LARGEST_SCORE, Realisation, Site};
+use crate::scene::ConfigError;
+use glam::DVec3;
+use plaus_dist::{TruncatedGaussian, math, normal_quantile};
+use plaus_sim::field::{Grid, Spline};
+use plaus_sim::rigid::{Part, Table as Uneven};
+use plaus_sim::scenery::Plane;
+use plaus_sim::{Law, Laws, Material, WorldError};
+
+/// What touches what: dice and table are of one material.
+pub(super) const MATERIAL: Material = Material(0);
+
+/// Largest share of a law that may be cut off.
+const MOST_CUT: f64 = 0.05;
+
+/// The law of a control value: a Gaussian cut off at both ends, as a function of a standard normal score.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Values {
+    mean: f64,
+    sd: f64,
+    low: f64,
+    high: f64,
+    /// Below the cuts: the share of the Gaussian below `low`, and between the cuts. `None` where no score within [`LARGEST_SCORE`] reaches a cut.
+    cut: Option<[f64; 2]>,
+}
+
+/// Share of the standard normal law below `z`.
+fn below(z: f64) -> f64 {
+    0.5 * math::erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
+}
+
+impl Values {
+    fn new(mean: f64, sd: f64, low: f64, high: f64) -> Self {
+        let reach = (LARGEST_SCORE + 1.0) * sd;
+        let cut = (sd > 0.0 && (mean - reach < low || mean + reach > high)).then(|| {
+            let least = below((low - mean) / sd);
+            [least, below((high - mean) / sd) - least]
+        });
+        Self { mean, sd, low, high, cut }
+    }
+
+    /// The value at a score: the law's quantile at the share of scores below.
+    fn at(&self, score: f64) -> f64 {
+        let z = match self.cut {
+            None => score,
+            Some([least, between]) => normal_quantile(least + between * below(score)),
+        };
+        (self.mean + self.sd * z).clamp(self.low, self.high)
+    }
+
+    /// Share of the Gaussian beyond the cuts.
+    fn beyond(mean: f64, sd: f64, low: f64, high: f64) -> f64 {
+        let law = TruncatedGaussian::new(mean, sd, low, high);
+        law.map_or(1.0, |law| 1.0 - math::exp(law.log_mass()))
+    }
+}
+
+/// A field whose mean is another one where something was spilt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Patched {
+    dry: Values,
+    wet: Values,
+}
+
+/// The laws of all control points.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Surface {
+    grid: Grid,
+    height: Values,
+    restitution: Patched,
+    friction: Patched,
+    spilt: Option<Spilt>,
+    random: Vec<Field>,
+}
+
+impl Surface {
+    /// The laws of a configuration.
+    ///
+    /// # Errors
+    /// [`ConfigError`] where a law would be cut off too much.
+    pub(super) fn new(config: &Config) -> Result<Self, ConfigError> {
+        let (Table { grid_mm, bumps_mm, bounce, bounce_sd, grip, grip_sd, .. }, spilt) = (config.table, config.spilt);
+        let is_spilt = spilt.radius_mm > 0.0;
+        let wet = |value: f64, dry: f64| if is_spilt { value } else { dry };
+        for (table, name, mean, sd, high, range) in [
+            ("table", "bounce", bounce, bounce_sd, 1.0, "[0, 1]"),
+            ("spilt", "bounce", wet(spilt.bounce, bounce), bounce_sd, 1.0, "[0, 1]"),
+            ("table", "grip", grip, grip_sd, f64::INFINITY, "[0, ∞)"),
+            ("spilt", "grip", wet(spilt.grip, grip), grip_sd, f64::INFINITY, "[0, ∞)"),
+        ] {
+            let beyond = if sd > 0.0 { Values::beyond(mean, sd, 0.0, high) } else { 0.0 };
+            if beyond > MOST_CUT {
+                let message = format!(
+                    "a mean {name} of {mean} with a spread of {sd} leaves {range} with probability {beyond:.3}; at most {MOST_CUT} of the law may be cut off: a smaller {name}_sd, or a mean farther inside"
+                );
+                return Err(ConfigError::new(format!("world.dice.{table}.{name}"), message));
+            }
+        }
+        let patched = |dry: f64, wet: f64, sd: f64, high: f64| {
+            // Within any range that a score can reach.
+            let high = high.min(dry.max(wet) + 2.0 * LARGEST_SCORE * sd);
+            Patched { dry: Values::new(dry, sd, 0.0, high), wet: Values::new(wet, sd, 0.0, high) }
+        };
+        let height = bumps_mm * 1e-3;
+        let reach = LARGEST_SCORE * height;
+        let mut random = Vec::new();
+        for (field, sd) in Field::ALL.into_iter().zip([bumps_mm, bounce_sd, grip_sd]) {
+            random.extend((sd > 0.0).then_some(field));
+        }
+        Ok(Self {
+            grid: Grid { origin: [0.0; 2], spacing: grid_mm * 1e-3 },
+            height: Values { mean: 0.0, sd: height, low: -reach, high: reach, cut: None },
+            restitution: patched(bounce, wet(spilt.bounce, bounce), bounce_sd, 1.0),
+            friction: patched(grip, wet(spilt.grip, grip), grip_sd, f64::INFINITY),
+            spilt: is_spilt.then_some(spilt),
+            random,
+        })
+    }
+
+    /// Distance of control points, in m.
+    pub(super) fn spacing(&self) -> f64 {
+        self.grid.spacing
+    }
+
+    /// The highest that the table can be anywhere, in m.
+    pub(super) fn highest(&self) -> f64 {
+        self.height.high
+    }
+
+    /// The fields that are random.
+    pub(super) fn random(&self) -> &[Field] {
+        &self.random
+    }
+
+    /// Whether what was spilt makes the laws depend on the place.
+    pub(super) fn is_patched(&self) -> bool {
+        self.spilt.is_some()
+    }
+
+    fn is_wet(&self, shifted: [i32; 2], site: Site) -> bool {
+        self.spilt.is_some_and(|spilt| {
+            let there = [site.i.wrapping_add(shifted[0]), site.j.wrapping_add(shifted[1])];
+            let [x, y] = there.map(|k| f64::from(k) * self.grid.spacing);
+            let (x, y) = (x - spilt.x_mm * 1e-3, y - spilt.y_mm * 1e-3);
+            x * x + y * y <= math::square(spilt.radius_mm * 1e-3)
+        })
+    }
+
+    /// The value of a control point of a table that has been shifted by so many cells: metres for heights, else a pure number.
+    pub(super) fn value(&self, shifted: [i32; 2], site: Site, score: f64) -> f64 {
+        let patched = match site.field {
+            Field::Height => return self.height.at(score),
+            Field::Restitution => &self.restitution,
+            Field::Friction => &self.friction,
+        };
+        if self.is_wet(shifted, site) { patched.wet.at(score) } else { patched.dry.at(score) }
+    }
+
+    /// The sites on which a field at a point depends, but for which field.
+    pub(super) fn support(&self, x: f64, y: f64) -> impl Iterator<Item = [i32; 2]> {
+        let [i, j] = [x, y].map(|at| (at / self.grid.spacing).floor() as i32);
+        (0..16).map(move |k| [i - 1 + k / 4, j - 1 + k % 4])
+    }
+
+    /// A field of a table.
+    pub(super) fn spline(&self, field: Field, table: &Realisation) -> Result<Spline, WorldError> {
+        let (name, range) = match field {
+            Field::Height => ("height", [self.height.low, self.height.high]),
+            Field::Restitution => ("restitution", [0.0, 1.0]),
+            Field::Friction => ("friction", [0.0, self.friction.dry.high]),
+        };
+        let (laws, source, shifted) = (self.clone(), table.source(), table.shifted);
+        Spline::new(name, self.grid, range, move |i, j| {
+            let site = Site { field, i: i as i32, j: j as i32 };
+            laws.value(shifted, site, source(site))
+        })
+    }
+
+    /// A table without bumps, of mean restitution and friction throughout.
+    pub(super) fn plain(&self) -> Result<Part, WorldError> {
+        Ok(Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL)?))
+    }
+
+    /// The table as a part of a world. What is not random is no field.
+    pub(super) fn part(&self, table: &Realisation) -> Result<Part, WorldError> {
+        let is_field = |field| self.random.contains(&field) || (field != Field::Height && self.spilt.is_some());
+        if !Field::ALL.into_iter().any(is_field) {
+            return self.plain();
+        }
+        let mut uneven = Uneven::new(self.spline(Field::Height, table)?, MATERIAL);
+        if is_field(Field::Restitution) {
+            uneven.restitution = Some(self.spline(Field::Restitution, table)?);
+        }
+        if is_field(Field::Friction) {
+            uneven.friction = Some(self.spline(Field::Friction, table)?);
+        }
+        Ok(Part::Table(Box::new(uneven)))
+    }
+
+    /// What holds where the table has no fields, and between dice.
+    pub(super) fn laws(&self) -> Result<Laws, WorldError> {
+        Laws::uniform(Law::new(self.friction.dry.mean, self.restitution.dry.mean))
+    }
+}
+
+/// The fields of a part.
+pub(super) fn splines(part: &Part) -> impl Iterator<Item = &Spline> {
+    let table = match part {
+        Part::Table(table) => Some(table),
+        _ => None,
+    };
+    table.into_iter().flat_map(|table| std::iter::once(&table.height).chain(&table.restitution).chain(&table.friction))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plaus_dist::{Density, Purpose, Seed, standard_normal};
+
+    /// Values of normal scores have the truncated law: the share below x, by Kolmogorov's distance over 10⁵ values. A distance of 0.0095 has a
+    /// probability below 1e-7 (Dvoretzky, Kiefer, Wolfowitz, Massart).
+    #[test]
+    fn values_have_the_truncated_law() {
+        for (mean, sd, high) in [(0.9, 0.06, 1.0), (0.1, 0.06, f64::INFINITY), (0.5, 0.05, 1.0)] {
+            let values = Values::new(mean, sd, 0.0, f64::min(high, 10.0));
+            let law = TruncatedGaussian::new(mean, sd, 0.0, high).unwrap();
+            let mut stream = Seed(3).chain(0).at(0, Purpose(100));
+            let mut drawn: Vec<f64> = (0..100_000).map(|_| values.at(standard_normal(&mut stream))).collect();
+            drawn.sort_by(f64::total_cmp);
+            assert!(drawn.iter().all(|x| (0.0..=high).contains(x)));
+            // The law's own distribution function, by summing its density.
+            let (from, steps) = (mean - 6.0 * sd, 20_000);
+            let (mut share, mut next, mut farthest) = (0.0, 0, 0.0_f64);
+            for k in 0..steps {
+                let width = 12.0 * sd / f64::from(steps);
+                let x = from + (f64::from(k) + 0.5) * width;
+                share += math::exp(law.log_density(&x).unwrap().value()) * width;
+                while next < drawn.len() && drawn[next] <= x + 0.5 * width {
+                    next += 1;
+                }
+                farthest = farthest.max((share - next as f64 / drawn.len() as f64).abs());
+            }
+            assert!(farthest < 0.0095, "{mean} ± {sd}: {farthest}");
+        }
+    }
+
+    #[test]
+    fn what_was_spilt_has_means_of_its_own() {
+        let mut config = Config::default();
+        (config.spilt.radius_mm, config.spilt.x_mm) = (20.0, 80.0);
+        let surface = Surface::new(&config).unwrap();
+        let at = |i| surface.value([0; 2], Site { field: Field::Friction, i, j: 0 }, 0.0);
+        // Medians; the cut at 0 moves that of the wet part by 8e-5.
+        for (i, median) in [(0, 0.35), (7, 0.35), (8, 0.15), (10, 0.15), (12, 0.15), (13, 0.35)] {
+            assert!((at(i) - median).abs() < 1e-4, "{i}: {}", at(i));
+        }
+        // Of a shifted table other points lie there.
+        assert_eq!(surface.value([8, 0], Site { field: Field::Friction, i: 0, j: 0 }, 0.0), at(8));
+    }
+}

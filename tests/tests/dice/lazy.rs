@@ -1,0 +1,162 @@
+//! A table made only where a die comes near is the same as a whole one.
+
+use super::plain::scene;
+use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
+use plaus_mcmc::{Chain, Mixture, ModelError, Move, Path, Proposal, Simulated, State, StateOf, Target};
+use plaus_run::codec::{Kind, decode, encode};
+use plaus_scenes::dice::{Dice, Draw, Field, Realisation, Rest, Site, Work};
+use plaus_scenes::{Rules, Scene};
+
+/// The sites within the table's edges and a little beyond.
+fn sites() -> impl Iterator<Item = Site> {
+    let all = (-40..=40).flat_map(|i| (-27..=27).map(move |j| (i, j)));
+    all.flat_map(|(i, j)| Field::ALL.map(|field| Site { field, i, j }))
+}
+
+/// Gives every point its score at once, as if a move had.
+fn make_whole(table: &mut Realisation) {
+    let scores: Vec<(Site, f64)> = sites().map(|site| (site, table.score(site))).collect();
+    scores.into_iter().for_each(|(site, score)| table.set(site, score));
+}
+
+/// Full bookkeeping: the density of a draw holds that of every control point of the table, `Π exp(−score²/2)`, and ratios are those of densities of scores.
+struct Booked<'a>(&'a Dice);
+
+fn booked(draw: &Draw) -> f64 {
+    sites().map(|site| draw.tables[0].score(site)).map(|score| -0.5 * score * score).sum()
+}
+
+impl Target for Booked<'_> {
+    type Draw = Draw;
+    type Outcome = Rest;
+    type Scratch = Work;
+
+    fn start(&self, stream: &mut Stream) -> Draw {
+        let mut draw = self.0.start(stream);
+        make_whole(&mut draw.tables[0]);
+        draw
+    }
+
+    fn log_prior(&self, draw: &Draw) -> Result<LogDensity, ModelError> {
+        Ok(self.0.log_prior(draw)? + LogDensity::new(booked(draw))?)
+    }
+
+    fn simulate(
+        &self,
+        draw: &Draw,
+        _: Option<&StateOf<Self>>,
+        floor: LogPotential,
+        work: &mut Work,
+    ) -> Result<Simulated<Rest>, ModelError> {
+        self.0.simulate(draw, None, floor, work)
+    }
+
+    fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
+        self.0.log_constraint(rest)
+    }
+}
+
+/// A move whose step from score to score has the density of the autoregressive proposal, or of the prior where all is drawn anew: its ratio is
+/// `exp(−old²/2)/exp(−new²/2)` for each point that it changes, times what the lazy move says of the rest.
+struct OnScores {
+    inner: Mixture<Dice>,
+    index: plaus_mcmc::MoveId,
+}
+
+impl Move<Booked<'_>> for OnScores {
+    fn name(&self) -> &str {
+        self.inner.get(self.index).1.name()
+    }
+
+    fn propose(
+        &self,
+        target: &Booked<'_>,
+        current: &StateOf<Booked<'_>>,
+        candidate: &mut Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let proposal = self.inner.get(self.index).1.propose(target.0, current, candidate, stream)?;
+        let Proposal::Candidate { log_ratio, path, later } = proposal else { return Ok(proposal) };
+        if candidate.tables[0].changed() == 0 {
+            // Drawn anew: whole again.
+            make_whole(&mut candidate.tables[0]);
+        }
+        let points = LogRatio::new(booked(&current.draw) - booked(candidate))?;
+        Ok(Proposal::Candidate { log_ratio: log_ratio.times(points)?, path, later })
+    }
+
+    fn log_ratio(
+        &self,
+        _: &Booked<'_>,
+        _: &StateOf<Booked<'_>>,
+        _: &StateOf<Booked<'_>>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
+        Err(ModelError::new("not asked for by a chain"))
+    }
+
+    fn log_ratio_after(
+        &self,
+        target: &Booked<'_>,
+        current: &StateOf<Booked<'_>>,
+        candidate: &StateOf<Booked<'_>>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.inner.get(self.index).1.log_ratio_after(target.0, current, candidate, path)
+    }
+}
+
+/// The chain that holds only what moves have changed and the chain that holds all points and their densities make the same states, bit by bit.
+#[test]
+fn touched_points_alone_and_full_bookkeeping_give_the_same_chain() {
+    // Without shifts, which would move the window that is held whole.
+    let dice = scene(|config| config.weights.shift = 0.0);
+    let moves = dice.moves(&Rules::exact()).unwrap();
+    let whole = Booked(&dice);
+    let mixed = |(k, (weight, _))| -> (f64, Box<dyn Move<Booked<'_>>>) {
+        let inner = dice.moves(&Rules::exact()).unwrap();
+        (weight, Box::new(OnScores { inner, index: plaus_mcmc::MoveId(k) }))
+    };
+    let booked = Mixture::new((0..).zip(moves.iter()).map(mixed).collect()).unwrap();
+    let mut lazy = Chain::start(&dice, &moves, Seed(11).chain(0)).unwrap();
+    let mut full = Chain::start(&whole, &booked, Seed(11).chain(0)).unwrap();
+    let mut accepted = 0;
+    for iteration in 0..300 {
+        let (a, b) = (lazy.step().unwrap(), full.step().unwrap());
+        assert_eq!((a, &lazy.state().draw.throws), (b, &full.state().draw.throws), "iteration {iteration}");
+        assert_eq!(lazy.state().outcome, full.state().outcome, "iteration {iteration}");
+        accepted += u32::from(a.verdict == plaus_mcmc::Verdict::Accepted);
+    }
+    assert!(accepted > 50, "{accepted}");
+    assert!(lazy.state().draw.tables[0].changed() < 300 && full.state().draw.tables[0].changed() == sites().count());
+}
+
+/// A draw is all that a record needs: read back, it makes the same state bit by bit.
+#[test]
+fn a_sample_is_rebuilt_from_its_record_alone() {
+    const KIND: Kind = Kind::new(*b"dice", 1, "a draw");
+    let dice = scene(|_| ());
+    let moves = dice.moves(&Rules::exact()).unwrap();
+    let mut chain = Chain::start(&dice, &moves, Seed(4).chain(1)).unwrap();
+    for _ in 0..300 {
+        chain.step().unwrap();
+    }
+    let bytes = encode(KIND, &chain.state().draw).unwrap();
+    let draw: Draw = decode(KIND, &bytes).unwrap();
+    assert!(draw.tables[0].changed() > 0);
+    assert_eq!(&State::evaluate(&dice, draw, &mut Work::default()).unwrap(), chain.state());
+}
+
+/// A thousand by a thousand control points of each of three fields: 24 MB, were they all made.
+#[test]
+fn a_large_table_costs_only_what_is_touched() {
+    let dice = scene(|config| (config.table.length_mm, config.table.width_mm) = (8000.0, 8000.0));
+    let mut stream = Seed(1).chain(0).at(0, Purpose::START);
+    for _ in 0..5 {
+        let draw = dice.start(&mut stream);
+        let (points, bytes) = dice.touched(&draw).unwrap();
+        // A strip some twelve points wide and less than a metre long, and the cells' polynomials of 18 numbers.
+        assert!((100..6000).contains(&points) && bytes < 2_000_000, "{points} points, {bytes} bytes");
+        assert_eq!(draw.tables[0].changed(), 0);
+    }
+}

@@ -1,0 +1,127 @@
+//! Moves that are wrong in the ways in which one goes wrong, each caught by the check that the right one passes.
+
+use super::moves::{constrained, free};
+use super::plain::{AnyMove, small};
+use plaus_dist::{LogRatio, Stream};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_scenes::dice::{Component, Dice, Draw, Everything, Near, Point, Rethrow, Scale, Shift, Turn};
+
+/// What is done to a right move to make it wrong.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Fault {
+    /// Whatever the ratio, 1 is used.
+    Symmetric,
+    /// What is known after the simulation only is forgotten.
+    Forgets,
+    /// Changed control points are higher than they should be, by a standard deviation.
+    Leans,
+}
+
+pub(crate) struct Faulty(pub(crate) AnyMove, pub(crate) Fault);
+
+impl Move<Dice> for Faulty {
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    fn propose(
+        &self,
+        target: &Dice,
+        current: &StateOf<Dice>,
+        candidate: &mut Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let proposal = self.0.propose(target, current, candidate, stream)?;
+        let Proposal::Candidate { path, .. } = proposal else { return Ok(proposal) };
+        Ok(match self.1 {
+            Fault::Symmetric => Proposal::SYMMETRIC,
+            Fault::Forgets => Proposal::Candidate { log_ratio: LogRatio::ONE, path, later: None },
+            Fault::Leans => {
+                for (table, before) in candidate.tables.iter_mut().zip(&current.draw.tables) {
+                    for (site, score) in table.changed_points().to_vec() {
+                        if score != before.score(site) {
+                            table.set(site, score + 1.0);
+                        }
+                    }
+                }
+                proposal
+            }
+        })
+    }
+
+    fn log_ratio(
+        &self,
+        t: &Dice,
+        from: &StateOf<Dice>,
+        to: &StateOf<Dice>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio(t, from, to, path)
+    }
+
+    fn log_ratio_after(
+        &self,
+        target: &Dice,
+        current: &StateOf<Dice>,
+        candidate: &StateOf<Dice>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio_after(target, current, candidate, path)
+    }
+}
+
+#[test]
+fn faults_change_the_law() {
+    let scale = Scale::new(0.9, 1.0);
+    let dice = small(|_| ());
+    let twins: Vec<(AnyMove, Fault)> = vec![
+        // The paper's: everything anew, counted as symmetric.
+        (Box::new(Everything::default()), Fault::Symmetric),
+        (Box::new(Rethrow), Fault::Symmetric),
+        (Box::new(Component { scale }), Fault::Symmetric),
+        (Box::new(Shift { sd: 0.02 }), Fault::Forgets),
+    ];
+    for (kernel, fault) in twins {
+        let report = free(&dice, false, Box::new(Faulty(kernel, fault)));
+        assert!(!report.passed(), "{fault:?} not caught: {report}");
+    }
+    // One die on a small table of random height alone: few points are far from what is measured.
+    let bumpy = small(|config| {
+        (config.dice, config.table.bounce_sd, config.table.grip_sd) = (1, 0.0, 0.0);
+        (config.table.length_mm, config.table.width_mm) = (240.0, 60.0);
+        config.constraints.remove(1);
+    });
+    for fault in [Fault::Forgets, Fault::Leans] {
+        let report = free(&bumpy, false, Box::new(Faulty(Box::new(Near { scale }), fault)));
+        assert!(!report.passed(), "{fault:?} not caught: {report}");
+    }
+    let report = free(&bumpy, false, Box::new(Faulty(Box::new(Point { scale }), Fault::Leans)));
+    assert!(!report.passed(), "not caught: {report}");
+    for right in [Box::new(Near { scale }) as AnyMove, Box::new(Point { scale })] {
+        let report = free(&bumpy, false, right);
+        assert!(report.passed(), "{report}");
+    }
+    // Aiming shows even more where what is aimed at counts.
+    let report = constrained(&dice, false, Box::new(Faulty(Box::new(Shift { sd: 0.02 }), Fault::Forgets)));
+    assert!(!report.passed(), "not caught: {report}");
+    // The same on a flat table, where a shift has any length.
+    let flat = small(|config| (config.table.bumps_mm, config.table.bounce_sd, config.table.grip_sd) = (0.0, 0.0, 0.0));
+    let report = constrained(&flat, false, Box::new(Faulty(Box::new(Shift { sd: 0.02 }), Fault::Forgets)));
+    assert!(!report.passed(), "not caught: {report}");
+}
+
+/// A slab that always lies on its large faces shows another face only where its pips are turned as a cube's.
+#[test]
+fn a_slab_that_is_taken_for_a_cube_changes_the_law_of_faces() {
+    let slab = || small(|config| config.die.edge_x_mm = 8.0);
+    assert_eq!(slab().prior().turns(), 8);
+    let report = free(&slab(), true, Box::new(Turn));
+    assert!(report.passed(), "{report}");
+    let wrong = slab().taken_for_cubes();
+    let toy = super::plain::Plain { dice: &wrong, flat: true };
+    let moves = plaus_mcmc::view::lend::<super::plain::Plain<'_>>(plaus_mcmc::Mixture::of(Box::new(Turn))).unwrap();
+    let plan = plaus_mcmc::check::OneStep { samples: 2000, ..Default::default() };
+    let free = plaus_mcmc::check::prior(&toy);
+    let report = plaus_mcmc::check::one_step(&toy, &moves, free, &super::plain::statistics(), plan).unwrap();
+    assert!(!report.passed(), "not caught: {report}");
+}
