@@ -44,6 +44,12 @@ impl Folder {
         self.0.join(format!("chain-{chain:05}.checkpoint.next"))
     }
 
+    /// Which solutions hold at another accuracy, where that was asked.
+    #[must_use]
+    pub fn confirmed(&self) -> PathBuf {
+        self.0.join("confirmed.json")
+    }
+
     /// Always there and always empty; whoever writes the run holds a lock on it.
     #[must_use]
     pub fn lock(&self) -> PathBuf {
