@@ -275,6 +275,9 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
     let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
     text += &report::solutions(diagnosis);
+    // Restarts count from the end of the warm-up on, in all sessions; the clock knows this session.
+    let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
+    text += &report::tempering(diagnosis, (monitor.begun_at() == 0).then_some(sampling));
     text += &format!("\n{}", report::scalar_table(diagnosis));
     if diagnosis.stride > 1 {
         text += &format!("(from one draw in {}; `plaus diagnose` uses all)\n", diagnosis.stride);
