@@ -1,5 +1,6 @@
 //! Worlds of spheres among static scenery: no orientation, no shape, exact first times of contact.
 
+mod alone;
 mod body;
 mod closed;
 mod mechanics;

@@ -89,46 +89,17 @@ impl Contact {
         }
     }
 
-    /// Direction of the normal impulse, scaled so that a unit changes the final normal velocity by one unit per mass.
-    fn push_direction(&self) -> DVec3 {
-        let sum = self.first + self.last;
-        let along = sum.dot(self.last);
-        // Normals that turn by more than a right angle within a step: the step was too long for this edge; use the last.
-        if along > 0.5 { sum / along } else { self.last }
+    fn push(&self) -> Push {
+        Push { first: self.first, last: self.last }
     }
 
     fn solve_surface(&mut self, m: &mut Member) -> f64 {
         let before = m.v;
         let (v, w) = (m.v - self.impulse / m.mass, m.w - self.turn_a / m.inertia);
-        let n = self.last;
-        let approach = -v.dot(n);
-        self.load = m.mass * approach.max(0.0);
-        (m.v, m.w) = if approach > 0.0 { self.rub(m, v + self.push_direction() * approach, w) } else { (v, w) };
+        (self.load, m.v, m.w) = respond(m.mass, m.radius, m.gyration, &self.law, &self.push(), v, w);
         self.impulse = (m.v - v) * m.mass;
         self.turn_a = (m.w - w) * m.inertia;
         (m.v - before).length()
-    }
-
-    /// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under the contact's load.
-    fn rub(&self, m: &Member, v: DVec3, w: DVec3) -> (DVec3, DVec3) {
-        let (n, k) = (self.last, m.gyration);
-        let about = w.dot(n);
-        let drilled = (about.abs() - self.law.spinning * self.load / (k * m.mass * m.radius)).max(0.0).copysign(about);
-        let surface = w.cross(n) * m.radius;
-        let free = (v + surface * k) / (1.0 + k);
-        let resisted = free.length() - self.law.rolling * self.load / ((1.0 + k) * m.mass);
-        let rolling = if resisted > 0.0 { free * (resisted / free.length()) } else { DVec3::ZERO };
-        let limit = self.law.friction * self.load;
-        if (rolling - v).length() * m.mass <= limit {
-            return (rolling, n.cross(rolling) / m.radius + n * drilled);
-        }
-        let slip = v - surface;
-        let speed = slip.length();
-        if speed == 0.0 {
-            return (v, w + n * (drilled - about));
-        }
-        let drag = slip * (-limit / speed);
-        (v + drag / m.mass, w + drag.cross(n) * (m.radius / m.inertia) + n * (drilled - about))
     }
 
     fn solve_pair(&mut self, members: &mut [Member], other: usize) -> f64 {
@@ -144,7 +115,7 @@ impl Contact {
         self.load = approach.max(0.0) / inverse;
         self.impulse = DVec3::ZERO;
         if approach > 0.0 {
-            let push = self.push_direction() * self.load;
+            let push = self.push().direction() * self.load;
             let relative = a.v - b.v + push * inverse;
             let slip = relative - (a.w * a.radius + b.w * b.radius).cross(n);
             let slip = slip - n * slip.dot(n);
@@ -165,4 +136,72 @@ impl Contact {
         (members[self.a], members[other]) = (a, b);
         change
     }
+}
+
+/// Normals of a contact at the start and at the end of a step.
+pub(super) struct Push {
+    pub(super) first: DVec3,
+    pub(super) last: DVec3,
+}
+
+impl Push {
+    /// Direction of the normal impulse, scaled so that a unit changes the final normal velocity by one unit per mass.
+    #[inline]
+    fn direction(&self) -> DVec3 {
+        let sum = self.first + self.last;
+        let along = sum.dot(self.last);
+        // Normals that turn by more than a right angle within a step: the step was too long for this edge; use the last.
+        if along > 0.5 { sum / along } else { self.last }
+    }
+}
+
+/// Load, velocity and spin of a ball after a surface has stopped its approach and rubbed it.
+#[inline]
+pub(super) fn respond(
+    mass: f64,
+    radius: f64,
+    gyration: f64,
+    law: &Law,
+    push: &Push,
+    v: DVec3,
+    w: DVec3,
+) -> (f64, DVec3, DVec3) {
+    let approach = -v.dot(push.last);
+    let load = mass * approach.max(0.0);
+    if approach > 0.0 {
+        let (v, w) = rub((mass, radius, gyration), law, (push.last, load), v + push.direction() * approach, w);
+        (load, v, w)
+    } else {
+        (load, v, w)
+    }
+}
+
+/// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under the contact's load.
+#[inline]
+fn rub(
+    (mass, radius, k): (f64, f64, f64),
+    law: &Law,
+    (n, load): (DVec3, f64),
+    v: DVec3,
+    w: DVec3,
+) -> (DVec3, DVec3) {
+    let about = w.dot(n);
+    let drilled = (about.abs() - law.spinning * load / (k * mass * radius)).max(0.0).copysign(about);
+    let surface = w.cross(n) * radius;
+    let free = (v + surface * k) / (1.0 + k);
+    let speed = free.length();
+    let resisted = speed - law.rolling * load / ((1.0 + k) * mass);
+    let rolling = if resisted > 0.0 { free * (resisted / speed) } else { DVec3::ZERO };
+    let limit = law.friction * load;
+    if (rolling - v).length() * mass <= limit {
+        return (rolling, n.cross(rolling) / radius + n * drilled);
+    }
+    let slip = v - surface;
+    let speed = slip.length();
+    if speed == 0.0 {
+        return (v, w + n * (drilled - about));
+    }
+    let drag = slip * (-limit / speed);
+    let inertia = k * mass * radius * radius;
+    (v + drag / mass, w + drag.cross(n) * (radius / inertia) + n * (drilled - about))
 }

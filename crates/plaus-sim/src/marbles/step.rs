@@ -6,7 +6,7 @@
 
 use super::Marbles;
 use super::body::{Ending, Marble, Phase};
-use super::closed;
+use super::{alone, closed};
 use super::solve::{Contact, Member, With};
 use crate::links::{Link, Links};
 use crate::scenery::Surface;
@@ -29,7 +29,7 @@ const CORRECTIONS: usize = 40;
 const CREEP: f64 = 0.03;
 
 /// Overlap over the radius that rest may keep. Default 2e-5.
-const OVERLAP: f64 = 2e-5;
+pub(super) const OVERLAP: f64 = 2e-5;
 
 /// Overlap over the radius that needs no further correction. Default 1e-6.
 const CORRECTED: f64 = 1e-6;
@@ -39,7 +39,7 @@ const KEEP: f64 = 1e-9;
 
 /// Approach along a lasting contact that a step may start with, over the speed at which contacts settle. Default 0.02: a path then dips into the surface by less than
 /// 1e-4 radii at the standard preset.
-const APPROACH: f64 = 0.02;
+pub(super) const APPROACH: f64 = 0.02;
 
 /// Decides how a group of marbles goes on.
 pub(super) fn settle(
@@ -60,9 +60,10 @@ pub(super) fn settle(
         if body.contacts().is_empty() {
             return body.begin(Phase::Flight, world.gravity);
         }
-        if let &[surface] = body.contacts()
-            && closed::begin(world, index, body, surface)
-        {
+        if let &[surface] = body.contacts() {
+            if !closed::begin(world, index, body, surface) {
+                alone::settle(world, index, body, surface);
+            }
             return;
         }
     }
@@ -87,14 +88,14 @@ fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) {
     }
     let (x, v, radius) = (body.path.x, body.path.v, world.specs[index].radius);
     let scale = world.speed_scale(index);
-    let before = *body;
+    let (before, count) = (*body.contacts_in_full(), body.contacts().len());
     body.revise_contacts(|old| {
         let surface = match (leaves, old) {
             (Some(side), Surface::Face(f)) => across(world, f, usize::from(side)),
             _ => world.scenery.track(old, x)?,
         };
         // Two contacts never merge: what one of them then lacks would be found again at once.
-        let surface = if surface != old && before.contacts().contains(&surface) { old } else { surface };
+        let surface = if surface != old && before[..count].contains(&surface) { old } else { surface };
         let foot = world.scenery.foot(surface, x);
         let most = world.settle_speed(scale, world.surface_law(index, surface)).max(KEEP * (scale + v.length()));
         (v.dot(foot.normal) <= most && foot.distance - radius <= world.unseen * radius).then_some(surface)
@@ -122,6 +123,19 @@ fn across(world: &Marbles, f: u32, side: usize) -> Surface {
     }
     let (a, b) = (face.corners[side], face.corners[(side + 1) % 3]);
     mesh.edge_between(a, b).map_or(Surface::Face(f), Surface::Edge)
+}
+
+/// Time in which gravity, or the motion, covers the curvature of what a ball touches.
+#[inline]
+pub(super) fn time_scale(curvature: f64, radius: f64, speed: f64, strength: f64) -> f64 {
+    let scale = if curvature < 0.0 {
+        -curvature - radius
+    } else if curvature.is_finite() {
+        curvature + radius
+    } else {
+        radius
+    };
+    (scale / strength).sqrt().min(scale / speed)
 }
 
 impl MarbleScratch {
@@ -209,23 +223,18 @@ impl MarbleScratch {
         let mut shortest = f64::INFINITY;
         for c in &self.contacts {
             let m = &self.members[c.a];
-            let (scale, speed) = match c.with {
+            let time = match c.with {
                 With::Surface(s) => {
                     let curvature = world.scenery.foot(s, m.start).curvature_radius;
-                    let scale = if curvature < 0.0 {
-                        -curvature - m.radius
-                    } else if curvature.is_finite() {
-                        curvature + m.radius
-                    } else {
-                        m.radius
-                    };
-                    (scale, m.start_v.length())
+                    time_scale(curvature, m.radius, m.start_v.length(), world.strength)
                 }
                 With::Member(b) => {
-                    (0.5 * (m.radius + self.members[b].radius), (m.start_v - self.members[b].start_v).length())
+                    let other = &self.members[b];
+                    let (scale, speed) = (0.5 * (m.radius + other.radius), (m.start_v - other.start_v).length());
+                    (scale / world.strength).sqrt().min(scale / speed)
                 }
             };
-            shortest = shortest.min((scale / world.strength).sqrt()).min(scale / speed);
+            shortest = shortest.min(time);
         }
         world.accuracy.step * shortest
     }
