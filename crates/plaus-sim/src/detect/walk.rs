@@ -30,7 +30,8 @@ pub(crate) fn next_surface(
         let (low, high) = grid.walls(cell);
         let way = path.bounds(from, limit);
         let stays = way.min.cmpgt(low).all() && way.max.cmplt(high).all();
-        let (leaves, next) = if stays { (f64::INFINITY, None) } else { exit((low, high), &way, path, from, limit, &onward) };
+        let (leaves, next) =
+            if stays { (f64::INFINITY, None) } else { exit((low, high), &way, path, from, limit, &onward) };
         let mut stop = leaves.min(limit);
         let items = grid.items(cell);
         if !items.is_empty() {

@@ -1,17 +1,20 @@
 //! A step of one marble on one surface: what most steps are, without the bookkeeping of a group.
 //!
-//! It does what [`step`](super::step) does with a group of one contact, in the same order of operations, so that both give the same bits.
+//! It does what [`group`](super::group) does with a group of one contact, in the same order of operations, so that both give the same bits.
 
 use super::Marbles;
 use super::body::{Marble, Phase};
-use super::solve::{Push, respond};
-use super::step::{APPROACH, OVERLAP, time_scale};
+use super::group::{APPROACH, OVERLAP, time_scale};
+use super::solve::{Ball, Push, respond};
+use crate::material::Law;
 use crate::scenery::{Foot, Surface};
 use glam::DVec3;
 
 /// Gives the marble its next step, or rest. Its only contact must be `surface`.
 pub(super) fn settle(world: &Marbles, index: usize, body: &mut Marble, surface: Surface) {
-    let alone = Alone { world, index, surface, foot: world.scenery.foot(surface, body.path.x) };
+    let (ball, foot) = (Ball::new(&world.specs[index]), world.scenery.foot(surface, body.path.x));
+    let alone =
+        Alone { world, ball, law: *world.surface_law(index, surface), scale: world.speed_scale(index), surface, foot };
     alone.stop_approach(body);
     let h = world.accuracy.step * alone.time_scale(body);
     if !h.is_finite() {
@@ -27,36 +30,38 @@ pub(super) fn settle(world: &Marbles, index: usize, body: &mut Marble, surface: 
 
 struct Alone<'w> {
     world: &'w Marbles,
-    index: usize,
+    ball: Ball,
+    law: Law,
+    /// Speed that a fall over one radius gives, up to √2.
+    scale: f64,
     surface: Surface,
     /// Where the surface is at the start.
     foot: Foot,
 }
 
 impl Alone<'_> {
-    /// Velocity and spin after the contact's impulse, and its load, where `push` says at which normals it acts.
+    /// Approach stopped, velocity and spin after the contact's impulse.
+    #[inline]
     fn respond(&self, push: &Push, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
-        let spec = &self.world.specs[self.index];
-        respond(spec.mass, spec.radius, spec.gyration, self.world.surface_law(self.index, self.surface), push, v, w)
+        respond(&self.ball, &self.law, push, v, w)
     }
 
     /// Takes away what slow approach is left, so that no step starts into the surface.
     fn stop_approach(&self, body: &mut Marble) {
-        let (n, scale) = (self.foot.normal, self.world.speed_scale(self.index));
-        if -body.path.v.dot(n) > APPROACH * self.world.accuracy.settle * scale {
+        let n = self.foot.normal;
+        if -body.path.v.dot(n) > APPROACH * self.world.accuracy.settle * self.scale {
             (_, body.path.v, body.spin) = self.respond(&Push { first: n, last: n }, body.path.v, body.spin);
         }
     }
 
     fn time_scale(&self, body: &Marble) -> f64 {
-        let radius = self.world.specs[self.index].radius;
-        time_scale(self.foot.curvature_radius, radius, body.path.v.length(), self.world.strength)
+        time_scale(self.foot.curvature_radius, self.ball.radius, body.path.v.length(), self.world.strength)
     }
 
     /// Whether it is slow and the contact can hold it.
     fn holds_still(&self, body: &Marble, h: f64) -> bool {
-        let (world, radius) = (self.world, self.world.specs[self.index].radius);
-        let limit = world.accuracy.rest_speed * world.speed_scale(self.index);
+        let (world, radius) = (self.world, self.ball.radius);
+        let limit = world.accuracy.rest_speed * self.scale;
         if body.path.v.length() > limit
             || body.spin.length() * radius > limit
             || radius - self.foot.distance > OVERLAP * radius
@@ -80,16 +85,14 @@ impl Alone<'_> {
             (load, v, w) = self.respond(&push, start_v + world.gravity * h, start_w);
             x = start + (start_v + v) * (0.5 * h);
         }
-        let spec = &world.specs[self.index];
         let foot = scenery.foot_near(self.surface, x);
-        let missing = spec.radius - foot.distance;
+        let missing = self.ball.radius - foot.distance;
         if missing > 0.0 || load != 0.0 {
             x += foot.normal * missing;
         }
-        let inertia = spec.gyration * spec.mass * spec.radius * spec.radius;
-        let kinetic =
-            |v: DVec3, w: DVec3| 0.5 * (spec.mass * v.length_squared() + inertia * w.length_squared());
-        let before = kinetic(start_v, start_w) + spec.mass * world.gravity.dot(x - start);
+        let (mass, inertia) = (self.ball.mass, self.ball.inertia());
+        let kinetic = |v: DVec3, w: DVec3| 0.5 * (mass * v.length_squared() + inertia * w.length_squared());
+        let before = kinetic(start_v, start_w) + mass * world.gravity.dot(x - start);
         let after = kinetic(v, w);
         if after > before {
             let part = if before > 0.0 { (before / after).sqrt() } else { 0.0 };
