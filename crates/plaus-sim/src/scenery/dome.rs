@@ -108,7 +108,8 @@ mod tests {
                 }
             }
             if around.min.x <= around.max.x {
-                assert!(tight.max.z - around.max.z < 1e-6 || tight.max.z == clip.max.z, "{tight:?} {around:?}");
+                // The samples are 0.01 apart: between them the surface rises by 3e-6 at a top, and by 0.003 at a rim.
+                assert!(tight.max.z - around.max.z < 0.01, "{tight:?} {around:?}");
             }
         }
     }
