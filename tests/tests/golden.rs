@@ -3,6 +3,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+#[path = "golden/simulator.rs"]
+mod simulator;
+
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Verdict};
 use plaus_run::codec::{Kind, decode, encode};
@@ -68,7 +71,7 @@ struct Trace {
     places: Vec<[f64; 3]>,
 }
 
-fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 

@@ -1,4 +1,6 @@
 //! Random ten-marble drops into bins, checked for tunnelling and for valid rest, with timing: `cargo run --release -p plaus-sim --example drops -- 100000 standard`.
+//!
+//! Further arguments: how many marbles, seconds between them, and `time` for time alone, the fastest of nine runs of each draw: `-- 1000 standard 10 0.1 time`.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stdout,
@@ -61,6 +63,9 @@ impl Tally {
     }
 }
 
+/// Runs of each draw where only time is asked for.
+const REPEATS: usize = 9;
+
 fn main() {
     let mut args = std::env::args().skip(1);
     let runs: usize = args.next().map_or(100, |a| a.parse().unwrap());
@@ -81,9 +86,17 @@ fn main() {
         world.move_vertices(&bins.perturbed(0.0001, &mut uniform)).unwrap();
         let starts: Vec<Start> = drops(&bins, count, interval, &mut uniform);
         let mut state = world.state(&starts).unwrap();
-        let begin = Instant::now();
-        let outcome = world.run(&mut state, &mut scratch, 1e9, &mut ());
-        tally.micros.push(begin.elapsed().as_secs_f64() * 1e6);
+        let fresh = state.clone();
+        let mut fastest = f64::INFINITY;
+        let mut outcome = Outcome::TimeReached;
+        // The fastest of several: whatever else the machine does only ever adds.
+        for _ in 0..if only_time { REPEATS } else { 1 } {
+            state.clone_from(&fresh);
+            let begin = Instant::now();
+            outcome = world.run(&mut state, &mut scratch, 1e9, &mut ());
+            fastest = fastest.min(begin.elapsed().as_secs_f64() * 1e6);
+        }
+        tally.micros.push(fastest);
         let counts = state.counts();
         tally.events += counts.events;
         tally.impacts += counts.impacts;

@@ -6,7 +6,7 @@ use plaus_figures::Result;
 use plaus_figures::report::table;
 use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
 use plaus_sim::scenery::{Mesh, Plane, Scenery};
-use plaus_sim::{Accuracy, Law, Laws, Material, Scratch};
+use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch};
 use rapier3d_f64::prelude as peer;
 
 const G: f64 = 9.81;
@@ -65,7 +65,8 @@ pub(crate) fn report() -> Result<String> {
     let mut head = vec!["simulator"];
     head.extend(cases.iter().map(|c| c.name));
     let mut rows = Vec::new();
-    for way in Way::ALL {
+    let presets = Preset::ALL.into_iter().rev().map(Way::Preset);
+    for way in presets.chain([60.0, 240.0, 1000.0].map(Way::Peer)) {
         let mut cells = vec![way.name()];
         for case in &cases {
             let found = (case.measured)(if let Way::Peer(rate) = way { by_peer(case, rate) } else { ours(case, way)? });

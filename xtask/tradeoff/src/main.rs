@@ -1,87 +1,107 @@
-//! What each preset of the simulator costs and what it gives, beside rapier3d at three time steps: `cargo xtask tradeoff`.
+//! What each preset of the simulator costs and what it gives, beside rapier3d at several time steps: `cargo xtask tradeoff`.
 //!
-//! A world is one file that implements [`World`]; [`worlds`] lists them. Cases with an exact answer are in `exact`.
+//! A world is one file of `worlds` that implements [`World`](world::World); `peer` builds the same worlds in rapier. Cases with an exact answer are in `exact`.
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 #![allow(clippy::disallowed_methods, reason = "it measures time")]
 
-mod bins;
+mod clock;
+mod distance;
 mod exact;
 mod measure;
+mod peer;
 mod plots;
+mod report;
 mod world;
+mod worlds;
 
-use measure::{Row, measure};
+use measure::{Plan, measure};
 use plaus_figures::Result;
-use plaus_figures::report::{significant, table};
+use plaus_figures::report::table;
+use plaus_sim::Preset;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use world::{Way, World};
+use world::Way;
 
-const USAGE: &str = "usage: cargo xtask tradeoff [--out FOLDER] [--draws N] [--quick]\n\n\
-    --out FOLDER   where the files go, out/tradeoff by default\n\
-    --draws N      draws per distribution, 2000 by default\n\
-    --quick        100 draws: shows that everything works, its numbers mean little";
+const USAGE: &str = "usage: cargo xtask tradeoff [--worlds A,B] [--draws N] [--seconds S] [--rates A,B] [--out FOLDER] [--quick]
 
-/// Worlds with a distribution of outcomes.
-fn worlds() -> Result<Vec<Box<dyn World>>> {
-    Ok(vec![Box::new(bins::MarblesOverBins::new()?)])
+    --worlds A,B   which worlds; all by default: bins, hi, acm, die, die-bumpy, bowling
+    --draws N      draws per simulator and world, 2000 by default
+    --seconds S    seconds of computing after which a simulator gets no further draws of a world, 12 by default (three times that for bowling)
+    --rates A,B    the peer's steps a second, 60,240,1000 by default; multiples of 20
+    --out FOLDER   where the files go, out/tradeoff by default
+    --quick        60 draws and 1 second: shows that everything works, its numbers mean little";
+
+struct Options {
+    out: PathBuf,
+    worlds: Vec<String>,
+    plan: Plan,
+}
+
+fn options() -> Result<Options> {
+    let mut out = PathBuf::from("out/tradeoff");
+    let mut chosen: Vec<String> = worlds::NAMES.map(str::to_owned).to_vec();
+    let (mut draws, mut seconds, mut rates) = (2000, 12.0, vec![60.0, 240.0, 1000.0]);
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        let mut value = || arguments.next().ok_or_else(|| format!("{argument} needs a value\n\n{USAGE}"));
+        match argument.as_str() {
+            "--quick" => (draws, seconds) = (60, 1.0),
+            "--out" => out = value()?.into(),
+            "--draws" => draws = value()?.parse().map_err(|e| format!("--draws: {e}"))?,
+            "--seconds" => seconds = value()?.parse().map_err(|e| format!("--seconds: {e}"))?,
+            "--worlds" => chosen = value()?.split(',').map(str::to_owned).collect(),
+            "--rates" => {
+                rates = value()?
+                    .split(',')
+                    .map(|rate| rate.parse::<f64>().map_err(|e| format!("--rates: {rate}: {e}")))
+                    .collect::<std::result::Result<_, _>>()?;
+            }
+            _ => return Err(format!("unknown option {argument}\n\n{USAGE}").into()),
+        }
+    }
+    if let Some(rate) = rates.iter().find(|rate| !(**rate >= 20.0 && **rate % 20.0 == 0.0)) {
+        return Err(format!("--rates: {rate} is no multiple of 20").into());
+    }
+    if draws == 0 || !(seconds > 0.0) {
+        return Err("--draws and --seconds must be more than 0".into());
+    }
+    if let Some(name) = chosen.iter().find(|name| !worlds::NAMES.contains(&name.as_str())) {
+        return Err(format!("there is no world {name}; worlds: {}", worlds::NAMES.join(", ")).into());
+    }
+    let presets = Preset::ALL.into_iter().rev().map(Way::Preset);
+    let ways = presets.chain(rates.into_iter().map(Way::Peer)).collect();
+    Ok(Options { out, worlds: chosen, plan: Plan { draws, seconds, ways } })
 }
 
 fn main() -> Result<()> {
-    let (mut out, mut draws) = (PathBuf::from("out/tradeoff"), 2000);
-    let mut arguments = std::env::args().skip(1);
-    while let Some(argument) = arguments.next() {
-        match argument.as_str() {
-            "--quick" => draws = 100,
-            "--out" => out = arguments.next().ok_or(USAGE)?.into(),
-            "--draws" => draws = arguments.next().ok_or(USAGE)?.parse()?,
-            _ => return Err(USAGE.into()),
-        }
-    }
+    let Options { out, worlds, plan } = options()?;
     std::fs::create_dir_all(&out)?;
-    let mut text = "# What exactness costs\n\nMade by `cargo xtask tradeoff`. Draws and outcomes follow from fixed seeds; times are medians of one core of this machine, in one process.\n".to_owned();
-    text += "\n## Against exact answers\n\n";
-    text += &exact::report()?;
-    for mut world in worlds()? {
-        let rows = measure(world.as_mut(), draws)?;
-        write!(text, "\n## {}\n\n{}\n\n", world.title(), world.about())?;
-        text += &show(&rows, draws);
-        plots::cost_and_distance(&out, world.name(), world.title(), &rows)?;
-        write!(text, "\n![{0}]({0}.png)\n", world.name())?;
+    let mut sections = String::new();
+    let mut summaries = Vec::new();
+    for name in &worlds {
+        eprintln!("{name}");
+        let mut world = worlds::world(name)?;
+        let rows = measure(world.as_mut(), &plan)?;
+        let distances = report::distances(&rows, &world.readings(), plan.finest());
+        write!(sections, "\n## {}\n\n", world.title())?;
+        sections += &report::section(world.as_ref(), &rows, &distances, plan.finest());
+        plots::cost_and_distance(&out, world.as_ref(), &rows, &distances)?;
+        plots::growth(&out, world.as_ref(), &rows)?;
+        write!(sections, "\n![Cost and distance]({name}.png) ![Error over time]({name}-error.png)\n")?;
+        summaries.push(report::summary(name, &rows, &distances));
     }
+    let mut text = format!(
+        "# What exactness costs\n\nMade by `cargo xtask tradeoff`. Draws and outcomes follow from fixed seeds ({} draws at most, fewer where {} s of computing were over, three times that for bowling). Times are seconds of processor time \
+         of one thread, all simulators in one process by turns, so that a busy machine slows them alike. The simulator computes in f64 throughout: event times are compared across bodies, and \
+         an f32 holds 2 s to no better than 1e-7 s, in which a marble moves more than the fine preset's tolerances; there is no f32 variant to compare.\n",
+        plan.draws, plan.seconds
+    );
+    text += "\n## In short\n\nMedian ms; total variation from the reference in the first reading, in brackets what chance alone gives on average.\n\n";
+    text += &table(&["world", "draft", "standard", "fine", "reference", "rapier3d-f64, 1/240"], summaries);
+    text += "\n## Against exact answers\n\nRelative errors.\n\n";
+    text += &exact::report()?;
+    text += &sections;
     std::fs::write(out.join("report.md"), &text)?;
     eprintln!("{text}\nwrote {}", out.join("report.md").display());
     Ok(())
-}
-
-fn show(rows: &[Row], draws: u64) -> String {
-    let millimetres = |x: Option<f64>| x.map_or("–".to_owned(), |x| significant(1000.0 * x, 2));
-    let cells = rows.iter().map(|r| {
-        vec![
-            r.way.name(),
-            significant(1000.0 * r.seconds, 3),
-            significant(1000.0 * r.early, 2),
-            millimetres(r.error),
-            r.agreement.map_or("–".to_owned(), |t| significant(t, 3)),
-            significant(r.distance, 2),
-            significant(r.noise, 2),
-        ]
-    });
-    let text = table(
-        &["simulator", "ms, median", "ms, 10%", "error at 0.25 s, mm", "agrees for, s", "distance", "its noise"],
-        cells,
-    );
-    format!(
-        "{text}\nError: median over draws of the largest distance of a body from where the reference preset has it, 0.25 s after the start. Agrees for: median time until a body is a tenth of its radius \
-         away. Distance: total variation between {draws} outcomes and {draws} of the reference; noise: what two samples of the same law would show on average.\n"
-    )
-}
-
-impl Way {
-    fn name(&self) -> String {
-        match self {
-            Self::Preset(preset) => format!("plaus-sim, {}", preset.name()),
-            Self::Peer(rate) => format!("rapier3d-f64, 1/{rate}"),
-        }
-    }
 }

@@ -1,76 +1,146 @@
-//! The numbers of one world: time, error before chaos, distance of distributions.
+//! The numbers of one world: time, error before chaos, outcomes.
 
-use crate::world::{Way, World};
+use crate::clock;
+use crate::world::{Outcome, Places, Way, World};
 use plaus_figures::Result;
 
-/// One simulator's numbers.
+/// How much is simulated.
+pub(crate) struct Plan {
+    /// Draws per simulator.
+    pub(crate) draws: u64,
+    /// Seconds of processor time after which a simulator gets no further draws.
+    pub(crate) seconds: f64,
+    /// All simulators, the reference first.
+    pub(crate) ways: Vec<Way>,
+}
+
+/// What one simulator gave.
 pub(crate) struct Row {
     pub(crate) way: Way,
-    /// Median computing time in s, and its tenth percentile.
-    pub(crate) seconds: f64,
-    pub(crate) early: f64,
-    /// Median error after a quarter of a second, in m; none for the reference itself.
-    pub(crate) error: Option<f64>,
+    /// Computing time of each draw in s, in ascending order.
+    pub(crate) seconds: Vec<f64>,
+    pub(crate) outcomes: Vec<Outcome>,
+    /// Median over draws of the largest error of a body at each of [`times`], in m; empty for the reference.
+    pub(crate) errors: Vec<f64>,
     /// Median time of agreement in s.
     pub(crate) agreement: Option<f64>,
-    /// Total variation from the reference, and what sampling alone gives.
-    pub(crate) distance: f64,
-    pub(crate) noise: f64,
+    /// Share of draws with another outcome than the reference gives to the same draw, in the first reading.
+    pub(crate) differing: Option<f64>,
 }
 
 /// Draws whose trajectories are compared.
 const COMPARED: u64 = 100;
-/// Time between comparisons, in s.
-const SAMPLING: f64 = 0.01;
+/// Part of a simulator's seconds that comparing trajectories may take.
+const SHARE: f64 = 0.25;
+/// Rounds in which simulators take turns, so that whatever slows the machine down slows all of them.
+const ROUNDS: u64 = 10;
+/// Where the draws of the reference, and those of the peer's finest step, begin: what is compared are independent samples.
+const APART: u64 = 1 << 32;
 
-/// Measures all ways; the reference comes first.
-pub(crate) fn measure(world: &mut dyn World, draws: u64) -> Result<Vec<Row>> {
-    let times: Vec<f64> = (1..=150).map(|k| SAMPLING * f64::from(k)).collect();
-    let mut rows = Vec::new();
-    let mut reference = Vec::new();
-    let mut paths = Vec::new();
-    for way in Way::ALL {
-        eprintln!("  {}: {way:?}", world.name());
-        let mut counts = vec![0_u64; world.outcomes()];
-        let mut seconds = Vec::new();
-        // The reference takes other draws than the rest, so that distances are between independent samples.
-        let first = if rows.is_empty() { draws } else { 0 };
-        for draw in first..first + draws {
-            let (outcome, time) = world.outcome(way, draw)?;
-            counts[outcome] += 1;
-            seconds.push(time);
+/// Times at which places are compared, in s: every twentieth, which is a whole number of steps at 60, 240 and 1000 a second.
+pub(crate) fn times() -> Vec<f64> {
+    (1..=30).map(|k| f64::from(k) / 20.0).collect()
+}
+
+impl Plan {
+    /// The peer's finest step, if there is a peer.
+    pub(crate) fn finest(&self) -> Option<Way> {
+        self.ways
+            .iter()
+            .copied()
+            .filter_map(|way| if let Way::Peer(rate) = way { Some(rate) } else { None })
+            .reduce(f64::max)
+            .map(Way::Peer)
+    }
+
+    fn first_draw(&self, way: Way) -> u64 {
+        if way == Way::REFERENCE {
+            APART
+        } else if Some(way) == self.finest() {
+            2 * APART
+        } else {
+            0
         }
-        seconds.sort_by(f64::total_cmp);
-        let law: Vec<f64> = counts.iter().map(|&c| c as f64 / draws as f64).collect();
-        let (mut errors, mut agreements) = (Vec::new(), Vec::new());
-        for draw in 0..COMPARED.min(draws) {
-            let path = world.positions(way, draw, &times)?;
-            if reference.is_empty() {
-                paths.push(path);
+    }
+}
+
+/// Measures a world.
+pub(crate) fn measure(world: &mut dyn World, plan: &Plan) -> Result<Vec<Row>> {
+    let empty = |&way: &Way| Row {
+        way,
+        seconds: Vec::new(),
+        outcomes: Vec::new(),
+        errors: Vec::new(),
+        agreement: None,
+        differing: None,
+    };
+    let mut rows: Vec<Row> = plan.ways.iter().map(empty).collect();
+    let mut spent = vec![0.0; rows.len()];
+    let enough = plan.seconds * world.patience();
+    for round in 1..=ROUNDS {
+        for (row, spent) in rows.iter_mut().zip(&mut spent) {
+            let first = plan.first_draw(row.way);
+            let begin = clock::now();
+            let before = *spent;
+            while (row.outcomes.len() as u64) < plan.draws * round / ROUNDS && *spent < enough {
+                let draw = first + row.outcomes.len() as u64;
+                let (outcome, seconds) = world.outcome(row.way, draw)?;
+                row.outcomes.push(outcome);
+                row.seconds.push(seconds);
+                *spent = before + clock::now().saturating_sub(begin).as_secs_f64();
+            }
+        }
+        eprintln!(
+            "  {}: {} % of the outcomes, {:.0} s of computing",
+            world.name(),
+            100 * round / ROUNDS,
+            spent.iter().sum::<f64>()
+        );
+    }
+    rows.iter_mut().for_each(|row| row.seconds.sort_by(f64::total_cmp));
+    compare(world, plan, &mut rows)?;
+    Ok(rows)
+}
+
+/// Compares ways and outcomes of the same draws with the reference's.
+fn compare(world: &mut dyn World, plan: &Plan, rows: &mut [Row]) -> Result<()> {
+    let times = times();
+    let mut truth: Vec<(Vec<Places>, Outcome)> = Vec::new();
+    for row in rows {
+        let (mut errors, mut agreements, mut differing) = (vec![Vec::new(); times.len()], Vec::new(), 0);
+        let begin = clock::now();
+        let most = if truth.is_empty() { COMPARED.min(plan.draws) } else { truth.len() as u64 };
+        for draw in 0..most {
+            if draw > 0 && clock::now().saturating_sub(begin).as_secs_f64() > SHARE * plan.seconds * world.patience() {
+                break;
+            }
+            let places = world.places(row.way, draw, &times)?;
+            let (outcome, _) = world.outcome(row.way, draw)?;
+            if row.way == Way::REFERENCE {
+                truth.push((places, outcome));
                 continue;
             }
-            let apart = |k: usize| {
-                path[k].iter().zip(&paths[draw as usize][k]).map(|(a, b)| (*a - *b).length()).fold(0.0, f64::max)
-            };
-            errors.push(apart(24));
-            agreements.push(
-                (0..times.len()).find(|&k| apart(k) > world.tolerance()).map_or(times[times.len() - 1], |k| times[k]),
-            );
+            let (exact, end) = &truth[draw as usize];
+            let apart: Vec<f64> = places.iter().zip(exact).map(|(a, b)| farthest(a, b)).collect();
+            let agrees = apart.iter().position(|&d| d > world.tolerance());
+            agreements.push(agrees.map_or(times[times.len() - 1], |k| times[k]));
+            errors.iter_mut().zip(apart).for_each(|(all, error)| all.push(error));
+            differing += usize::from(outcome[0] != end[0]);
         }
-        if reference.is_empty() {
-            reference.clone_from(&law);
+        if row.way == Way::REFERENCE {
+            continue;
         }
-        rows.push(Row {
-            way,
-            seconds: seconds[seconds.len() / 2],
-            early: seconds[seconds.len() / 10],
-            error: median(errors),
-            agreement: median(agreements),
-            distance: 0.5 * law.iter().zip(&reference).map(|(p, q)| (p - q).abs()).sum::<f64>(),
-            noise: noise(&reference, draws),
-        });
+        row.differing = Some(differing as f64 / agreements.len().max(1) as f64);
+        row.errors = errors.into_iter().filter_map(median).collect();
+        row.agreement = median(agreements);
+        eprintln!("  {}: ways of {} compared", world.name(), row.way.name());
     }
-    Ok(rows)
+    Ok(())
+}
+
+/// Largest distance of a body from where it should be; bodies that have left one of the two worlds don't count.
+fn farthest(a: &Places, b: &Places) -> f64 {
+    a.iter().zip(b).filter_map(|(a, b)| Some((*a.as_ref()? - *b.as_ref()?).length())).fold(0.0, f64::max)
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {
@@ -78,7 +148,15 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-/// Expected total variation between two samples of `draws` from one law: half the sum of the mean absolute differences of two binomial frequencies.
-fn noise(law: &[f64], draws: u64) -> f64 {
-    0.5 * law.iter().map(|p| 2.0 * (p * (1.0 - p) / (draws as f64 * std::f64::consts::PI)).sqrt()).sum::<f64>()
+impl Row {
+    /// A quantile of the computing time in s.
+    pub(crate) fn time(&self, part: f64) -> f64 {
+        let last = self.seconds.len().saturating_sub(1);
+        self.seconds.get((last as f64 * part).round() as usize).copied().unwrap_or(f64::NAN)
+    }
+
+    /// Mean computing time in s.
+    pub(crate) fn mean(&self) -> f64 {
+        self.seconds.iter().sum::<f64>() / self.seconds.len().max(1) as f64
+    }
 }

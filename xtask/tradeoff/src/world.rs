@@ -14,32 +14,48 @@ pub(crate) enum Way {
 }
 
 impl Way {
-    /// All ways, the reference first.
-    pub(crate) const ALL: [Self; 7] = [
-        Self::Preset(Preset::Reference),
-        Self::Preset(Preset::Fine),
-        Self::Preset(Preset::Standard),
-        Self::Preset(Preset::Draft),
-        Self::Peer(60.0),
-        Self::Peer(240.0),
-        Self::Peer(1000.0),
-    ];
+    pub(crate) const REFERENCE: Self = Self::Preset(Preset::Reference);
+    pub(crate) const STANDARD: Self = Self::Preset(Preset::Standard);
+
+    pub(crate) fn name(self) -> String {
+        match self {
+            Self::Preset(preset) => format!("plaus-sim, {}", preset.name()),
+            Self::Peer(rate) => format!("rapier3d-f64, 1/{rate}"),
+        }
+    }
 }
 
-/// A world with random draws, an outcome, and positions to compare.
+/// Of each reading of a world, the categories that a simulation fell into: one, or one for each body.
+pub(crate) type Outcome = Vec<Vec<u16>>;
+
+/// Positions of all bodies at one time; none for a body that has left the world.
+pub(crate) type Places = Vec<Option<DVec3>>;
+
+/// Something that is read off the end of a simulation.
+pub(crate) struct Reading {
+    pub(crate) name: &'static str,
+    /// How many categories it has.
+    pub(crate) categories: usize,
+}
+
+/// A world with random draws, outcomes, and positions to compare.
 pub(crate) trait World {
-    /// Name of its files.
+    /// Name of its files, and of the world at the command line.
     fn name(&self) -> &'static str;
     /// Heading of its section.
     fn title(&self) -> &'static str;
-    /// What it is, and how far the peer's world is the same.
-    fn about(&self) -> &'static str;
-    /// How many outcomes there are.
-    fn outcomes(&self) -> usize;
+    /// What it is, what is timed, and how far the peer's world is the same.
+    fn about(&self) -> String;
+    /// What is read off an outcome.
+    fn readings(&self) -> Vec<Reading>;
     /// Distance between bodies at which they no longer agree, in m.
     fn tolerance(&self) -> f64;
-    /// Simulates a draw: which outcome, and how many seconds of computing the simulation alone took.
-    fn outcome(&mut self, way: Way, draw: u64) -> Result<(usize, f64)>;
-    /// Positions of all bodies at each of `times`.
-    fn positions(&mut self, way: Way, draw: u64, times: &[f64]) -> Result<Vec<Vec<DVec3>>>;
+    /// Seconds that each simulator gets over those of other worlds.
+    fn patience(&self) -> f64 {
+        1.0
+    }
+    /// Simulates a draw to its end: what came of it, and the seconds of computing that the simulation alone took.
+    fn outcome(&mut self, way: Way, draw: u64) -> Result<(Outcome, f64)>;
+    /// Places of all bodies at each of `times`, which are multiples of every peer's step.
+    fn places(&mut self, way: Way, draw: u64, times: &[f64]) -> Result<Vec<Places>>;
 }

@@ -3,7 +3,7 @@
 use super::sphere::sphere_surface;
 use crate::motion::Parabola;
 use crate::roots::fall_of_quadratic;
-use crate::scenery::{Scenery, Surface};
+use crate::scenery::{Aabb, Scenery, Surface};
 use glam::DVec3;
 
 /// First surface that a sphere touches while approaching it, within `until` seconds of the motion's clock. Surfaces in `skip` (its lasting contacts) do not count.
@@ -30,13 +30,17 @@ pub(crate) fn next_surface(
         let (low, high) = grid.walls(cell);
         let way = path.bounds(from, limit);
         let stays = way.min.cmpgt(low).all() && way.max.cmplt(high).all();
-        let (leaves, next) = if stays { (f64::INFINITY, None) } else { exit((low, high), path, from, limit, &onward) };
+        let (leaves, next) =
+            if stays { (f64::INFINITY, None) } else { exit((low, high), &way, path, from, limit, &onward) };
         let mut stop = leaves.min(limit);
         let items = grid.items(cell);
         if !items.is_empty() {
             let swept = if stays { way } else { path.bounds(from, stop) };
+            let around = swept.grown(radius * (1.0 + 1e-8));
             for &item in items {
-                if scenery.bounds(item).distance_squared(&swept) <= near {
+                let bounds = scenery.bounds(item);
+                // Most are ruled out by the first comparison or two.
+                if around.meets(bounds) && bounds.distance_squared(&swept) <= near {
                     // A hit within this cell bounds the rest of the search, here and beyond; what is hit beyond it is listed there.
                     consider(scenery, scenery.surface(item), path, radius, skip, from, &mut stop, &mut best);
                 }
@@ -77,10 +81,11 @@ fn consider(
     }
 }
 
-/// When a centre leaves a cell after `from`, along which axis and which way; infinite and none where it stays until `limit`.
+/// When a centre leaves a cell after `from`, along which axis and which way; infinite and none where it stays until `limit`. `way` holds the centre until then.
 #[inline]
 fn exit(
     (low, high): (DVec3, DVec3),
+    way: &Aabb,
     path: &Parabola,
     from: f64,
     limit: f64,
@@ -89,8 +94,8 @@ fn exit(
     let (x, v) = (path.after(from), path.velocity_after(from));
     let mut best = (f64::INFINITY, None);
     for k in 0..3 {
-        for (wall, way) in [(low[k], -1.0), (high[k], 1.0)] {
-            if !wall.is_finite() || onward[k] == -way {
+        for (wall, way, crosses) in [(low[k], -1.0, way.min[k] <= low[k]), (high[k], 1.0, way.max[k] >= high[k])] {
+            if !crosses || onward[k] == -way {
                 continue;
             }
             let c = [way * (wall - x[k]), -way * v[k], -way * 0.5 * path.a[k]];

@@ -173,6 +173,11 @@ impl Marble {
         &self.contacts[..usize::from(self.count)]
     }
 
+    /// The room for contacts, of which the first are valid.
+    pub(super) fn contacts_in_full(&self) -> &[Surface; MOST_CONTACTS] {
+        &self.contacts
+    }
+
     /// Adds a lasting contact; false where there is no room left.
     pub(crate) fn add_contact(&mut self, surface: Surface) -> bool {
         if self.contacts().contains(&surface) {

@@ -1,7 +1,7 @@
 //! Marbles as the event loop sees them.
 
 use super::body::{Marble, Phase};
-use super::step::MarbleScratch;
+use super::group::MarbleScratch;
 use super::{Marbles, step};
 use crate::detect;
 use crate::links::Links;

@@ -1,7 +1,9 @@
 //! Worlds of spheres among static scenery: no orientation, no shape, exact first times of contact.
 
+mod alone;
 mod body;
 mod closed;
+mod group;
 mod mechanics;
 mod solve;
 mod step;
@@ -216,4 +218,4 @@ const ROUNDING: f64 = 1e-9;
 /// Overlap at the start that counts as touching, over the radius. Default 1e-9; danger: larger values start bodies inside each other.
 const OVERLAP: f64 = 1e-9;
 
-pub use step::MarbleScratch;
+pub use group::MarbleScratch;

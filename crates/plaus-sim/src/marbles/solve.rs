@@ -3,17 +3,56 @@
 //! Impulses act along the normal half-way through the step and must leave no approach along the normal at its end. On a circle that reflects the velocity about the
 //! half-way normal, which keeps its length: the scheme is of second order and does not lose energy to curvature (it is RATTLE's idea).
 
+use super::MarbleSpec;
 use crate::material::Law;
 use glam::DVec3;
+
+/// What a ball is to an impulse, with the quotients that every impulse needs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ball {
+    pub(super) mass: f64,
+    pub(super) radius: f64,
+    /// Inertia over mass × radius².
+    gyration: f64,
+    inverse_mass: f64,
+    inverse_inertia: f64,
+    inverse_radius: f64,
+    /// 1/(1 + gyration).
+    share: f64,
+    /// 1/(gyration × radius).
+    lever: f64,
+}
+
+impl Ball {
+    #[inline]
+    pub(super) fn new(spec: &MarbleSpec) -> Self {
+        let &MarbleSpec { mass, radius, gyration, .. } = spec;
+        let inverse_radius = 1.0 / radius;
+        let (inverse_mass, lever) = (1.0 / mass, inverse_radius / gyration);
+        Self {
+            mass,
+            radius,
+            gyration,
+            inverse_mass,
+            inverse_inertia: inverse_mass * lever * inverse_radius,
+            inverse_radius,
+            share: 1.0 / (1.0 + gyration),
+            lever,
+        }
+    }
+
+    /// Inertia in kg m².
+    #[inline]
+    pub(super) fn inertia(&self) -> f64 {
+        self.gyration * self.mass * self.radius * self.radius
+    }
+}
 
 /// One body of a group during a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Member {
     pub(super) index: u32,
-    pub(super) mass: f64,
-    pub(super) inertia: f64,
-    pub(super) radius: f64,
-    pub(super) gyration: f64,
+    pub(super) ball: Ball,
     pub(super) start: DVec3,
     pub(super) start_v: DVec3,
     pub(super) start_w: DVec3,
@@ -37,15 +76,13 @@ pub(super) struct Contact {
     pub(super) a: usize,
     pub(super) with: With,
     pub(super) law: Law,
-    /// Normal towards `a` at the start and at the end of the step.
-    pub(super) first: DVec3,
-    pub(super) last: DVec3,
-    /// Normal impulse.
+    /// Normals towards `a`.
+    pub(super) push: Push,
+    /// Approach that the contact stopped, in m/s: its load over the mass.
     pub(super) load: f64,
-    /// What the contact has given so far: impulse on `a`, angular impulse on `a` and on `b`.
-    impulse: DVec3,
-    turn_a: DVec3,
-    turn_b: DVec3,
+    /// What the contact has given so far: changes of velocity and spin of `a` and of `b`.
+    given_a: (DVec3, DVec3),
+    given_b: (DVec3, DVec3),
 }
 
 /// The partner of a contact.
@@ -55,33 +92,34 @@ pub(super) enum With {
     Member(usize),
 }
 
+const NOTHING: (DVec3, DVec3) = (DVec3::ZERO, DVec3::ZERO);
+
 impl Contact {
     pub(super) fn new(a: usize, with: With, law: Law, normal: DVec3) -> Self {
-        let none = DVec3::ZERO;
-        Self { a, with, law, first: normal, last: normal, load: 0.0, impulse: none, turn_a: none, turn_b: none }
+        let push = Push { first: normal, last: normal };
+        Self { a, with, law, push, load: 0.0, given_a: NOTHING, given_b: NOTHING }
     }
 
     /// Forgets what the contact has given.
     pub(super) fn clear(&mut self) {
         self.load = 0.0;
-        self.impulse = DVec3::ZERO;
-        self.turn_a = DVec3::ZERO;
-        self.turn_b = DVec3::ZERO;
+        (self.given_a, self.given_b) = (NOTHING, NOTHING);
     }
 
     /// Adds what the contact has given to its members.
     pub(super) fn apply(&self, members: &mut [Member]) {
         let a = &mut members[self.a];
-        a.v += self.impulse / a.mass;
-        a.w += self.turn_a / a.inertia;
+        a.v += self.given_a.0;
+        a.w += self.given_a.1;
         if let With::Member(b) = self.with {
             let b = &mut members[b];
-            b.v -= self.impulse / b.mass;
-            b.w += self.turn_b / b.inertia;
+            b.v += self.given_b.0;
+            b.w += self.given_b.1;
         }
     }
 
-    /// Solves the contact and returns the change of velocity of its members.
+    /// Solves the contact and returns the square of the change of velocity of its members.
+    #[inline]
     pub(super) fn solve(&mut self, members: &mut [Member]) -> f64 {
         match self.with {
             With::Surface(_) => self.solve_surface(&mut members[self.a]),
@@ -89,80 +127,96 @@ impl Contact {
         }
     }
 
+    #[inline]
+    fn solve_surface(&mut self, m: &mut Member) -> f64 {
+        let before = m.v;
+        let (v, w) = (m.v - self.given_a.0, m.w - self.given_a.1);
+        (self.load, m.v, m.w) = respond(&m.ball, &self.law, &self.push, v, w);
+        self.given_a = (m.v - v, m.w - w);
+        (m.v - before).length_squared()
+    }
+
+    fn solve_pair(&mut self, members: &mut [Member], other: usize) -> f64 {
+        let (a, b) = (&members[self.a], &members[other]);
+        let before = (a.v, b.v);
+        let (mut v_a, mut w_a) = (a.v - self.given_a.0, a.w - self.given_a.1);
+        let (mut v_b, mut w_b) = (b.v - self.given_b.0, b.w - self.given_b.1);
+        let (p, q) = (a.ball, b.ball);
+        let n = self.push.last;
+        let approach = -(v_a - v_b).dot(n);
+        self.load = approach.max(0.0);
+        (self.given_a, self.given_b) = (NOTHING, NOTHING);
+        if approach > 0.0 {
+            let inverse = p.inverse_mass + q.inverse_mass;
+            let load = approach / inverse;
+            let push = self.push.direction() * load;
+            let relative = v_a - v_b + push * inverse;
+            let slip = relative - (w_a * p.radius + w_b * q.radius).cross(n);
+            let slip = slip - n * slip.dot(n);
+            let compliance = (1.0 + 1.0 / p.gyration) * p.inverse_mass + (1.0 + 1.0 / q.gyration) * q.inverse_mass;
+            let (speed, limit) = (slip.length(), self.law.friction * load);
+            let drag = if speed <= limit * compliance { slip / -compliance } else { slip * (-limit / speed) };
+            let (impulse, turn) = (push + drag, drag.cross(n));
+            self.given_a = (impulse * p.inverse_mass, turn * (p.radius * p.inverse_inertia));
+            self.given_b = (impulse * -q.inverse_mass, turn * (q.radius * q.inverse_inertia));
+            (v_a, w_a) = (v_a + self.given_a.0, w_a + self.given_a.1);
+            (v_b, w_b) = (v_b + self.given_b.0, w_b + self.given_b.1);
+        }
+        (members[self.a].v, members[self.a].w) = (v_a, w_a);
+        (members[other].v, members[other].w) = (v_b, w_b);
+        (v_a - before.0).length_squared().max((v_b - before.1).length_squared())
+    }
+}
+
+/// Normals of a contact at the start and at the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Push {
+    pub(super) first: DVec3,
+    pub(super) last: DVec3,
+}
+
+impl Push {
     /// Direction of the normal impulse, scaled so that a unit changes the final normal velocity by one unit per mass.
-    fn push_direction(&self) -> DVec3 {
+    #[inline]
+    fn direction(&self) -> DVec3 {
         let sum = self.first + self.last;
         let along = sum.dot(self.last);
         // Normals that turn by more than a right angle within a step: the step was too long for this edge; use the last.
         if along > 0.5 { sum / along } else { self.last }
     }
+}
 
-    fn solve_surface(&mut self, m: &mut Member) -> f64 {
-        let before = m.v;
-        let (v, w) = (m.v - self.impulse / m.mass, m.w - self.turn_a / m.inertia);
-        let n = self.last;
-        let approach = -v.dot(n);
-        self.load = m.mass * approach.max(0.0);
-        (m.v, m.w) = if approach > 0.0 { self.rub(m, v + self.push_direction() * approach, w) } else { (v, w) };
-        self.impulse = (m.v - v) * m.mass;
-        self.turn_a = (m.w - w) * m.inertia;
-        (m.v - before).length()
+/// Approach stopped, velocity and spin of a ball after a surface has stopped it and rubbed it. Mass plays no part.
+#[inline(always)]
+pub(super) fn respond(ball: &Ball, law: &Law, push: &Push, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
+    let approach = -v.dot(push.last);
+    if approach > 0.0 {
+        let (v, w) = rub(ball, law, (push.last, approach), v + push.direction() * approach, w);
+        (approach, v, w)
+    } else {
+        (0.0, v, w)
     }
+}
 
-    /// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under the contact's load.
-    fn rub(&self, m: &Member, v: DVec3, w: DVec3) -> (DVec3, DVec3) {
-        let (n, k) = (self.last, m.gyration);
-        let about = w.dot(n);
-        let drilled = (about.abs() - self.law.spinning * self.load / (k * m.mass * m.radius)).max(0.0).copysign(about);
-        let surface = w.cross(n) * m.radius;
-        let free = (v + surface * k) / (1.0 + k);
-        let resisted = free.length() - self.law.rolling * self.load / ((1.0 + k) * m.mass);
-        let rolling = if resisted > 0.0 { free * (resisted / free.length()) } else { DVec3::ZERO };
-        let limit = self.law.friction * self.load;
-        if (rolling - v).length() * m.mass <= limit {
-            return (rolling, n.cross(rolling) / m.radius + n * drilled);
-        }
-        let slip = v - surface;
-        let speed = slip.length();
-        if speed == 0.0 {
-            return (v, w + n * (drilled - about));
-        }
-        let drag = slip * (-limit / speed);
-        (v + drag / m.mass, w + drag.cross(n) * (m.radius / m.inertia) + n * (drilled - about))
+/// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under a load that stopped `approach`.
+#[inline(always)]
+fn rub(ball: &Ball, law: &Law, (n, approach): (DVec3, f64), v: DVec3, w: DVec3) -> (DVec3, DVec3) {
+    let about = w.dot(n);
+    let drilled = (about.abs() - law.spinning * approach * ball.lever).max(0.0).copysign(about);
+    let surface = w.cross(n) * ball.radius;
+    let free = (v + surface * ball.gyration) * ball.share;
+    let speed = free.length();
+    let resisted = speed - law.rolling * approach * ball.share;
+    let rolling = if resisted > 0.0 { free * (resisted / speed) } else { DVec3::ZERO };
+    let limit = law.friction * approach;
+    if (rolling - v).length_squared() <= limit * limit {
+        return (rolling, n.cross(rolling) * ball.inverse_radius + n * drilled);
     }
-
-    fn solve_pair(&mut self, members: &mut [Member], other: usize) -> f64 {
-        let (mut a, mut b) = (members[self.a], members[other]);
-        let before = (a.v, b.v);
-        a.v -= self.impulse / a.mass;
-        b.v += self.impulse / b.mass;
-        a.w -= self.turn_a / a.inertia;
-        b.w -= self.turn_b / b.inertia;
-        let n = self.last;
-        let approach = -(a.v - b.v).dot(n);
-        let inverse = 1.0 / a.mass + 1.0 / b.mass;
-        self.load = approach.max(0.0) / inverse;
-        self.impulse = DVec3::ZERO;
-        if approach > 0.0 {
-            let push = self.push_direction() * self.load;
-            let relative = a.v - b.v + push * inverse;
-            let slip = relative - (a.w * a.radius + b.w * b.radius).cross(n);
-            let slip = slip - n * slip.dot(n);
-            let compliance = (1.0 + 1.0 / a.gyration) / a.mass + (1.0 + 1.0 / b.gyration) / b.mass;
-            let (stick, limit) = (slip.length() / compliance, self.law.friction * self.load);
-            let drag = if stick <= limit { slip / -compliance } else { slip * (-limit / slip.length()) };
-            self.impulse = push + drag;
-            self.turn_a = drag.cross(n) * a.radius;
-            self.turn_b = drag.cross(n) * b.radius;
-            a.w += self.turn_a / a.inertia;
-            b.w += self.turn_b / b.inertia;
-        } else {
-            (self.turn_a, self.turn_b) = (DVec3::ZERO, DVec3::ZERO);
-        }
-        a.v += self.impulse / a.mass;
-        b.v -= self.impulse / b.mass;
-        let change = (a.v - before.0).length().max((b.v - before.1).length());
-        (members[self.a], members[other]) = (a, b);
-        change
+    let slip = v - surface;
+    let speed = slip.length();
+    if speed == 0.0 {
+        return (v, w + n * (drilled - about));
     }
+    let drag = slip * (-limit / speed);
+    (v + drag, w + drag.cross(n) * ball.lever + n * (drilled - about))
 }

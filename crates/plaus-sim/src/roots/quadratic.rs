@@ -40,6 +40,9 @@ pub fn fall_of_quadratic(c: [f64; 3], until: f64) -> Option<f64> {
             return None;
         }
         roots_of_quadratic(c)?[0]
+    } else if c0 + (c1 + c2 * until) * until > 0.0 {
+        // A hill or a line is above zero in between where it is at both ends.
+        return None;
     } else {
         // A hill or a falling line, above zero now: the later root.
         if c2 == 0.0 && c1 >= 0.0 {

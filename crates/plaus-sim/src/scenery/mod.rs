@@ -99,7 +99,7 @@ impl Scenery {
         let faces = (0..mesh.faces.len()).map(|f| mesh.face_bounds(f));
         let edges = (0..mesh.edges.len()).map(|e| mesh.edge_bounds(e));
         let vertices = (0..mesh.vertices.len()).map(|v| mesh.vertex_bounds(v));
-        let boxes = faces.chain(domes.iter().map(Dome::bounds)).chain(edges).chain(vertices).collect();
+        let boxes = faces.chain(domes.iter().map(Dome::tight_bounds)).chain(edges).chain(vertices).collect();
         Ok(Self { planes, mesh, domes, boxes, grid, reach })
     }
 

@@ -22,7 +22,11 @@ impl Scenery {
     }
 
     /// Where a ball's centre stands to what a contact with `surface` has become at `x`: the offset of a convex corner has no kinks, whatever feature is nearest.
+    #[inline]
     pub(crate) fn foot_near(&self, surface: Surface, x: DVec3) -> super::Foot {
+        if matches!(surface, Surface::Plane(_) | Surface::Dome(_)) {
+            return self.foot(surface, x);
+        }
         self.foot(self.track(surface, x).unwrap_or(surface), x)
     }
 

@@ -1,0 +1,369 @@
+//! Lasting contact without a closed form: a group of marbles on its own adaptive clock.
+//!
+//! Each step solves the contacts' impulses together (block Gauss–Seidel with exact Coulomb blocks), moves every centre along the parabola that joins the two
+//! ends, and puts the centres back onto the surfaces they touch. Between its ends a step is a parabola like any other motion, so collisions with
+//! others are found exactly on the path that is really taken.
+
+use super::Marbles;
+use super::body::{Marble, Phase};
+use super::solve::{Ball, Contact, Member, With};
+use crate::links::Links;
+use glam::DVec3;
+
+/// Work space for groups of marbles in lasting contact.
+#[derive(Debug, Default)]
+pub struct MarbleScratch {
+    members: Vec<Member>,
+    contacts: Vec<Contact>,
+}
+
+/// Sweeps of the pass that only predicts where a step ends.
+const PREDICT: u32 = 3;
+
+/// Most corrections of position per step; more than two are rare outside piles.
+const CORRECTIONS: usize = 40;
+
+/// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half, so that little is still to come.
+const CREEP: f64 = 0.03;
+
+/// Least ratio of one sweep's change to the last's that is believed. Default 0.5: the usual one.
+const SHRINKS: f64 = 0.5;
+
+/// How many times what sweeps to come can change has to be missing for rest to be given up. Default 4; danger: less takes slow groups for moving ones, and they step on.
+const DOUBT: f64 = 4.0;
+
+/// Overlap over the radius that rest may keep. Default 2e-5.
+pub(super) const OVERLAP: f64 = 2e-5;
+
+/// Overlap over the radius that needs no further correction. Default 1e-6.
+const CORRECTED: f64 = 1e-6;
+
+/// Approach along a lasting contact that a step may start with, over the speed at which contacts settle. Default 0.02: a path then dips into the surface by less than
+/// 1e-4 radii at the standard preset.
+pub(super) const APPROACH: f64 = 0.02;
+
+/// Time in which gravity, or the motion, covers the curvature of what a ball touches.
+#[inline]
+pub(super) fn time_scale(curvature: f64, radius: f64, speed: f64, strength: f64) -> f64 {
+    let scale = if curvature < 0.0 {
+        -curvature - radius
+    } else if curvature.is_finite() {
+        curvature + radius
+    } else {
+        radius
+    };
+    (scale / strength).sqrt().min(scale / speed)
+}
+
+impl MarbleScratch {
+    /// Gives a group its next step, or rest.
+    pub(super) fn go_on(&mut self, world: &Marbles, members: &[u32], bodies: &mut [Marble], links: &Links) {
+        self.gather(world, members, bodies, links);
+        self.stop_approach(world, bodies);
+        if !self.try_rest(world, bodies) {
+            self.step(world, bodies);
+        }
+    }
+
+    fn gather(&mut self, world: &Marbles, indices: &[u32], bodies: &[Marble], links: &Links) {
+        self.members.clear();
+        for &k in indices {
+            let (s, b) = (&world.specs[k as usize], &bodies[k as usize]);
+            let (start, start_v, start_w) = (b.path.x, b.path.v, b.spin);
+            self.members.push(Member {
+                index: k,
+                ball: Ball::new(s),
+                start,
+                start_v,
+                start_w,
+                v: start_v,
+                w: start_w,
+                x: start,
+                is_held: false,
+            });
+        }
+        // Bottom first, then by position: loads travel up in one sweep, and the order knows nothing of labels.
+        let g = world.gravity;
+        self.members.sort_by(|a, b| {
+            let key = |m: &Member| [-g.dot(m.start), m.start.x, m.start.y, m.start.z];
+            let (p, q) = (key(a), key(b));
+            p.iter().zip(&q).map(|(s, t)| s.total_cmp(t)).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
+        });
+        self.contacts.clear();
+        for a in 0..self.members.len() {
+            let index = self.members[a].index;
+            for &surface in bodies[index as usize].contacts() {
+                let normal = world.scenery.foot(surface, self.members[a].start).normal;
+                self.members[a].is_held = true;
+                self.contacts.push(Contact::new(
+                    a,
+                    With::Surface(surface),
+                    *world.surface_law(index as usize, surface),
+                    normal,
+                ));
+            }
+            if links.is_empty() {
+                continue;
+            }
+            for b in 0..a {
+                let other = self.members[b].index;
+                if links.contains(index, other) {
+                    let law = *world.pair_law(index as usize, other as usize);
+                    let normal = (self.members[a].start - self.members[b].start).normalize_or(DVec3::Z);
+                    (self.members[a].is_held, self.members[b].is_held) = (true, true);
+                    self.contacts.push(Contact::new(a, With::Member(b), law, normal));
+                }
+            }
+        }
+    }
+
+    /// Takes away what slow approach is left along lasting contacts, so that no step starts into a surface.
+    fn stop_approach(&mut self, world: &Marbles, bodies: &mut [Marble]) {
+        let approaches = |c: &Contact| {
+            let a = &self.members[c.a];
+            let other = match c.with {
+                With::Surface(_) => DVec3::ZERO,
+                With::Member(b) => self.members[b].start_v,
+            };
+            -(a.start_v - other).dot(c.push.first)
+                > APPROACH * world.accuracy.settle * (world.strength * a.ball.radius).sqrt()
+        };
+        if !self.contacts.iter().any(approaches) {
+            return;
+        }
+        let enough = world.accuracy.sweep_tolerance * world.strength * self.step_length(world);
+        self.relax(world.accuracy.sweeps, enough);
+        self.clear();
+        for m in &mut self.members {
+            (m.start_v, m.start_w) = (m.v, m.w);
+            let body = &mut bodies[m.index as usize];
+            (body.path.v, body.spin) = (m.v, m.w);
+        }
+    }
+
+    /// Length of the next step: a part of the time in which gravity, or the motion, covers the curvature of what is touched.
+    fn step_length(&self, world: &Marbles) -> f64 {
+        let mut shortest = f64::INFINITY;
+        for c in &self.contacts {
+            let m = &self.members[c.a];
+            let time = match c.with {
+                With::Surface(s) => {
+                    let curvature = world.scenery.foot(s, m.start).curvature_radius;
+                    time_scale(curvature, m.ball.radius, m.start_v.length(), world.strength)
+                }
+                With::Member(b) => {
+                    let other = &self.members[b];
+                    let (scale, speed) =
+                        (0.5 * (m.ball.radius + other.ball.radius), (m.start_v - other.start_v).length());
+                    (scale / world.strength).sqrt().min(scale / speed)
+                }
+            };
+            shortest = shortest.min(time);
+        }
+        world.accuracy.step * shortest
+    }
+
+    /// Whether anything overlaps by more than rest may keep: then a step comes first, which puts it back.
+    fn overlaps(&self, world: &Marbles) -> bool {
+        self.contacts.iter().any(|c| {
+            let m = &self.members[c.a];
+            let (distance, reach) = match c.with {
+                With::Surface(s) => (world.scenery.foot(s, m.start).distance, m.ball.radius),
+                With::Member(b) => {
+                    ((m.start - self.members[b].start).length(), m.ball.radius + self.members[b].ball.radius)
+                }
+            };
+            reach - distance > OVERLAP * reach
+        })
+    }
+
+    /// Rest, where everything is slow and the contacts can hold everything still.
+    fn try_rest(&mut self, world: &Marbles, bodies: &mut [Marble]) -> bool {
+        let slow = self.members.iter().all(|m| {
+            let limit = world.accuracy.rest_speed * (world.strength * m.ball.radius).sqrt();
+            m.start_v.length() <= limit && m.start_w.length() * m.ball.radius <= limit
+        });
+        if !slow || self.contacts.is_empty() || self.overlaps(world) {
+            return false;
+        }
+        let h = self.step_length(world);
+        if !h.is_finite() {
+            return false;
+        }
+        for m in &mut self.members {
+            (m.v, m.w, m.x) = (world.gravity * h, DVec3::ZERO, m.start);
+        }
+        // Where they can't, the step begins with the impulses found: they are about those that it needs.
+        if !self.can_hold(world.accuracy.sweeps, world.accuracy.rest_residual * world.strength * h) {
+            return false;
+        }
+        self.clear();
+        for m in &self.members {
+            let body = &mut bodies[m.index as usize];
+            (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);
+            body.begin(Phase::Rest, DVec3::ZERO);
+        }
+        true
+    }
+
+    /// Whether the contacts can stop all members up to speeds of `left`.
+    fn can_hold(&mut self, most: u32, left: f64) -> bool {
+        let mut last = f64::INFINITY;
+        for _ in 0..most {
+            let change = self.sweep().sqrt();
+            let fastest = |m: &Member| m.v.length().max(m.w.length() * m.ball.radius);
+            let worst = self.members.iter().map(fastest).fold(0.0, f64::max);
+            if worst <= left {
+                return true;
+            }
+            // Sweeps shrink geometrically: all that are still to come change no more than this.
+            let shrinks = (change / last).max(SHRINKS);
+            let to_come = if shrinks < 1.0 { change * shrinks / (1.0 - shrinks) } else { f64::INFINITY };
+            if change <= CREEP * left || worst - left > DOUBT * to_come {
+                return false;
+            }
+            last = change;
+        }
+        false
+    }
+
+    /// Solves all contacts for members whose velocities are free of them, starting from the impulses that the contacts hold, until a sweep
+    /// changes no velocity by more than `enough`, or `most` sweeps are done.
+    fn relax(&mut self, most: u32, enough: f64) {
+        for c in &self.contacts {
+            c.apply(&mut self.members);
+        }
+        for _ in 0..most {
+            if self.sweep() <= enough * enough || self.contacts.len() == 1 {
+                break;
+            }
+        }
+    }
+
+    /// Solves each contact twice, up and down again: the lowest come last, so that nothing is left moving into the scenery. The square of the largest change
+    /// of a velocity on the way down.
+    fn sweep(&mut self) -> f64 {
+        for c in &mut self.contacts {
+            c.solve(&mut self.members);
+        }
+        let mut change: f64 = 0.0;
+        for c in self.contacts.iter_mut().rev() {
+            change = change.max(c.solve(&mut self.members));
+        }
+        change
+    }
+
+    fn clear(&mut self) {
+        for c in &mut self.contacts {
+            c.clear();
+        }
+    }
+
+    fn step(&mut self, world: &Marbles, bodies: &mut [Marble]) {
+        let h = self.step_length(world);
+        if !h.is_finite() {
+            // Weightless and without relative motion: it goes on as it is.
+            for m in &self.members {
+                bodies[m.index as usize].begin(Phase::Flight, world.gravity);
+            }
+            return;
+        }
+        self.solve(world, bodies, h);
+        self.put_back(world);
+        self.guard_energy(world);
+        for m in &self.members {
+            let body = &mut bodies[m.index as usize];
+            if !m.is_held {
+                body.begin(Phase::Flight, world.gravity);
+                continue;
+            }
+            body.begin(Phase::Step, m.acceleration(h));
+            body.spin_rate = (m.w - m.start_w) / h;
+            body.end_velocity = m.v;
+            body.expiry = body.path.t + h;
+        }
+    }
+
+    fn solve(&mut self, world: &Marbles, bodies: &[Marble], h: f64) {
+        for m in &mut self.members {
+            let body = &bodies[m.index as usize];
+            let pull = if body.phase == Phase::Step { body.path.a } else { DVec3::ZERO };
+            m.x = m.start + (m.start_v + pull * (0.5 * h)) * h;
+        }
+        for most in [PREDICT, world.accuracy.sweeps] {
+            for c in &mut self.contacts {
+                let x = self.members[c.a].x;
+                c.push.last = match c.with {
+                    With::Surface(s) => world.scenery.foot_near(s, x).normal,
+                    With::Member(b) => (x - self.members[b].x).normalize_or(c.push.first),
+                };
+            }
+            for m in &mut self.members {
+                (m.v, m.w) = (m.start_v + world.gravity * h, m.start_w);
+            }
+            self.relax(most, world.accuracy.sweep_tolerance * world.strength * h);
+            for m in &mut self.members {
+                m.x = m.start + (m.start_v + m.v) * (0.5 * h);
+            }
+        }
+    }
+
+    /// Puts centres back onto what they touch: first towards what bears a load, then only out of what they are in. The scenery has the last word.
+    fn put_back(&mut self, world: &Marbles) {
+        let rounds = if self.contacts.len() == 1 { 1 } else { CORRECTIONS };
+        for round in 0..rounds {
+            let mut moved = false;
+            for c in self.contacts.iter().rev() {
+                let m = self.members[c.a];
+                let (missing, normal) = match c.with {
+                    With::Surface(s) => {
+                        let foot = world.scenery.foot_near(s, m.x);
+                        (m.ball.radius - foot.distance, foot.normal)
+                    }
+                    With::Member(b) => {
+                        let offset = m.x - self.members[b].x;
+                        let distance = offset.length();
+                        (
+                            m.ball.radius + self.members[b].ball.radius - distance,
+                            if distance > 0.0 { offset / distance } else { c.push.last },
+                        )
+                    }
+                };
+                if missing <= 0.0 && (round > 0 || c.load == 0.0) {
+                    continue;
+                }
+                moved |= missing.abs() > CORRECTED * m.ball.radius;
+                match c.with {
+                    With::Surface(_) => self.members[c.a].x += normal * missing,
+                    With::Member(b) => {
+                        let other = self.members[b].ball.mass;
+                        let share = missing / (m.ball.mass + other);
+                        self.members[c.a].x += normal * (share * other);
+                        self.members[b].x -= normal * (share * m.ball.mass);
+                    }
+                }
+            }
+            if !moved {
+                break;
+            }
+        }
+    }
+
+    /// Takes back what discretisation added: a group's energy never grows.
+    fn guard_energy(&mut self, world: &Marbles) {
+        let kinetic = |m: &Member, v: DVec3, w: DVec3| {
+            0.5 * (m.ball.mass * v.length_squared() + m.ball.inertia() * w.length_squared())
+        };
+        let held = || self.members.iter().filter(|m| m.is_held);
+        let before: f64 =
+            held().map(|m| kinetic(m, m.start_v, m.start_w) + m.ball.mass * world.gravity.dot(m.x - m.start)).sum();
+        let after: f64 = held().map(|m| kinetic(m, m.v, m.w)).sum();
+        if after > before {
+            let part = if before > 0.0 { (before / after).sqrt() } else { 0.0 };
+            for m in self.members.iter_mut().filter(|m| m.is_held) {
+                m.v *= part;
+                m.w *= part;
+            }
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! The simulator by itself: digests of where marbles, dice, pins and a ball end, and of every impact on the way. They hold at every optimisation level, on every thread, and however often
+//! the same work space has been used.
+
+use glam::DVec3;
+use plaus_dist::{Purpose, Seed, open_unit};
+use plaus_sim::mechanics::{Impact, Mechanics};
+use plaus_sim::trace::Observer;
+use plaus_sim::worlds::{Alley, Bins, DieOnTable, drops};
+use plaus_sim::{Accuracy, Preset, Scratch};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// FNV-1a, 64 bits.
+struct Digest(u64);
+
+impl Digest {
+    fn add(&mut self, bits: u64) {
+        for byte in bits.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    fn vector(&mut self, v: DVec3) {
+        v.to_array().iter().for_each(|x| self.add(x.to_bits()));
+    }
+}
+
+/// Digests impacts as they come.
+struct Impacts(Digest);
+
+impl<M: Mechanics> Observer<M> for Impacts {
+    fn impact(&mut self, impact: &Impact) {
+        self.0.add(impact.time.to_bits());
+        self.0.vector(impact.point);
+        self.0.vector(impact.impulse);
+    }
+}
+
+fn impacts() -> Impacts {
+    Impacts(Digest(0xcbf2_9ce4_8422_2325))
+}
+
+/// Ten marbles over bins with perturbed ridges.
+fn marbles(preset: Preset, draws: u64) -> u64 {
+    let bins = Bins::default();
+    let mut world = bins.world(10, Accuracy::preset(preset), 2.0).unwrap();
+    let (mut seen, mut scratch) = (impacts(), Scratch::default());
+    for draw in 0..draws {
+        let mut stream = Seed(3).chain(0).at(draw, Purpose::START);
+        let mut uniform = || open_unit(&mut stream);
+        world.move_vertices(&bins.perturbed(1e-4, &mut uniform)).unwrap();
+        let mut state = world.state(&drops(&bins, 10, 0.1, &mut uniform)).unwrap();
+        world.run(&mut state, &mut scratch, 2.0, &mut seen);
+        for body in state.bodies() {
+            seen.0.vector(body.path.x);
+            seen.0.vector(body.spin);
+        }
+    }
+    seen.0.0
+}
+
+/// Throws of a die onto a table, flat or bumpy.
+fn dice(preset: Preset, bumps: f64, draws: u64) -> u64 {
+    let die = DieOnTable { bumps, accuracy: Accuracy::preset(preset), ..DieOnTable::default() };
+    let (mut seen, mut scratch) = (impacts(), Scratch::default());
+    for draw in 0..draws {
+        let mut stream = Seed(4).chain(0).at(draw, Purpose::START);
+        let start = die.throw(|| open_unit(&mut stream));
+        let heights = |i: i64, j: i64| ((i * 7 + j * 3).rem_euclid(11) - 5) as f64 / 5.0;
+        let world = die.world(heights).unwrap();
+        let mut state = world.state(&[start]).unwrap();
+        world.run(&mut state, &mut scratch, 20.0, &mut seen).unwrap();
+        let body = &state.bodies()[0];
+        seen.0.vector(body.path.x);
+        body.turn.to_array().iter().for_each(|x| seen.0.add(x.to_bits()));
+    }
+    seen.0.0
+}
+
+/// A ball at ten pins: the first second and a half.
+fn pins(preset: Preset, draws: u64) -> u64 {
+    let alley = Alley { accuracy: Accuracy::preset(preset), duration: 1.5, ..Alley::default() };
+    let world = alley.world().unwrap();
+    let (mut seen, mut scratch) = (impacts(), Scratch::default());
+    for draw in 0..draws {
+        let velocity = DVec3::new(-0.1 * draw as f64, 8.0, 0.0);
+        let spin = DVec3::new(-velocity.y, velocity.x, 0.0) / alley.ball_radius;
+        let starts = alley.starts(1.0, 0.03 + 0.02 * draw as f64, velocity, spin).unwrap();
+        let mut state = world.state(&starts).unwrap();
+        world.run(&mut state, &mut scratch, 1.5, &mut seen).unwrap();
+        for body in state.bodies() {
+            seen.0.vector(body.path.x);
+            body.turn.to_array().iter().for_each(|x| seen.0.add(x.to_bits()));
+        }
+    }
+    seen.0.0
+}
+
+/// One line per world and preset.
+fn digests() -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, preset: Preset, digest: u64| {
+        writeln!(text, "{name}, {}: {digest:016x}", preset.name()).unwrap();
+    };
+    for (preset, draws) in [(Preset::Draft, 10), (Preset::Standard, 10), (Preset::Fine, 2)] {
+        line("ten marbles", preset, marbles(preset, draws));
+        line("a die on a flat table", preset, dice(preset, 0.0, draws));
+        line("a die on a bumpy table", preset, dice(preset, 0.1, draws));
+    }
+    line("ten pins", Preset::Draft, pins(Preset::Draft, 2));
+    line("ten pins", Preset::Standard, pins(Preset::Standard, 1));
+    text
+}
+
+fn file() -> PathBuf {
+    super::root().join("tests/golden/simulator.digests")
+}
+
+#[test]
+fn golden_traces_have_the_same_bits_in_the_simulator() {
+    // Two threads at once, each with work space of its own.
+    let other = std::thread::spawn(digests);
+    let found = digests();
+    assert_eq!(found, other.join().unwrap(), "one thread and another");
+    if std::env::var_os("PLAUS_BLESS").is_some() {
+        std::fs::write(file(), found).unwrap();
+        return;
+    }
+    let stored = std::fs::read_to_string(file()).unwrap_or_default();
+    assert_eq!(stored, found, "stored, and found now. Where that is meant: cargo xtask golden --bless");
+}
+
+#[test]
+fn a_digest_notices_a_single_bit() {
+    let of = |x: f64| {
+        let mut digest = Digest(0);
+        digest.vector(DVec3::new(1.0, x, 3.0));
+        digest.0
+    };
+    assert_ne!(of(2.0), of(f64::from_bits(2.0_f64.to_bits() + 1)));
+    assert_eq!(of(2.0), of(2.0));
+}
