@@ -1,7 +1,7 @@
 //! Scenario keys of bowling.
 
 use super::release::Release;
-use crate::spelling::AccuracyPreset;
+use crate::accuracy::AccuracyPreset;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

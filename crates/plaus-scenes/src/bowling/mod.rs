@@ -16,6 +16,7 @@ pub use moves::{ChangeAll, ChangeBall, ChangePins, Mirror, Redraw, RedrawPins, R
 pub use rack::Rack;
 pub use release::{Law, Laws, Quantity, Release};
 
+use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene};
@@ -190,5 +191,9 @@ impl Scene for Bowling {
 
     fn animate(&self, draw: &Shot) -> Result<Animation, ModelError> {
         animate::animate(&self.lane, draw, self.config.shown_m)
+    }
+
+    fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
+        Self::new(&Config { accuracy, ..self.config.clone() }).map(Some)
     }
 }
