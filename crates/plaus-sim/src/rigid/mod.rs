@@ -161,10 +161,10 @@ impl Rigid {
             }
         }
         let mut spacing = f64::INFINITY;
-        for part in &world.parts {
+        for (k, part) in world.parts.iter().enumerate() {
             world.laws.require(part.material())?;
+            part.check(k)?;
             if let Part::Table(table) = part {
-                table.check()?;
                 spacing = spacing.min(world.skin * table.height.grid().spacing);
             }
         }
