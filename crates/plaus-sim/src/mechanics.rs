@@ -43,6 +43,9 @@ pub trait Mechanics {
     /// Work space for [`Mechanics::settle`], kept between calls.
     type Scratch: Default;
 
+    /// Whether bodies in lasting contact with each other can meet at more points while it lasts.
+    const WATCHES_LINKED: bool = false;
+
     /// How many bodies there are.
     fn len(&self) -> usize;
     /// Whether there are none.
@@ -73,6 +76,11 @@ pub trait Mechanics {
     fn first_surface(&self, index: usize, body: &Self::Body, until: f64) -> Option<(f64, Surface)>;
     /// First time in `[from, until]` at which two bodies touch while approaching.
     fn first_meeting(&self, pair: [usize; 2], bodies: [&Self::Body; 2], from: f64, until: f64) -> Option<f64>;
+
+    /// The same for two bodies in lasting contact, at points that are not part of it.
+    fn first_new_meeting(&self, _pair: [usize; 2], _bodies: [&Self::Body; 2], _from: f64, _until: f64) -> Option<f64> {
+        None
+    }
 
     /// Collides a body with a surface, both at the body's clock; records the contact where it lasts.
     fn hit_surface(&self, index: usize, body: &mut Self::Body, surface: Surface) -> Option<Impact>;

@@ -287,13 +287,19 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             if j == k || !self.state.boxes[j].meets(&self.state.boxes[k]) || !self.mechanics.is_present(other) {
                 continue;
             }
-            if self.state.links.contains(j as u32, k as u32) {
+            let linked = self.state.links.contains(j as u32, k as u32);
+            if linked && !M::WATCHES_LINKED {
                 continue;
             }
             let from = self.state.time.max(self.mechanics.clock(other)).max(self.mechanics.clock(body));
             let until = event.time.min(self.state.events[j].time);
             let (pair, both) = if k < j { ([k, j], [body, other]) } else { ([j, k], [other, body]) };
-            if let Some(time) = self.mechanics.first_meeting(pair, both, from, until) {
+            let met = if linked {
+                self.mechanics.first_new_meeting(pair, both, from, until)
+            } else {
+                self.mechanics.first_meeting(pair, both, from, until)
+            };
+            if let Some(time) = met {
                 let found = Event {
                     time,
                     happening: Happening::Body { other: j as u32, generation: self.state.generations[j] },

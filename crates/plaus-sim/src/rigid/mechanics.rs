@@ -11,6 +11,7 @@ use crate::scenery::{Aabb, Surface};
 impl Mechanics for Rigid {
     type Body = Turning;
     type Scratch = RigidScratch;
+    const WATCHES_LINKED: bool = true;
 
     fn len(&self) -> usize {
         self.specs.len()
@@ -75,6 +76,13 @@ impl Mechanics for Rigid {
             return None;
         }
         self.first_pair(pair, bodies, from, until)
+    }
+
+    fn first_new_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
+        if !self.are_cuboids(pair) || bodies.iter().all(|b| b.phase == Phase::Rest) {
+            return None;
+        }
+        self.first_of_cuboids(pair, bodies, [from, until], true)
     }
 
     fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface) -> Option<Impact> {

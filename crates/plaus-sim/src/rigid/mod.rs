@@ -24,6 +24,7 @@
 //! ```
 
 mod body;
+mod boxes;
 mod contact;
 mod detect;
 mod glide;
@@ -164,10 +165,10 @@ impl Rigid {
             }
         }
         let mut spacing = f64::INFINITY;
-        for part in &world.parts {
+        for (k, part) in world.parts.iter().enumerate() {
             world.laws.require(part.material())?;
+            part.check(k)?;
             if let Part::Table(table) = part {
-                table.check()?;
                 spacing = spacing.min(world.skin * table.height.grid().spacing);
             }
         }
@@ -188,13 +189,20 @@ impl Rigid {
     /// A state in which every body waits for its release.
     ///
     /// # Errors
-    /// [`WorldError`] naming the body whose start is not finite, or that overlaps a part.
+    /// [`WorldError`] naming the body whose start is not finite, or that overlaps a part or another body released at the same time.
     pub fn state(&self, starts: &[Start]) -> Result<State<Turning>, WorldError> {
         if starts.len() != self.specs.len() {
             return Err(WorldError::WrongState { state: starts.len(), world: self.specs.len() });
         }
         for (k, start) in starts.iter().enumerate() {
             self.check_start(k, start)?;
+            let body = Turning::waiting(start);
+            for (j, other) in starts[..k].iter().enumerate().filter(|(_, s)| s.time == start.time) {
+                let depth = -self.gap([j, k], [&Turning::waiting(other), &body]);
+                if depth > OVERLAP * self.specs[j].size.min(self.specs[k].size) {
+                    return Err(WorldError::BodiesOverlap { a: j, b: k, depth });
+                }
+            }
         }
         Ok(State::new(starts.iter().map(Turning::waiting).collect()))
     }
@@ -263,6 +271,21 @@ impl Rigid {
         let m = if body.phase == Phase::Step { body.ends[0] } else { body.motion_after(s, 0.0) };
         0.5 * (s.mass * m.v.length_squared() + m.w.dot(s.inertia.momentum(body.turn, m.w)))
             - s.mass * self.gravity.dot(body.path.x)
+    }
+
+    /// How far apart the skins of two bodies are at their clocks, in m; negative where they overlap, then by the shortest way out of it for balls and cuboids.
+    #[must_use]
+    pub fn gap(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> f64 {
+        let [a, b] = bodies.map(Turning::pose);
+        let [i, j] = pair;
+        let far = (a.x - b.x).length() - self.specs[i].reach - self.specs[j].reach;
+        if far > 0.0 { far } else { self.pair_touch(pair, [&a, &b]).gap }
+    }
+
+    /// How far a body is in the fixed parts at its clock, in m, as its feelers have it; 0 where it is in none.
+    #[must_use]
+    pub fn depth(&self, index: usize, body: &Turning) -> f64 {
+        self.deepest(index, body).map_or(0.0, |(_, depth)| depth)
     }
 
     /// How many bodies there are.

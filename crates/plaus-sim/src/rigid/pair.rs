@@ -1,14 +1,15 @@
 //! Two bodies: how near they are, when they touch, and their impact.
 //!
-//! Balls and bodies of revolution are looked at as the balls and rings of their skins, cuboids (against balls only) by their faces. First contacts are found by advancement with a
+//! Balls and bodies of revolution are looked at as the balls and rings of their skins, cuboids by their faces against balls; two cuboids are in `boxes.rs`. First contacts are found by advancement with a
 //! second-order bound on the nearest points' approach; should another pair of points have come first, the overlap is seen and the time bisected.
 
 use super::body::{Motion, Phase, Pose, Turning};
 use super::contact::{impulse, response};
 use super::detect::earliest;
-use super::{Rigid, Skin, Spec};
+use super::{Rigid, Skin, Spec, step};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
+use crate::shape::cuboid_pair::{Feature, Meeting};
 use crate::shape::{Feeler, Ring};
 use glam::DVec3;
 
@@ -20,6 +21,22 @@ pub(crate) struct PairTouch {
     /// From each centre of gravity to its nearest point.
     pub(crate) arms: [DVec3; 2],
     pub(crate) gap: f64,
+    /// What meets there, of two cuboids.
+    pub(crate) feature: Option<Feature>,
+}
+
+impl PairTouch {
+    /// Rate of the gap.
+    #[inline]
+    pub(crate) fn rate(&self, a: &Pose, b: &Pose) -> f64 {
+        (a.velocity(self.arms[0]) - b.velocity(self.arms[1])).dot(self.normal)
+    }
+}
+
+impl From<Meeting> for PairTouch {
+    fn from(m: Meeting) -> Self {
+        Self { normal: m.normal, arms: m.arms, gap: m.gap, feature: Some(m.feature) }
+    }
 }
 
 /// Most advancements of one search; then the time reached is handed on as an event.
@@ -30,6 +47,9 @@ const BISECTIONS: usize = 40;
 
 /// Distance of the capsules around two bodies, over their size, from which their skins are looked at. Default 0.02.
 const NEAR: f64 = 0.02;
+
+/// Distance over the size that two skins may move between two looks beyond what parts them. Default 0.05; larger values miss grazes that deep by half of it.
+const SKIP: f64 = 0.05;
 
 /// Stride over the balls of two rows in the first look; the best local minima are then followed ball by ball.
 const STRIDE: usize = 4;
@@ -43,7 +63,7 @@ fn balls(offset: DVec3, [p, q]: [DVec3; 2], [r, s]: [f64; 2]) -> PairTouch {
     let between = offset + p - q;
     let distance = between.length();
     let normal = if distance > 0.0 { between / distance } else { DVec3::Z };
-    PairTouch { normal, arms: [p - normal * r, q + normal * s], gap: distance - r - s }
+    PairTouch { normal, arms: [p - normal * r, q + normal * s], gap: distance - r - s, feature: None }
 }
 
 /// The point of a ring's circle nearest to `d` (both about the ring's body), in body axes.
@@ -60,7 +80,7 @@ fn nearer(best: &mut Option<PairTouch>, other: PairTouch) {
 }
 
 fn swapped(t: PairTouch) -> PairTouch {
-    PairTouch { normal: -t.normal, arms: [t.arms[1], t.arms[0]], gap: t.gap }
+    PairTouch { normal: -t.normal, arms: [t.arms[1], t.arms[0]], ..t }
 }
 
 impl Rigid {
@@ -79,16 +99,24 @@ impl Rigid {
         self.accuracy.settle * (1.0 - law.restitution) * self.specs[i].speed.min(self.specs[j].speed)
     }
 
+    /// The gap that a point of contact of two bodies is to have at the end of a step of `h` seconds: an overlap is undone at a limited speed.
+    pub(super) fn pair_goal(&self, [i, j]: [usize; 2], gap: f64, h: f64) -> f64 {
+        let fastest = step::PUSH * self.accuracy.settle * self.specs[i].speed.min(self.specs[j].speed);
+        (step::KEEP * self.pair_gap([i, j])).min(gap + fastest * h)
+    }
+
     /// The nearest points of two bodies.
     pub(super) fn pair_touch(&self, [i, j]: [usize; 2], [a, b]: [&Pose; 2]) -> PairTouch {
         let (s, t) = (&self.specs[i], &self.specs[j]);
+        if let Some(touch) = self.nearest_of_cuboids([i, j], [a, b]) {
+            return touch;
+        }
         let offset = a.x - b.x;
         match (&s.skin, &t.skin) {
             (Skin::Ball, Skin::Ball) => balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]),
             (Skin::Revolved, Skin::Ball) => revolved_and_ball(s, a, offset, t.reach),
             (Skin::Ball, Skin::Revolved) => swapped(revolved_and_ball(t, b, -offset, s.reach)),
             (Skin::Revolved, Skin::Revolved) => two_revolved([s, t], [a, b], offset),
-            (Skin::Cuboid { .. }, Skin::Ball) => cuboid_and_balls(s, a, t, b, offset),
             (Skin::Cuboid { .. }, _) => cuboid_and_balls(s, a, t, b, offset),
             (_, Skin::Cuboid { .. }) => swapped(cuboid_and_balls(t, b, s, a, -offset)),
         }
@@ -96,13 +124,18 @@ impl Rigid {
 
     /// First time in `[from, until]` at which two bodies touch while approaching.
     pub(super) fn first_pair(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
+        if self.are_cuboids(pair) {
+            return self.first_of_cuboids(pair, bodies, [from, until], false);
+        }
         let [s, t] = pair.map(|k| &self.specs[k]);
         let level = self.pair_gap(pair);
         let pull = (bodies[0].path.a - bodies[1].path.a).length();
         let turning = |spec: &Spec, b: &Turning| {
             if spec.is_ball { 0.0 } else { b.spin.length_squared() * (1.0 + spec.wobble) * spec.reach }
         };
-        let m = pull + turning(s, bodies[0]) + turning(t, bodies[1]);
+        let m = pull + (turning(s, bodies[0]) + turning(t, bodies[1]));
+        let reach = s.reach + t.reach;
+        let swing = bodies[0].spin.length() * s.reach + bodies[1].spin.length() * t.reach + (pull * reach).sqrt();
         let mut tumbles = [bodies[0].tumble(s), bodies[1].tumble(t)];
         let mut pose = |k: usize, time: f64| {
             let (spec, b) = ([s, t][k], bodies[k]);
@@ -134,13 +167,13 @@ impl Rigid {
                 continue;
             }
             let (a, b) = (pose(0, time), pose(1, time));
-            let (apart, rate) = capsules([s, t], [&a, &b]);
+            let (apart, safe) = capsules([s, t], [&a, &b], level, m);
             if apart - level > NEAR * s.size.min(t.size) {
                 clear = Some(time);
                 if time >= until || time.is_nan() {
                     return None;
                 }
-                time = (time + earliest(apart - level, rate, m)).min(until);
+                time = (time + safe).min(until);
                 continue;
             }
             let touch = self.pair_touch(pair, [&a, &b]);
@@ -167,8 +200,10 @@ impl Rigid {
             if time >= until || time.is_nan() {
                 return None;
             }
-            // The end is looked at too: what was not the nearest pair of points may have met by then.
-            time = (time + earliest(f, rate, m)).min(until);
+            // Skins have necks: a pair of points that is not the nearest may meet first, but within this distance it is seen in time, or hardly touches.
+            let seen = (f.max(0.0) + SKIP * s.size.min(t.size)) / ((a.v - b.v).length() + swing);
+            // The end is looked at too.
+            time = (time + earliest(f, rate, m).min(seen)).min(until);
         }
         Some(time)
     }
@@ -178,13 +213,15 @@ impl Rigid {
         let [s, t] = pair.map(|k| &self.specs[k]);
         let time = a.path.t;
         let (mut p, mut q) = (a.pose(), b.pose());
-        let touch = self.pair_touch(pair, [&p, &q]);
+        let mut touch = self.hitting(pair, [&p, &q]);
         let vigour = a.vigour(s) + b.vigour(t);
+        let before = [&*a, &*b].map(|body| Motion { v: body.path.v, w: body.spin });
         let mut u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
         if u.dot(touch.normal) >= 0.0 && !linked && (a.listed != time || b.listed != time) {
             a.take_drift();
             b.take_drift();
             (p, q) = (a.pose(), b.pose());
+            touch = self.hitting(pair, [&p, &q]);
             u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
         }
         let approach = -u.dot(touch.normal);
@@ -193,10 +230,12 @@ impl Rigid {
         let lasting = law.restitution * approach <= settles || a.is_hurried() || b.is_hurried();
         if !linked
             && approach <= 0.0
-            && touch.gap <= super::step::TOUCHING * self.pair_gap(pair)
+            && touch.gap <= step::TOUCHING * self.pair_gap(pair)
             && (a.is_hurried() || b.is_hurried())
         {
             // Found again and again without an approach, as where two pairs of points are equally near: their group is to deal with it.
+            a.set_motion(before[0]);
+            b.set_motion(before[1]);
             for (index, body) in [(pair[0], &mut *a), (pair[1], &mut *b)] {
                 if body.phase != Phase::Flight {
                     body.phase = Phase::Step;
@@ -215,7 +254,10 @@ impl Rigid {
                 lasting: true,
             });
         }
-        if approach <= 0.0 || touch.gap > super::step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
+        if approach <= 0.0 || touch.gap > step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
+            // No impact: the drift's velocities, if taken, would bring energy.
+            a.set_motion(before[0]);
+            b.set_motion(before[1]);
             return None;
         }
         let (ia, ib) = (s.inertia.inverse(&p.r), t.inertia.inverse(&q.r));
@@ -370,15 +412,25 @@ fn cuboid_and_balls(s: &Spec, a: &Pose, t: &Spec, b: &Pose, offset: DVec3) -> Pa
     best.unwrap_or(balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]))
 }
 
-/// Distance of the capsules around two bodies, a lower bound on their gap, and its rate.
-fn capsules([s, t]: [&Spec; 2], [a, b]: [&Pose; 2]) -> (f64, f64) {
+/// Distance of the capsules around two bodies, a lower bound on their gap, and a time within which they do not come nearer than `level`: along the direction between them no end of
+/// one gets so near to an end of the other, accelerations being at most `m`.
+fn capsules([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], level: f64, m: f64) -> (f64, f64) {
     let ends =
         |spec: &Spec, pose: &Pose| [pose.x + pose.r.z_axis * spec.capsule[0], pose.x + pose.r.z_axis * spec.capsule[1]];
-    let [p, q] = nearest_on_segments(ends(s, a), ends(t, b));
+    let (first, second) = (ends(s, a), ends(t, b));
+    let [p, q] = nearest_on_segments(first, second);
     let between = p - q;
     let distance = between.length();
-    let rate = (a.velocity(p - a.x) - b.velocity(q - b.x)).dot(between) / distance;
-    (distance - s.capsule[2] - t.capsule[2], rate)
+    let normal = between / distance;
+    let radii = s.capsule[2] + t.capsule[2];
+    let mut safe = f64::INFINITY;
+    for p in first {
+        for q in second {
+            let rate = (a.velocity(p - a.x) - b.velocity(q - b.x)).dot(normal);
+            safe = safe.min(earliest((p - q).dot(normal) - radii - level, rate, m));
+        }
+    }
+    (distance - radii, safe)
 }
 
 /// Nearest points of two segments (Ericson, *Real-Time Collision Detection*, §5.1.9).

@@ -17,7 +17,10 @@ pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
 
 /// Whether contacts can hold bodies that do not move. `h` is the length of a step.
 pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> bool {
-    if !group.leaving.is_empty() || !h.is_finite() {
+    if !group.leaving.is_empty() || !group.parting.is_empty() || !h.is_finite() {
+        return false;
+    }
+    if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 {
         return false;
     }
     // Another step makes less of an overlap larger than what can be tidied.
@@ -47,7 +50,10 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     }
     group.prepare(world, |_, _| (world.gravity * h, DVec3::ZERO));
     let limit = world.accuracy.rest_residual * world.strength * h;
-    sweep(&mut group.contacts, &mut group.members, 0.03 * limit, world.accuracy.sweeps);
+    // What is carried by a corner of a pile near tipping is found slowly.
+    let patience = if group.has_cuboids_in_touch() { PATIENCE } else { 1 };
+    let enough = 0.03 * limit / f64::from(patience);
+    sweep(&mut group.contacts, &mut group.members, enough, world.accuracy.sweeps * patience);
     group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= limit)
 }
 
@@ -74,6 +80,9 @@ fn is_above(touches: &[(usize, Touch)], down: DVec3) -> bool {
         (left && right) || (opposite && (left || right))
     })
 }
+
+/// How many times more sweeps the test of a pile may take, and how much smaller their last change is to be. Default 10.
+const PATIENCE: u32 = 10;
 
 /// Overlap over the size up to which a body may lie down; it is lifted out of it. Default 1e-3, a hundred times what steps of the draft preset leave.
 const OVERLAP: f64 = 1e-3;

@@ -29,6 +29,8 @@ pub struct RigidScratch {
     pub(super) leaving: Vec<(usize, Touch)>,
     /// Points between bodies.
     pub(super) pairs: Vec<([usize; 2], PairTouch)>,
+    /// Points between bodies in lasting contact that touch but separate.
+    pub(super) parting: Vec<([usize; 2], PairTouch)>,
     /// Of the touches first, then of the pairs.
     pub(super) contacts: Vec<Contact>,
 }
@@ -43,6 +45,18 @@ pub(super) struct Place {
     end_turn: DQuat,
 }
 
+impl Place {
+    /// The pose after a straight drift with a member's velocities.
+    fn drifted(&self, m: &Member, h: f64) -> Pose {
+        self.drifted_at(m.v, m.w, h)
+    }
+
+    fn drifted_at(&self, v: DVec3, w: DVec3, h: f64) -> Pose {
+        let turn = (rotation(w * h) * self.turn).normalize();
+        Pose { x: self.start.x + v * h, r: DMat3::from_quat(turn), v, w }
+    }
+}
+
 /// Spread of the gaps at rest, over the gap at which bodies touch, that is left as it is. Default 1e-3; rounding is far below.
 const TIDY: f64 = 1e-3;
 
@@ -52,8 +66,14 @@ const LIFTS: usize = 4;
 /// Passes over the end of a step: the first predicts where points get to, the others correct.
 const PASSES: usize = 2;
 
+/// The same where cuboids touch each other: a corner of one turns against a face that turns too. Passes end where all gaps are right.
+const PASSES_OF_CUBOIDS: usize = 8;
+
+/// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values make fast turning in contact dearer, as their inverse root.
+const SAG: f64 = 1e-3;
+
 /// Gap that lasting contacts keep, over the gap at which bodies touch. Default 0.75; below 1, so that they go on touching.
-const KEEP: f64 = 0.75;
+pub(super) const KEEP: f64 = 0.75;
 
 /// Gap up to which a point counts as touching, over the gap at which bodies touch: what a step leaves is not looked at as a new impact. This is the preset's gap.
 pub(super) const TOUCHING: f64 = 2.0;
@@ -65,7 +85,7 @@ const SHORTENINGS: usize = 4;
 const CLOSE: f64 = 0.2;
 
 /// Largest speed with which a point is pushed out of an overlap, over that below which bounces last. Default 1; only the drift has it, not the velocities.
-const PUSH: f64 = 1.0;
+pub(super) const PUSH: f64 = 1.0;
 
 /// Least part that one shortening leaves of a step.
 const SHORTEST: f64 = 0.1;
@@ -101,13 +121,14 @@ pub(super) fn settle(
         return;
     }
     let mut h = scratch.step_length(world);
+    h *= scratch.straightness(world, h);
     if rest::is_slow(world, scratch) && rest::is_supported(world, scratch, h) {
         scratch.lie_down(world, bodies);
         return;
     }
     for _ in 0..SHORTENINGS {
         scratch.step(world, h);
-        match scratch.returns() {
+        match scratch.returns().or_else(|| scratch.misses(world, h)) {
             Some(part) => h *= part,
             None => return scratch.write(bodies, h),
         }
@@ -115,6 +136,7 @@ pub(super) fn settle(
     // Bounces too fast for any step: they count as lasting.
     scratch.loads.clear();
     scratch.touches.append(&mut scratch.leaving);
+    scratch.pairs.append(&mut scratch.parting);
     scratch.touches.sort_by_key(|t| t.0);
     scratch.step(world, h);
     scratch.write(bodies, h);
@@ -128,16 +150,17 @@ impl RigidScratch {
         self.loads.clear();
         self.leaving.clear();
         self.pairs.clear();
+        self.parting.clear();
         for &k in group {
             for j in links.of(k).filter(|&j| j > k) {
                 let (i, j) = (k as usize, j as usize);
                 let (a, b) = (bodies[i].pose(), bodies[j].pose());
-                let touch = world.pair_touch([i, j], [&a, &b]);
-                let speed = (a.velocity(touch.arms[0]) - b.velocity(touch.arms[1])).dot(touch.normal);
-                let slow = speed <= world.pair_settle_speed([i, j]) || bodies[i].is_hurried() || bodies[j].is_hurried();
-                if slow && touch.gap <= TOUCHING * world.pair_gap([i, j]) {
-                    self.pairs.push(([i, j], touch));
-                }
+                let hurried = bodies[i].is_hurried() || bodies[j].is_hurried();
+                let limit = world.pair_settle_speed([i, j]);
+                world.for_pair_touches([i, j], [&a, &b], TOUCHING * world.pair_gap([i, j]), |touch| {
+                    let slow = hurried || touch.rate(&a, &b) <= limit;
+                    if slow { &mut self.pairs } else { &mut self.parting }.push(([i, j], touch));
+                });
             }
         }
         links.retain(|[i, j]| !group.contains(&i) || self.pairs.iter().any(|p| p.0 == [i as usize, j as usize]));
@@ -168,7 +191,8 @@ impl RigidScratch {
             }
             self.places.push(Place { body: index, start: pose, turn: body.turn, end: pose, end_turn: body.turn });
         }
-        for p in &mut self.pairs {
+        self.parting.retain(|p| p.0.iter().all(|&k| self.places.iter().any(|q| q.body == k)));
+        for p in self.pairs.iter_mut().chain(&mut self.parting) {
             p.0 = p.0.map(|k| self.places.iter().position(|q| q.body == k).unwrap_or(0));
         }
     }
@@ -203,6 +227,31 @@ impl RigidScratch {
         world.accuracy.step * time
     }
 
+    /// The part of a step within which cuboids that touch do not turn far into each other between its ends: a straight drift leaves the curve of a corner by an eighth of what
+    /// turning adds over the step, squared.
+    fn straightness(&self, world: &Rigid, h: f64) -> f64 {
+        let mut worst = 0.0_f64;
+        for (ab, t) in self.pairs.iter().filter(|p| p.1.feature.is_some()) {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let [a, b] = [p, q].map(|p| p.drifted_at(p.start.v, p.start.w, h));
+            let both = [p.body, q.body];
+            let bend = world.pair_again(both, [&a, &b], t).gap - t.gap - h * t.rate(&p.start, &q.start);
+            worst = worst.max(bend.abs() / world.specs[p.body].size.min(world.specs[q.body].size));
+        }
+        if worst > 4.0 * SAG { (4.0 * SAG / worst).sqrt() } else { 1.0 }
+    }
+
+    /// Whether cuboids end a step deeper in each other than they were to; then it is too long for the passes.
+    fn misses(&self, world: &Rigid, h: f64) -> Option<f64> {
+        let deep = |(ab, t): &([usize; 2], PairTouch)| {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let both = [p.body, q.body];
+            let after = world.pair_again(both, [&p.end, &q.end], t).gap;
+            after < world.pair_goal(both, t.gap, h) - world.pair_gap(both)
+        };
+        self.pairs.iter().filter(|p| p.1.feature.is_some()).any(deep).then_some(0.5)
+    }
+
     /// Whether the drift of a step brings a point back that is just leaving, and by what part the step is too long then.
     fn returns(&self) -> Option<f64> {
         let mut worst = 1.0_f64;
@@ -210,6 +259,13 @@ impl RigidScratch {
             let p = &self.places[*k];
             let before = p.start.velocity(t.arm).dot(t.normal);
             let drifting = (p.end.v + p.end.w.cross(t.arm)).dot(t.normal);
+            if drifting < 0.25 * before {
+                worst = worst.min((0.5 * before / (before - drifting)).max(SHORTEST));
+            }
+        }
+        for ([a, b], t) in &self.parting {
+            let (p, q) = (&self.places[*a], &self.places[*b]);
+            let (before, drifting) = (t.rate(&p.start, &q.start), t.rate(&p.end, &q.end));
             if drifting < 0.25 * before {
                 worst = worst.min((0.5 * before / (before - drifting)).max(SHORTEST));
             }
@@ -252,7 +308,7 @@ impl RigidScratch {
 
     /// One step of `h` seconds from the starts; the ends are left in `places` (drift) and `members` (final velocities).
     fn step(&mut self, world: &Rigid, h: f64) {
-        let enough = world.accuracy.sweep_tolerance * world.strength * h;
+        let enough = (world.accuracy.sweep_tolerance * world.strength * h).min(self.fine(world) / h);
         let half_kick = world.gravity * (0.5 * h);
         let half_spin = |spec: &Spec, turn: DQuat, w: DVec3| {
             if spec.wobble == 0.0 { w } else { drift(&spec.inertia, turn, w, 0.5 * h).1 }
@@ -266,9 +322,11 @@ impl RigidScratch {
         }
         let first_pair = self.touches.len();
         for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
+            let [p, q] = ab.map(|k| self.places[k].drifted(&self.members[k], h));
             let both = ab.map(|k| self.places[k].body);
-            c.target = ((KEEP * world.pair_gap(both) - t.gap) / h)
-                .min(PUSH * world.accuracy.settle * world.specs[both[0]].speed);
+            // How much farther apart than a straight way says turning brings them.
+            let bend = world.pair_again(both, [&p, &q], t).gap - t.gap - h * c.velocity(&self.members).dot(t.normal);
+            c.target = (world.pair_goal(both, t.gap, h) - t.gap - bend) / h;
         }
         // The last step's forces are a good guess.
         for (c, &load) in self.contacts.iter_mut().zip(&self.loads) {
@@ -277,13 +335,14 @@ impl RigidScratch {
                 c.push(&mut self.members, c.impulse);
             }
         }
-        for pass in 0..PASSES {
+        let passes = if self.has_cuboids_in_touch() { PASSES_OF_CUBOIDS } else { PASSES };
+        for pass in 0..passes {
             sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
             for (p, m) in self.places.iter_mut().zip(&self.members) {
                 p.end_turn = (rotation(m.w * h) * p.turn).normalize();
-                p.end = Pose { x: p.start.x + m.v * h, r: DMat3::from_quat(p.end_turn), v: m.v, w: m.w };
+                p.end = p.drifted(m, h);
             }
-            if pass + 1 < PASSES {
+            if pass + 1 < passes {
                 let mut off = false;
                 for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
                     let p = &self.places[*k];
@@ -292,13 +351,13 @@ impl RigidScratch {
                     off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * spec.gap;
                     c.target += missing.min(PUSH * world.accuracy.settle * spec.speed);
                 }
-                for (c, (ab, _)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
+                for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
                     let [p, q] = ab.map(|k| &self.places[k]);
-                    let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
-                    let missing = (KEEP * world.pair_gap([p.body, q.body]) - after.gap) / h;
-                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO)
-                        && missing.abs() * h > CLOSE * world.pair_gap([p.body, q.body]);
-                    c.target += missing.min(PUSH * world.accuracy.settle * world.specs[p.body].speed);
+                    let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
+                    let both = [p.body, q.body];
+                    let missing = world.pair_goal(both, t.gap, h) - after.gap;
+                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() > CLOSE * world.pair_gap(both);
+                    c.target += missing / h;
                 }
                 if !off {
                     break;
@@ -328,9 +387,10 @@ impl RigidScratch {
                     world.specs[p.body].gap,
                 )
             } else {
-                let ab = self.pairs[c - self.touches.len()].0;
+                let (ab, t) = &self.pairs[c - self.touches.len()];
+                let ab = *ab;
                 let [p, q] = ab.map(|k| &self.places[k]);
-                let after = world.pair_touch([p.body, q.body], [&p.end, &q.end]);
+                let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
                 (self.pair_contact(world, ab, &after), after.gap, world.pair_gap([p.body, q.body]))
             };
             if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
@@ -364,6 +424,24 @@ impl RigidScratch {
         }
     }
 
+    /// Whether cuboids are in lasting contact with each other. They come to rest where they are: what tidies one up could push it into another.
+    pub(super) fn has_cuboids_in_touch(&self) -> bool {
+        self.pairs.iter().any(|p| p.1.feature.is_some())
+    }
+
+    /// How far at most the ends of a step may be off where cuboids touch, in m. What they are off more, others undo, and bodies that lean on each other never come to rest.
+    fn fine(&self, world: &Rigid) -> f64 {
+        let cuboids = self.pairs.iter().filter(|p| p.1.feature.is_some());
+        cuboids.map(|(ab, _)| CLOSE * world.pair_gap(ab.map(|k| self.places[k].body))).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The least gap of all contacts, over the gap at which bodies touch.
+    pub(super) fn least_gap(&self, world: &Rigid) -> f64 {
+        let fixed = self.touches.iter().map(|(k, t)| t.gap / world.specs[self.places[*k].body].gap);
+        let pairs = self.pairs.iter().map(|(ab, t)| t.gap / world.pair_gap(ab.map(|k| self.places[k].body)));
+        fixed.chain(pairs).fold(f64::INFINITY, f64::min)
+    }
+
     /// Rest: without velocity, flat where the ground is, and lifted out of what overlap steps have left.
     fn lie_down(&self, world: &Rigid, bodies: &mut [Turning]) {
         for (k, p) in self.places.iter().enumerate() {
@@ -375,7 +453,7 @@ impl RigidScratch {
             let tidy = TIDY * world.specs[p.body].gap;
             let (low, high) =
                 touches().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| (l.min(t.gap), h.max(t.gap)));
-            if low >= -tidy && high - low <= tidy {
+            if (low >= -tidy && high - low <= tidy) || self.has_cuboids_in_touch() {
                 continue;
             }
             if let Some((shift, turn)) = rest::flatten(touches()) {

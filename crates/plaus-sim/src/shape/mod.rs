@@ -4,6 +4,7 @@
 //! ball of radius 0, a rounded one has its rounding radius, a sphere is a single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot.
 
 mod cuboid;
+pub(crate) mod cuboid_pair;
 mod mass;
 mod revolution;
 

@@ -49,6 +49,18 @@ impl DieOnTable {
     /// # Errors
     /// [`WorldError`] for impossible numbers.
     pub fn world(&self, gaussian: impl Fn(i64, i64) -> f64 + Send + Sync + 'static) -> Result<Rigid, WorldError> {
+        self.world_of(1, gaussian)
+    }
+
+    /// The same with several alike dice.
+    ///
+    /// # Errors
+    /// [`WorldError`] for impossible numbers.
+    pub fn world_of(
+        &self,
+        dice: usize,
+        gaussian: impl Fn(i64, i64) -> f64 + Send + Sync + 'static,
+    ) -> Result<Rigid, WorldError> {
         let material = Material(0);
         let part = if self.bumps == 0.0 {
             Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, material)?)
@@ -62,7 +74,7 @@ impl DieOnTable {
         };
         let shape = Shape::Cuboid(Cuboid::new(self.edges, self.rounding)?);
         Rigid::new(RigidWorld {
-            bodies: vec![BodySpec::solid(shape, self.density, material)],
+            bodies: vec![BodySpec::solid(shape, self.density, material); dice],
             parts: vec![part],
             laws: Laws::uniform(self.law)?,
             gravity: DVec3::new(0.0, 0.0, -9.81),
@@ -87,5 +99,21 @@ impl DieOnTable {
             }
         };
         Start { position, orientation, velocity, spin, time: 0.0 }
+    }
+
+    /// Several dice thrown together: as in [`throw`](Self::throw), but side by side in two rows, each towards the middle of all at up to 1 m/s, so that they meet in the air.
+    pub fn throw_together(&self, dice: usize, mut uniform: impl FnMut() -> f64) -> Vec<Start> {
+        // Two of them cannot touch, however they are turned.
+        let apart = 1.05 * self.edges.length();
+        let middle = 0.25 * (dice.saturating_sub(1)) as f64;
+        (0..dice)
+            .map(|k| {
+                let start = self.throw(&mut uniform);
+                let place = DVec3::new((k % 2) as f64 - 0.5, (k / 2) as f64 - middle, 0.0) * apart;
+                let inwards = -place.normalize_or_zero() * uniform();
+                let height = DVec3::new(0.0, 0.0, 6.0 * self.edges.z);
+                Start { position: place + height, velocity: start.velocity + inwards, ..start }
+            })
+            .collect()
     }
 }

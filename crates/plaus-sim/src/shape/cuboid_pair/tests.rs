@@ -1,0 +1,149 @@
+//! Against a way to the distance that shares nothing with it: alternating projections.
+
+use super::*;
+use glam::DQuat;
+use plaus_dist::math;
+use proptest::prelude::*;
+
+const EIGHTH: f64 = std::f64::consts::FRAC_PI_8;
+
+fn cuboid(core: [f64; 3], turn: [f64; 4], rounding: f64) -> Placed {
+    let turn = DQuat::from_array(turn).normalize();
+    Placed { axes: DMat3::from_quat(turn), core: DVec3::from(core), rounding }
+}
+
+/// The point of a core nearest to `p`, about the core's centre.
+fn onto(c: &Placed, p: DVec3) -> DVec3 {
+    c.axes * (c.axes.transpose() * p).clamp(-c.core, c.core)
+}
+
+/// Distance of two cores by von Neumann's alternating projections, from above; it stops where a round gains less than 1e-13.
+fn by_projection(a: &Placed, b: &Placed, offset: DVec3) -> f64 {
+    let mut p = offset;
+    let mut last = f64::INFINITY;
+    for _ in 0..200_000 {
+        let q = onto(b, p);
+        p = offset + onto(a, q - offset);
+        let distance = (p - q).length();
+        if last - distance < 1e-13 {
+            return distance;
+        }
+        last = distance;
+    }
+    last
+}
+
+fn places() -> impl Strategy<Value = (Placed, Placed, DVec3)> {
+    let core = || prop::array::uniform3(0.2..1.0_f64);
+    let turn = || prop::array::uniform4(-1.0..1.0_f64).prop_filter("a turn", |q| q.iter().any(|x| x.abs() > 0.1));
+    (core(), turn(), core(), turn(), prop::array::uniform3(-2.5..2.5_f64), 0.0..0.2_f64)
+        .prop_map(|(c, q, d, r, x, rounding)| (cuboid(c, q, rounding), cuboid(d, r, 0.0), DVec3::from(x)))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// Projections converge to the distance from above, slowly where faces are almost parallel: they may end up to 1e-5 above it.
+    #[test]
+    fn the_distance_is_the_least((a, b, offset) in places()) {
+        let pair = CuboidPair::new(offset, a, b);
+        let nearest = pair.nearest();
+        let distance = nearest.gap + a.rounding;
+        let reference = by_projection(&a, &b, offset);
+        if distance > 0.0 {
+            prop_assert!(distance <= reference + 1e-12 && distance > reference - 1e-5, "{distance} for {reference}: {nearest:?}");
+            // The points lie on both skins, and apart along the normal.
+            let (p, q) = (nearest.arms[0] + nearest.normal * a.rounding, nearest.arms[1]);
+            prop_assert!((onto(&a, p) - p).length() < 1e-13 && (onto(&b, q) - q).length() < 1e-13);
+            prop_assert!((offset + p - q - nearest.normal * distance).length() < 1e-12);
+        } else {
+            prop_assert!(reference < 1e-5, "{distance} for {reference}");
+        }
+    }
+
+    /// Seen from the other cuboid everything is the other way round, to the last bit.
+    #[test]
+    fn exchange_negates((a, b, offset) in places()) {
+        let (one, two) = (CuboidPair::new(offset, a, b).nearest(), CuboidPair::new(-offset, b, a).nearest());
+        prop_assert!((one.gap - two.gap).abs() <= 1e-14 && (one.normal + two.normal).length() < 1e-9, "{one:?} {two:?}");
+    }
+
+    /// Moved out along the normal by their overlap, cuboids just touch; moved by less they do not part.
+    #[test]
+    fn overlaps_are_as_deep_as_they_say((a, b, offset) in places()) {
+        let nearest = CuboidPair::new(offset, a, b).nearest();
+        let depth = -(nearest.gap + a.rounding);
+        if depth > 1e-6 {
+            let moved = |part: f64| by_projection(&a, &b, offset + nearest.normal * (depth * part));
+            prop_assert!(moved(1.001) > 0.0009 * depth - 1e-9 && moved(0.9) < 1e-5, "{} {}", moved(1.001), moved(0.9));
+        }
+    }
+
+    /// Every point of contact has the gap, and its feature the rate, that moving the cuboids a little shows.
+    #[test]
+    fn rates_of_gaps_are_right((a, b, offset) in places(), v in prop::array::uniform3(-1.0..1.0_f64), w in prop::array::uniform3(-1.0..1.0_f64)) {
+        let pair = CuboidPair::new(offset, a, b);
+        let nearest = pair.nearest();
+        if nearest.gap < 1e-3 {
+            return Ok(());
+        }
+        let (v, w) = (DVec3::from(v), DVec3::from(w));
+        let h = 1e-6;
+        let moved = |h: f64| {
+            let turn = DMat3::from_quat(DQuat::from_scaled_axis(w * h));
+            CuboidPair::new(offset + v * h, Placed { axes: turn * a.axes, ..a }, b).again(nearest.feature, nearest.normal)
+        };
+        let rate = (v + w.cross(nearest.arms[0])).dot(nearest.normal);
+        let (after, before) = (moved(h), moved(-h));
+        // Central differences: third derivatives are at most about 1/gap² ≤ 1e6 times h², rounding 1e-15/h.
+        prop_assert!(((after.gap - before.gap) / (2.0 * h) - rate).abs() < 1e-5, "{} for {rate}", (after.gap - before.gap) / (2.0 * h));
+        let turning = pair.turning(nearest.feature, nearest.normal, [w, DVec3::ZERO]);
+        if matches!(nearest.feature, Feature::Corner { region, .. } if region.iter().filter(|&&s| s != 0).count() == 1) {
+            prop_assert!(((after.normal - before.normal) / (2.0 * h) - turning).length() < 1e-5);
+        }
+    }
+}
+
+/// A die on another, turned by 45°: the octagon of their faces. Not turned, half over: the rectangle.
+#[test]
+fn faces_touch_at_the_corners_of_what_they_share() {
+    let lower = cuboid([1.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0], 0.0);
+    let count = |upper: Placed, offset: DVec3| {
+        let pair = CuboidPair::new(offset, upper, lower);
+        let mut points = Vec::new();
+        pair.touching(&pair.nearest(), 1e-5, |m| {
+            assert!((m.normal - DVec3::Z).length() < 1e-12 && (m.gap - 1e-6).abs() < 1e-12, "{m:?}");
+            points.push(m.arms[1]);
+        });
+        points
+    };
+    let turned =
+        count(cuboid([1.0, 1.0, 1.0], [0.0, 0.0, math::sin(EIGHTH), math::cos(EIGHTH)], 0.0), DVec3::Z * (2.0 + 1e-6));
+    assert_eq!(turned.len(), 8);
+    // An octagon of this square and the square turned by 45°: circumradius √(1 + (√2 − 1)²).
+    let radius = (1.0 + (2.0_f64.sqrt() - 1.0) * (2.0_f64.sqrt() - 1.0)).sqrt();
+    assert!(turned.iter().all(|p| (p.truncate().length() - radius).abs() < 1e-12), "{turned:?}");
+    let half = count(lower, DVec3::new(1.0, 0.0, 2.0 + 1e-6));
+    for corner in [(0.0, 1.0), (0.0, -1.0), (1.0, 1.0), (1.0, -1.0)] {
+        assert!(half.iter().any(|p| (p.truncate() - glam::DVec2::from(corner)).length() < 1e-9), "{half:?}");
+    }
+    // Exactly on top of each other: four places.
+    let flush = count(lower, DVec3::new(0.0, 0.0, 2.0 + 1e-6));
+    assert!(flush.iter().all(|p| (p.truncate().abs() - 1.0).length() < 1e-9) && flush.len() >= 4, "{flush:?}");
+}
+
+/// Two ridges that cross at right angles; a corner over the middle of a face.
+#[test]
+fn ridges_cross_in_one_point() {
+    let (s, c) = (math::sin(EIGHTH), math::cos(EIGHTH));
+    let ridge = cuboid([1.0, 1.0, 1.0], [s, 0.0, 0.0, c], 0.1);
+    let across = cuboid([1.0, 1.0, 1.0], [0.0, s, 0.0, c], 0.1);
+    let pair = CuboidPair::new(DVec3::new(0.2, 0.3, 2.0 * 2.0_f64.sqrt() + 0.5), ridge, across);
+    let nearest = pair.nearest();
+    assert!(matches!(nearest.feature, Feature::Edges(..)) && (nearest.gap - 0.3).abs() < 1e-14, "{nearest:?}");
+    let mut count = 0;
+    pair.touching(&nearest, 0.31, |_| count += 1);
+    assert_eq!(count, 1);
+    let pair = CuboidPair::new(DVec3::new(0.2, 0.3, 2.0 * 2.0_f64.sqrt() - 0.01), ridge, across);
+    assert!((pair.nearest().gap + 0.21).abs() < 1e-14);
+}
