@@ -1,5 +1,10 @@
 //! What the measuring examples share: a clock, quantiles, a digest of outcomes, and where a trace goes.
-#![allow(clippy::disallowed_methods, dead_code, unreachable_pub, reason = "shared by programs that use parts of it, and measuring reads the clock")]
+#![allow(
+    clippy::disallowed_methods,
+    dead_code,
+    unreachable_pub,
+    reason = "shared by programs that use parts of it, and measuring reads the clock"
+)]
 
 use serde::Serialize;
 use std::error::Error;

@@ -214,7 +214,8 @@ fn sides_before(bounds: &Aabb, x: DVec3) -> impl Iterator<Item = Side> {
 
 /// The side of a box that a point is farthest beyond; none where it is inside.
 pub(crate) fn farthest_side(bounds: &Aabb, x: DVec3) -> Option<Side> {
-    sides_before(bounds, x).fold(None, |far: Option<Side>, s| if far.is_some_and(|f| f.beyond >= s.beyond) { far } else { Some(s) })
+    sides_before(bounds, x)
+        .fold(None, |far: Option<Side>, s| if far.is_some_and(|f| f.beyond >= s.beyond) { far } else { Some(s) })
 }
 
 /// Whether a point is within the edges of a side of a box.

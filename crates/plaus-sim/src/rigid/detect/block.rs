@@ -3,8 +3,8 @@
 use super::plane::BEYOND;
 use super::{LEANS, MOST_ADVANCES, Search, earliest};
 use crate::rigid::body::Phase;
-use crate::rigid::rim;
 use crate::rigid::part::{Part, Side, farthest_side, is_over};
+use crate::rigid::rim;
 use crate::scenery::Aabb;
 use crate::shape::Feeler;
 use glam::{DMat3, DVec2, DVec3};
@@ -153,7 +153,14 @@ impl Search<'_> {
     }
 
     /// Whether a point of a ring comes first.
-    fn ring_at_edge(&self, part: u16, k: usize, [f, rate, slowest, m]: [f64; 4], step: &mut f64, first: &mut (usize, f64)) {
+    fn ring_at_edge(
+        &self,
+        part: u16,
+        k: usize,
+        [f, rate, slowest, m]: [f64; 4],
+        step: &mut f64,
+        first: &mut (usize, f64),
+    ) {
         if self.lasts(part, k) {
             return;
         }
