@@ -63,7 +63,12 @@ fn main() {
             }
         }
         if place > 1 || watch.deepest[0] > 5e-3 {
-            println!("shot {shot}: {outcome:?}, {:?} deepest {:.2e} at {:?}", state.counts(), watch.deepest[0], watch.worst);
+            println!(
+                "shot {shot}: {outcome:?}, {:?} deepest {:.2e} at {:?}",
+                state.counts(),
+                watch.deepest[0],
+                watch.worst
+            );
         }
     }
     println!("{shots} shots, {} preset; at rest, time over, out of events, not finite: {outcomes:?}", preset.name());

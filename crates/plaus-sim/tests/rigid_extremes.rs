@@ -264,7 +264,10 @@ fn bad_numbers_are_named() {
         assert!(matches!(with(&|w| w.bodies[1].mass.mass = mass), Err(BadBody { body: 1, field: "mass", .. })));
         assert!(matches!(with(&|w| w.bodies[1].mass.inertia.y = mass), Err(BadBody { body: 1, field: "inertia", .. })));
     }
-    assert!(matches!(with(&|w| w.bodies[0].shape = Shape::Ball(f64::NAN)), Err(BadBody { body: 0, field: "reach", .. })));
+    assert!(matches!(
+        with(&|w| w.bodies[0].shape = Shape::Ball(f64::NAN)),
+        Err(BadBody { body: 0, field: "reach", .. })
+    ));
     assert!(matches!(with(&|w| w.gravity.x = f64::NAN), Err(BadNumber { field: "gravity", .. })));
     assert!(matches!(with(&|w| w.sink = f64::NAN), Err(BadNumber { field: "sink", .. })));
     assert!(matches!(with(&|w| w.duration = f64::NAN), Err(BadNumber { field: "duration", .. })));
