@@ -44,7 +44,10 @@ impl Rigid {
     pub(super) fn touch(&self, index: usize, pose: &Pose, part: u16, point: u16) -> Touch {
         let (spec, part_here, k) = (&self.specs[index], &self.parts[usize::from(part)], usize::from(point));
         let feeler = match spec.ring_of(k) {
-            Some(ring) => spec.ring_point(k, pose.r.transpose() * part_here.up_at_ring(ring, pose.x, &pose.r)).0,
+            Some(ring) => {
+                let (up, turned) = (part_here.up_at_ring(ring, pose.x, &pose.r), pose.r.transpose());
+                spec.ring_point(k, turned * up, turned * up.cross(pose.w)).0
+            }
             None => spec.feelers[k],
         };
         let arm = pose.r * feeler.centre;
@@ -77,8 +80,9 @@ impl Rigid {
                             each(Touch { part: k, point: point as u16, arm, normal: plane.normal, gap });
                         }
                     }
+                    let swing = pose.r.transpose() * plane.normal.cross(pose.w);
                     for point in spec.ring_points() {
-                        let (feeler, _) = spec.ring_point(point, lever);
+                        let (feeler, _) = spec.ring_point(point, lever, swing);
                         let gap = height + lever.dot(feeler.centre) - feeler.radius;
                         if gap <= within {
                             let arm = pose.r * feeler.centre - plane.normal * feeler.radius;

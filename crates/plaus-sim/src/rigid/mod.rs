@@ -6,9 +6,10 @@
 //! the ground or is at rest.
 //!
 //! What is approximate: a body of revolution is a row of balls and rings (see [`crate::shape::Revolution`]); bumps of a table are felt at the feelers only
-//! ([`RigidWorld::skin`]); two cuboids do not collide with each other's edges, only a cuboid with balls and bodies of revolution; the direction of a slip within an impact and the
-//! steps of lasting contact follow the preset. Energy grows only by what pushing a body out of an overlap takes, less than a thousandth of its weight times its size at the standard
-//! preset. Rolling and spinning resistance act in the steps of lasting contact on fixed parts, not between bodies nor on a ball that glides.
+//! ([`RigidWorld::skin`]); half way through a step of lasting contact corners may be in what they touch, two cuboids in each other by about a thousandth of their size; the direction
+//! of a slip within an impact and the steps of lasting contact follow the preset. Energy grows only by what pushing a body out of an overlap takes, less than a thousandth of its weight times its size at the standard
+//! preset. Rolling and spinning resistance act in the steps of lasting contact on fixed
+//! parts, not between bodies nor on a ball that glides.
 //!
 //! ```
 //! use glam::DVec3;
@@ -25,13 +26,15 @@
 
 mod body;
 mod boxes;
+mod capsule;
 mod contact;
 mod detect;
+mod energy;
 mod glide;
 mod mechanics;
 mod pair;
 mod part;
-mod resist;
+mod pile;
 mod rest;
 mod rim;
 mod solve;
@@ -166,10 +169,10 @@ impl Rigid {
             }
         }
         let mut spacing = f64::INFINITY;
-        for part in &world.parts {
+        for (k, part) in world.parts.iter().enumerate() {
             world.laws.require(part.material())?;
+            part.check(k)?;
             if let Part::Table(table) = part {
-                table.check()?;
                 spacing = spacing.min(world.skin * table.height.grid().spacing);
             }
         }
@@ -380,16 +383,18 @@ impl Spec {
         first..first + if ring == 0 { RIM_POINTS } else { 1 }
     }
 
-    /// A point that can touch a part, as a ball in body axes; `up` (in body axes) points away from the part.
-    pub(crate) fn point(&self, point: usize, up: DVec3) -> Feeler {
-        if self.ring_of(point).is_some() { self.ring_point(point, up).0 } else { self.feelers[point] }
+    /// A point that can touch a part, as a ball in body axes; `up` and `swing` as for [`ring_point`](Self::ring_point).
+    pub(crate) fn point(&self, point: usize, up: DVec3, swing: DVec3) -> Feeler {
+        if self.ring_of(point).is_some() { self.ring_point(point, up, swing).0 } else { self.feelers[point] }
     }
 
     /// A point of a ring as a ball, in body axes, where `up` (in body axes) points away from the part, and how it stands: 0 lowest, 1 and 3 sideways, 2 highest.
-    pub(crate) fn ring_point(&self, point: usize, up: DVec3) -> (Feeler, usize) {
+    /// Of a ring that is level the point that sinks fastest counts as the lowest; `swing` is the rate of `up` in body axes.
+    pub(crate) fn ring_point(&self, point: usize, up: DVec3, swing: DVec3) -> (Feeler, usize) {
         let k = point - self.hull;
         let (ring, quarter) = if k < RIM_POINTS { (&self.rings[0], k) } else { (&self.rings[k + 1 - RIM_POINTS], 0) };
-        let flat = DVec3::new(up.x, up.y, 0.0);
+        let is_level = up.x == 0.0 && up.y == 0.0;
+        let flat = if is_level { DVec3::new(swing.x, swing.y, 0.0) } else { DVec3::new(up.x, up.y, 0.0) };
         let down = if flat == DVec3::ZERO { DVec3::X } else { -flat.normalize() };
         let along = match quarter {
             0 => down,

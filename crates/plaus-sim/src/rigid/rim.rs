@@ -79,3 +79,55 @@ impl Low {
         high
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plaus_dist::math;
+
+    /// Against a scan of the bound itself: never late, and at most a hundredth early where the ring starts clear of the plane.
+    #[test]
+    fn the_first_root_is_not_overshot() {
+        let mut found = 0;
+        for k in 0..4000 {
+            let part = |step: f64| (f64::from(k) * step) % 1.0;
+            let lean = part(0.618_033_988_749) * part(0.618_033_988_749) * 0.5;
+            let turn = 6.3 * part(0.324_717_957_244);
+            let low = Low {
+                middle: 0.03 * lean + 0.01 * part(0.754_877_666_246) + 1e-7,
+                rate: 2.0 * part(0.569_840_290_998) - 1.0,
+                circle: 0.03,
+                p: DVec2::new(lean, 0.0),
+                q: DVec2::new(math::cos(turn), math::sin(turn)) * (20.0 * part(0.220_744_084_605)),
+                m: 10.0 + 30.0 * part(0.819_172_513_396),
+            };
+            let limit = 0.1;
+            let time = low.earliest(limit);
+            let steps = 2000;
+            let first = (1..=steps).map(|i| limit * f64::from(i) / f64::from(steps)).find(|&t| low.at(t) < 0.0);
+            if let Some(first) = first {
+                found += 1;
+                assert!(time <= first, "{low:?}: {time} after {first}");
+                assert!(time >= 0.99 * first - 2.0 * limit / f64::from(steps), "{low:?}: {time} long before {first}");
+            } else {
+                assert!(low.at(time.min(limit)) >= -1e-15, "{low:?}");
+            }
+        }
+        assert!(found > 2000, "{found}");
+    }
+
+    #[test]
+    fn an_overlap_that_opens_can_sink_when_the_ring_has_levelled() {
+        // Leaning by 0.1 and levelling at 2 rad/s: the lowest point rises until the other side comes down, after 0.05 s but for the bound's own fall.
+        let low = Low {
+            middle: 0.03 * 0.1 - 1e-9,
+            rate: 0.0,
+            circle: 0.03,
+            p: DVec2::new(0.1, 0.0),
+            q: DVec2::new(-2.0, 0.0),
+            m: 1e-6,
+        };
+        let time = low.earliest(1.0);
+        assert!((time - 0.05).abs() < 1e-9, "{time}");
+    }
+}

@@ -90,10 +90,11 @@ impl Search<'_> {
                     if near > way(spec.ring_arms[index], step) {
                         continue;
                     }
-                    let up = r.transpose() * block.up_at_ring(ring, x, &r);
+                    let up = block.up_at_ring(ring, x, &r);
+                    let (up, swing) = (r.transpose() * up, r.transpose() * up.cross(w));
                     let first_of = spec.points_of(index).start;
                     for k in spec.points_of(index) {
-                        let (feeler, quarter) = spec.ring_point(k, up);
+                        let (feeler, quarter) = spec.ring_point(k, up, swing);
                         let foot = block.foot(x + r * feeler.centre, feeler.radius);
                         let (lever, swing) = (r.transpose() * foot.normal, r.transpose() * foot.normal.cross(w));
                         let height = foot.distance - lever.dot(feeler.centre) - 0.5 * spec.gap;
@@ -134,7 +135,8 @@ impl Search<'_> {
     /// Whether a point of the body is within the edges of a box's side.
     fn is_on_side(&self, bounds: &Aabb, side: &Side, time: f64, point: usize) -> bool {
         let (x, r) = (self.body.path.after(time), self.body.tumble(self.spec).at(time));
-        let feeler = self.spec.point(point, r.transpose() * side.normal);
+        let swing = r.transpose() * side.normal.cross(self.spin_at(time));
+        let feeler = self.spec.point(point, r.transpose() * side.normal, swing);
         is_over(bounds, side.axis, x + r * feeler.centre)
     }
 

@@ -206,7 +206,7 @@ impl Search<'_> {
         if self.lasts(look.part, point) {
             return;
         }
-        let (feeler, quarter) = self.spec.ring_point(point, look.lever);
+        let (feeler, quarter) = self.spec.ring_point(point, look.lever, look.swing);
         let f = middle + look.lever.truncate().dot(feeler.centre.truncate());
         let own = rate + look.swing.truncate().dot(feeler.centre.truncate());
         if f > 0.5 * self.spec.gap {

@@ -6,6 +6,9 @@ use crate::rigid::part::{ROUNDS, Table};
 use crate::shape::Feeler;
 use glam::{DMat3, DVec3};
 
+/// How far ahead the table below is looked at at once, over the body's reach. Default 0.5; larger values make more of the table, smaller ones look more often.
+const AHEAD: f64 = 0.5;
+
 impl Search<'_> {
     pub(super) fn table(&mut self, part: u16, table: &Table) {
         let (spec, path) = (self.spec, &self.body.path);
@@ -13,26 +16,28 @@ impl Search<'_> {
         let Some(mut t) = self.approach(DVec3::Z, table.height.range()[1]) else { return };
         let gravity = path.a.length();
         let mut tumble = self.body.tumble(spec);
-        let margin = 0.5 * spec.reach;
-        let mut window: Option<(DVec3, Bounds)> = None;
+        let mut window: Option<(f64, Bounds)> = None;
         for _ in 0..MOST_ADVANCES {
+            if t >= self.until || t.is_nan() {
+                return;
+            }
             let (x, v) = (path.after(t), path.velocity_after(t));
-            let (around, bounds) = match window {
-                Some((c, b)) if (x - c).truncate().abs().max_element() < 0.9 * margin => (c, b),
+            // Not so long that speeds grow much.
+            let speed = v.length() + (gravity * spec.reach).sqrt();
+            let (end, bounds) = match window {
+                Some((end, b)) if t < end => (end, b),
                 _ => {
-                    let far = spec.reach + margin;
-                    let Some(b) = table.height.bounds([x.x - far, x.y - far], [x.x + far, x.y + far]) else {
+                    let end = (t + AHEAD * spec.reach / speed).min(self.until);
+                    let over = path.bounds(t, end).grown(spec.reach * (1.0 + 1e-9));
+                    let Some(b) = table.height.bounds([over.min.x, over.min.y], [over.max.x, over.max.y]) else {
                         // A footprint of thousands of cells: nothing is known about it but its height.
                         return self.coarse(part, t);
                     };
-                    window = Some((x, b));
-                    (x, b)
+                    window = Some((end, b));
+                    (end, b)
                 }
             };
-            // Not out of the window, nor so long that speeds grow much.
-            let speed = v.length() + (gravity * spec.reach).sqrt();
-            let room = margin - (x - around).truncate().abs().max_element();
-            let mut step = (room / speed).min(spec.reach / speed);
+            let mut step = end - t;
             let top = x.z - spec.reach - bounds.high;
             if top > 0.0 {
                 t += earliest(top, v.z, -path.a.z).min(step);
@@ -47,9 +52,6 @@ impl Search<'_> {
                     return self.hit(t, part, first.map_or(0, |(k, _)| k));
                 }
                 t += step;
-            }
-            if t >= self.until || t.is_nan() {
-                return;
             }
         }
         self.hit(t, part, 0);

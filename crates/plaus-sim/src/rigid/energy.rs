@@ -1,0 +1,77 @@
+//! What energy the steps of lasting contact may keep.
+//!
+//! Nothing may gain any. And resistance to rolling and to spinning takes some: a contact on a fixed part with normal force N at distance R from the centre of gravity resists
+//! with a torque of at most ρ N R against the part of the angular velocity across its normal (rolling) and σ N R against that along it (spinning), ρ and σ being the law's. Without it a pin that was nudged runs around on the rim of its foot, and one that lies rolls, for ever: nothing else takes
+//! their energy.
+
+use super::contact::Touch;
+use super::solve::{Contact, Member};
+use super::step::{Place, RigidScratch};
+use super::{Rigid, Spec};
+use glam::DVec3;
+
+impl RigidScratch {
+    /// Whether a step was so long that keeping its points out of the ground lifted bodies higher than their energy can: a pin that rocks over its foot's rim, say. Then
+    /// a shorter one must see where it touches.
+    pub(super) fn climbs(&self) -> Option<f64> {
+        self.climbed.then_some(0.5)
+    }
+
+    /// A group's energy never grows, whatever the step's error.
+    pub(super) fn guard_energy(&mut self, world: &Rigid) {
+        let kinetic = |spec: &Spec, turn, v: DVec3, w: DVec3| {
+            0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)))
+        };
+        let (mut before, mut after) = (0.0, 0.0);
+        for (p, m) in self.places.iter().zip(&self.members) {
+            let spec = &world.specs[p.body];
+            before += kinetic(spec, p.turn, p.start.v, p.start.w) + spec.mass * world.gravity.dot(p.end.x - p.start.x);
+            after += kinetic(spec, p.end_turn, m.v, m.w);
+        }
+        self.climbed = before < 0.0;
+        if after > before {
+            let part = (before.max(0.0) / after).sqrt();
+            for m in &mut self.members {
+                m.v *= part;
+                m.w *= part;
+            }
+        }
+    }
+}
+
+/// Takes from the members' angular velocities what the contacts' resistance takes over a step whose halves have the contacts' impulses. Energy only falls, and no rotation is
+/// reversed: the contacts' friction, found afterwards, brings the velocities of what rolls into line.
+pub(super) fn resist(
+    world: &Rigid,
+    places: &[Place],
+    touches: &[(usize, Touch)],
+    contacts: &[Contact],
+    members: &mut [Member],
+) {
+    for ((k, touch), contact) in touches.iter().zip(contacts) {
+        let load = 2.0 * contact.impulse.dot(touch.normal);
+        if load <= 0.0 {
+            continue;
+        }
+        let place = &places[*k];
+        let law = world.law_at(place.body, touch.part, place.start.x + touch.arm);
+        let torque = load * touch.arm.length();
+        let member = &mut members[*k];
+        let about = touch.normal * member.w.dot(touch.normal);
+        slow_down(member, member.w - about, law.rolling * torque);
+        let about = touch.normal * member.w.dot(touch.normal);
+        slow_down(member, about, law.spinning * torque);
+    }
+}
+
+/// Takes an angular impulse of this size from a part of the angular velocity, or as much as that part has.
+fn slow_down(member: &mut Member, part: DVec3, impulse: f64) {
+    let speed = part.length();
+    if impulse <= 0.0 || speed <= 0.0 {
+        return;
+    }
+    let axis = part / speed;
+    let response = member.inverse_inertia * axis;
+    let whole = speed / axis.dot(response);
+    member.w -= response * impulse.min(whole);
+}
