@@ -9,6 +9,12 @@ use plaus_scenes::spelling::{Config, Moves, Savings, Weights};
 /// A variant of the default moves.
 type Change = (&'static str, fn(&mut Config));
 
+/// Makes a word.
+type Make = fn() -> Result<Word>;
+
+/// Makes a variant of a word.
+type Changed = fn(fn(&mut Config)) -> Result<Word>;
+
 /// The weight of a move that is left out goes to the others in proportion.
 const VARIANTS: &[Change] = &[
     ("all default moves", |_| ()),
@@ -38,7 +44,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
 
 fn savings(work: &mut Work) -> Result<()> {
     let iterations = work.size(3_000, 150);
-    let words: [(&str, fn() -> Result<Word>, u64); 2] =
+    let words: [(&str, Make, u64); 2] =
         [("HI", || hi(|_| ()), work.size(6, 1)), ("ACM", || acm(|_| ()), work.size(4, 1))];
     let mut rows = Vec::new();
     for (name, word, seeds) in words {
@@ -70,7 +76,7 @@ fn savings(work: &mut Work) -> Result<()> {
 
 fn moves(work: &mut Work) -> Result<()> {
     let mut rows = Vec::new();
-    let cases: [(&str, fn(fn(&mut Config)) -> Result<Word>, u64, u64); 2] = [
+    let cases: [(&str, Changed, u64, u64); 2] = [
         ("HI", |change| hi(change), work.size(20, 1), work.size(10_000, 200)),
         ("ACM", |change| acm(change), work.size(4, 1), work.size(10_000, 100)),
     ];

@@ -5,11 +5,14 @@ use super::{acm, hi};
 use crate::report::{significant, table, thousands};
 use crate::{Result, Work};
 
+/// A word at a value of ln λ.
+type At = fn(f64) -> Result<Word>;
+
 pub(super) fn make(work: &mut Work) -> Result<()> {
     let iterations = work.size(10_000, 300);
     let seeds = work.size(5, 1);
     let mut rows = Vec::new();
-    let cases: [(&str, &[f64], fn(f64) -> Result<Word>); 2] = [
+    let cases: [(&str, &[f64], At); 2] = [
         ("HI", &[4.0, 5.0, 6.0], |ln_lambda| hi(|config| config.ln_lambda = ln_lambda)),
         ("ACM", &[6.0, 7.25, 8.0], |ln_lambda| acm(|config| config.ln_lambda = ln_lambda)),
     ];
