@@ -78,8 +78,8 @@ fn impacts_keep_what_they_must() {
                     let mass = Shape::Cuboid(Cuboid::new(edges[k].0, rounding).unwrap()).mass_properties(1000.0);
                     energy += world.energy(k, &b);
                     momentum += b.path.v * mass.mass;
-                    angular += b.path.x.cross(b.path.v) * mass.mass
-                        + b.turn * (mass.inertia * (b.turn.conjugate() * b.spin));
+                    angular +=
+                        b.path.x.cross(b.path.v) * mass.mass + b.turn * (mass.inertia * (b.turn.conjugate() * b.spin));
                 }
                 (energy, momentum, angular)
             };
@@ -104,10 +104,8 @@ fn impacts_keep_what_they_must() {
 /// Where a die ends that is put down gently on the edge of another, with its middle `over` edges from the other's.
 fn put_on(over: f64, turn: f64) -> (State<Turning>, Rigid) {
     let world = dice(2, Law::new(0.4, 0.3));
-    let upper = Start {
-        orientation: DQuat::from_rotation_z(turn),
-        ..Start::at_rest(DVec3::new(0.016 * over, 0.001, 0.0242))
-    };
+    let upper =
+        Start { orientation: DQuat::from_rotation_z(turn), ..Start::at_rest(DVec3::new(0.016 * over, 0.001, 0.0242)) };
     let mut state = world.state(&[Start::at_rest(DVec3::new(0.0, 0.0, 0.008)), upper]).unwrap();
     let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut ()).unwrap();
     assert_eq!(outcome, Outcome::AllAtRest, "over {over}, turned {turn}");
@@ -215,7 +213,10 @@ fn overlaps_at_the_start_are_named() {
     let world = dice(3, Law::new(0.4, 0.3));
     let at = |x: f64, z: f64| Start::at_rest(DVec3::new(x, 0.0, z));
     let error = world.state(&[at(0.0, 0.02), at(0.1, 0.02), at(0.115, 0.02)]).unwrap_err();
-    assert!(matches!(error, WorldError::BodiesOverlap { a: 1, b: 2, depth } if (depth - 0.001).abs() < 1e-12), "{error}");
+    assert!(
+        matches!(error, WorldError::BodiesOverlap { a: 1, b: 2, depth } if (depth - 0.001).abs() < 1e-12),
+        "{error}"
+    );
     // Those that are released at another time are not there yet.
     let later = Start { time: 1.0, ..at(0.115, 0.02) };
     assert!(world.state(&[at(0.0, 0.02), at(0.1, 0.02), later]).is_ok());

@@ -57,7 +57,7 @@ impl Held {
         let [p, q] = [0, 1].map(|k| cuboids.corners_along(k, n, n));
         let base = cuboids.offset_along(n) - cuboids.roundings();
         for (i, mask) in held.flat.iter_mut().enumerate().filter(|(i, _)| held.corners[0] >> i & 1 == 1) {
-            let low = |j: usize| base + p[i].0 - q[j].0 <= within;
+            let low = |j: usize| base + (p[i].0 - q[j].0) <= within;
             *mask = (0..8).filter(|&j| low(j)).fold(0, |m, j| m | 1 << j) & held.corners[1];
         }
         held
@@ -179,8 +179,8 @@ impl Rigid {
         let reach = s.reach + t.reach;
         // Longest advancement, and what it can add to the relative speed.
         let (longest, gain) = ((reach / pull).sqrt(), (pull * reach).sqrt());
-        let bound =
-            pull + swing[0] * swing[0] * (1.0 + s.wobble) * s.reach + swing[1] * swing[1] * (1.0 + t.wobble) * t.reach;
+        let swings = |k: usize, spec: &Spec| swing[k] * swing[k] * (1.0 + spec.wobble) * spec.reach;
+        let bound = pull + (swings(0, s) + swings(1, t));
         let mut tumbles = [bodies[0].tumble(s), bodies[1].tumble(t)];
         let mut pose = |k: usize, time: f64| {
             let (spec, b) = ([s, t][k], bodies[k]);
@@ -229,11 +229,12 @@ impl Rigid {
             }
             clear = time;
             let across = cuboids.turning(nearest.feature, nearest.normal, [a.w, b.w]);
-            let speed = (a.v - b.v).length() + swing[0] * s.reach + swing[1] * t.reach + gain;
+            let speed = (a.v - b.v).length() + (swing[0] * s.reach + swing[1] * t.reach) + gain;
             let turn = across.length();
             let search = Advance { cuboids: &cuboids, poses: [&a, &b], normal: nearest.normal, across, level };
             let m = bound + turn * (turn * (distance + reach) + 2.0 * speed);
-            let step = search.time(m, &held.flat).min(longest).min(if linked { (until - from) / LOOKS } else { longest });
+            let step =
+                search.time(m, &held.flat).min(longest).min(if linked { (until - from) / LOOKS } else { longest });
             // Nothing that touches approaches: an overlap may grow to twice what it is until then.
             let least = (LEAST * level).max(-nearest.gap);
             time += step.max(least / speed.max(f64::MIN_POSITIVE));
@@ -272,7 +273,7 @@ impl Advance<'_> {
                 if held[i] >> j & 1 == 1 {
                     continue;
                 }
-                let (f, rate) = (base + p - q, base_rate + p_rate - q_rate);
+                let (f, rate) = (base + (p - q), base_rate + (p_rate - q_rate));
                 // Cheap test first: whether it can be gone before the others at all.
                 if f > 0.0 && step.is_finite() && f + (rate - 0.5 * m * step) * step > 0.0 {
                     continue;

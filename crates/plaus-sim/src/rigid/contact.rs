@@ -184,19 +184,20 @@ impl Rigid {
         let mut u = pose.velocity(touch.arm);
         let mut approach = -u.dot(touch.normal);
         let vigour = body.vigour(spec);
+        let before = Motion { v: body.path.v, w: body.spin };
         if approach <= 0.0 && first {
             body.take_drift();
             pose = body.pose();
             u = pose.velocity(touch.arm);
             approach = -u.dot(touch.normal);
         }
-        if approach <= 0.0 || touch.gap > super::step::TOUCHING * spec.gap {
-            return None;
-        }
         let law = self.law_at(index, part, pose.x + touch.arm);
         let settles = self.settle_speed(spec, &law);
         let lasting = law.restitution * approach <= settles || body.is_hurried();
-        if lasting && approach <= LEFT * settles {
+        let far = touch.gap > super::step::TOUCHING * spec.gap;
+        if approach <= 0.0 || far || (lasting && approach <= LEFT * settles) {
+            // No impact: the drift's velocities, if taken, would bring energy.
+            body.set_motion(before);
             return None;
         }
         let inverse = spec.inertia.inverse(&pose.r);

@@ -208,6 +208,7 @@ impl Rigid {
         let (mut p, mut q) = (a.pose(), b.pose());
         let mut touch = self.hitting(pair, [&p, &q]);
         let vigour = a.vigour(s) + b.vigour(t);
+        let before = [&*a, &*b].map(|body| Motion { v: body.path.v, w: body.spin });
         let mut u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
         if u.dot(touch.normal) >= 0.0 && !linked && (a.listed != time || b.listed != time) {
             a.take_drift();
@@ -226,6 +227,8 @@ impl Rigid {
             && (a.is_hurried() || b.is_hurried())
         {
             // Found again and again without an approach, as where two pairs of points are equally near: their group is to deal with it.
+            a.set_motion(before[0]);
+            b.set_motion(before[1]);
             for (index, body) in [(pair[0], &mut *a), (pair[1], &mut *b)] {
                 if body.phase != Phase::Flight {
                     body.phase = Phase::Step;
@@ -245,6 +248,9 @@ impl Rigid {
             });
         }
         if approach <= 0.0 || touch.gap > step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
+            // No impact: the drift's velocities, if taken, would bring energy.
+            a.set_motion(before[0]);
+            b.set_motion(before[1]);
             return None;
         }
         let (ia, ib) = (s.inertia.inverse(&p.r), t.inertia.inverse(&q.r));

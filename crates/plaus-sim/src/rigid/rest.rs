@@ -51,8 +51,9 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     group.prepare(world, |_, _| (world.gravity * h, DVec3::ZERO));
     let limit = world.accuracy.rest_residual * world.strength * h;
     // What is carried by a corner of a pile near tipping is found slowly.
-    let sweeps = world.accuracy.sweeps * if group.has_cuboids_in_touch() { PATIENCE } else { 1 };
-    sweep(&mut group.contacts, &mut group.members, 0.03 * limit, sweeps);
+    let patience = if group.has_cuboids_in_touch() { PATIENCE } else { 1 };
+    let enough = 0.03 * limit / f64::from(patience);
+    sweep(&mut group.contacts, &mut group.members, enough, world.accuracy.sweeps * patience);
     group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= limit)
 }
 
@@ -80,7 +81,7 @@ fn is_above(touches: &[(usize, Touch)], down: DVec3) -> bool {
     })
 }
 
-/// How many times more sweeps the test of a pile may take. Default 10.
+/// How many times more sweeps the test of a pile may take, and how much smaller their last change is to be. Default 10.
 const PATIENCE: u32 = 10;
 
 /// Overlap over the size up to which a body may lie down; it is lifted out of it. Default 1e-3, a hundred times what steps of the draft preset leave.

@@ -27,7 +27,7 @@ impl CuboidPair {
         };
         for of in 0..2 {
             for corner in 0..8 {
-                if let Some(region) = self.region(of, corner, nearest.normal, within) {
+                if let Some(region) = self.region(of, corner, nearest, within) {
                     take(self.at_corner(of, corner, region));
                 }
             }
@@ -39,7 +39,7 @@ impl CuboidPair {
     }
 
     /// Beyond which sides of the other cuboid a corner is, if it can be near. What is hardly beyond a side counts as above the face next to it.
-    fn region(&self, of: usize, corner: u8, normal: DVec3, within: f64) -> Option<[i8; 3]> {
+    fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: f64) -> Option<[i8; 3]> {
         let other = &self.cuboids[1 - of];
         let seen = self.corner_seen(of, corner);
         let beyond = seen.abs() - other.core;
@@ -57,12 +57,13 @@ impl CuboidPair {
             }
         }
         if sides == 0 {
-            // On the skin of the core or inside: the side nearest, of equal ones that which faces the other cuboid most.
+            // On the skin of the core or inside: of the sides not deeper than the nearest points are, that which faces the other cuboid most.
+            let deepest = top.min(nearest.gap + self.roundings()) - within;
             let faces = |k: usize| {
-                let cosine = other.axes.col(k).dot(normal) * f64::from(side(k));
+                let cosine = other.axes.col(k).dot(nearest.normal) * f64::from(side(k));
                 if of == 0 { cosine } else { -cosine }
             };
-            let axis = (0..3).filter(|&k| beyond[k] >= top - within).max_by(|&k, &l| faces(k).total_cmp(&faces(l)))?;
+            let axis = (0..3).filter(|&k| beyond[k] >= deepest).max_by(|&k, &l| faces(k).total_cmp(&faces(l)))?;
             region[axis] = side(axis);
         }
         // Two corners are found from both sides.

@@ -160,12 +160,14 @@ impl CuboidPair {
         }
     }
 
-    /// The square of the sine between axis `i` of the first and axis `j` of the second, without cancellation.
+    /// The square of the sine between axis `i` of the first and axis `j` of the second, without cancellation. The same bits from both sides.
     #[inline]
     fn sine_squared(&self, i: usize, j: usize) -> f64 {
-        let c = self.across[0].col(j);
-        let (k, l) = ((i + 1) % 3, (i + 2) % 3);
-        c[k] * c[k] + c[l] * c[l]
+        let part = |c: DVec3, i: usize| {
+            let (k, l) = ((i + 1) % 3, (i + 2) % 3);
+            c[k] * c[k] + c[l] * c[l]
+        };
+        0.5 * (part(self.across[0].col(j), i) + part(self.across[1].col(i), j))
     }
 
     /// The meeting of two edges as lines, its normal on the side of `towards`; with it how far along each edge it lies from the middle.
@@ -179,7 +181,7 @@ impl CuboidPair {
             cuboid.axes * corner
         };
         let (p, q) = (middle(first, a), middle(second, b));
-        let between = self.offset + p - q;
+        let between = self.offset + (p - q);
         let (sine, cosine) = (self.sine_squared(i, j), self.across[0].col(j)[i]);
         let cross = e.cross(g);
         let normal = if sine < PARALLEL * PARALLEL {
@@ -189,7 +191,7 @@ impl CuboidPair {
         };
         let (along_e, along_g) = (between.dot(e), between.dot(g));
         let s = (cosine * along_g - along_e) / sine;
-        let t = s * cosine + along_g;
+        let t = (along_g - cosine * along_e) / sine;
         let places = [s, t];
         let (s, t) = (clamped(s, first.core[i]), clamped(t, second.core[j]));
         let meeting = self.meeting([p + e * s, q + g * t], normal, normal.dot(between), Feature::Edges(a, b));

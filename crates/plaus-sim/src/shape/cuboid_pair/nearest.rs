@@ -47,7 +47,7 @@ impl CuboidPair {
             let Placed { axes, core, .. } = &self.cuboids[k];
             (axes.transpose() * direction * *core).abs().element_sum()
         };
-        self.offset.dot(direction) - half(0) - half(1)
+        self.offset.dot(direction) - (half(0) + half(1))
     }
 
     /// The face whose normal keeps the cores farthest apart: how far, of which cuboid, along which axis.

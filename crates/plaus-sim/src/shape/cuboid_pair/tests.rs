@@ -117,7 +117,8 @@ fn faces_touch_at_the_corners_of_what_they_share() {
         });
         points
     };
-    let turned = count(cuboid([1.0, 1.0, 1.0], [0.0, 0.0, math::sin(EIGHTH), math::cos(EIGHTH)], 0.0), DVec3::Z * (2.0 + 1e-6));
+    let turned =
+        count(cuboid([1.0, 1.0, 1.0], [0.0, 0.0, math::sin(EIGHTH), math::cos(EIGHTH)], 0.0), DVec3::Z * (2.0 + 1e-6));
     assert_eq!(turned.len(), 8);
     // An octagon of this square and the square turned by 45°: circumradius √(1 + (√2 − 1)²).
     let radius = (1.0 + (2.0_f64.sqrt() - 1.0) * (2.0_f64.sqrt() - 1.0)).sqrt();
