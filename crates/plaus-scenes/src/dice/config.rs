@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use super::steps::{Moves, Steps, Weights};
-use crate::spelling::AccuracyPreset;
+use crate::accuracy::AccuracyPreset;
 
 /// Most dice.
 pub const MOST_DICE: u32 = 24;

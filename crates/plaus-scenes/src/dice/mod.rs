@@ -23,7 +23,6 @@ mod surface;
 mod symmetry;
 mod throwing;
 
-pub use crate::spelling::AccuracyPreset;
 pub use config::{Config, Die, MOST_DICE, Moves, Spilt, Steps, Table, Throwing, Weights};
 pub use constraint::{Constraint, FaceUp, FirstImpact, Mark, Passes, PoseAt, RestAt};
 pub use draw::{Draw, Field, LARGEST_SCORE, Realisation, Site, Throw};
@@ -33,6 +32,7 @@ pub use prior::{NUMBERS, Prior};
 pub use symmetry::Rotation;
 pub use throwing::Work;
 
+use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene};
@@ -237,5 +237,9 @@ impl Scene for Dice {
 
     fn animate(&self, draw: &Draw) -> Result<Animation, ModelError> {
         animate::animate(self, draw)
+    }
+
+    fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
+        Self::new(&Config { accuracy, ..self.config.clone() }).map(Some)
     }
 }
