@@ -19,7 +19,7 @@ usage: cargo xtask CHORE
   test                 everything that must pass: what CI runs
   ci                   the same
   clients              of that, only what other programs make of exports and galleries
-  reproduce-figures [--out FOLDER] [--quick]
+  reproduce-figures [--out FOLDER] [--quick] [--only SCENE]
                        the paper's figures and claims, sampled anew, into out/figures
   golden               compare golden traces with fresh runs
   golden --bless       make golden traces anew

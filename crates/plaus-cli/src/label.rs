@@ -25,9 +25,14 @@ pub(crate) fn of(manifest: &Manifest, replay: &Replay) -> Label {
         "scalars": scalars,
         "duration": replay.animation.duration,
     });
-    let facts = match facts {
+    let mut facts = match facts {
         Value::Object(facts) => facts,
         _ => Map::new(),
     };
+    if let Some(recorded) = replay.recorded {
+        facts.insert("accuracy".to_owned(), json!(recorded.accuracy.name()));
+        facts.insert("recorded_log_p".to_owned(), json!(recorded.log_p));
+        facts.insert("recorded_satisfied".to_owned(), json!(recorded.satisfied));
+    }
     Label { name: format!("sample_{}_{}", replay.sample.chain, replay.sample.draw), facts }
 }

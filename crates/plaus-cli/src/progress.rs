@@ -86,6 +86,11 @@ impl Monitor {
         self.done
     }
 
+    /// Iterations each chain had done before.
+    pub(crate) fn begun_at(&self) -> u64 {
+        self.begun_at
+    }
+
     /// Seconds since the run began, or went on, until it ended.
     pub(crate) fn seconds(&self) -> f64 {
         self.took.unwrap_or_else(|| self.clock.seconds())
@@ -139,7 +144,10 @@ impl Monitor {
             in_words(self.eta(manifest)),
         );
         let hits = percent(share_of_hits(&progress.chains, self.done));
-        [far, format!("hits {hits}  distinct {}{wanted}", grouped(progress.distinct.count()))]
+        let restarts: u64 = progress.climbs.iter().map(|climb| climb.restarts()).sum();
+        let fresh =
+            if progress.climbs.is_empty() { String::new() } else { format!("  restarts {}", grouped(restarts)) };
+        [far, format!("hits {hits}  distinct {}{wanted}{fresh}", grouped(progress.distinct.count()))]
     }
 
     fn chain_lines(&self, manifest: &Manifest, progress: &Progress<'_>) -> Vec<String> {
@@ -198,6 +206,7 @@ impl Monitor {
             "distinct": progress.distinct.count(),
             "iterations_per_second": self.rate(),
             "eta_seconds": self.eta(manifest),
+            "restarts": progress.climbs.iter().map(|climb| climb.restarts()).sum::<u64>(),
             "chains": progress.chains.iter().enumerate().map(chain).collect::<Vec<_>>(),
         });
         let _ = console::print_line(&line.to_string()); // where the reader has gone, the end of the run will say so

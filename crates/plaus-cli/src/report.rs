@@ -26,8 +26,9 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
     let plan = &manifest.plan;
     let thin = if plan.thin > 1 { format!(", one in {} recorded", plan.thin) } else { String::new() };
     let rule = if manifest.exact { "exact" } else { "not exact" };
+    let rungs = if plan.rungs > 1 { format!(", {} rungs each", plan.rungs) } else { String::new() };
     format!(
-        "{} ({}): seed {}, {} of {} iterations after {} of warm-up{thin}, {rule} acceptance",
+        "{} ({}): seed {}, {}{rungs} of {} iterations after {} of warm-up{thin}, {rule} acceptance",
         manifest.scene,
         manifest.scenario.file,
         plan.seed,
@@ -119,6 +120,33 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     format!("first hit at iteration {}, {all}\n{note}{} distinct solutions\n", grouped(*first), grouped(tally.distinct))
 }
 
+/// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are not tempered.
+pub(crate) fn tempering(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
+    let all: Vec<_> = diagnosis.tally.chains.iter().filter_map(|chain| chain.tempering.as_ref()).collect();
+    if all.is_empty() {
+        return String::new();
+    }
+    let restarts: u64 = all.iter().map(|one| one.restarts).sum();
+    let trips: u64 = all.iter().map(|one| one.round_trips).sum();
+    let shares = || all.iter().flat_map(|one| one.rejected.iter().copied());
+    let (low, high) = (shares().fold(1.0, f64::min), shares().fold(0.0, f64::max));
+    let barrier = all.iter().map(|one| one.barrier).sum::<f64>() / all.len() as f64;
+    let minute = seconds.filter(|&seconds| seconds > 0.0);
+    let pace =
+        minute.map(|seconds| format!(", {} a minute", short(60.0 * restarts as f64 / seconds))).unwrap_or_default();
+    let rungs = all[0].betas.len();
+    let best = (2.0 * barrier).round() as usize + 1;
+    let advice = if rungs < best { format!("; about {best} rungs would serve better") } else { String::new() };
+    format!(
+        "tempering: {} restarts from fresh draws{pace}, {} round trips; barrier {} over {rungs} rungs, {} to {} of the swaps rejected{advice}\n",
+        grouped(restarts),
+        grouped(trips),
+        short(barrier),
+        percent(low),
+        percent(high),
+    )
+}
+
 /// The diagnosis as JSON.
 pub(crate) fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
     let tally = &diagnosis.tally;
@@ -130,6 +158,7 @@ pub(crate) fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
             "satisfying_draws": tally.satisfying_draws,
             "distinct": tally.distinct,
             "acceptance": acceptance(&manifest.moves, &tally.counts),
+            "tempering": tally.tempering,
         })
     };
     json!({

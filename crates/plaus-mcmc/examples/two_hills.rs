@@ -154,8 +154,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Sample.
     let moves = Mixture::new(vec![(0.8, stretch(false)?), (0.2, Box::new(Mirror))])?;
-    let plan =
-        Plan { seed: Seed(1), chains: 4, warmup: 1_000, iterations: 19_000, thin: 1, block: 1_000, solutions: None };
+    let plan = Plan {
+        seed: Seed(1),
+        chains: 4,
+        warmup: 1_000,
+        iterations: 19_000,
+        thin: 1,
+        block: 1_000,
+        solutions: None,
+        rungs: 1,
+        swap_every: 1,
+    };
     let mut strengths = Strengths { warmup: plan.warmup, chains: vec![Vec::new(); 4] };
     run(&target, &moves, plan, Vec::new(), 0, &mut strengths)?;
 

@@ -2,6 +2,7 @@
 
 use crate::moves::{Mixture, MoveId, Proposal};
 use crate::target::{ModelError, Simulated, State, StateOf, Target};
+use crate::tempered::floor_seen;
 use plaus_dist::{ChainStreams, LogDensity, LogPotential, LogRatio, Purpose, math, open_unit};
 use serde::{Deserialize, Serialize};
 
@@ -98,11 +99,13 @@ pub struct Step {
     pub verdict: Verdict,
 }
 
-/// A chain at one iteration. With the same streams, target and moves, its future follows from `iteration` and `state` alone.
+/// A chain at one iteration. With the same streams, target, moves and inverse temperature, its future follows from `iteration` and `state` alone.
 pub struct Chain<'a, T: Target> {
     target: &'a T,
     moves: &'a Mixture<T>,
     streams: ChainStreams,
+    /// The chain samples `p_w · p_c^β`; its states are those of the target, whatever β.
+    beta: f64,
     iteration: u64,
     state: StateOf<T>,
     counts: Vec<MoveCounts>,
@@ -154,7 +157,19 @@ impl<'a, T: Target> Chain<'a, T> {
         counts: Vec<MoveCounts>,
     ) -> Self {
         let candidate = state.draw.clone();
-        Self { target, moves, streams, iteration, state, counts, candidate, scratch: T::Scratch::default() }
+        let scratch = T::Scratch::default();
+        Self { target, moves, streams, beta: 1.0, iteration, state, counts, candidate, scratch }
+    }
+
+    /// The same chain at an inverse temperature from 0 on.
+    #[must_use]
+    pub(crate) fn at(self, beta: f64) -> Self {
+        Self { beta, ..self }
+    }
+
+    /// Goes to another inverse temperature.
+    pub(crate) fn set_beta(&mut self, beta: f64) {
+        self.beta = beta;
     }
 
     /// The current state.
@@ -200,23 +215,24 @@ impl<'a, T: Target> Chain<'a, T> {
         let Proposal::Candidate { log_ratio, path, later } = proposal else { return Ok(Verdict::Stayed) };
         let log_prior = self.target.log_prior(&self.candidate)?;
         let ln_u = math::ln(open_unit(&mut self.streams.at(next, Purpose::ACCEPT)));
-        let log_p = self.state.log_p();
+        let log_p = self.state.log_prior + self.state.log_constraint.tempered(self.beta)?;
         let most = log_ratio.times(later.unwrap_or(LogRatio::ONE))?;
         let Some(floor) = floor(ln_u, most, log_p, log_prior)? else { return Ok(Verdict::RejectedByPrior) };
-        let simulated = self.target.simulate(&self.candidate, Some(&self.state), floor, &mut self.scratch)?;
+        let Some(seen) = floor_seen(floor, self.beta) else { return Ok(Verdict::RejectedEarly) };
+        let simulated = self.target.simulate(&self.candidate, Some(&self.state), seen, &mut self.scratch)?;
         let Simulated::Complete(outcome) = simulated else {
             self.target.settle(false, &mut self.scratch);
             return Ok(Verdict::RejectedEarly);
         };
         let log_constraint = self.target.log_constraint(&outcome)?;
         let accepted = if later.is_none() {
-            self.accept_above(floor, outcome, log_prior, log_constraint)
+            self.accept_above(floor, outcome, log_prior, log_constraint)?
         } else {
             let candidate = State { draw: self.candidate.clone(), outcome, log_prior, log_constraint };
             let (_, kernel) = self.moves.get(move_id);
             let after = kernel.log_ratio_after(self.target, &self.state, &candidate, path)?;
             match self::floor(ln_u, log_ratio.times(after)?, log_p, log_prior)? {
-                Some(floor) => self.accept_above(floor, candidate.outcome, log_prior, log_constraint),
+                Some(floor) => self.accept_above(floor, candidate.outcome, log_prior, log_constraint)?,
                 None => false,
             }
         };
@@ -224,15 +240,11 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
     }
 
-    /// Exchanges what two chains aim at, that is targets, moves and their counts, while each keeps its state, memory and streams.
-    pub(crate) fn exchange_targets(a: &mut Self, b: &mut Self) -> Result<(), ModelError> {
-        std::mem::swap(&mut a.target, &mut b.target);
+    /// Exchanges what two chains aim at, that is inverse temperatures, moves and their counts, while each keeps its state, memory and streams.
+    pub(crate) fn exchange_rungs(a: &mut Self, b: &mut Self) {
+        std::mem::swap(&mut a.beta, &mut b.beta);
         std::mem::swap(&mut a.moves, &mut b.moves);
         std::mem::swap(&mut a.counts, &mut b.counts);
-        for chain in [a, b] {
-            chain.state.log_constraint = chain.target.log_constraint(&chain.state.outcome)?;
-        }
-        Ok(())
     }
 
     fn accept_above(
@@ -241,15 +253,15 @@ impl<'a, T: Target> Chain<'a, T> {
         outcome: T::Outcome,
         log_prior: LogDensity,
         log_constraint: LogPotential,
-    ) -> bool {
-        let accepted = log_constraint > floor;
+    ) -> Result<bool, ModelError> {
+        let accepted = log_constraint.tempered(self.beta)? > floor;
         if accepted {
             std::mem::swap(&mut self.state.draw, &mut self.candidate);
             self.state.outcome = outcome;
             self.state.log_prior = log_prior;
             self.state.log_constraint = log_constraint;
         }
-        accepted
+        Ok(accepted)
     }
 }
 

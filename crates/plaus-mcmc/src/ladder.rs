@@ -3,7 +3,7 @@
 use plaus_dist::ParamError;
 use serde::{Deserialize, Serialize};
 
-/// Ascending inverse temperatures from 0, the prior, to 1, the target.
+/// Ascending inverse temperatures from 0, the prior, to 1, the target; or the target's alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
 pub struct Ladder(Vec<f64>);
@@ -28,11 +28,12 @@ impl Ladder {
     /// A ladder of these inverse temperatures.
     ///
     /// # Errors
-    /// [`ParamError`] unless they ascend strictly from 0 to 1.
+    /// [`ParamError`] unless they ascend strictly from 0 to 1, or are 1 alone.
     pub fn new(betas: Vec<f64>) -> Result<Self, ParamError> {
         let ascends = betas.windows(2).all(|pair| pair[0] < pair[1]);
         let ends = betas.first() == Some(&0.0) && betas.last() == Some(&1.0);
-        if ascends && ends {
+        let alone = betas == [1.0];
+        if ascends && ends || alone {
             return Ok(Self(betas));
         }
         let value = betas.windows(2).find(|pair| pair[0] >= pair[1]).map_or(f64::NAN, |pair| pair[1]);
@@ -44,6 +45,12 @@ impl Ladder {
     pub fn even(rungs: usize) -> Self {
         let steps = rungs.max(2) - 1;
         Self((0..=steps).map(|k| k as f64 / steps as f64).collect())
+    }
+
+    /// The target alone: no ladder to climb.
+    #[must_use]
+    pub fn single() -> Self {
+        Self(vec![1.0])
     }
 
     /// The inverse temperatures.

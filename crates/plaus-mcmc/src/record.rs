@@ -11,7 +11,7 @@ pub struct Entry<D, O> {
     pub draws: u64,
     /// Proposals accepted since the recorded draw before the first of these; 0 in an entry that continues the last block's state.
     pub accepted: u32,
-    /// The move accepted last, where `accepted` is positive.
+    /// The move accepted last; `None` where none was, or where the state came from another rung after it.
     pub by: Option<MoveId>,
     /// Which class of solutions the state belongs to; `None` where it does not satisfy the constraint.
     pub class: Option<SolutionClass>,

@@ -33,20 +33,23 @@ impl<'a, T: Target> Tempered<'a, T> {
     pub fn beta(&self) -> f64 {
         self.beta
     }
+}
 
-    /// A floor for the target itself: whatever constraint does not exceed it does not exceed `floor` when tempered, in floating point.
-    /// `None` where no constraint can exceed `floor`.
-    fn floor_seen(&self, floor: LogPotential) -> Option<LogPotential> {
-        if self.beta == 0.0 {
-            return (floor < LogPotential::ONE).then_some(LogPotential::ZERO);
-        }
-        let mut seen = (floor.value() / self.beta).min(f64::MAX);
-        // Multiplication by β rounds monotonically, so the inequality at the floor holds for all below. One or two steps are enough.
-        while seen * self.beta > floor.value() {
-            seen = seen.next_down();
-        }
-        LogPotential::new(seen).ok()
+/// A floor for the constraint itself: what does not exceed it does not exceed `floor` when raised to the power of `beta`, in floating point.
+/// `None` where no constraint can exceed `floor`.
+pub(crate) fn floor_seen(floor: LogPotential, beta: f64) -> Option<LogPotential> {
+    if beta == 1.0 {
+        return Some(floor);
     }
+    if beta == 0.0 {
+        return (floor < LogPotential::ONE).then_some(LogPotential::ZERO);
+    }
+    let mut seen = (floor.value() / beta).min(f64::MAX);
+    // Multiplication by β rounds monotonically, so the inequality at the floor holds for all below. One or two steps are enough.
+    while seen * beta > floor.value() {
+        seen = seen.next_down();
+    }
+    LogPotential::new(seen).ok()
 }
 
 impl<T: Target> Target for Tempered<'_, T> {
@@ -69,7 +72,7 @@ impl<T: Target> Target for Tempered<'_, T> {
         floor: LogPotential,
         scratch: &mut T::Scratch,
     ) -> Result<Simulated<T::Outcome>, ModelError> {
-        match self.floor_seen(floor) {
+        match floor_seen(floor, self.beta) {
             Some(floor) => self.target.simulate(draw, current, floor, scratch),
             None => Ok(Simulated::CannotExceedFloor),
         }
@@ -131,7 +134,7 @@ mod tests {
             let mut around = |scale: f64| (open_unit(&mut stream) - 0.5) * scale;
             let (floor, beta) = (around(200.0), around(6.0).abs());
             let tempered = Tempered::new(&Nothing, beta).unwrap();
-            let seen = tempered.floor_seen(LogPotential::new(floor).unwrap()).unwrap().value();
+            let seen = floor_seen(LogPotential::new(floor).unwrap(), beta).unwrap().value();
             let weight = |x: f64| tempered.log_constraint(&x).unwrap().value();
             assert!(weight(seen) <= floor, "floor {floor}, beta {beta}");
             let above = (0..3).fold(seen, |x, _| x.next_up());
@@ -141,10 +144,8 @@ mod tests {
 
     #[test]
     fn floors_at_the_extremes() {
-        let floor = |beta: f64, floor: f64| {
-            let tempered = Tempered::new(&Nothing, beta).unwrap();
-            tempered.floor_seen(LogPotential::new(floor).unwrap()).map(LogPotential::value)
-        };
+        let floor =
+            |beta: f64, floor: f64| floor_seen(LogPotential::new(floor).unwrap(), beta).map(LogPotential::value);
         assert_eq!(floor(0.0, -1.0), Some(f64::NEG_INFINITY));
         assert_eq!(floor(0.0, 0.0), None);
         assert_eq!(floor(1e-300, 1e300), Some(f64::MAX));

@@ -12,7 +12,7 @@ use plaus_mcmc::check::{
     one_step, prior, ratio_pair, ratios, rejection,
 };
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Mixture, Move, StateOf, Tempered};
+use plaus_mcmc::{Mixture, Move, Redraw, StateOf, Tempered};
 use std::sync::Arc;
 use toys::balls::{Balls, Drops, active, filled};
 use toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle, Ways};
@@ -103,7 +103,7 @@ fn moves_that_undo_each_other_are_in_balance_together() {
 #[test]
 fn ratios_agree_there_and_back() {
     let balls = Balls::anywhere(6, 4, AREA, 1.0);
-    for kernel in [&Toggle::RIGHT as &dyn Move<Balls>, &CHANGE_ALL, &REDROP] {
+    for kernel in [&Toggle::RIGHT as &dyn Move<Balls>, &CHANGE_ALL, &REDROP, &Redraw] {
         let report = ratios(&balls, kernel, prior(&balls), Ratios::default()).unwrap();
         assert!(report.passed(), "{report}");
     }
@@ -135,6 +135,8 @@ fn toggles_keep_the_law_and_their_twins_do_not() {
 #[test]
 fn change_all_keeps_the_law_and_its_twin_does_not() {
     all_pass(&stepped(|| Box::new(CHANGE_ALL), 5, 3));
+    // Tempering's own, whatever the target.
+    all_pass(&stepped(|| Box::new(Redraw), 5, 3));
     all_fail(&stepped(|| Box::new(ChangeAll { symmetric: true }), 5, 3), "symmetric change-all");
 }
 

@@ -179,7 +179,17 @@ impl<D, O> Sink<D, O> for Nowhere {
 #[test]
 fn a_run_reports_the_first_failing_chain() {
     let lost = Counter { simulation_fails_at: 5, ..COUNTER };
-    let plan = Plan { seed: Seed(1), chains: 4, warmup: 0, iterations: 100, thin: 1, block: 10, solutions: None };
+    let plan = Plan {
+        seed: Seed(1),
+        chains: 4,
+        warmup: 0,
+        iterations: 100,
+        thin: 1,
+        block: 10,
+        solutions: None,
+        rungs: 1,
+        swap_every: 1,
+    };
     for threads in [1, 4] {
         let error = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere).unwrap_err();
         assert!(matches!(error, RunError::Chain { chain: 0, .. }));
@@ -204,7 +214,17 @@ fn the_start_counts_as_a_solution() {
     }
     for (wanted, block) in [(1, 1), (1, 100), (3, 1), (3, 100)] {
         let solutions = Some(wanted);
-        let plan = Plan { seed: Seed(1), chains: 1, warmup: 0, iterations: 50, thin: 1, block, solutions };
+        let plan = Plan {
+            seed: Seed(1),
+            chains: 1,
+            warmup: 0,
+            iterations: 50,
+            thin: 1,
+            block,
+            solutions,
+            rungs: 1,
+            swap_every: 1,
+        };
         let mut ends = Ends(Vec::new());
         run(&COUNTER, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), 1, &mut ends).unwrap();
         // The counter reaches a new class in every iteration.

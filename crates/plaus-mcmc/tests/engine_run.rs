@@ -16,8 +16,20 @@ use toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
 type Loads = Vec<u32>;
 type S = StateOf<Balls>;
 
-const PLAN: Plan =
-    Plan { seed: Seed(21), chains: 3, warmup: 100, iterations: 900, thin: 1, block: 64, solutions: None };
+const PLAN: Plan = Plan {
+    seed: Seed(21),
+    chains: 3,
+    warmup: 100,
+    iterations: 900,
+    thin: 1,
+    block: 64,
+    solutions: None,
+    rungs: 1,
+    swap_every: 1,
+};
+
+/// The same, each chain with replicas at four rungs.
+const TEMPERED: Plan = Plan { rungs: 4, swap_every: 7, ..PLAN };
 
 /// Keeps everything, and says stop after some number of rounds.
 #[derive(Default, PartialEq, Debug)]
@@ -62,7 +74,8 @@ impl Log {
         for block in &self.blocks[chain] {
             assert_eq!(draws.len() as u64, block.first_iteration.div_ceil(thin), "blocks follow each other");
             for Entry { draws: times, accepted, by, class, state } in &block.entries {
-                assert!(*times > 0 && by.is_some() == (*accepted > 0));
+                // What a swap brought was made by no move.
+                assert!(*times > 0 && (by.is_none() || *accepted > 0));
                 assert_eq!(*class, balls().class(state));
                 for repeat in 0..*times {
                     let accepted = if repeat == 0 { *accepted } else { 0 };
@@ -118,13 +131,17 @@ fn whole(plan: Plan, threads: usize) -> (Ending, Log) {
 
 #[test]
 fn the_number_of_threads_changes_nothing() {
-    let one = whole(PLAN, 1);
-    assert_eq!(one.0, Ending::Complete);
-    for threads in [2, 4, 0] {
-        assert!(one == whole(PLAN, threads), "{threads} threads");
+    for plan in [PLAN, TEMPERED] {
+        let one = whole(plan, 1);
+        assert_eq!(one.0, Ending::Complete);
+        for threads in [2, 4, 0] {
+            assert!(one == whole(plan, threads), "{threads} threads");
+        }
+        assert_ne!(one.1.draws(0, 1), one.1.draws(1, 1), "chains differ from each other");
+        assert!(one != whole(Plan { seed: Seed(22), ..plan }, 1), "seeds differ");
     }
-    assert_ne!(one.1.draws(0, 1), one.1.draws(1, 1), "chains differ from each other");
-    assert!(one != whole(Plan { seed: Seed(22), ..PLAN }, 1), "seeds differ");
+    let climbs: Vec<_> = whole(TEMPERED, 2).1.snapshots.into_iter().filter_map(|mut of| of.pop()?.replicas).collect();
+    assert!(climbs.len() == 3 && climbs.iter().all(|one| one.climb().restarts() > 0), "replicas climb");
 }
 
 #[test]
@@ -134,6 +151,8 @@ fn a_run_resumed_at_any_block_is_the_whole_run() {
         Plan { block: 50, ..PLAN },
         Plan { block: 97, thin: 7, ..PLAN },
         Plan { block: 3, thin: 8, iterations: 100, ..PLAN },
+        Plan { block: 35, ..TEMPERED },
+        Plan { block: 23, thin: 5, ..TEMPERED },
     ] {
         let (ending, all) = whole(plan, 2);
         for rounds in 1..all.ends.len() {
@@ -160,8 +179,8 @@ fn first_iteration_with(wanted: u64, all: &Log, thin: u64) -> Option<u64> {
 
 #[test]
 fn enough_solutions_end_a_run_at_one_iteration_whatever_the_blocks_and_threads() {
-    for thin in [1, 5] {
-        let (_, all) = whole(Plan { thin, ..PLAN }, 1);
+    for (thin, base) in [(1, PLAN), (5, PLAN), (2, TEMPERED)] {
+        let (_, all) = whole(Plan { thin, ..base }, 1);
         for wanted in [1, 2, 7, 40] {
             let last = first_iteration_with(wanted, &all, thin).unwrap();
             let expected: Vec<Vec<_>> = all
@@ -170,7 +189,7 @@ fn enough_solutions_end_a_run_at_one_iteration_whatever_the_blocks_and_threads()
                 .map(|draws| draws.into_iter().filter(|(iteration, ..)| *iteration <= last).collect())
                 .collect();
             for (block, threads) in [(1, 1), (7, 2), (64, 4), (10_000, 2)] {
-                let plan = Plan { thin, block, solutions: Some(wanted), ..PLAN };
+                let plan = Plan { thin, block, solutions: Some(wanted), ..base };
                 let (ending, log) = whole(plan, threads);
                 assert_eq!(ending, Ending::EnoughSolutions);
                 assert_eq!(log.ends.last(), Some(&(last + 1)), "{plan:?}");

@@ -84,6 +84,9 @@ pub enum RunFileProblem {
     /// A stored state is not what this program makes of its draw.
     #[error("{0}: this plaus does not compute what the one that made the run computed")]
     Differs(String),
+    /// A list of confirmed solutions that cannot be used.
+    #[error("the list of confirmed solutions cannot be used: {0}")]
+    List(String),
     /// A value that cannot be stored.
     #[error(transparent)]
     Encode(#[from] EncodeError),

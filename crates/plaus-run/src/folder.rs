@@ -44,6 +44,12 @@ impl Folder {
         self.0.join(format!("chain-{chain:05}.checkpoint.next"))
     }
 
+    /// Which solutions hold at another accuracy, where that was asked.
+    #[must_use]
+    pub fn confirmed(&self) -> PathBuf {
+        self.0.join("confirmed.json")
+    }
+
     /// Always there and always empty; whoever writes the run holds a lock on it.
     #[must_use]
     pub fn lock(&self) -> PathBuf {
@@ -60,6 +66,7 @@ impl Folder {
         }
         let parent = parent_of(&self.0);
         fs::create_dir_all(&parent).map_err(RunFileError::io(&parent, "make the folder"))?;
+        clear_drafts(&self.0);
         let draft = Self(draft_of(&self.0));
         // A draft that is there already is another process's: not ours to fill, nor to remove.
         disk.create_folder(&draft.0).map_err(RunFileError::io(&draft.0, "make the folder"))?;
@@ -110,8 +117,53 @@ pub(crate) fn parent_of(path: &Path) -> PathBuf {
     }
 }
 
+/// Removes the drafts of a run that processes left that were killed while they made it, where the system tells which processes there are.
+fn clear_drafts(path: &Path) {
+    let processes = Path::new("/proc/self");
+    let Some(name) = path.file_name().map(|name| name.to_string_lossy().into_owned()) else { return };
+    let Ok(beside) = fs::read_dir(parent_of(path)) else { return };
+    if !processes.exists() {
+        return;
+    }
+    for entry in beside.flatten() {
+        let draft = entry.file_name().to_string_lossy().into_owned();
+        let process = draft.strip_prefix(&format!(".{name}.")).and_then(|rest| rest.strip_suffix(".draft"));
+        let Some(process) = process.and_then(|text| text.parse::<u32>().ok()) else { continue };
+        let ours = |name: &std::ffi::OsStr| name == "lock" || name == "manifest.json";
+        let files = fs::read_dir(entry.path()).map(|files| files.flatten().all(|file| ours(&file.file_name())));
+        if !Path::new("/proc").join(process.to_string()).exists() && files.unwrap_or(false) {
+            let _ = fs::remove_dir_all(entry.path()); // best effort: it is in nobody's way
+        }
+    }
+}
+
 /// A name beside `path` under which it is made before it gets its own.
 pub(crate) fn draft_of(path: &Path) -> PathBuf {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     parent_of(path).join(format!(".{name}.{}.draft", std::process::id()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::disk::RealDisk;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn drafts_of_dead_processes_are_cleared_and_no_others() {
+        let place = tempfile::tempdir().unwrap();
+        let make = |name: &str, file: &str| {
+            fs::create_dir(place.path().join(name)).unwrap();
+            fs::write(place.path().join(name).join(file), "").unwrap();
+        };
+        // Linux gives no process a number that large.
+        make(".run.4194305.draft", "lock");
+        make(".run.4194306.draft", "mine.txt");
+        make(".other.4194305.draft", "lock");
+        make(".run.1.draft", "lock");
+        Folder::new(place.path().join("run")).create(&RealDisk, b"{}").unwrap();
+        let left = |name: &str| place.path().join(name).exists();
+        assert!(!left(".run.4194305.draft") && left(".run.4194306.draft") && left(".other.4194305.draft"));
+        assert!(left(".run.1.draft") && left("run/manifest.json"));
+    }
 }

@@ -38,6 +38,7 @@
 //! | `manifest.json` | what the run is: scenario text and hash, version, seed, plan, flags of the acceptance rule, moves, scalars; with a checksum |
 //! | `chain-00000.records` | what the chain recorded: one [frame](codec) a block of iterations, appended |
 //! | `chain-00000.checkpoint` | where the chain can go on from: one frame, replaced |
+//! | `confirmed.json` | made on demand: which distinct solutions hold at another accuracy |
 //! | `lock` | empty; locked by the process that writes |
 //!
 //! The bytes of a folder follow from scenario, seed, plan and version: not from the clock, the number of threads, or how often the run was killed and
@@ -46,6 +47,7 @@
 
 pub mod checkpoint;
 pub mod codec;
+pub mod confirm;
 pub mod diagnosis;
 pub mod disk;
 mod error;
@@ -60,6 +62,7 @@ mod sink;
 pub mod solutions;
 pub mod tally;
 
+pub use confirm::Confirmation;
 pub use diagnosis::{Diagnosis, Finding};
 pub use error::{Error, RunFileError, RunFileProblem};
 pub use folder::Folder;

@@ -147,6 +147,8 @@ fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
         thin: sampler.thin,
         block: block.max(1),
         solutions,
+        rungs: sampler.tempering.rungs,
+        swap_every: sampler.tempering.swap_every,
     }
 }
 

@@ -4,7 +4,7 @@ use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::read::{Phase, RunOf};
 use crate::tally::SampleId;
 use plaus_mcmc::{State, StateOf};
-use plaus_scenes::{Animation, Scene};
+use plaus_scenes::{AccuracyPreset, Animation, Scene};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -28,6 +28,19 @@ pub struct Replay {
     pub scalars: Vec<(String, f64)>,
     /// The motion.
     pub animation: Animation,
+    /// What was recorded, where this is another simulation of the same draw.
+    pub recorded: Option<Recorded>,
+}
+
+/// What a run recorded of a draw that was simulated again at another accuracy.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Recorded {
+    /// The accuracy of the new simulation.
+    pub accuracy: AccuracyPreset,
+    /// The recorded `log p(A)`.
+    pub log_p: f64,
+    /// Whether the recorded state satisfies the constraint.
+    pub satisfied: bool,
 }
 
 /// Rebuilds the animation of a draw, and makes sure that it is the one that was sampled.
@@ -39,6 +52,27 @@ pub fn replay<S: Scene>(run: &RunOf<'_, S>, sample: SampleId) -> Result<Replay, 
     rebuild(run, sample, &entry.state, entry.class.is_some())
 }
 
+/// What becomes of a recorded draw at another accuracy. That the recorded state is what this program makes of the draw at the run's own is made sure first.
+///
+/// # Errors
+/// As [`replay`], and where the scene has no accuracy to choose.
+pub fn replay_at<S: Scene>(run: &RunOf<'_, S>, sample: SampleId, accuracy: AccuracyPreset) -> Result<Replay, Error> {
+    let entry = run.sample(sample.chain, sample.draw)?;
+    same(run, sample, &entry.state)?;
+    let scene = at_accuracy(run.scene(), run.run().scenario().world.name(), accuracy)?;
+    let state = State::evaluate(&scene, entry.state.draw.clone(), &mut S::Scratch::default())?;
+    let satisfied = scene.class(&state).is_some();
+    let recorded = Recorded { accuracy, log_p: entry.state.log_p().value(), satisfied: entry.class.is_some() };
+    Ok(Replay { recorded: Some(recorded), ..shown(run, &scene, sample, &state, satisfied)? })
+}
+
+/// A scene at another accuracy, or why there is none.
+pub(crate) fn at_accuracy<S: Scene>(scene: &S, name: &str, accuracy: AccuracyPreset) -> Result<S, Error> {
+    scene.at_accuracy(accuracy)?.ok_or_else(|| {
+        Error::Request(format!("{name} moves in closed form, which is exact at any accuracy: there is none to choose"))
+    })
+}
+
 /// Rebuilds many draws, each chain's records being read once, and hands each to `make`, on all threads: what `make` gives, in the order of `samples`.
 ///
 /// # Errors
@@ -48,6 +82,17 @@ pub fn replay_each<S: Scene, T: Send>(
     samples: &[SampleId],
     make: impl Fn(Replay) -> T + Sync,
 ) -> Result<Vec<T>, Error> {
+    let states = states(run, samples)?;
+    let rebuilt =
+        states.par_iter().map(|(index, state, satisfied)| rebuild(run, samples[*index], state, *satisfied).map(&make));
+    rebuilt.collect()
+}
+
+/// A recorded state with its place in a list, and whether it satisfies the constraint.
+pub(crate) type Found<S> = (usize, StateOf<S>, bool);
+
+/// The recorded states of many draws, in their order, each chain's records being read once.
+pub(crate) fn states<S: Scene>(run: &RunOf<'_, S>, samples: &[SampleId]) -> Result<Vec<Found<S>>, Error> {
     let mut order: Vec<usize> = (0..samples.len()).collect();
     order.sort_by_key(|&index| samples[index]);
     let mut states = Vec::with_capacity(samples.len());
@@ -66,9 +111,7 @@ pub fn replay_each<S: Scene, T: Send>(
         }
     }
     states.sort_by_key(|&(index, ..)| index);
-    let rebuilt =
-        states.par_iter().map(|(index, state, satisfied)| rebuild(run, samples[*index], state, *satisfied).map(&make));
-    rebuilt.collect()
+    Ok(states)
 }
 
 fn rebuild<S: Scene>(
@@ -77,13 +120,29 @@ fn rebuild<S: Scene>(
     stored: &StateOf<S>,
     satisfied: bool,
 ) -> Result<Replay, Error> {
-    let state = evaluate_again(run.scene(), stored).map_err(|problem| match problem {
+    let state = same(run, sample, stored)?;
+    shown(run, run.scene(), sample, &state, satisfied)
+}
+
+/// The state evaluated again, which must have the stored bits.
+fn same<S: Scene>(run: &RunOf<'_, S>, sample: SampleId, stored: &StateOf<S>) -> Result<StateOf<S>, Error> {
+    evaluate_again(run.scene(), stored).map_err(|problem| match problem {
         Ok(problem) => RunFileError::new(run.run().folder().records(sample.chain), problem).into(),
         Err(error) => error,
-    })?;
-    let names = run.scene().scalars().into_iter().map(|scalar| scalar.name);
+    })
+}
+
+/// A state as `scene` shows it.
+fn shown<S: Scene>(
+    run: &RunOf<'_, S>,
+    scene: &S,
+    sample: SampleId,
+    state: &StateOf<S>,
+    satisfied: bool,
+) -> Result<Replay, Error> {
+    let names = scene.scalars().into_iter().map(|scalar| scalar.name);
     let mut values = vec![0.0; names.len()];
-    run.scene().write_scalars(&state, &mut values);
+    scene.write_scalars(state, &mut values);
     Ok(Replay {
         sample,
         iteration: run.iteration_of(Phase::Sampling, sample.draw),
@@ -92,7 +151,8 @@ fn rebuild<S: Scene>(
         log_constraint: state.log_constraint.value(),
         satisfied,
         scalars: names.zip(values).collect(),
-        animation: run.scene().animate(&state.draw)?,
+        animation: scene.animate(&state.draw)?,
+        recorded: None,
     })
 }
 

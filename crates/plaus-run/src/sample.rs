@@ -182,16 +182,24 @@ fn restore_chain<S: Scene>(
     checkpoint: Checkpoint<S::Draw, S::Outcome>,
 ) -> Result<Start<S::Draw, S::Outcome>, Error> {
     let Checkpoint { chain, records, snapshot, .. } = checkpoint;
-    evaluate_again(scene, &snapshot.state).map_err(|problem| match problem {
-        Ok(problem) => RunFileError::new(folder.checkpoint(chain), problem).into(),
-        Err(error) => error,
-    })?;
+    let states = snapshot.replicas.iter().flat_map(|replicas| &replicas.states).chain([&snapshot.state]);
+    for state in states {
+        evaluate_again(scene, state).map_err(|problem| match problem {
+            Ok(problem) => RunFileError::new(folder.checkpoint(chain), problem).into(),
+            Err(error) => error,
+        })?;
+    }
     let path = folder.records(chain);
     let end_iteration = snapshot.end_iteration;
     let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes: records, end_iteration };
     let distinct: Distinct = records::distinct::<S::Draw, S::Outcome>(&path, extent)?;
     if snapshot.counts.len() != manifest.moves.len() {
         let message = format!("{} moves are counted, the scene has {}", snapshot.counts.len(), manifest.moves.len());
+        return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
+    }
+    let (rungs, moves) = (manifest.plan.rungs, manifest.moves.len());
+    if snapshot.replicas.as_ref().map_or(rungs != 1, |replicas| !replicas.fits(rungs, moves)) {
+        let message = format!("the checkpoint is not one of {rungs} rungs");
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
     }
     cut(folder, disk, chain, records)?;

@@ -2,7 +2,7 @@
 
 use crate::error::RunFileError;
 use crate::read::{Phase, RunOf};
-use plaus_mcmc::{Distinct, FirstOfClass, Hits, MoveCounts};
+use plaus_mcmc::{Climb, Distinct, FirstOfClass, Hits, Ladder, MoveCounts};
 use plaus_scenes::Scene;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -44,6 +44,36 @@ pub struct ChainTally {
     pub distinct: u64,
     /// The likeliest satisfying draw of the sampling phase, with its log p.
     pub best: Option<(SampleId, f64)>,
+    /// How its replicas fared, if there are more than one.
+    pub tempering: Option<TemperingTally>,
+}
+
+/// How the replicas of one chain fared.
+#[derive(Debug, Clone, Serialize)]
+pub struct TemperingTally {
+    /// Inverse temperatures of the rungs.
+    pub betas: Vec<f64>,
+    /// Share of swaps rejected between each rung and the next.
+    pub rejected: Vec<f64>,
+    /// Their sum.
+    pub barrier: f64,
+    /// States that came to the target's rung from the first one since the warm-up.
+    pub restarts: u64,
+    /// Replicas that came to the first rung from the target's since the warm-up.
+    pub round_trips: u64,
+}
+
+impl TemperingTally {
+    fn of(climb: &Climb) -> Self {
+        let rejected = climb.rejected();
+        Self {
+            betas: climb.ladder().betas().to_vec(),
+            barrier: Ladder::barrier(&rejected),
+            rejected,
+            restarts: climb.restarts(),
+            round_trips: climb.round_trips(),
+        }
+    }
 }
 
 /// What the records of all chains add up to.
@@ -107,6 +137,9 @@ fn tally<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<(ChainTally, Distin
         satisfying_draws: 0,
         distinct: 0,
         best: None,
+        tempering: snapshot
+            .and_then(|snapshot| snapshot.replicas.as_ref())
+            .map(|replicas| TemperingTally::of(replicas.climb())),
     };
     let mut distinct = Distinct::default();
     for phase in [Phase::Warmup, Phase::Sampling] {

@@ -4,9 +4,9 @@
 
 mod common;
 
-use common::{FailingDisk, bytes_of, recipe};
+use common::{FailingDisk, bytes_of, recipe, tempered};
 use plaus_run::disk::{Disk, RealDisk};
-use plaus_run::{Error, Folder, More, Sampling, Unwatched, Watch, resume, sample};
+use plaus_run::{Error, Folder, More, Recipe, Sampling, Unwatched, Watch, resume, sample};
 
 /// Asks for checkpoints only now and then, as the clock would.
 struct Seldom(u32);
@@ -21,26 +21,26 @@ impl Watch for Seldom {
     }
 }
 
-fn sample_on(disk: &dyn Disk, folder: &Folder, solutions: Option<u64>, watch: &mut dyn Watch) -> Result<(), Error> {
-    sample(folder, &recipe(solutions), Sampling { threads: 1, disk, watch }).map(|_| ())
+fn sample_on(disk: &dyn Disk, folder: &Folder, recipe: &Recipe, watch: &mut dyn Watch) -> Result<(), Error> {
+    sample(folder, recipe, Sampling { threads: 1, disk, watch }).map(|_| ())
 }
 
 /// Every number of bytes after which a process can die, in steps; and every operation.
-fn killed_everywhere(solutions: Option<u64>, crash: bool) {
+fn killed_everywhere(recipe: &Recipe, crash: bool, every: usize) {
     let place = tempfile::tempdir().unwrap();
     let whole = Folder::new(place.path().join("whole"));
     let disk = FailingDisk::new(u64::MAX, u64::MAX, crash);
-    sample_on(&disk, &whole, solutions, &mut Unwatched).unwrap();
+    sample_on(&disk, &whole, recipe, &mut Unwatched).unwrap();
     let expected = bytes_of(&whole);
     let (bytes, operations) = disk.used();
     assert!(bytes > 2_000 && operations > 30, "{bytes} bytes in {operations} operations prove little");
-    let limits = (0..bytes).step_by(197).map(|bytes| (bytes, u64::MAX));
+    let limits = (0..bytes).step_by(every).map(|bytes| (bytes, u64::MAX));
     let stops = (0..operations).map(|operations| (u64::MAX, operations));
     for (index, (bytes, operations)) in limits.chain(stops).enumerate() {
         let folder = Folder::new(place.path().join(format!("run{index}")));
         let failing = FailingDisk::new(bytes, operations, crash);
         let first: &mut dyn Watch = if index % 2 == 0 { &mut Unwatched } else { &mut Seldom(0) };
-        if sample_on(&failing, &folder, solutions, first).is_ok() {
+        if sample_on(&failing, &folder, recipe, first).is_ok() {
             continue;
         }
         // Die again while going on, then go on in peace.
@@ -49,7 +49,7 @@ fn killed_everywhere(solutions: Option<u64>, crash: bool) {
             let _ = resume(&folder, More::default(), Sampling { threads: 2, disk: &again, watch: &mut Seldom(0) });
             resume(&folder, More::default(), Sampling { threads: 1, disk: &RealDisk, watch: &mut Unwatched }).unwrap();
         } else {
-            sample_on(&RealDisk, &folder, solutions, &mut Unwatched).unwrap();
+            sample_on(&RealDisk, &folder, recipe, &mut Unwatched).unwrap();
         }
         assert_eq!(bytes_of(&folder), expected, "after {bytes} bytes or {operations} operations");
         std::fs::remove_dir_all(folder.path()).unwrap();
@@ -58,17 +58,22 @@ fn killed_everywhere(solutions: Option<u64>, crash: bool) {
 
 #[test]
 fn a_process_killed_anywhere_loses_nothing_final() {
-    killed_everywhere(None, true);
+    killed_everywhere(&recipe(None), true, 197);
+}
+
+#[test]
+fn a_tempered_run_killed_anywhere_loses_nothing_final() {
+    killed_everywhere(&tempered(None), true, 997);
 }
 
 #[test]
 fn a_process_killed_anywhere_finds_the_same_solutions() {
-    killed_everywhere(Some(60), true);
+    killed_everywhere(&recipe(Some(60)), true, 197);
 }
 
 #[test]
 fn a_full_disk_leaves_the_run_resumable() {
-    killed_everywhere(None, false);
+    killed_everywhere(&recipe(None), false, 197);
 }
 
 #[test]
@@ -76,7 +81,7 @@ fn a_full_disk_is_named_with_what_is_safe() {
     let place = tempfile::tempdir().unwrap();
     let folder = Folder::new(place.path().join("run"));
     let disk = FailingDisk::new(20_000, u64::MAX, false);
-    let error = sample_on(&disk, &folder, None, &mut Unwatched).unwrap_err();
+    let error = sample_on(&disk, &folder, &recipe(None), &mut Unwatched).unwrap_err();
     let Error::DiskFull { safe, .. } = &error else { panic!("{error}") };
     assert!(*safe >= 100 && safe.is_multiple_of(100), "{safe}");
     assert!(error.to_string().contains("free some space, then `plaus resume`"), "{error}");
@@ -85,14 +90,16 @@ fn a_full_disk_is_named_with_what_is_safe() {
 #[test]
 fn threads_and_checkpoints_leave_no_trace() {
     let place = tempfile::tempdir().unwrap();
-    let run = |threads, watch: &mut dyn Watch| {
-        let folder = Folder::new(place.path().join(format!("run{threads}")));
-        sample(&folder, &recipe(None), Sampling { threads, disk: &RealDisk, watch }).unwrap();
-        bytes_of(&folder)
-    };
-    let one = run(1, &mut Unwatched);
-    assert_eq!(run(2, &mut Seldom(0)), one);
-    assert_eq!(run(4, &mut Seldom(1)), one);
+    for (recipe, name) in [(recipe(None), "plain"), (tempered(None), "tempered")] {
+        let run = |threads, watch: &mut dyn Watch| {
+            let folder = Folder::new(place.path().join(format!("{name}{threads}")));
+            sample(&folder, &recipe, Sampling { threads, disk: &RealDisk, watch }).unwrap();
+            bytes_of(&folder)
+        };
+        let one = run(1, &mut Unwatched);
+        assert_eq!(run(2, &mut Seldom(0)), one);
+        assert_eq!(run(4, &mut Seldom(1)), one);
+    }
 }
 
 #[test]

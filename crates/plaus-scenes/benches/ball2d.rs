@@ -36,8 +36,17 @@ fn scene(moves: Moves) -> (Ball2d, Mixture<Ball2d>) {
 }
 
 fn sample(scene: &Ball2d, moves: &Mixture<Ball2d>) {
-    let plan =
-        Plan { seed: Seed(1), chains: 1, warmup: 0, iterations: ITERATIONS, thin: 1, block: 20_000, solutions: None };
+    let plan = Plan {
+        seed: Seed(1),
+        chains: 1,
+        warmup: 0,
+        iterations: ITERATIONS,
+        thin: 1,
+        block: 20_000,
+        solutions: None,
+        rungs: 1,
+        swap_every: 1,
+    };
     run(scene, moves, plan, Vec::new(), 1, &mut Drop).unwrap();
 }
 

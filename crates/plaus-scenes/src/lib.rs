@@ -23,6 +23,7 @@
 //! A [`Scene`] is a target with a goal, moves and animations; [`registry`] lists all there are; [`scenario`] reads the files; [`rules`] says
 //! whether acceptance is exact or as the paper prints it.
 
+pub mod accuracy;
 pub mod animation;
 pub mod ball2d;
 pub mod dice;
@@ -32,6 +33,7 @@ pub mod scenario;
 pub mod scene;
 pub mod spelling;
 
+pub use accuracy::AccuracyPreset;
 pub use animation::Animation;
 pub use registry::{Visitor, World};
 pub use rules::Rules;

@@ -1,5 +1,6 @@
 //! What a scene is: a target with a goal, moves, and a way to be looked at.
 
+use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::rules::Rules;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateOf};
@@ -29,6 +30,15 @@ pub trait Scene:
     /// # Errors
     /// [`ModelError`] where the simulation fails.
     fn animate(&self, draw: &Self::Draw) -> Result<Animation, ModelError>;
+
+    /// The same world simulated at another accuracy: draws mean the same, what becomes of them may differ. `None` where motion has a closed form, exact at any
+    /// accuracy, so that there is nothing to choose. A scene with a simulator overrides this.
+    ///
+    /// # Errors
+    /// [`ConfigError`] where the configuration makes no world at that accuracy.
+    fn at_accuracy(&self, _accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
+        Ok(None)
+    }
 }
 
 /// A number that every state of a scene has: a column of a table, a variable of the diagnostics.

@@ -38,6 +38,18 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
             "sampler.sgima_d",
             &["did you mean `world.ball2d.sigma_d`?"],
         ),
+        (
+            "[sampler.tempering]\nrungs = 0\n[world.ball2d]",
+            (2, 9),
+            "sampler.tempering.rungs",
+            &["0 is out of range", "from 1 to 256"],
+        ),
+        (
+            "[sampler]\nrules.preset = \"as-printed\"\ntempering.rungs = 8\n[world.ball2d]",
+            (3, 19),
+            "sampler.tempering.rungs",
+            &["tempering needs exact acceptance", "set sampler.rules.preset = \"exact\", or rungs = 1"],
+        ),
         ("[sampeler]\nseed = 1\n[world.ball2d]", (1, 2), "sampeler", &["did you mean `sampler`?"]),
         ("[world.ball2d.weights]\naimm = 1", (2, 1), "world.ball2d.weights.aimm", &["did you mean `aim`?"]),
         // Wrong types.

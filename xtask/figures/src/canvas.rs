@@ -68,8 +68,26 @@ pub fn write(area: &Area<'_>, words: &str, style: &TextStyle<'_>, align: HPos, a
 
 pub use plotters::style::text_anchor::{HPos, VPos};
 
+/// A picture in a figure: where its upper left corner is and how wide it is, in pixels of the figure.
+pub struct Picture {
+    pub at: (f64, f64),
+    pub width: f64,
+    pub image: tiny_skia::Pixmap,
+}
+
 /// Draws a figure of `size` pixels and saves it as `name.svg` and `name.png`.
 pub fn save(folder: &Path, name: &str, size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> Result<()>) -> Result<()> {
+    save_with(folder, name, size, &[], draw)
+}
+
+/// The same, with pictures laid over the drawing.
+pub fn save_with(
+    folder: &Path,
+    name: &str,
+    size: (u32, u32),
+    pictures: &[Picture],
+    draw: impl FnOnce(&Area<'_>) -> Result<()>,
+) -> Result<()> {
     let mut svg = String::new();
     let fine = FINE as u32;
     {
@@ -83,8 +101,8 @@ pub fn save(folder: &Path, name: &str, size: (u32, u32), draw: impl FnOnce(&Area
         let path = folder.join(format!("{name}.{ending}"));
         std::fs::write(&path, bytes).map_err(|error| format!("{}: {error}", path.display()))
     };
-    save("svg", svg.as_bytes())?;
-    save("png", &png(&svg)?)?;
+    save("png", &png(&svg, pictures)?)?;
+    save("svg", embed(&svg, pictures)?.as_bytes())?;
     Ok(())
 }
 
@@ -107,7 +125,21 @@ fn finish(svg: &str, size: (u32, u32)) -> Result<String> {
     Ok(head + &style + &body)
 }
 
-fn png(svg: &str) -> Result<Vec<u8>> {
+/// The drawing with pictures at its end.
+fn embed(svg: &str, pictures: &[Picture]) -> Result<String> {
+    let end = svg.rfind("</svg>").ok_or("plotters wrote no SVG")?;
+    let mut text = svg[..end].to_owned();
+    for Picture { at, width, image } in pictures {
+        let height = width * f64::from(image.height()) / f64::from(image.width());
+        let [x, y, w, h] = [at.0, at.1, *width, height].map(px);
+        let data = base64(&image.encode_png()?);
+        text += &format!(r#"<image x="{x}" y="{y}" width="{w}" height="{h}" href="data:image/png;base64,{data}"/>"#);
+        text.push('\n');
+    }
+    Ok(text + &svg[end..])
+}
+
+fn png(svg: &str, pictures: &[Picture]) -> Result<Vec<u8>> {
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(REGULAR.to_vec());
     fonts.load_font_data(BOLD.to_vec());
@@ -118,6 +150,12 @@ fn png(svg: &str) -> Result<Vec<u8>> {
     let (width, height) = ((size.width() as f32 * DENSE) as u32, (size.height() as f32 * DENSE) as u32);
     let mut image = tiny_skia::Pixmap::new(width, height).ok_or("a figure without pixels")?;
     resvg::render(&tree, tiny_skia::Transform::from_scale(DENSE, DENSE), &mut image.as_mut());
+    let paint = tiny_skia::PixmapPaint { quality: tiny_skia::FilterQuality::Bilinear, ..Default::default() };
+    for picture in pictures {
+        let scale = picture.width as f32 * DENSE / picture.image.width() as f32;
+        let place = tiny_skia::Transform::from_translate(picture.at.0 as f32 * DENSE, picture.at.1 as f32 * DENSE);
+        image.draw_pixmap(0, 0, picture.image.as_ref(), &paint, place.pre_scale(scale, scale), None);
+    }
     Ok(image.encode_png()?)
 }
 

@@ -4,6 +4,7 @@
 pub mod canvas;
 pub mod lines;
 pub mod plot;
+pub mod render;
 pub mod report;
 
 /// Whatever went wrong, for the person at the terminal.

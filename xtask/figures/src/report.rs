@@ -45,7 +45,7 @@ impl Report {
         let mut text = "# The paper's figures and claims, sampled anew\n\n".to_owned();
         text += "S. Chenney, D. A. Forsyth, \"Sampling Plausible Solutions to Multi-body Constraint Problems\", SIGGRAPH 2000.\n";
         text += "This file and the figures beside it are made by one command, from fixed seeds; a second run of the same version gives the same\n";
-        text += "bytes:\n\n    cargo xtask reproduce-figures\n\n";
+        text += "bytes, but for times, which are those of the machine:\n\n    cargo xtask reproduce-figures\n\n";
         if self.quick {
             text += "**Made with `--quick`: the runs are far too short for the numbers to mean anything.**\n\n";
         }

@@ -64,7 +64,7 @@ impl Args {
         if self.json {
             console::print_line(&report::to_json(manifest, &diagnosis).to_string())?;
         } else {
-            let solutions = report::solutions(&diagnosis);
+            let solutions = report::solutions(&diagnosis) + &report::tempering(&diagnosis, None);
             let findings: String = diagnosis.findings.iter().map(|finding| format!("  {finding}\n")).collect();
             let verdict = if diagnosis.is_healthy() { "nothing speaks against these chains\n" } else { "findings:\n" };
             console::print(&format!(

@@ -2,10 +2,11 @@
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::label;
 use plaus_export::{Clip, Cut, Label, table};
-use plaus_run::replay::{Replay, replay};
+use plaus_run::replay::{Replay, replay, replay_at};
 use plaus_run::{Error, Folder, Manifest, Run, RunOf, RunVisitor, SampleId};
-use plaus_scenes::Scene;
+use plaus_scenes::{AccuracyPreset, Scene};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -23,6 +24,9 @@ pub(crate) struct Args {
     /// csv or json
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     format: Format,
+    /// What becomes of the same draw at another accuracy: draft, standard, fine or reference
+    #[arg(long, value_name = "PRESET")]
+    accuracy: Option<AccuracyPreset>,
 }
 
 /// A format of animation.
@@ -34,19 +38,22 @@ enum Format {
     Json,
 }
 
-struct Rebuild(SampleId);
+struct Rebuild(SampleId, Option<AccuracyPreset>);
 
 impl RunVisitor for Rebuild {
     type Output = Result<Replay, Error>;
     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        replay(&run, self.0)
+        match self.1 {
+            Some(accuracy) => replay_at(&run, self.0, accuracy),
+            None => replay(&run, self.0),
+        }
     }
 }
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let run = Run::open(&Folder::new(&self.run))?;
-        let replay = run.visit(Rebuild(self.sample))??;
+        let replay = run.visit(Rebuild(self.sample, self.accuracy))??;
         let cut = Cut::new(self.fps, None, &replay.animation).map_err(|error| Failure::Message(error.to_string()))?;
         let clip = Clip { animation: &replay.animation, label: &Label::default(), cut };
         match self.format {
@@ -57,34 +64,38 @@ impl Args {
             }
             Format::Json => {
                 let poses = table::poses_to_json(&clip);
-                console::print_line(&to_json(run.manifest(), &replay, &poses).to_string())?;
+                console::print_line(&to_json(run.manifest(), &replay, poses).to_string())?;
             }
         }
-        let Replay { sample, log_p, satisfied, .. } = replay;
-        let is = if satisfied { "satisfies" } else { "does not satisfy" };
-        console::note_line(&format!("sample {sample} rebuilt bit for bit: log p {log_p:?}, {is} the constraint"));
+        console::note_line(&closing(&replay));
         Ok(Outcome::Done)
     }
 }
 
-fn to_json(manifest: &Manifest, replay: &Replay, poses: &serde_json::Value) -> serde_json::Value {
-    json!({
-        "scene": manifest.scene,
-        "seed": manifest.plan.seed,
-        "scenario_hash": manifest.scenario.hash,
-        "sample": replay.sample.to_string(),
-        "chain": replay.sample.chain,
-        "draw": replay.sample.draw,
-        "iteration": replay.iteration,
-        "log_p": replay.log_p,
-        "log_prior": replay.log_prior,
-        "log_constraint": replay.log_constraint,
-        "satisfied": replay.satisfied,
-        "scalars": replay.scalars.iter().map(|(name, value)| (name.clone(), json!(value))).collect::<serde_json::Value>(),
-        "duration": replay.animation.duration,
-        "impacts": replay.animation.impacts,
-        "poses": poses,
-        "tracks": replay.animation.tracks,
-        "scenery": replay.animation.scenery,
-    })
+fn closing(replay: &Replay) -> String {
+    let Replay { sample, log_p, satisfied, .. } = replay;
+    let is = |satisfied| if satisfied { "satisfies" } else { "does not satisfy" };
+    match replay.recorded {
+        None => format!("sample {sample} rebuilt bit for bit: log p {log_p:?}, {} the constraint", is(*satisfied)),
+        Some(recorded) => format!(
+            "sample {sample} simulated at {} accuracy: log p {log_p:?}, {} the constraint; as recorded: log p {:?}, {} it",
+            recorded.accuracy.name(),
+            is(*satisfied),
+            recorded.log_p,
+            is(recorded.satisfied),
+        ),
+    }
+}
+
+/// The facts of the sample and its whole motion.
+fn to_json(manifest: &Manifest, replay: &Replay, poses: serde_json::Value) -> serde_json::Value {
+    let mut all = label::of(manifest, replay).facts;
+    let motion = [
+        ("impacts", json!(replay.animation.impacts)),
+        ("poses", poses),
+        ("tracks", json!(replay.animation.tracks)),
+        ("scenery", json!(replay.animation.scenery)),
+    ];
+    all.extend(motion.map(|(name, value)| (name.to_owned(), value)));
+    all.into()
 }

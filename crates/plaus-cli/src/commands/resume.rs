@@ -1,8 +1,9 @@
 //! `plaus resume`
 
+use super::confirm::ACCURACY;
 use super::sample::Watching;
 use crate::failure::{Failure, Outcome};
-use plaus_run::{Folder, More};
+use plaus_run::{Folder, More, Run};
 use std::path::PathBuf;
 
 /// Which run.
@@ -23,6 +24,9 @@ pub(crate) struct Args {
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let folder = Folder::new(&self.run);
+        if self.watching.confirms() {
+            plaus_run::confirm::possible(Run::open(&folder)?.scenario(), ACCURACY)?;
+        }
         let more = More { iterations: self.iterations, solutions: self.solutions };
         self.watching.watch(&folder, |sampling| Ok(plaus_run::resume(&folder, more, sampling)?))
     }

@@ -1,5 +1,6 @@
 //! `plaus sample`, and what it shares with `plaus resume`.
 
+use super::confirm::{self, ACCURACY};
 use crate::clock::{in_words, parse_duration};
 use crate::console;
 use crate::failure::{Failure, Outcome};
@@ -69,6 +70,9 @@ pub(crate) struct Watching {
     /// Show progress more often, chain by chain, also where there is no terminal
     #[arg(short, long)]
     verbose: bool,
+    /// At the end, simulate every distinct solution again at reference accuracy, and list which of them hold
+    #[arg(long)]
+    confirm: bool,
 }
 
 impl Args {
@@ -88,6 +92,9 @@ impl Args {
         self.overrides.extend(given.iter().map(|(key, _)| key.clone()));
         let recipe = scenario_file::read(&self.scenario, self.overrides, self.solutions);
         let recipe = recipe.map_err(|failure| failure.naming(&given))?;
+        if self.watching.confirm {
+            plaus_run::confirm::possible(&recipe.scenario, ACCURACY)?;
+        }
         let folder = Folder::new(&self.out);
         self.watching.watch(&folder, |sampling| {
             plaus_run::sample(&folder, &recipe, sampling).map_err(|error| match error {
@@ -122,6 +129,11 @@ impl Watching {
         let ended = sampling(Sampling::new(self.threads, &mut opening));
         monitor.finish();
         self.sum_up(folder, &monitor, ended?)
+    }
+
+    /// Whether solutions are to be confirmed.
+    pub(super) fn confirms(&self) -> bool {
+        self.confirm
     }
 
     fn open(&self, folder: &Folder, manifest: &Manifest, done: u64) {
@@ -169,12 +181,28 @@ impl Watching {
         let run = Run::open(folder)?;
         let plan = run.manifest().plan;
         let diagnosis = report::diagnose(&run, Some(SUMMARISED / u64::from(plan.chains)))?;
+        let confirmed = if self.confirm {
+            let Some(list) = confirm::confirm(&run, self.threads, !self.json && !self.quiet)? else {
+                console::note_line(&format!(
+                    "interrupted while confirming; go on: plaus resume {} --confirm",
+                    quoted(path)
+                ));
+                return Ok(Outcome::Interrupted);
+            };
+            Some(list)
+        } else {
+            None
+        };
         if self.json {
             let mut end = report::to_json(run.manifest(), &diagnosis);
             end["event"] = json!("end");
             end["ending"] = json!(ending_in_words(ending));
             end["seconds"] = json!(monitor.seconds());
             end["iterations_per_second"] = json!(monitor.rate());
+            if let Some(list) = &confirmed {
+                let (held, checked) = (list.held, list.solutions.len());
+                end["confirmed"] = json!({ "accuracy": list.accuracy.name(), "checked": checked, "held": held });
+            }
             console::print_line(&end.to_string())?;
         } else if !self.quiet {
             console::print(&summary(&run, &diagnosis, monitor, ending))?;
@@ -191,7 +219,11 @@ impl Watching {
         if !diagnosis.tally.is_satisfied() {
             console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
         }
-        let satisfied = diagnosis.tally.is_satisfied() && missing.is_none();
+        if let Some(list) = confirmed.as_ref().filter(|_| !self.json) {
+            console::note_line(&confirm::in_words(&run, list));
+        }
+        let holds = confirmed.is_none_or(|list| list.held > 0);
+        let satisfied = diagnosis.tally.is_satisfied() && missing.is_none() && holds;
         Ok(if satisfied { Outcome::Done } else { Outcome::Unsatisfied })
     }
 }
@@ -243,6 +275,9 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
     let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
     text += &report::solutions(diagnosis);
+    // Restarts count from the end of the warm-up on, in all sessions; the clock knows this session.
+    let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
+    text += &report::tempering(diagnosis, (monitor.begun_at() == 0).then_some(sampling));
     text += &format!("\n{}", report::scalar_table(diagnosis));
     if diagnosis.stride > 1 {
         text += &format!("(from one draw in {}; `plaus diagnose` uses all)\n", diagnosis.stride);

@@ -8,6 +8,8 @@ mod worker;
 use crate::chain::{ChainError, MoveCounts};
 use crate::moves::{Mixture, MoveId};
 use crate::record::Block;
+use crate::redraw::Redraw;
+use crate::replicas::{Climb, ReplicasSnapshot, Tempering};
 use crate::solutions::{Distinct, FirstOfClass, Hits};
 use crate::target::{Goal, State, Target};
 use plaus_dist::Seed;
@@ -32,6 +34,11 @@ pub struct Plan {
     pub block: u64,
     /// Stop at the first iteration by which the chains together have recorded this many distinct solutions.
     pub solutions: Option<u64>,
+    /// Rungs between the prior and the target that each chain climbs and descends, 1 for none, and iterations between two swaps. Only states of the target are
+    /// recorded, and iterations are those of each rung.
+    pub rungs: u32,
+    /// See `rungs`.
+    pub swap_every: u64,
 }
 
 impl Plan {
@@ -41,8 +48,20 @@ impl Plan {
         self.warmup.saturating_add(self.iterations)
     }
 
+    pub(crate) fn tempering(&self) -> Tempering {
+        Tempering { rungs: self.rungs, swap_every: self.swap_every, warmup: self.warmup }
+    }
+
     fn check<D, O>(&self, starts: &[Start<D, O>]) -> Result<(), PlanError> {
-        for (name, value) in [("chains", u64::from(self.chains)), ("thin", self.thin), ("block", self.block)] {
+        let (chains, rungs) = (u64::from(self.chains), u64::from(self.rungs));
+        let sizes = [
+            ("chains", chains),
+            ("thin", self.thin),
+            ("block", self.block),
+            ("rungs", rungs),
+            ("swap_every", self.swap_every),
+        ];
+        for (name, value) in sizes {
             if value == 0 {
                 return Err(PlanError::Zero(name));
             }
@@ -93,6 +112,8 @@ pub struct Snapshot<D, O> {
     pub hits: Hits,
     /// Proposals accepted since the last recorded draw, and the last such move.
     pub pending: (u32, Option<MoveId>),
+    /// Where all rungs are; `None` where there is one.
+    pub replicas: Option<ReplicasSnapshot<D, O>>,
 }
 
 /// Where a chain goes on from, with the classes of solutions it has recorded (from its records).
@@ -138,6 +159,8 @@ pub struct Progress<'a> {
     pub distinct: &'a Distinct,
     /// Per chain: counts of each move, and hits.
     pub chains: Vec<(&'a [MoveCounts], Hits)>,
+    /// Per chain: where its replicas are, if there are more than one.
+    pub climbs: Vec<&'a Climb>,
 }
 
 /// How a run ended.
@@ -188,13 +211,14 @@ pub fn run<T: Goal, S: Sink<T::Draw, T::Outcome>>(
 ) -> Result<Ending, RunError<S::Error>> {
     plan.check(&starts)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let mut fleet = Fleet::new(Job { target, moves, plan }, starts);
+    let fresh = Mixture::of(Box::new(Redraw));
+    let mut fleet = Fleet::new(Job { target, moves, fresh: &fresh, plan }, starts);
     while fleet.done < plan.end() && !fleet.has_enough() {
         let made =
             pool.install(|| fleet.round()).map_err(|Failed { chain, source }| RunError::Chain { chain, source })?;
         for (worker, made) in fleet.workers.iter().zip(made) {
             if let Some(snapshot) = worker.snapshot() {
-                sink.block(worker.index, made.block, &snapshot).map_err(RunError::Sink)?;
+                sink.block(worker.books.index, made.block, &snapshot).map_err(RunError::Sink)?;
             }
         }
         let stop = sink.round(&fleet.progress()).map_err(RunError::Sink)? == Control::Stop;
@@ -230,8 +254,8 @@ impl<'a, T: Goal> Fleet<'a, T> {
         } else {
             (0..).zip(starts).map(|(index, start)| Worker::resume(&job, index, start)).collect()
         };
-        let firsts = workers.iter().flat_map(|worker| worker.distinct.firsts().iter().copied()).collect();
-        let done = workers.first().map_or(0, |worker| worker.end_iteration);
+        let firsts = workers.iter().flat_map(|worker| worker.books.distinct.firsts().iter().copied()).collect();
+        let done = workers.first().map_or(0, |worker| worker.books.end_iteration);
         let mut fleet = Self { job, workers, distinct: Distinct::default(), done };
         fleet.merge(firsts);
         fleet
@@ -267,9 +291,10 @@ impl<'a, T: Goal> Fleet<'a, T> {
     fn keep(&self) -> Vec<Worker<'a, T>> {
         let copy = |worker: &Worker<'a, T>| match worker.snapshot() {
             Some(snapshot) => {
-                Worker::resume(&self.job, worker.index, Start { snapshot, distinct: worker.distinct.clone() })
+                let distinct = worker.books.distinct.clone();
+                Worker::resume(&self.job, worker.books.index, Start { snapshot, distinct })
             }
-            None => Worker::new(worker.index),
+            None => Worker::new(worker.books.index),
         };
         self.workers.iter().map(copy).collect()
     }
@@ -292,7 +317,8 @@ impl<'a, T: Goal> Fleet<'a, T> {
     }
 
     fn progress(&self) -> Progress<'_> {
-        let chains = self.workers.iter().map(|worker| (worker.counts(), worker.hits)).collect();
-        Progress { end_iteration: self.done, distinct: &self.distinct, chains }
+        let chains = self.workers.iter().map(|worker| (worker.counts(), worker.books.hits)).collect();
+        let climbs = self.workers.iter().filter_map(Worker::climb).collect();
+        Progress { end_iteration: self.done, distinct: &self.distinct, chains, climbs }
     }
 }

@@ -4,6 +4,7 @@ use super::{Plan, Snapshot, Start};
 use crate::chain::{Chain, ChainError, MoveCounts, Verdict};
 use crate::moves::{Mixture, MoveId};
 use crate::record::{Block, is_recorded};
+use crate::replicas::{Climb, Course, Replicas, TopStep};
 use crate::solutions::{Distinct, FirstOfClass, Hits};
 use crate::target::{Goal, SolutionClass, Target};
 
@@ -11,13 +12,26 @@ use crate::target::{Goal, SolutionClass, Target};
 pub(super) struct Job<'a, T: Target> {
     pub(super) target: &'a T,
     pub(super) moves: &'a Mixture<T>,
+    pub(super) fresh: &'a Mixture<T>,
     pub(super) plan: Plan,
+}
+
+impl<'a, T: Target> Job<'a, T> {
+    fn course(&self) -> Course<'a, T> {
+        Course { target: self.target, moves: self.moves, fresh: self.fresh, tempering: self.plan.tempering() }
+    }
 }
 
 /// One chain at work.
 pub(super) struct Worker<'a, T: Target> {
+    replicas: Option<Replicas<'a, T>>,
+    pub(super) books: Books,
+}
+
+/// What is noted about a chain.
+#[derive(Clone)]
+pub(super) struct Books {
     pub(super) index: u32,
-    pub(super) chain: Option<Chain<'a, T>>,
     pub(super) hits: Hits,
     pub(super) distinct: Distinct,
     class: Option<SolutionClass>,
@@ -33,59 +47,84 @@ pub(super) struct Made<D, O> {
 
 impl<'a, T: Goal> Worker<'a, T> {
     pub(super) fn new(index: u32) -> Self {
-        Self {
-            index,
-            chain: None,
-            hits: Hits::default(),
-            distinct: Distinct::default(),
-            class: None,
-            pending: (0, None),
-            end_iteration: 0,
-        }
+        let (hits, distinct) = (Hits::default(), Distinct::default());
+        let books = Books { index, hits, distinct, class: None, pending: (0, None), end_iteration: 0 };
+        Self { replicas: None, books }
     }
 
     pub(super) fn resume(job: &Job<'a, T>, index: u32, start: Start<T::Draw, T::Outcome>) -> Self {
         let Start { snapshot, distinct } = start;
-        let class = job.target.class(&snapshot.state);
-        let streams = job.plan.seed.chain(u64::from(index));
-        let iteration = snapshot.end_iteration - 1;
-        let chain = Chain::resume(job.target, job.moves, streams, iteration, snapshot.state, snapshot.counts);
-        Self {
-            index,
-            chain: Some(chain),
-            hits: snapshot.hits,
-            distinct,
-            class,
-            pending: snapshot.pending,
-            end_iteration: snapshot.end_iteration,
-        }
+        let Snapshot { end_iteration, state, counts, hits, pending, replicas } = snapshot;
+        let class = job.target.class(&state);
+        let (course, seed, iteration) = (job.course(), job.plan.seed, end_iteration - 1);
+        let replicas = match replicas {
+            Some(snapshot) => Replicas::resume(course, seed, index, iteration, snapshot),
+            None => Replicas::resume_one(course, seed, index, iteration, state, counts),
+        };
+        Self { replicas: Some(replicas), books: Books { index, hits, distinct, class, pending, end_iteration } }
     }
 
     /// Advances until iterations `0 .. end` are done.
     pub(super) fn advance(&mut self, job: &Job<'a, T>, end: u64) -> Result<Made<T::Draw, T::Outcome>, ChainError> {
-        let mut made = Made { block: Block::starting_at(self.end_iteration), firsts: Vec::new() };
-        if self.chain.is_none() && end > 0 {
-            let chain = Chain::start(job.target, job.moves, job.plan.seed.chain(u64::from(self.index)))?;
-            self.class = job.target.class(chain.state());
-            self.chain = Some(chain);
-            self.note(job.plan.thin, 0, &mut made);
+        let (Self { replicas, books }, thin) = (self, job.plan.thin);
+        let mut made = Made { block: Block::starting_at(books.end_iteration), firsts: Vec::new() };
+        if replicas.is_none() && end > 0 {
+            let started = Replicas::start(job.course(), job.plan.seed, books.index)?;
+            books.class = job.target.class(started.top().state());
+            books.note::<T>(thin, 0, started.top(), &mut made);
+            *replicas = Some(started);
         }
-        while self.end_iteration < end {
-            let Some(chain) = &mut self.chain else { break };
-            let step = chain.step()?;
-            if step.verdict == Verdict::Accepted {
-                self.class = job.target.class(chain.state());
-                self.pending = (self.pending.0.saturating_add(1), Some(step.move_id));
+        let Some(replicas) = replicas else { return Ok(made) };
+        replicas.advance(end.saturating_sub(1), |chain, step| match step {
+            TopStep::Swapped => {
+                books.class = job.target.class(chain.state());
+                books.pending = (books.pending.0.saturating_add(1), None);
             }
-            self.note(job.plan.thin, self.end_iteration, &mut made);
-        }
-        made.block.end_iteration = self.end_iteration;
+            TopStep::Step(step) => {
+                if step.verdict == Verdict::Accepted {
+                    books.class = job.target.class(chain.state());
+                    books.pending = (books.pending.0.saturating_add(1), Some(step.move_id));
+                }
+                books.note::<T>(thin, books.end_iteration, chain, &mut made);
+            }
+        })?;
+        made.block.end_iteration = books.end_iteration;
         Ok(made)
     }
 
+    pub(super) fn counts(&self) -> &[MoveCounts] {
+        self.replicas.as_ref().map_or(&[], |replicas| replicas.top().counts())
+    }
+
+    /// Where the replicas are, if there are more than one.
+    pub(super) fn climb(&self) -> Option<&Climb> {
+        self.replicas.as_ref().map(Replicas::climb).filter(|climb| climb.ladder().betas().len() > 1)
+    }
+
+    pub(super) fn snapshot(&self) -> Option<Snapshot<T::Draw, T::Outcome>> {
+        let replicas = self.replicas.as_ref()?;
+        let Books { hits, pending, end_iteration, .. } = self.books;
+        Some(Snapshot {
+            end_iteration,
+            state: replicas.top().state().clone(),
+            counts: replicas.top().counts().to_vec(),
+            hits,
+            pending,
+            replicas: self.climb().map(|_| replicas.snapshot()),
+        })
+    }
+}
+
+impl Books {
     /// Books the chain's state as that of `iteration`.
     #[inline]
-    fn note(&mut self, thin: u64, iteration: u64, made: &mut Made<T::Draw, T::Outcome>) {
+    fn note<T: Target>(
+        &mut self,
+        thin: u64,
+        iteration: u64,
+        chain: &Chain<'_, T>,
+        made: &mut Made<T::Draw, T::Outcome>,
+    ) {
         self.end_iteration = iteration + 1;
         self.hits.count(iteration, self.class.is_some());
         if !is_recorded(iteration, thin) {
@@ -93,29 +132,12 @@ impl<'a, T: Goal> Worker<'a, T> {
         }
         let (accepted, by) = std::mem::take(&mut self.pending);
         let fresh = accepted > 0 || made.block.entries.is_empty();
-        if let Some(chain) = &self.chain {
-            made.block.push(accepted, by, self.class, chain.state());
-        }
+        made.block.push(accepted, by, self.class, chain.state());
         if let (true, Some(class)) = (fresh, self.class) {
             let first = FirstOfClass { iteration, chain: self.index, class };
             if self.distinct.note(first) {
                 made.firsts.push(first);
             }
         }
-    }
-
-    pub(super) fn counts(&self) -> &[MoveCounts] {
-        self.chain.as_ref().map_or(&[], Chain::counts)
-    }
-
-    pub(super) fn snapshot(&self) -> Option<Snapshot<T::Draw, T::Outcome>> {
-        let chain = self.chain.as_ref()?;
-        Some(Snapshot {
-            end_iteration: self.end_iteration,
-            state: chain.state().clone(),
-            counts: chain.counts().to_vec(),
-            hits: self.hits,
-            pending: self.pending,
-        })
     }
 }

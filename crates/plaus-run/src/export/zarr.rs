@@ -191,7 +191,7 @@ fn write_chain<S: Scene>(
         for (index, value) in values.iter().chain([&lp]).enumerate() {
             chunks.put(index, &value.to_le_bytes(), stretch.draws)?;
         }
-        let rate = f64::from(stretch.accepted) / thin;
+        let rate = (f64::from(stretch.accepted) / thin).min(1.0); // a swap comes on top of an acceptance
         chunks.put(values.len() + 1, &rate.to_le_bytes(), 1)?;
         chunks.put(values.len() + 1, &0.0_f64.to_le_bytes(), stretch.draws - 1)?;
         chunks.put(values.len() + 2, &[u8::from(stretch.entry.class.is_some())], stretch.draws)

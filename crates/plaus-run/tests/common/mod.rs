@@ -18,6 +18,13 @@ pub(crate) fn recipe(solutions: Option<u64>) -> Recipe {
     Recipe { scenario, file: "ball.toml".into(), text: TEXT.into(), overrides: Vec::new(), solutions }
 }
 
+/// The same with replicas at three rungs.
+pub(crate) fn tempered(solutions: Option<u64>) -> Recipe {
+    let overrides = ["rungs=3".to_owned(), "swap_every=7".to_owned()];
+    let scenario = Scenario::read("ball.toml", TEXT, &overrides).unwrap();
+    Recipe { scenario, overrides: overrides.to_vec(), ..recipe(solutions) }
+}
+
 /// Every file of a run.
 pub(crate) fn bytes_of(folder: &Folder) -> BTreeMap<String, Vec<u8>> {
     let entries = std::fs::read_dir(folder.path()).unwrap().map(Result::unwrap);

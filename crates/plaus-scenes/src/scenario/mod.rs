@@ -57,6 +57,28 @@ pub struct Sampler {
     pub checkpoint_every: u64,
     /// Exact acceptance, or the paper's as printed.
     pub rules: Rules,
+    /// Restarts from fresh draws that keep the chain exact.
+    pub tempering: Tempering,
+}
+
+/// Parallel tempering: each chain climbs and descends a ladder of constraints that count less and less, down to none, where everything is drawn anew. What comes up
+/// again shares nothing with what went down, and the chain stays exact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Tempering {
+    /// Rungs of the ladder, each as much work as a chain; 1: no tempering. About twice the barrier that a run reports, and one more, serve best. The rungs
+    /// are spaced during the warm-up, and stay from then on.
+    #[schemars(range(min = 1, max = 256))]
+    pub rungs: u32,
+    /// Iterations between two swaps of neighbouring rungs.
+    #[schemars(range(min = 1, max = 1_000_000))]
+    pub swap_every: u64,
+}
+
+impl Default for Tempering {
+    fn default() -> Self {
+        Self { rungs: 1, swap_every: 20 }
+    }
 }
 
 impl Default for Sampler {
@@ -69,6 +91,7 @@ impl Default for Sampler {
             thin: 1,
             checkpoint_every: 20_000,
             rules: Rules::default(),
+            tempering: Tempering::default(),
         }
     }
 }
@@ -117,6 +140,10 @@ impl Scenario {
             fn visit<S: Scene>(self, scene: S) -> Self::Output {
                 scene.moves(self.0).map(drop)
             }
+        }
+        if self.sampler.tempering.rungs > 1 && !self.sampler.rules.is_exact() {
+            let message = "tempering needs exact acceptance, as its swaps rest on the law of every rung: set sampler.rules.preset = \"exact\", or rungs = 1";
+            return Err(ConfigError::new("sampler.tempering.rungs", message));
         }
         self.world.visit(Build(&self.sampler.rules))?
     }

@@ -1,6 +1,6 @@
 //! Scenario keys of the balls that spell.
 
-use plaus_sim::{Accuracy, Preset};
+use crate::accuracy::AccuracyPreset;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -154,34 +154,6 @@ pub enum Order {
     Slots,
     /// The balls that are dropped fall one after the other without gaps.
     Queue,
-}
-
-/// A point of the simulator's scale between fast and exact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum AccuracyPreset {
-    /// For looking for ideas: contact is coarse.
-    Draft,
-    /// Outcome distributions agree with the reference within sampling noise.
-    #[default]
-    Standard,
-    /// Trajectories agree with the reference until chaos separates them.
-    Fine,
-    /// What the others are measured against; slow.
-    Reference,
-}
-
-impl AccuracyPreset {
-    /// The simulator's tolerances.
-    #[must_use]
-    pub fn tolerances(self) -> Accuracy {
-        Accuracy::preset(match self {
-            Self::Draft => Preset::Draft,
-            Self::Standard => Preset::Standard,
-            Self::Fine => Preset::Fine,
-            Self::Reference => Preset::Reference,
-        })
-    }
 }
 
 /// The box (the paper's figure 10).

@@ -12,14 +12,14 @@ mod settle;
 mod word;
 
 pub use config::{
-    AccuracyPreset, Config, Contact, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Moves, Order, Steps,
-    Vertices, Weights,
+    Config, Contact, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Moves, Order, Steps, Vertices, Weights,
 };
 pub use draw::{Drops, Prior};
 pub use moves::{BirthDeath, ChangeAll, ChangeBall, ChangeVertices, RedrawVertices, Redrop, Swap, Toggle};
 pub use settle::{Savings, Work};
 pub use word::Word;
 
+use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene};
@@ -212,5 +212,9 @@ impl Scene for Spelling {
 
     fn animate(&self, draw: &Drops) -> Result<Animation, ModelError> {
         animate::animate(&self.arena, &self.word, draw)
+    }
+
+    fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
+        Self::new(&Config { accuracy, ..self.config.clone() }).map(|scene| Some(scene.with_savings(self.savings)))
     }
 }

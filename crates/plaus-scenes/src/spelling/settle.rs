@@ -12,6 +12,7 @@ use plaus_mcmc::ModelError;
 use plaus_sim::Scratch;
 use plaus_sim::marbles::{MarbleScratch, Marbles, Start};
 use plaus_sim::mechanics::Impact;
+use plaus_sim::motion::Parabola;
 use std::sync::Arc;
 
 /// What a simulation may save. None of it has any influence on a state.
@@ -83,6 +84,13 @@ impl Work {
     #[must_use]
     pub fn counts(&self) -> WorkCounts {
         self.counts
+    }
+
+    /// The ways of the balls of the draw that was simulated last, until it is settled: each piece with its ball and the time at which it ends, in m and s.
+    pub fn ways(&self) -> impl Iterator<Item = (usize, &Parabola, f64)> {
+        let groups = self.candidate.groups.iter();
+        let balls = groups.flat_map(|group| group.members.iter().zip(&group.ways));
+        balls.flat_map(|(&ball, way)| way.pieces.iter().map(move |piece| (ball, &piece.path, piece.until)))
     }
 
     /// A candidate that needs no simulation.

@@ -30,6 +30,9 @@ fn sampler(moves: Moves, change: impl FnOnce(&mut Config)) -> Result<Sampler<Bal
 }
 
 pub(crate) fn make(work: &mut Work) -> Result<()> {
+    if let Some(part) = &work.part {
+        return Err(format!("ball2d has no part `{part}`: its figures are made together").into());
+    }
     paths::make(work)?;
     rest::make(work)?;
     let reference = reference::sample(work)?;

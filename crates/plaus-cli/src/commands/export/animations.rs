@@ -5,7 +5,7 @@ use crate::label;
 use plaus_export::{Clip, Cut, ExportError, Label, glb, ours, table, usda};
 use plaus_run::export::output;
 use plaus_run::replay::{Replay, replay_each};
-use plaus_run::{Error, RunOf, SampleId, solutions};
+use plaus_run::{Confirmation, Error, RunOf, SampleId, solutions};
 use plaus_scenes::Scene;
 use serde_json::{Value, json};
 use std::fs;
@@ -30,18 +30,25 @@ impl<'a, S: Scene> Animations<'a, S> {
     pub(super) fn new(run: &'a RunOf<'a, S>, args: &'a Args) -> Result<Self, Error> {
         let samples = if args.all_distinct {
             solutions::distinct(run)?.iter().map(|solution| solution.sample).collect()
+        } else if args.confirmed {
+            Confirmation::read(run)?.samples()
         } else {
             args.sample.clone()
         };
         if samples.is_empty() {
-            return Err(Error::Request("no sample of the run satisfies the constraint".to_owned()));
+            let none = if args.confirmed {
+                "no solution holds at the accuracy of the list of confirmed solutions"
+            } else {
+                "no sample of the run satisfies the constraint"
+            };
+            return Err(Error::Request(none.to_owned()));
         }
         Ok(Self { run, args, samples })
     }
 
     pub(super) fn write(&self) -> Result<(), Error> {
         let out = self.args.out.as_path();
-        let one = !self.args.all_distinct && self.samples.len() == 1;
+        let one = !self.args.all_distinct && !self.args.confirmed && self.samples.len() == 1;
         match self.args.format {
             Format::Poses | Format::Events if out == Path::new("-") => {
                 let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());

@@ -39,6 +39,9 @@ pub(crate) struct Args {
     /// Animate one sample of each distinct satisfying solution
     #[arg(long, conflicts_with = "sample")]
     all_distinct: bool,
+    /// Animate one sample of each distinct solution that `--confirm` found to hold
+    #[arg(long, conflicts_with_all = ["sample", "all_distinct"])]
+    confirmed: bool,
     /// Keys per second, besides those at every impact [default: 60]
     #[arg(long)]
     fps: Option<f64>,
@@ -117,14 +120,14 @@ impl Args {
 
     /// Whether the flags go together.
     fn check(&self) -> Result<(), Failure> {
-        let chosen = !self.sample.is_empty() || self.all_distinct;
+        let chosen = !self.sample.is_empty() || self.all_distinct || self.confirmed;
         let timed = self.fps.is_some() || self.time_range.is_some();
         if self.format.is_animation() && !chosen {
-            let message = "an animation needs a sample: --sample CHAIN:DRAW, or --all-distinct";
+            let message = "an animation needs a sample: --sample CHAIN:DRAW, --all-distinct, or --confirmed";
             return Err(Failure::Message(message.to_owned()));
         }
         if !self.format.is_animation() && (chosen || timed) {
-            let message = "--sample, --all-distinct, --fps and --time-range go with glb, usda, poses and events: csv and zarr hold all draws";
+            let message = "--sample, --all-distinct, --confirmed, --fps and --time-range go with glb, usda, poses and events: csv and zarr hold all draws";
             return Err(Failure::Message(message.to_owned()));
         }
         Ok(())

@@ -1,0 +1,96 @@
+//! Samples simulated again at another accuracy: `--confirm`, `export --confirmed`, `replay --accuracy`.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use common::Place;
+use serde_json::Value;
+
+/// Two balls for two bins: full often, and soon simulated.
+const WORD: &str = "[sampler]\nseed = 3\nchains = 2\nwarmup = 0\niterations = 400\ncheckpoint_every = 100\n\n\
+    [world.spelling]\nbitmap = \"##\"\n";
+
+fn place() -> Place {
+    let place = Place::new();
+    place.write("word.toml", WORD);
+    place
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+#[test]
+fn solutions_are_held_against_the_reference_and_none_is_lost() {
+    let place = place();
+    place.ok("sample word.toml --out plain -q");
+    let ended = place.ok("sample word.toml --out run --json --confirm");
+    let last = json(ended.out.lines().last().unwrap());
+    let confirmed = &last["confirmed"];
+    assert_eq!(confirmed["accuracy"], "reference");
+    let (checked, held) = (confirmed["checked"].as_u64().unwrap(), confirmed["held"].as_u64().unwrap());
+    // Two labelled balls fill two bins in two ways. A third of a bin from the partitions nothing depends on a hair.
+    assert!(checked == 2 && (1..=2).contains(&held), "{confirmed}");
+
+    let list = json(&String::from_utf8(std::fs::read(place.path("run/confirmed.json")).unwrap()).unwrap());
+    let solutions = list["solutions"].as_array().unwrap();
+    assert_eq!(solutions.len() as u64, checked);
+    assert_eq!(solutions.iter().filter(|one| one["holds"] == true).count() as u64, held);
+
+    // The rest of the run is as without it; an older run can be confirmed later, to the same list.
+    let mut run = place.bytes("run");
+    let made = run.remove("confirmed.json").unwrap();
+    assert_eq!(run, place.bytes("plain"));
+    let said = place.ok("resume plain --confirm --threads 1");
+    said.says(&[&format!("at reference accuracy {held} of {checked} distinct solutions hold; plain/confirmed.json")]);
+    assert_eq!(place.bytes("plain")["confirmed.json"], made);
+
+    place.ok("export run --format poses --confirmed --out poses.csv");
+    let poses = std::fs::read_to_string(place.path("poses.csv")).unwrap();
+    let mut samples: Vec<&str> =
+        poses.lines().skip(1).map(|line| &line[..line.match_indices(',').nth(1).unwrap().0]).collect();
+    samples.dedup();
+    assert_eq!(samples.len() as u64, held);
+}
+
+#[test]
+fn a_sample_is_replayed_at_another_accuracy_beside_what_was_recorded() {
+    let place = place();
+    place.ok("sample word.toml --out run -q");
+    let recorded = json(&place.ok("replay run --sample 0:399 --format json").out);
+    assert!(recorded.get("accuracy").is_none() && recorded["duration"].as_f64().unwrap() > 0.0);
+    for accuracy in ["draft", "reference"] {
+        let other = place.ok(&format!("replay run --sample 0:399 --format json --accuracy {accuracy}"));
+        other.says(&[&format!("sample 0:399 simulated at {accuracy} accuracy: log p "), "; as recorded: log p "]);
+        let other = json(&other.out);
+        assert_eq!(other["accuracy"], accuracy);
+        assert_eq!(other["recorded_log_p"], recorded["log_p"]);
+        assert_eq!(other["recorded_satisfied"], recorded["satisfied"]);
+        assert_eq!(other["log_prior"], recorded["log_prior"]);
+        // Lasting contact is cut into other steps.
+        assert_ne!(other["tracks"], recorded["tracks"]);
+    }
+    // At the run's own accuracy nothing differs.
+    let same = json(&place.ok("replay run --sample 0:399 --format json --accuracy standard").out);
+    assert_eq!((&same["tracks"], &same["log_p"]), (&recorded["tracks"], &recorded["log_p"]));
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_before_anything_is_sampled() {
+    let place = place();
+    let closed = "ball2d moves in closed form, which is exact at any accuracy: there is none to choose";
+    place.ends("sample ball.toml --out run --confirm", 2).says(&[closed]);
+    assert!(!place.path("run").exists());
+    place.ok("sample ball.toml --out run -q");
+    place.ends("resume run --confirm", 2).says(&[closed]);
+    place.ends("replay run --sample 0:0 --accuracy fine", 2).says(&[closed]);
+    place.ends("replay run --sample 0:0 --accuracy finest", 2).says(&["draft, standard, fine, reference"]);
+    place.ok("sample word.toml --out word -q");
+    let none = "confirmed.json: the list of confirmed solutions cannot be used: there is none yet";
+    place.ends("export word --format glb --confirmed --out here", 2).says(&[none]);
+    place.write("word/confirmed.json", "{}");
+    place
+        .ends("export word --format glb --confirmed --out here", 2)
+        .says(&["confirmed solutions cannot be used: missing field"]);
+}

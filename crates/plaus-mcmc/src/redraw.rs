@@ -1,0 +1,36 @@
+//! The independence move: a whole new draw, whatever the current one.
+
+use crate::moves::{Move, Path, Proposal};
+use crate::target::{ModelError, StateOf, Target};
+use plaus_dist::{LogRatio, Stream};
+
+/// Proposes [`Target::start`]'s draw. Right for a target whose start has the law of its prior, density and all: then the prior cancels, and what is left of the
+/// acceptance is the ratio of constraints. It is the move of tempering's first rung, where everything is accepted.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Redraw;
+
+impl<T: Target> Move<T> for Redraw {
+    fn name(&self) -> &str {
+        "redraw_all"
+    }
+
+    fn propose(
+        &self,
+        target: &T,
+        current: &StateOf<T>,
+        candidate: &mut T::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        *candidate = target.start(stream);
+        let there = target.log_prior(candidate)?;
+        if there.is_zero() {
+            // The chain rejects it for its prior; no ratio is needed.
+            return Ok(Proposal::SYMMETRIC);
+        }
+        Ok(Proposal::with_ratio(LogRatio::new(current.log_prior.value() - there.value())?))
+    }
+
+    fn log_ratio(&self, _: &T, from: &StateOf<T>, to: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
+    }
+}

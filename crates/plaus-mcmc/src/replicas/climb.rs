@@ -1,0 +1,153 @@
+//! Where replicas are on the ladder, how they fared, and when the ladder is spaced anew.
+
+use crate::ladder::Ladder;
+use serde::{Deserialize, Serialize};
+
+/// The ladder is adapted at the end of the warm-up, at its half, and so on, so many times.
+const ADAPTATIONS: u32 = 5;
+/// Swaps that every pair must have proposed before rejections say anything.
+const ENOUGH: u64 = 4;
+
+/// How replicas are tempered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Tempering {
+    /// Rungs of the ladder, at least 1; 1 is the target alone.
+    pub rungs: u32,
+    /// Iterations between two swaps; at least 1.
+    pub swap_every: u64,
+    /// Iterations in which the ladder is adapted.
+    pub warmup: u64,
+}
+
+impl Tempering {
+    /// None: one chain, of the target.
+    pub const NONE: Self = Self { rungs: 1, swap_every: u64::MAX, warmup: 0 };
+
+    /// Whether the ladder is adapted before the iteration after this one.
+    pub(super) fn adapts_at(&self, iteration: u64) -> bool {
+        (0..ADAPTATIONS).any(|k| (self.warmup >> k) / self.swap_every * self.swap_every == iteration)
+    }
+
+    /// Whether that is the last time.
+    pub(super) fn ends_at(&self, iteration: u64) -> bool {
+        self.warmup / self.swap_every * self.swap_every == iteration
+    }
+}
+
+/// What was seen of the swaps between a rung and the next, since the ladder is what it is.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct RungStatistics {
+    /// Swaps proposed.
+    pub proposed: u64,
+    /// Those that were made.
+    pub swapped: u64,
+    /// Sum of the probabilities with which they were accepted: the same on average, and less noisy.
+    pub expected: f64,
+}
+
+/// Which end of the ladder a replica has visited last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Last {
+    Neither,
+    Prior,
+    Target,
+}
+
+/// Where the replicas are on the ladder, and how they fared.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Climb {
+    pub(super) ladder: Ladder,
+    /// The replica at each rung.
+    pub(super) at: Vec<u32>,
+    /// By replica.
+    pub(super) last: Vec<Last>,
+    pub(super) statistics: Vec<RungStatistics>,
+    pub(super) restarts: u64,
+    pub(super) round_trips: u64,
+}
+
+impl Climb {
+    pub(super) fn new(rungs: u32) -> Self {
+        let ladder = if rungs > 1 { Ladder::even(rungs as usize) } else { Ladder::single() };
+        Self {
+            ladder,
+            at: (0..rungs).collect(),
+            last: vec![Last::Neither; rungs as usize],
+            statistics: vec![RungStatistics::default(); rungs as usize - 1],
+            restarts: 0,
+            round_trips: 0,
+        }
+    }
+
+    /// The inverse temperatures.
+    #[must_use]
+    pub fn ladder(&self) -> &Ladder {
+        &self.ladder
+    }
+
+    /// How often a replica came to the last rung that had been at the first since it was there before: each brings a state that shares nothing with those the
+    /// target's chain had of that replica before. The first arrivals count. Since the end of the warm-up.
+    #[must_use]
+    pub fn restarts(&self) -> u64 {
+        self.restarts
+    }
+
+    /// How often a replica came to the first rung from the last, since the end of the warm-up.
+    #[must_use]
+    pub fn round_trips(&self) -> u64 {
+        self.round_trips
+    }
+
+    /// Swaps between each rung and the next, since the ladder was adapted last.
+    #[must_use]
+    pub fn statistics(&self) -> &[RungStatistics] {
+        &self.statistics
+    }
+
+    /// Share of swaps rejected between each rung and the next, on average; 0 where none was proposed.
+    #[must_use]
+    pub fn rejected(&self) -> Vec<f64> {
+        let share = |one: &RungStatistics| 1.0 - one.expected / one.proposed as f64;
+        self.statistics.iter().map(|one| if one.proposed == 0 { 0.0 } else { share(one).max(0.0) }).collect()
+    }
+
+    /// Spaces the ladder anew by what was rejected, where enough was proposed; `last`: from now on everything counts.
+    pub(super) fn adapt(&mut self, last: bool) {
+        if self.statistics.iter().all(|seen| seen.proposed >= ENOUGH) {
+            self.ladder = self.ladder.adapted(&self.rejected(), self.at.len());
+            self.statistics.fill(RungStatistics::default());
+        }
+        if last {
+            (self.restarts, self.round_trips) = (0, 0);
+            self.statistics.fill(RungStatistics::default());
+        }
+    }
+
+    /// Notes who is at the ends after a swap.
+    pub(super) fn note_ends(&mut self) {
+        let (Some(&bottom), Some(&top)) = (self.at.first(), self.at.last()) else { return };
+        let (bottom, top) = (bottom as usize, top as usize);
+        if self.last[bottom] == Last::Target {
+            self.round_trips += 1;
+        }
+        self.last[bottom] = Last::Prior;
+        if self.last[top] == Last::Prior {
+            self.restarts += 1;
+        }
+        self.last[top] = Last::Target;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ladder_is_adapted_in_the_warm_up_only() {
+        let tempering = Tempering { rungs: 4, swap_every: 20, warmup: 1010 };
+        let when: Vec<u64> = (1..5000).filter(|&iteration| tempering.adapts_at(iteration)).collect();
+        assert_eq!(when, [60, 120, 240, 500, 1000]);
+        assert!(tempering.ends_at(1000) && !tempering.ends_at(500));
+        assert!(!(1..100).any(|iteration| Tempering { warmup: 0, ..tempering }.adapts_at(iteration)));
+    }
+}

@@ -1,0 +1,300 @@
+//! Parallel tempering: chains between the prior and the target exchange their places, so that the target's chain is restarted again and again from
+//! fresh draws, and is still exact.
+//!
+//! Rung 0 samples the prior (restricted to what the constraint does not forbid) by drawing anew, the last rung the target, those between them `p_w p_c^β`. Every so
+//! many iterations neighbours swap with probability `min(1, exp((β_b − β_a)(log p_c(x_a) − log p_c(x_b))))`, which leaves the product of all rungs invariant.
+//! Pairs (0,1), (2,3), … alternate with (1,2), (3,4), …: a replica then keeps its direction until a swap is rejected, and makes the way in a time that grows
+//! like the number of rungs, not its square (Okabe et al. 2001; Syed et al. 2022, see [`Ladder::barrier`](crate::Ladder::barrier)). During the warm-up the ladder is spaced anew a few
+//! times, by what was rejected so far; then it stays, as it must for the chain to be exact.
+
+mod climb;
+
+pub use climb::{Climb, RungStatistics, Tempering};
+
+use crate::chain::{Chain, ChainError, MoveCounts, Step};
+use crate::moves::Mixture;
+use crate::target::{State, StateOf, Target};
+use plaus_dist::{ChainStreams, Purpose, Seed, math, open_unit};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Replicas between two iterations: all that their future follows from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReplicasSnapshot<D, O> {
+    /// Each replica's state.
+    pub states: Vec<State<D, O>>,
+    /// How often each move ended how, by rung: of the redraw at the first, of the target's moves at the others.
+    pub counts: Vec<Vec<MoveCounts>>,
+    climb: Climb,
+}
+
+impl<D, O> ReplicasSnapshot<D, O> {
+    /// Where they are on the ladder, and how they fared.
+    #[must_use]
+    pub fn climb(&self) -> &Climb {
+        &self.climb
+    }
+
+    /// Whether all its parts speak of `rungs` rungs, with this many moves at all but the first.
+    #[must_use]
+    pub fn fits(&self, rungs: u32, moves: usize) -> bool {
+        let (count, climb) = (rungs as usize, &self.climb);
+        let mut at = climb.at.clone();
+        at.sort_unstable();
+        let lengths = [self.states.len(), self.counts.len(), climb.ladder.betas().len(), climb.last.len()];
+        let moves_of = |rung: usize| if rung == 0 { 1 } else { moves };
+        lengths.iter().all(|&length| length == count)
+            && at.into_iter().eq(0..rungs)
+            && climb.statistics.len() + 1 == count
+            && self.counts.iter().enumerate().all(|(rung, counts)| counts.len() == moves_of(rung))
+    }
+}
+
+/// What the replicas walk by: the target with its moves, and those of the first rung.
+pub struct Course<'a, T: Target> {
+    /// What the last rung samples.
+    pub target: &'a T,
+    /// Moves of all rungs but the first.
+    pub moves: &'a Mixture<T>,
+    /// Moves of the first rung, which should draw anew, so that what comes from there shares nothing with what went there.
+    pub fresh: &'a Mixture<T>,
+    /// Rungs and swaps.
+    pub tempering: Tempering,
+}
+
+impl<T: Target> Clone for Course<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: Target> Copy for Course<'_, T> {}
+
+impl<'a, T: Target> Course<'a, T> {
+    fn moves_of(&self, rung: usize) -> &'a Mixture<T> {
+        if rung == 0 && self.tempering.rungs > 1 { self.fresh } else { self.moves }
+    }
+}
+
+/// Replicas, one a rung at any time, all at the same iteration.
+pub struct Replicas<'a, T: Target> {
+    course: Course<'a, T>,
+    /// Each replica keeps its place in this list, whatever its rung.
+    chains: Vec<Chain<'a, T>>,
+    climb: Climb,
+    swaps: ChainStreams,
+}
+
+/// What the chain of the last rung did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TopStep {
+    /// An iteration.
+    Step(Step),
+    /// Its state was exchanged for that of the rung below, before the next iteration.
+    Swapped,
+}
+
+/// Streams of a replica: replica 0 has those of a chain that is not tempered.
+fn streams(seed: Seed, chain: u32, replica: usize) -> ChainStreams {
+    seed.chain(u64::from(chain) | (replica as u64) << 32)
+}
+
+impl<'a, T: Target> Replicas<'a, T> {
+    /// One replica a rung, from start draws of the target, with random numbers of chain `chain` of `seed`.
+    ///
+    /// # Errors
+    /// [`ChainError`] where a chain cannot start.
+    pub fn start(course: Course<'a, T>, seed: Seed, chain: u32) -> Result<Self, ChainError> {
+        let climb = Climb::new(course.tempering.rungs.max(1));
+        let start = |(replica, &beta): (usize, &f64)| {
+            let started = Chain::start(course.target, course.moves_of(replica), streams(seed, chain, replica))?;
+            Ok(started.at(beta))
+        };
+        let betas: Vec<(usize, &f64)> = climb.ladder.betas().iter().enumerate().collect();
+        let chains = betas.into_par_iter().map(start).collect::<Vec<_>>().into_iter().collect::<Result<_, _>>()?;
+        Ok(Self { course, chains, climb, swaps: streams(seed, chain, 0) })
+    }
+
+    /// Replicas that go on from a snapshot, which must [fit](ReplicasSnapshot::fits), made after iteration `iteration`.
+    #[must_use]
+    pub fn resume(
+        course: Course<'a, T>,
+        seed: Seed,
+        chain: u32,
+        iteration: u64,
+        snapshot: ReplicasSnapshot<T::Draw, T::Outcome>,
+    ) -> Self {
+        let ReplicasSnapshot { states, counts, climb } = snapshot;
+        let mut rung_of = vec![0; states.len()];
+        for (rung, &replica) in climb.at.iter().enumerate() {
+            rung_of[replica as usize] = rung;
+        }
+        let resume = |(replica, state): (usize, StateOf<T>)| {
+            let rung = rung_of[replica];
+            let (moves, own) = (course.moves_of(rung), streams(seed, chain, replica));
+            let resumed = Chain::resume(course.target, moves, own, iteration, state, counts[rung].clone());
+            resumed.at(climb.ladder.betas()[rung])
+        };
+        let chains = states.into_iter().enumerate().map(resume).collect();
+        Self { course, chains, climb, swaps: streams(seed, chain, 0) }
+    }
+
+    /// A single replica, of the target, that goes on.
+    #[must_use]
+    pub fn resume_one(
+        course: Course<'a, T>,
+        seed: Seed,
+        chain: u32,
+        iteration: u64,
+        state: StateOf<T>,
+        counts: Vec<MoveCounts>,
+    ) -> Self {
+        let one = ReplicasSnapshot { states: vec![state], counts: vec![counts], climb: Climb::new(1) };
+        Self::resume(course, seed, chain, iteration, one)
+    }
+
+    /// All that the replicas' future follows from, with [`Replicas::iteration`].
+    #[must_use]
+    pub fn snapshot(&self) -> ReplicasSnapshot<T::Draw, T::Outcome> {
+        ReplicasSnapshot {
+            states: self.chains.iter().map(|chain| chain.state().clone()).collect(),
+            counts: self.climb.at.iter().map(|&replica| self.chains[replica as usize].counts().to_vec()).collect(),
+            climb: self.climb.clone(),
+        }
+    }
+
+    /// Advances all replicas to `iteration`; tells `watch` of every step of the last rung's chain, and of every swap that changes its state. Replicas run in
+    /// parallel on the current pool of threads; their number has no influence on the result.
+    ///
+    /// # Errors
+    /// [`ChainError`] where a replica fails.
+    pub fn advance(
+        &mut self,
+        iteration: u64,
+        mut watch: impl FnMut(&Chain<'a, T>, TopStep) + Send,
+    ) -> Result<(), ChainError> {
+        let every = self.course.tempering.swap_every;
+        while self.iteration() < iteration {
+            let now = self.iteration();
+            if self.chains.len() > 1 && now > 0 && now.is_multiple_of(every) {
+                self.swap(now, &mut watch);
+            }
+            let next = if self.chains.len() > 1 { (now / every + 1).saturating_mul(every) } else { iteration };
+            self.walk(next.min(iteration) - now, &mut watch)?;
+        }
+        Ok(())
+    }
+
+    fn walk(&mut self, steps: u64, watch: &mut (impl FnMut(&Chain<'a, T>, TopStep) + Send)) -> Result<(), ChainError> {
+        let mut top = |chain: &mut Chain<'a, T>| {
+            (0..steps).try_for_each(|_| chain.step().map(|step| watch(chain, TopStep::Step(step))))
+        };
+        if let [only] = self.chains.as_mut_slice() {
+            return top(only);
+        }
+        let index = self.top_replica();
+        let (before, rest) = self.chains.split_at_mut(index);
+        let Some((chain, after)) = rest.split_first_mut() else { return Ok(()) };
+        let walk = |chain: &mut Chain<'a, T>| (0..steps).try_for_each(|_| chain.step().map(drop));
+        let mut others: Vec<_> = before.iter_mut().chain(after).collect();
+        let (first, others) =
+            rayon::join(|| top(chain), || others.par_iter_mut().map(|chain| walk(chain)).collect::<Vec<_>>());
+        // The failure reported does not depend on which came first.
+        first.and(others.into_iter().collect())
+    }
+
+    /// Proposes the swaps due after iteration `now`, and adapts the ladder where that is due.
+    fn swap(&mut self, now: u64, watch: &mut impl FnMut(&Chain<'a, T>, TopStep)) {
+        let (tempering, climb) = (self.course.tempering, &mut self.climb);
+        let mut stream = self.swaps.at(now, Purpose::SWAP);
+        let parity = now / tempering.swap_every;
+        let (top, betas) = (climb.at.len() - 1, climb.ladder.betas());
+        for rung in (0..top).filter(|rung| (*rung as u64 + parity).is_multiple_of(2)) {
+            let u = open_unit(&mut stream);
+            let (low, high) = (climb.at[rung] as usize, climb.at[rung + 1] as usize);
+            // Finite: what the constraint forbids is forbidden at every rung.
+            let weights = [low, high].map(|replica| self.chains[replica].state().log_constraint.value());
+            let alpha = math::exp(log_alpha([betas[rung], betas[rung + 1]], weights)).min(1.0);
+            let seen = &mut climb.statistics[rung];
+            seen.proposed += 1;
+            seen.expected += alpha;
+            if u < alpha {
+                seen.swapped += 1;
+                climb.at.swap(rung, rung + 1);
+                if let Ok([a, b]) = self.chains.get_disjoint_mut([low, high]) {
+                    Chain::exchange_rungs(a, b);
+                }
+                if rung + 1 == top {
+                    watch(&self.chains[low], TopStep::Swapped);
+                }
+            }
+        }
+        climb.note_ends();
+        if tempering.adapts_at(now) {
+            climb.adapt(tempering.ends_at(now));
+            for (&replica, &beta) in climb.at.iter().zip(climb.ladder.betas()) {
+                self.chains[replica as usize].set_beta(beta);
+            }
+        }
+    }
+
+    fn top_replica(&self) -> usize {
+        self.climb.at.last().map_or(0, |&replica| replica as usize)
+    }
+
+    /// The chain at the last rung.
+    #[must_use]
+    pub fn top(&self) -> &Chain<'a, T> {
+        &self.chains[self.top_replica()]
+    }
+
+    /// The state at a rung.
+    #[must_use]
+    pub fn rung(&self, rung: usize) -> Option<&StateOf<T>> {
+        self.climb.at.get(rung).map(|&replica| self.chains[replica as usize].state())
+    }
+
+    /// Iterations made by every replica.
+    #[must_use]
+    pub fn iteration(&self) -> u64 {
+        self.top().iteration()
+    }
+
+    /// Where the replicas are on the ladder, and how they fared.
+    #[must_use]
+    pub fn climb(&self) -> &Climb {
+        &self.climb
+    }
+}
+
+/// Log of the ratio by which a swap is accepted, of states with these log constraints (at β = 1) at these inverse temperatures.
+fn log_alpha(betas: [f64; 2], log_constraints: [f64; 2]) -> f64 {
+    (betas[1] - betas[0]) * (log_constraints[0] - log_constraints[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `π_a(x) π_b(y) α(x,y) = π_a(y) π_b(x) α(y,x)` with `π_β ∝ p_c^β`, for all pairs of weights and of rungs; and the wrong sign is seen.
+    #[test]
+    fn swaps_balance_in_detail() {
+        let weights = [0.0, 1.0, 2.5, 7.0];
+        let unbalance = |sign: f64| {
+            let mut worst = 0.0_f64;
+            for betas in [[0.0, 1.0], [0.0, 0.3], [0.3, 0.31], [0.5, 1.0]] {
+                for x in weights {
+                    for y in weights {
+                        let flow = |x: f64, y: f64| {
+                            let alpha = math::exp(sign * log_alpha(betas, [x, y])).min(1.0);
+                            math::exp(betas[0] * x + betas[1] * y - 7.0) * alpha
+                        };
+                        worst = worst.max((flow(x, y) - flow(y, x)).abs());
+                    }
+                }
+            }
+            worst
+        };
+        assert!(unbalance(1.0) < 1e-12, "{}", unbalance(1.0));
+        assert!(unbalance(-1.0) > 0.1);
+    }
+}

@@ -1,0 +1,169 @@
+//! Which of a run's distinct solutions hold when they are simulated more exactly.
+//!
+//! Records are left as they are: a list beside them says of each solution what became of it, so that nothing is lost, and exports can keep to those that hold.
+
+use crate::disk::Disk;
+use crate::error::{Error, RunFileError, RunFileProblem};
+use crate::folder::Folder;
+use crate::read::RunOf;
+use crate::replay::{at_accuracy, states};
+use crate::solutions::{Solution, distinct};
+use crate::tally::SampleId;
+use plaus_mcmc::State;
+use plaus_scenes::{AccuracyPreset, Scenario, Scene, Visitor};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::io::ErrorKind;
+
+/// Solutions simulated between two questions whether to go on.
+const AT_A_TIME: usize = 64;
+
+/// What became of one solution.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Checked {
+    /// Its chain.
+    pub chain: u32,
+    /// Its draw, as in the table of `plaus export`.
+    pub draw: u64,
+    /// The iteration that recorded it.
+    pub iteration: u64,
+    /// Whether it satisfies the constraint there too.
+    pub holds: bool,
+    /// Whether it is there the same solution by the scene's classes.
+    pub same: bool,
+    /// Recorded log p.
+    pub log_p: f64,
+    /// Log p there; `None` where it is −∞.
+    pub log_p_there: Option<f64>,
+}
+
+/// All distinct solutions of a run's sampling phase, simulated at another accuracy.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Confirmation {
+    /// Version of plaus.
+    pub plaus: String,
+    /// Hash of the run's scenario.
+    pub scenario_hash: String,
+    /// The accuracy of the new simulations.
+    pub accuracy: AccuracyPreset,
+    /// Iterations of each chain that were looked at.
+    pub iterations: u64,
+    /// How many hold.
+    pub held: u64,
+    /// All of them, in order of iteration, then chain.
+    pub solutions: Vec<Checked>,
+}
+
+/// Whether a scenario's scene can be simulated at another accuracy.
+///
+/// # Errors
+/// [`Error::Request`] where it has none to choose.
+pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Error> {
+    struct Ask<'a>(&'a str, AccuracyPreset);
+    impl Visitor for Ask<'_> {
+        type Output = Result<(), Error>;
+        fn visit<S: Scene>(self, scene: S) -> Self::Output {
+            at_accuracy(&scene, self.0, self.1).map(drop)
+        }
+    }
+    scenario.world.visit(Ask(scenario.world.name(), accuracy))?
+}
+
+impl Confirmation {
+    /// Simulates every distinct solution at `accuracy`, on `threads` threads (0: one a core). Asks `go_on` now and then, with how many are done and how many there
+    /// are; where the answer is no, there is no result.
+    ///
+    /// # Errors
+    /// [`Error`] where the scene has no accuracy to choose, the records are damaged or a simulation fails.
+    pub fn of<S: Scene>(
+        run: &RunOf<'_, S>,
+        accuracy: AccuracyPreset,
+        threads: usize,
+        mut go_on: impl FnMut(usize, usize) -> bool,
+    ) -> Result<Option<Self>, Error> {
+        let scene = at_accuracy(run.scene(), run.run().scenario().world.name(), accuracy)?;
+        let found = distinct(run)?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|error| Error::Sampling(format!("cannot start worker threads: {error}")))?;
+        let mut solutions = Vec::with_capacity(found.len());
+        for some in found.chunks(AT_A_TIME) {
+            if !go_on(solutions.len(), found.len()) {
+                return Ok(None);
+            }
+            let checked: Vec<Checked> = pool.install(|| check(run, &scene, some))?;
+            solutions.extend(checked);
+        }
+        let manifest = run.run().manifest();
+        Ok(Some(Self {
+            plaus: manifest.plaus.clone(),
+            scenario_hash: manifest.scenario.hash.clone(),
+            accuracy,
+            iterations: run.iterations(),
+            held: solutions.iter().filter(|one| one.holds).count() as u64,
+            solutions,
+        }))
+    }
+
+    /// Samples of the solutions that hold.
+    #[must_use]
+    pub fn samples(&self) -> Vec<SampleId> {
+        let held = self.solutions.iter().filter(|one| one.holds);
+        held.map(|one| SampleId { chain: one.chain, draw: one.draw }).collect()
+    }
+
+    /// Puts the list beside the run's records, in place of an older one.
+    ///
+    /// # Errors
+    /// [`RunFileError`] where the disk refuses; an older list is then still there.
+    pub fn write(&self, folder: &Folder, disk: &dyn Disk) -> Result<(), RunFileError> {
+        let path = folder.confirmed();
+        let broken = |error: serde_json::Error| RunFileError::new(&path, RunFileProblem::List(error.to_string()));
+        let mut json = serde_json::to_vec_pretty(self).map_err(broken)?;
+        json.push(b'\n');
+        let next = path.with_extension("json.next");
+        let written = disk.write(&next, &json).and_then(|()| disk.rename(&next, &path));
+        written.and_then(|()| disk.sync(folder.path())).map_err(RunFileError::io(&path, "write"))
+    }
+
+    /// Reads the list of a run.
+    ///
+    /// # Errors
+    /// [`RunFileError`] where there is none, or it is damaged or another run's.
+    pub fn read<S: Scene>(run: &RunOf<'_, S>) -> Result<Self, RunFileError> {
+        let path = run.run().folder().confirmed();
+        let fail = |message: String| RunFileError::new(&path, RunFileProblem::List(message));
+        let json = std::fs::read(&path).map_err(|error| match error.kind() {
+            ErrorKind::NotFound => fail("there is none yet: `plaus resume RUN --confirm` makes it".to_owned()),
+            _ => RunFileError::io(&path, "read")(error),
+        })?;
+        let list: Self = serde_json::from_slice(&json).map_err(|error| fail(error.to_string()))?;
+        let manifest = run.run().manifest();
+        if list.scenario_hash != manifest.scenario.hash {
+            return Err(fail("it belongs to another run".to_owned()));
+        }
+        Ok(list)
+    }
+}
+
+fn check<S: Scene>(run: &RunOf<'_, S>, scene: &S, solutions: &[Solution]) -> Result<Vec<Checked>, Error> {
+    let samples: Vec<SampleId> = solutions.iter().map(|solution| solution.sample).collect();
+    let found = states(run, &samples)?;
+    let check = |(index, stored, _): &(usize, plaus_mcmc::StateOf<S>, bool)| -> Result<Checked, Error> {
+        let Solution { sample, iteration, log_p } = solutions[*index];
+        let there = State::evaluate(scene, stored.draw.clone(), &mut S::Scratch::default())?;
+        let class = scene.class(&there);
+        let log_p_there = there.log_p().value();
+        Ok(Checked {
+            chain: sample.chain,
+            draw: sample.draw,
+            iteration,
+            holds: class.is_some(),
+            same: class.is_some() && class == run.scene().class(stored),
+            log_p,
+            log_p_there: log_p_there.is_finite().then_some(log_p_there),
+        })
+    };
+    found.par_iter().map(check).collect()
+}

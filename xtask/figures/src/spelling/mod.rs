@@ -1,0 +1,58 @@
+//! The balls that spell: figures 5 to 8, the claims of section 5.3, and what the moves and savings bring.
+
+mod accelerators;
+mod chains;
+mod change_all;
+mod confirmed;
+mod lambda;
+mod pictures;
+mod speed;
+mod traces;
+mod words;
+
+use crate::{Result, Work};
+use chains::Word;
+use plaus_scenes::spelling::{Config, Letters};
+
+/// The paper's first word: ten of 7 × 5 bins, λ = e⁵.
+fn hi(change: impl FnOnce(&mut Config)) -> Result<Word> {
+    let mut config = Config::default();
+    change(&mut config);
+    Word::new(&config)
+}
+
+/// The paper's second: thirty of 15 × 7 bins, λ = e^7.25.
+fn acm(change: impl FnOnce(&mut Config)) -> Result<Word> {
+    hi(|config| {
+        (config.text, config.letters, config.ln_lambda) = ("ACM".into(), Letters::Tall, 7.25);
+        change(config);
+    })
+}
+
+/// A part of the scene's figures, by name: `--only spelling/words`. What takes long comes last; the report can be read before.
+type Part = (&'static str, fn(&mut Work) -> Result<()>);
+
+const PARTS: &[Part] = &[
+    ("traces", traces::make),
+    ("pictures", pictures::make),
+    ("speed", speed::make),
+    ("change-all", change_all::make),
+    ("lambda", lambda::make),
+    ("confirmed", confirmed::make),
+    ("accelerators", accelerators::make),
+    ("words", words::make),
+];
+
+pub(crate) fn make(work: &mut Work) -> Result<()> {
+    let wanted = work.part.clone();
+    if let Some(wanted) = wanted.as_ref().filter(|wanted| !PARTS.iter().any(|(name, _)| name == wanted)) {
+        let known: Vec<&str> = PARTS.iter().map(|(name, _)| *name).collect();
+        return Err(format!("spelling has no part `{wanted}`, only {}", known.join(", ")).into());
+    }
+    for (name, part) in PARTS.iter().filter(|(name, _)| wanted.as_deref().is_none_or(|wanted| wanted == *name)) {
+        work.say(format_args!("part {name}"));
+        part(work)?;
+        work.write_report()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,138 @@
+//! Words of one to eight letters: how time to the first full word grows with the number of balls.
+
+use super::chains::{Length, Word, shown};
+use super::hi;
+use crate::canvas::{self, HPos, bold, colour, pen, px, text, write};
+use crate::plot::{Axes, curve, plain, power};
+use crate::report::{significant, table};
+use crate::{Result, Work};
+use plaus_dist::math;
+use plotters::prelude::*;
+
+const WORDS: [&str; 8] = ["I", "HI", "ACM", "DICE", "HELLO", "BOUNCE", "MARBLES", "SOLUTION"];
+const SIZE: (u32, u32) = (900, 560);
+
+/// ln λ for a word of `bins` bins: the power law through the paper's two choices, e⁵ for ten and e^7.25 for thirty.
+fn ln_lambda(bins: usize) -> f64 {
+    5.0 + 2.25 * math::ln(bins as f64 / 10.0) / math::ln(3.0)
+}
+
+/// One word.
+struct Row {
+    text: &'static str,
+    bins: usize,
+    ln_lambda: f64,
+    found: usize,
+    /// Median and worst.
+    iterations: [f64; 2],
+    seconds: [f64; 2],
+    /// Microseconds an iteration.
+    pace: f64,
+}
+
+pub(super) fn make(work: &mut Work) -> Result<()> {
+    let (seeds, limit) = (work.size(3, 1), work.size(60_000, 150));
+    let words = &WORDS[..work.size(8, 3)];
+    let mut rows = Vec::new();
+    for text in words {
+        let bins = hi(|config| config.text = (*text).into())?.bins();
+        let ln_lambda = ln_lambda(bins);
+        work.say(format_args!(
+            "words: {text}, {bins} balls, ln λ = {ln_lambda:.2}: {seeds} chains until the first full word"
+        ));
+        let word: Word = hi(|config| (config.text, config.ln_lambda) = ((*text).into(), ln_lambda))?;
+        let chains = word.run(Length { seeds, iterations: limit, until_first: true })?;
+        let (time, steps) = chains.0.iter().fold((0.0, 0), |sum, seen| (sum.0 + seen.seconds, sum.1 + seen.iterations));
+        rows.push(Row {
+            text,
+            bins,
+            ln_lambda,
+            found: chains.found(),
+            iterations: [0.5, 1.0].map(|q| chains.quantile(q, |seen| seen.first_iteration())),
+            seconds: [0.5, 1.0].map(|q| chains.quantile(q, |seen| seen.first_second())),
+            pace: 1e6 * time / steps as f64,
+        });
+    }
+    canvas::save(&work.out, "words", SIZE, |area| draw(area, &rows))?;
+    work.report.figure(
+        "words",
+        format!(
+            "Processor time to the first full word against the number of balls, words of one to {} letters (short font): median and worst of {seeds} seeds. ln λ = 5 + 2.25 ln(N/10) / ln 3 for N \
+             bins, the power law through the paper's choices for HI and ACM: the more bins, the more ways to miss one.",
+            words.len()
+        ),
+    );
+    let cells = rows.iter().map(|row| {
+        vec![
+            row.text.to_owned(),
+            row.bins.to_string(),
+            format!("{:.2}", row.ln_lambda),
+            format!("{} of {seeds}", row.found),
+            row.iterations.map(|value| shown(value, 3)).join(" / "),
+            row.seconds.map(|value| shown(value, 2)).join(" / "),
+            shown(row.pace, 3),
+        ]
+    });
+    let head =
+        ["word", "balls", "ln λ", "found", "first full word, iterations (median / worst)", "s", "µs an iteration"];
+    let exponent = slope(&rows);
+    let mut text = table(&head, cells);
+    if let Some(exponent) = exponent {
+        text += &format!(
+            "\nFrom the second word on, the median time grows about like the power {} of the number of balls (least squares of the logarithms).\n",
+            significant(exponent, 2)
+        );
+    }
+    work.report.section("Words of one to eight letters", &text);
+    Ok(())
+}
+
+/// Least squares of log time over log balls, without the first word and those never found.
+fn slope(rows: &[Row]) -> Option<f64> {
+    let points: Vec<(f64, f64)> = rows
+        .iter()
+        .skip(1)
+        .filter(|row| row.seconds[0].is_finite())
+        .map(|row| (math::ln(row.bins as f64), math::ln(row.seconds[0])))
+        .collect();
+    let count = points.len() as f64;
+    let mean = points.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0 / count, sum.1 + p.1 / count));
+    let (xy, xx) = points
+        .iter()
+        .fold((0.0, 0.0), |sum, p| (sum.0 + (p.0 - mean.0) * (p.1 - mean.1), sum.1 + math::square(p.0 - mean.0)));
+    (points.len() >= 3 && xx > 0.0).then(|| xy / xx)
+}
+
+fn draw(area: &canvas::Area<'_>, rows: &[Row]) -> Result<()> {
+    write(area, "Time to the first full word", &bold(20.0, colour::INK), HPos::Left, (24.0, 28.0))?;
+    let (_, plot) = area.split_vertically(px(50.0));
+    let most = rows.iter().map(|row| row.bins).max().unwrap_or(10) as f64;
+    let finite = || rows.iter().flat_map(|row| row.seconds).filter(|s| s.is_finite() && *s > 0.0).map(math::log10);
+    let (low, high) = (finite().fold(0.0, f64::min).floor(), finite().fold(0.0, f64::max).ceil().max(1.0));
+    let mut chart = Axes {
+        title: "",
+        x: 0.0..most * 1.08,
+        y: low..high,
+        x_label: "balls (bins to fill)",
+        y_label: "seconds of one core",
+        ticks: (10, (high - low) as usize + 1),
+        x_text: &plain,
+        y_text: &power,
+    }
+    .draw(&plot)?;
+    let points = |which: usize| -> Vec<(f64, f64)> {
+        let found = rows.iter().filter(|row| row.seconds[which].is_finite());
+        found.map(|row| (row.bins as f64, math::log10(row.seconds[which]))).collect()
+    };
+    curve(&mut chart, &points(1), pen(colour::FAINT, 1.5))?;
+    curve(&mut chart, &points(0), pen(colour::OURS, 2.5))?;
+    for row in rows.iter().filter(|row| row.seconds[0].is_finite()) {
+        let at = (row.bins as f64, math::log10(row.seconds[0]));
+        chart.draw_series([Circle::new(at, px(4.0), colour::OURS.filled())])?;
+        let label =
+            text(12.0, colour::INK).pos(plotters::style::text_anchor::Pos::new(HPos::Center, canvas::VPos::Top));
+        chart.draw_series([Text::new(row.text.to_owned(), (at.0, at.1 - 0.12), label)])?;
+    }
+    write(&plot, "median", &text(13.0, colour::OURS), HPos::Left, (90.0, 24.0))?;
+    write(&plot, "worst seed", &text(13.0, colour::FAINT), HPos::Left, (90.0, 44.0))
+}
