@@ -48,7 +48,11 @@ fn main() -> Result<()> {
     let expected = cube as f64 / 6.0;
     let chi2: f64 = counts[1..].iter().map(|&n| (n as f64 - expected) * (n as f64 - expected) / expected).sum();
     // The 99.9999% point of χ² with 5 degrees of freedom is 35.9.
-    println!("{cube} throws of a cube: faces {:?}, none {}, χ² = {chi2:.1} (5 degrees of freedom)", &counts[1..], counts[0]);
+    println!(
+        "{cube} throws of a cube: faces {:?}, none {}, χ² = {chi2:.1} (5 degrees of freedom)",
+        &counts[1..],
+        counts[0]
+    );
     println!("x/y    simulated         real");
     for (k, (ratio, share, rolls)) in REAL.into_iter().enumerate() {
         let counts = faces(ratio, each, 2 + k as u64)?;
