@@ -1,6 +1,8 @@
 //! How long dice take: time a throw and an iteration, to the first solution, distinct solutions a minute, R-hat over the seeds. Times are those of one core.
 //!
-//!     cargo run --release -p plaus-scenes --example dice_times -- scenarios/dice-one.toml 20 20000 [key=value ...]
+//!     cargo run --release -p plaus-scenes --example dice_times -- scenarios/dice-one.toml 20 20000 [key=value ...] [--first]
+//!
+//! With `--first` each seed stops at its first solution.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 mod shared;
@@ -30,7 +32,7 @@ struct Run {
     changed: usize,
 }
 
-fn run(scene: &Dice, moves: &Mixture<Dice>, seed: u64, iterations: u64) -> Result<Run> {
+fn run(scene: &Dice, moves: &Mixture<Dice>, seed: u64, iterations: u64, stops: bool) -> Result<Run> {
     let names = scene.scalars().len();
     let begin = seconds();
     let mut chain = Chain::start(scene, moves, Seed(seed).chain(0))?;
@@ -47,6 +49,9 @@ fn run(scene: &Dice, moves: &Mixture<Dice>, seed: u64, iterations: u64) -> Resul
         run.first.get_or_insert_with(|| (iteration, seconds() - begin));
         run.satisfied += 1;
         run.classes.insert(class);
+        if stops {
+            break;
+        }
     }
     run.seconds = seconds() - begin;
     run.counts = chain.counts().to_vec();
@@ -114,13 +119,14 @@ fn main() -> Result<()> {
     let path = args.next().unwrap_or_else(|| "scenarios/dice-one.toml".into());
     let seeds: u64 = args.next().map_or(Ok(2), |text| text.parse())?;
     let iterations: u64 = args.next().map_or(Ok(300), |text| text.parse())?;
-    let overrides: Vec<String> = args.collect();
+    let (flags, overrides): (Vec<String>, Vec<String>) = args.partition(|arg| arg == "--first");
+    let stops = !flags.is_empty();
     let scenario = Scenario::read(&path, &std::fs::read_to_string(&path)?, &overrides)?;
     let World::Dice(config) = &scenario.world else { return Err("this measures dice only".into()) };
     let scene = Dice::new(config)?;
     let moves = scene.moves(&scenario.sampler.rules)?;
     throws(&scene, (iterations as usize / 10).clamp(20, 2000))?;
-    let runs: Vec<Run> = (0..seeds).map(|seed| run(&scene, &moves, seed, iterations)).collect::<Result<_>>()?;
+    let runs: Vec<Run> = (0..seeds).map(|seed| run(&scene, &moves, seed, iterations, stops)).collect::<Result<_>>()?;
     let of = |value: &dyn Fn(&Run) -> f64| sorted(runs.iter().map(value).collect());
     let first = of(&|run| run.first.map_or(f64::INFINITY, |first| first.1));
     let when = of(&|run| run.first.map_or(f64::INFINITY, |first| first.0 as f64));

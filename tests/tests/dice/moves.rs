@@ -110,7 +110,7 @@ fn recasts_leave_the_constrained_target_invariant() {
         scene(|config| {
             (config.table.bumps_mm, config.table.bounce_sd, config.table.grip_sd) = (bumps_mm, 0.0, 0.0);
             (config.throw.place_sd_mm, config.table.grid_mm, config.table.width_mm) = (60.0, 16.0, 600.0);
-            config.accuracy = plaus_scenes::dice::AccuracyPreset::Draft;
+            config.accuracy = plaus_scenes::AccuracyPreset::Draft;
             let at = RestAt { x_mm: 90.0, sigma_mm: 200.0, ..RestAt::default() };
             config.constraints =
                 vec![Constraint::RestAt(at), Constraint::FaceUp(FaceUp { ln_lambda: 0.7, ..FaceUp::default() })];

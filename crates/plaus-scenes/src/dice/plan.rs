@@ -147,7 +147,7 @@ fn demands(config: &Config) -> Result<Vec<(Constraint, usize)>, ConfigError> {
         };
         let table = &config.table;
         for (key, at, side) in [("x_mm", at.x_mm, table.length_mm), ("y_mm", at.y_mm, table.width_mm)] {
-            if !(at.abs() <= 0.5 * side) {
+            if at.is_nan() || at.abs() > 0.5 * side {
                 let message =
                     format!("{at} mm is off the table, which reaches from {} to {} mm", -0.5 * side, 0.5 * side);
                 return blame(key, message);
