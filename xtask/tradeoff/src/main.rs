@@ -40,7 +40,7 @@ struct Options {
 fn options() -> Result<Options> {
     let mut out = PathBuf::from("out/tradeoff");
     let mut chosen: Vec<String> = worlds::NAMES.map(str::to_owned).to_vec();
-    let (mut draws, mut seconds, mut rates) = (2000, 12.0, vec![60.0, 240.0, 1000.0]);
+    let (mut draws, mut seconds, mut rates) = (2000, 12.0_f64, vec![60.0, 240.0, 1000.0]);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or_else(|| format!("{argument} needs a value\n\n{USAGE}"));
