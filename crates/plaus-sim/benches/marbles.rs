@@ -2,11 +2,15 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
-use plaus_sim::marbles::Start;
+use plaus_sim::marbles::{MarbleSpec, MarbleWorld, Marbles, Start};
+use plaus_sim::rigid::{self, BodySpec, Part, Rigid, RigidWorld};
+use plaus_sim::scenery::{Mesh, Plane, Scenery};
+use plaus_sim::shape::Shape;
 use plaus_sim::trace::Trace;
 use plaus_sim::worlds::{Bins, drops};
-use plaus_sim::{Accuracy, Preset, Scratch};
+use plaus_sim::{Accuracy, Law, Laws, Material, Preset, Scratch};
 use std::hint::black_box;
 
 fn starts(bins: &Bins, run: u64) -> Vec<Start> {
@@ -51,5 +55,49 @@ fn marbles(c: &mut Criterion) {
     c.bench_function("go back to a saved state", |b| b.iter(|| state.clone_from(black_box(&start))));
 }
 
-criterion_group!(benches, marbles);
+/// The same ball on the same floor, as a marble and as a turning body: a world pays only for what it models.
+fn kinds(c: &mut Criterion) {
+    let (radius, law, accuracy) = (0.006, Law::new(0.3, 0.5), Accuracy::default());
+    let floor = || Plane::new(DVec3::ZERO, DVec3::Z, Material(0)).unwrap();
+    let (position, velocity) = (DVec3::new(0.0, 0.0, 0.07), DVec3::new(0.4, 0.0, 0.0));
+    let gravity = DVec3::new(0.0, 0.0, -9.81);
+    let marbles = Marbles::new(MarbleWorld {
+        specs: vec![MarbleSpec::solid(radius, 0.0023, Material(0))],
+        laws: Laws::uniform(law).unwrap(),
+        scenery: Scenery::new(vec![floor()], Mesh::new(Vec::new(), &[], 0.0).unwrap(), Vec::new(), radius).unwrap(),
+        gravity,
+        accuracy,
+        duration: 2.0,
+    })
+    .unwrap();
+    let start = marbles.state(&[Start { velocity, ..Start::at_rest(position) }]).unwrap();
+    let (mut state, mut scratch) = (start.clone(), Scratch::default());
+    c.bench_function("one ball, as a marble", |b| {
+        b.iter(|| {
+            state.clone_from(&start);
+            black_box(marbles.run(&mut state, &mut scratch, 2.0, &mut ()))
+        });
+    });
+    let rigid = Rigid::new(RigidWorld {
+        bodies: vec![BodySpec::solid(Shape::Ball(radius), 2500.0, Material(0))],
+        parts: vec![Part::Plane(floor())],
+        laws: Laws::uniform(law).unwrap(),
+        gravity,
+        accuracy,
+        skin: 1.0,
+        sink: f64::NEG_INFINITY,
+        duration: 2.0,
+    })
+    .unwrap();
+    let start = rigid.state(&[rigid::Start { velocity, ..rigid::Start::at_rest(position) }]).unwrap();
+    let (mut state, mut scratch) = (start.clone(), Scratch::default());
+    c.bench_function("one ball, as a turning body", |b| {
+        b.iter(|| {
+            state.clone_from(&start);
+            black_box(rigid.run(&mut state, &mut scratch, 2.0, &mut ()))
+        });
+    });
+}
+
+criterion_group!(benches, marbles, kinds);
 criterion_main!(benches);

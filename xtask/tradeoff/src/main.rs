@@ -40,7 +40,7 @@ struct Options {
 fn options() -> Result<Options> {
     let mut out = PathBuf::from("out/tradeoff");
     let mut chosen: Vec<String> = worlds::NAMES.map(str::to_owned).to_vec();
-    let (mut draws, mut seconds, mut rates) = (2000, 12.0, vec![60.0, 240.0, 1000.0]);
+    let (mut draws, mut seconds, mut rates) = (2000, 12.0_f64, vec![60.0, 240.0, 1000.0]);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or_else(|| format!("{argument} needs a value\n\n{USAGE}"));
@@ -62,7 +62,7 @@ fn options() -> Result<Options> {
     if let Some(rate) = rates.iter().find(|rate| !(**rate >= 20.0 && **rate % 20.0 == 0.0)) {
         return Err(format!("--rates: {rate} is no multiple of 20").into());
     }
-    if draws == 0 || !(seconds > 0.0) {
+    if draws == 0 || seconds.is_nan() || seconds <= 0.0 {
         return Err("--draws and --seconds must be more than 0".into());
     }
     if let Some(name) = chosen.iter().find(|name| !worlds::NAMES.contains(&name.as_str())) {
@@ -76,6 +76,7 @@ fn options() -> Result<Options> {
 fn main() -> Result<()> {
     let Options { out, worlds, plan } = options()?;
     std::fs::create_dir_all(&out)?;
+    let exact = exact::report()?;
     let mut sections = String::new();
     let mut summaries = Vec::new();
     for name in &worlds {
@@ -89,19 +90,22 @@ fn main() -> Result<()> {
         plots::growth(&out, world.as_ref(), &rows)?;
         write!(sections, "\n![Cost and distance]({name}.png) ![Error over time]({name}-error.png)\n")?;
         summaries.push(report::summary(name, &rows, &distances));
+        // After each world, so that whoever stops waiting has what there is.
+        std::fs::write(out.join("report.md"), page(&plan, &summaries, &exact, &sections))?;
     }
+    eprintln!("{}\nwrote {}", page(&plan, &summaries, &exact, &sections), out.join("report.md").display());
+    Ok(())
+}
+
+/// The report as far as it has come.
+fn page(plan: &Plan, summaries: &[Vec<String>], exact: &str, sections: &str) -> String {
     let mut text = format!(
-        "# What exactness costs\n\nMade by `cargo xtask tradeoff`. Draws and outcomes follow from fixed seeds ({} draws at most, fewer where {} s of computing were over, three times that for bowling). Times are seconds of processor time \
-         of one thread, all simulators in one process by turns, so that a busy machine slows them alike. The simulator computes in f64 throughout: event times are compared across bodies, and \
-         an f32 holds 2 s to no better than 1e-7 s, in which a marble moves more than the fine preset's tolerances; there is no f32 variant to compare.\n",
+        "# What exactness costs\n\nMade by `cargo xtask tradeoff`. Draws and outcomes follow from fixed seeds ({} draws at most, fewer where {} s of computing were over, three times that for bowling). Times are seconds \
+         of processor time of one thread, all simulators in one process by turns, so that a busy machine slows them alike. The simulator computes in f64 throughout: event times are compared \
+         across bodies, and an f32 holds 2 s to no better than 1e-7 s, in which a marble moves more than the fine preset's tolerances; there is no f32 variant to compare.\n",
         plan.draws, plan.seconds
     );
     text += "\n## In short\n\nMedian ms; total variation from the reference in the first reading, in brackets what chance alone gives on average.\n\n";
-    text += &table(&["world", "draft", "standard", "fine", "reference", "rapier3d-f64, 1/240"], summaries);
-    text += "\n## Against exact answers\n\nRelative errors.\n\n";
-    text += &exact::report()?;
-    text += &sections;
-    std::fs::write(out.join("report.md"), &text)?;
-    eprintln!("{text}\nwrote {}", out.join("report.md").display());
-    Ok(())
+    text += &table(&["world", "draft", "standard", "fine", "reference", "rapier3d-f64, 1/240"], summaries.to_vec());
+    text + "\n## Against exact answers\n\nRelative errors.\n\n" + exact + sections
 }

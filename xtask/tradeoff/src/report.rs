@@ -97,6 +97,9 @@ fn laws(readings: &[Reading], rows: &[Row], distances: &[Distances]) -> String {
     )
 }
 
+/// Fewest draws from which it is said how near two laws are: chance alone then gives a twentieth or so.
+const ENOUGH: usize = 200;
+
 /// How much faster than the peer, at 1/240 and where the peer is as near to its own finest step as the standard preset is to the reference.
 fn verdict(rows: &[Row], distances: &[Distances], finest: Option<Way>, reading: &str) -> String {
     let pair = |way: Way| rows.iter().zip(distances).find(|(row, _)| row.way == way);
@@ -111,6 +114,15 @@ fn verdict(rows: &[Row], distances: &[Distances], finest: Option<Way>, reading: 
         );
     }
     let Some(ours) = ours.to_reference.first() else { return text };
+    let count = |way: Way| pair(way).map_or(0, |(row, _)| row.outcomes.len());
+    if count(Way::REFERENCE).min(count(finest)) < ENOUGH {
+        text += &format!(
+            "Laws are not compared step by step: {} draws of the reference and {} of the peer's finest step are fewer than {ENOUGH}. Give more time with `--seconds`.\n",
+            count(Way::REFERENCE),
+            count(finest)
+        );
+        return text;
+    }
     let near = |d: &Distances| d.to_finest.first().is_some_and(|d| d.found <= d.most + ours.excess());
     let mut peers: Vec<(f64, &Row, &Distances)> = rows
         .iter()

@@ -3,6 +3,12 @@
 //! Each step solves the contacts' impulses together (block Gauss–Seidel with exact Coulomb blocks), moves every centre along the parabola that joins the two
 //! ends, and puts the centres back onto the surfaces they touch. Between its ends a step is a parabola like any other motion, so collisions with
 //! others are found exactly on the path that is really taken.
+//!
+//! What that costs, and where it is not exact: an impact on one member ends the step of the whole group, so a pile of n balls that collapses costs n times its
+//! impacts (a cube of 216: up to 20 ms each), and where impacts come faster than steps, a step's correction of positions never takes effect. Balls then reach into each other by what sweeps
+//! leave of approach, `sweep_tolerance · g · step²` per step: up to 3e-3 of a radius in the collapse of that cube at the standard preset, 1e-4 while its columns stand
+//! (`cargo run --release -p plaus-sim --example pile -- 1.5`); at the fine one 5e-6 and 1e-7. Groups of a few balls, as in bins, are seldom interrupted: of a million marbles in 10⁵ drops 56 reached
+//! deeper than 1e-4 into something at the end.
 
 use super::Marbles;
 use super::body::{Marble, Phase};
