@@ -31,7 +31,7 @@ struct Row {
 }
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
-    let (seeds, limit) = (work.size(3, 1), work.size(60_000, 150));
+    let (seeds, limit) = (work.size(15, 1), work.size(60_000, 150));
     let words = &WORDS[..work.size(8, 3)];
     let mut rows = Vec::new();
     for text in words {
@@ -53,6 +53,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
             pace: 1e6 * time / steps as f64,
         });
     }
+    rows.sort_by_key(|row| row.bins);
     canvas::save(&work.out, "words", SIZE, |area| draw(area, &rows))?;
     work.report.figure(
         "words",
