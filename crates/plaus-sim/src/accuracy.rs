@@ -26,9 +26,9 @@
 //! | balls that spell ACM, likewise | 0.89 (0.24, 0.20) | 1.1 (0.24, 0.20) | 2.0 (0.27, 0.20) | 7.2 | 66 (0.33, 0.23) |
 //! | a die on a flat table: face and place | 0.077 (0.083, 0.076) | 0.11 (0.087, 0.076) | 0.26 (0.10, 0.076) | 0.74 | 0.59 (0.089, 0.076) |
 //! | a die on a bumpy table, likewise | 0.34 (0.094, 0.090) | 0.44 (0.093, 0.090) | 0.91 (0.098, 0.089) | 2.7 | 7.3 (0.17, 0.18) |
-//! | a ball at ten pins: which pins stand | 7.6 (0.077, 0.053) | 10 (0.069, 0.054) | 24 (0.071, 0.054) | 290 | 104 (0.10, 0.047) |
+//! | a ball at ten pins: which pins stand | 7.6 (0.046, 0.032) | 10 (0.043, 0.033) | 23 (0.042, 0.035) | 120 | 105 (0.063, 0.026) |
 //!
-//! ACM and pins had only 30 and 10 draws of the reference in that time: their distances say little. Marbles keep within a tenth of a radius of the reference for 0.65, 0.95 and 1.5 s in the
+//! ACM and pins had only 30 and 27 draws of the reference in that time: their distances say little. Marbles keep within a tenth of a radius of the reference for 0.65, 0.95 and 1.5 s in the
 //! median (`Draft`, `Standard`, `Fine`), and 12, 2 and 2 in a hundred draws fill another number of bins than they would there; a die keeps within a twentieth of its edge for 0.25, 0.3 and 0.4 s, and one throw in
 //! two to four ends on another face or elsewhere.
 //!
