@@ -58,9 +58,9 @@ fn compare(shot: u32) -> (usize, usize, [u16; 2]) {
         let outcome = world.run(&mut state, &mut Scratch::default(), 3.0, &mut trace).unwrap();
         assert!(matches!(outcome, Outcome::TimeReached | Outcome::AllAtRest), "{outcome:?}");
         let mut standing = [0_u16; 11];
-        for k in 1..=10 {
+        for (k, stands) in standing.iter_mut().enumerate().skip(1) {
             let body = world.at(k, &state.bodies()[k], state.time());
-            standing[k] = u16::from(Alley::stands(k, body.path.x, body.turn * DVec3::Z));
+            *stands = u16::from(Alley::stands(k, body.path.x, body.turn * DVec3::Z));
         }
         (trace.impacts, standing)
     };
