@@ -1,6 +1,6 @@
 //! What other programs make of exports and galleries: the Khronos validator, three.js, Pixar's USD, Chromium.
 
-use crate::command::{Command, Failure, cargo, plaus, root, target};
+use crate::command::{Command, Failure, built, plaus, root, target};
 use crate::registry;
 use crate::steps::Done;
 use std::fs;
@@ -23,8 +23,7 @@ pub(crate) fn export() -> Result<Done, Failure> {
     }
     fs::create_dir_all(&exports).map_err(Failure::new)?;
     // Every shape and way of turning there is, whatever the scenes have of them.
-    let example = ["run", "--quiet", "--package", "plaus-export", "--example", "tumbling", "--"];
-    cargo(&example).args([&exports]).shown_and_run()?;
+    Command::new(built("debug/examples", "tumbling")).args([&exports]).shown_and_run()?;
     for scenario in scenarios()? {
         let name = scenario.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let run = exports.join(format!("{name}.run"));

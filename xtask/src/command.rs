@@ -39,9 +39,14 @@ pub(crate) fn cargo(arguments: &[&str]) -> Command {
     Command::named(program, "cargo").args(arguments)
 }
 
+/// Where cargo puts an executable that it builds; `within` is a folder of [`target`].
+pub(crate) fn built(within: &str, name: &str) -> PathBuf {
+    target().join(within).join(name).with_extension(std::env::consts::EXE_EXTENSION)
+}
+
 /// The release binary that a step before has built.
 pub(crate) fn plaus(arguments: &[&str]) -> Command {
-    cargo(&["run", "--quiet", "--release", "--package", "plaus-cli", "--"]).args(arguments)
+    Command::new(built("release", "plaus")).args(arguments)
 }
 
 impl Command {

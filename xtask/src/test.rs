@@ -1,19 +1,21 @@
 //! Everything that must pass.
 
 use crate::clients;
-use crate::command::{Command, Failure, cargo, has_subcommand, root, target};
+use crate::command::{Command, Failure, built, cargo, has_subcommand, root, target};
 use crate::steps::{self, Done, Step};
 use std::fs;
-use std::path::PathBuf;
 
 /// Leaves out what is compared with: building it takes longer than all the rest, and clippy looks at our side of it.
 const PEERS: [&str; 2] = ["--exclude", "plaus-tradeoff"];
+
+/// What is tried in release. Both packages at once, as in the step that builds everything.
+const IN_RELEASE: [&str; 5] = ["--release", "--package", "plaus-cli", "--package", "plaus-tests"];
 
 /// Runs all of it.
 pub(crate) fn run() -> Result<(), Failure> {
     let golden = ["--package", "plaus-tests", "--test", "golden"];
     let quick = target().join("figures-quick");
-    let figures = Command::new(built("plaus-figures")).args(["--quick", "--out"]).args([&quick]);
+    let figures = Command::new(built("debug", "plaus-figures")).args(["--quick", "--out"]).args([&quick]);
     let mut all = vec![
         Step::command("format", cargo(&["fmt", "--all", "--", "--check"])),
         Step::command("clippy", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])),
@@ -21,11 +23,11 @@ pub(crate) fn run() -> Result<(), Failure> {
         Step::command("build", cargo(&["build", "--workspace", "--all-targets"]).args(PEERS)),
         Step::command("tests", cargo(&["test", "--workspace"]).args(PEERS)),
         Step::command("golden traces, unoptimised", cargo(&["test", "--profile", "unoptimised"]).args(golden)),
-        Step::command("golden traces, release", cargo(&["test", "--release"]).args(golden)),
+        Step::command("release", cargo(&["build"]).args(IN_RELEASE).args(["--bin", "plaus", "--test", "golden"])),
+        Step::command("golden traces, release", cargo(&["test"]).args(IN_RELEASE).args(["--test", "golden"])),
         Step::command("docs", cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings")),
         Step::new("examples", examples),
         Step::command("figures, quick", figures),
-        Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"])),
         Step::new("ArviZ reads a run", crate::arviz::run),
         Step::new("licences and advisories", deny),
     ];
@@ -36,7 +38,8 @@ pub(crate) fn run() -> Result<(), Failure> {
 /// Only what other programs make of exports and galleries.
 pub(crate) fn clients() -> Result<(), Failure> {
     let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
-    let mut all = vec![Step::command("plaus in release", release)];
+    let shapes = cargo(&["build", "--package", "plaus-export", "--example", "tumbling"]);
+    let mut all = vec![Step::command("plaus in release", release), Step::command("every shape", shapes)];
     all.extend(client_steps());
     steps::run(all)
 }
@@ -49,11 +52,6 @@ fn client_steps() -> Vec<Step> {
         Step::new("galleries in a browser", clients::gallery),
         Step::new("the committed three.js is what its script makes", clients::bundle),
     ]
-}
-
-/// Where the step `build` puts what has this name.
-fn built(name: &str) -> PathBuf {
-    target().join("debug").join(name)
 }
 
 /// Runs every example of every crate.
@@ -72,7 +70,7 @@ fn examples() -> Result<Done, Failure> {
     }
     found.sort();
     for example in &found {
-        let command = Command::new(built("examples").join(example));
+        let command = Command::new(built("debug/examples", example));
         println!("$ {}", command.shown());
         command.run()?;
     }
