@@ -27,7 +27,7 @@ fn world(bodies: Vec<BodySpec>, law: Law) -> RigidWorld {
         parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],
         laws: Laws::uniform(law).unwrap(),
         gravity: DVec3::new(0.0, 0.0, -G),
-        accuracy: Accuracy { events: 2000, ..Accuracy::preset(Preset::Standard) },
+        accuracy: Accuracy { events: 400, ..Accuracy::preset(Preset::Standard) },
         skin: 1.0,
         sink: f64::NEG_INFINITY,
         duration: 4.0,

@@ -2,9 +2,9 @@
 //!
 //! A corner that turns against a face that turns too needs shorter steps than a corner on a table, and what one body's contacts are off, the next body's undo.
 
-use super::Rigid;
 use super::pair::PairTouch;
 use super::step::{CLOSE, RigidScratch};
+use super::{Rigid, Skin};
 
 /// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values make fast turning in contact dearer, as their inverse root.
 const SAG: f64 = 1e-3;
@@ -34,7 +34,13 @@ impl RigidScratch {
             let [p, q] = ab.map(|k| &self.places[k]);
             let both = [p.body, q.body];
             let after = world.pair_again(both, [&p.end, &q.end], t).gap;
-            let most = if t.feature.is_some() { 1.0 } else { ROUGH };
+            // A cuboid's nearest points to a ball jump, whatever the step.
+            let jumps = both.iter().any(|&k| matches!(world.specs[k].skin, Skin::Cuboid { .. }));
+            let most = match (t.feature, jumps) {
+                (Some(_), _) => 1.0,
+                (None, false) => ROUGH,
+                (None, true) => return false,
+            };
             after < world.pair_goal(both, t.gap, h) - most * world.pair_gap(both)
         };
         self.pairs.iter().any(deep).then_some(0.5)
