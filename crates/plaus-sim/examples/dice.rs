@@ -10,9 +10,10 @@
     reason = "a measuring program: it reads the clock and prints"
 )]
 
+mod overlaps;
+
+use overlaps::Overlaps;
 use plaus_dist::{Purpose, Seed, open_unit};
-use plaus_sim::rigid::{Rigid, Turning};
-use plaus_sim::trace::Observer;
 use plaus_sim::worlds::DieOnTable;
 use plaus_sim::{Accuracy, Outcome, Preset, Scratch};
 use std::time::Instant;
@@ -70,7 +71,7 @@ impl Tally {
         self.on_processor += processor_time() - cpu;
         // Once more, watched.
         let mut state = world.state(&starts).unwrap();
-        let mut watch = Overlaps { world: &world, last: vec![None; dice], deepest: [f64::NEG_INFINITY; 2] };
+        let mut watch = Overlaps::new(&world);
         assert_eq!(world.run(&mut state, &mut scratch, 20.0, &mut watch).unwrap(), outcome);
         self.events += state.counts().events;
         self.impacts += state.counts().impacts;
@@ -124,38 +125,6 @@ impl Tally {
             self.impacts as f64 / n as f64,
             1e9 * total / self.events as f64
         );
-    }
-}
-
-struct Overlaps<'w> {
-    world: &'w Rigid,
-    last: Vec<Option<Turning>>,
-    deepest: [f64; 2],
-}
-
-impl Overlaps<'_> {
-    fn look(&mut self, index: usize, body: &Turning) {
-        let time = body.path.t;
-        self.deepest[1] = self.deepest[1].max(self.world.depth(index, body));
-        for (other, there) in self.last.iter().enumerate() {
-            let Some(there) = there.as_ref().filter(|b| other != index && b.path.t <= time) else { continue };
-            let there = self.world.at(other, there, time);
-            let (pair, both) =
-                if other < index { ([other, index], [&there, body]) } else { ([index, other], [body, &there]) };
-            self.deepest[0] = self.deepest[0].max(-self.world.gap(pair, both));
-        }
-    }
-}
-
-impl Observer<Rigid> for Overlaps<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
-        if let Some(before) = self.last[index].take() {
-            let middle = 0.5 * (before.path.t + body.path.t);
-            let half = self.world.at(index, &before, middle);
-            self.look(index, &half);
-        }
-        self.look(index, body);
-        self.last[index] = Some(body.clone());
     }
 }
 

@@ -246,3 +246,58 @@ fn a_saved_pile_goes_on_to_the_same_bits() {
         }
     }
 }
+
+/// What is wrong with a world or a start is named before any stepping.
+#[test]
+fn bad_numbers_are_named() {
+    use plaus_sim::WorldError::{BadBody, BadNumber, BadSurface, BodiesOverlap, OverlapsScenery};
+    use plaus_sim::rigid::Stretch;
+    use plaus_sim::scenery::Aabb;
+    let good = || world(vec![ball(0.1, 1.0), cuboid(DVec3::splat(0.2), 0.0, 1.0)], Law::new(0.3, 0.5));
+    let with = |change: &dyn Fn(&mut RigidWorld)| {
+        let mut world = good();
+        change(&mut world);
+        Rigid::new(world).map(|_| ())
+    };
+    assert!(with(&|_| ()).is_ok());
+    for mass in [-1.0, 0.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(with(&|w| w.bodies[1].mass.mass = mass), Err(BadBody { body: 1, field: "mass", .. })));
+        assert!(matches!(with(&|w| w.bodies[1].mass.inertia.y = mass), Err(BadBody { body: 1, field: "inertia", .. })));
+    }
+    assert!(matches!(
+        with(&|w| w.bodies[0].shape = Shape::Ball(f64::NAN)),
+        Err(BadBody { body: 0, field: "reach", .. })
+    ));
+    assert!(matches!(with(&|w| w.gravity.x = f64::NAN), Err(BadNumber { field: "gravity", .. })));
+    assert!(matches!(with(&|w| w.sink = f64::NAN), Err(BadNumber { field: "sink", .. })));
+    assert!(matches!(with(&|w| w.duration = f64::NAN), Err(BadNumber { field: "duration", .. })));
+    assert!(matches!(with(&|w| w.accuracy.gap = f64::NAN), Err(BadNumber { field: "gap", .. })));
+    let plane = |normal, offset| Part::Plane(Plane { normal, offset, material: M });
+    assert!(matches!(with(&|w| w.parts.push(plane(DVec3::Z, f64::NAN))), Err(BadSurface { field: "offset", .. })));
+    assert!(matches!(with(&|w| w.parts.push(plane(DVec3::NAN, 0.0))), Err(BadSurface { .. })));
+    let block = |high: f64, friction: f64| Part::Block {
+        bounds: Aabb { min: DVec3::NEG_ONE, max: DVec3::new(1.0, 1.0, high) },
+        material: M,
+        stretches: vec![Stretch { from: 0.0, friction }],
+    };
+    assert!(with(&|w| w.parts.push(block(0.0, 0.1))).is_ok());
+    for (high, friction) in [(f64::NAN, 0.1), (-2.0, 0.1), (0.0, -0.1), (0.0, f64::NAN)] {
+        let error = with(&|w| w.parts.push(block(high, friction))).unwrap_err();
+        assert!(matches!(&error, BadSurface { surface, .. } if surface == "part 1"), "{error}");
+    }
+    let world = Rigid::new(good()).unwrap();
+    let at = |x: f64, z: f64| Start::at_rest(DVec3::new(x, 0.0, z));
+    let starts = |a: Start, b: Start| world.state(&[a, b]).map(|_| ());
+    assert!(starts(at(0.0, 0.5), at(0.3, 0.5)).is_ok());
+    assert!(matches!(starts(at(0.0, 0.5), at(0.15, 0.5)), Err(BodiesOverlap { a: 0, b: 1, .. })));
+    assert!(matches!(starts(at(0.0, 0.5), at(0.0, 0.5)), Err(BodiesOverlap { a: 0, b: 1, .. })));
+    assert!(matches!(starts(at(0.0, 0.5), at(0.3, 0.05)), Err(OverlapsScenery { body: 1, .. })));
+    let broken = |change: &dyn Fn(&mut Start)| {
+        let mut start = at(0.3, 0.5);
+        change(&mut start);
+        starts(at(0.0, 0.5), start)
+    };
+    assert!(matches!(broken(&|s| s.velocity.z = f64::NAN), Err(BadBody { body: 1, field: "velocity", .. })));
+    assert!(matches!(broken(&|s| s.spin.x = f64::INFINITY), Err(BadBody { body: 1, field: "spin", .. })));
+    assert!(matches!(broken(&|s| s.time = -1.0), Err(BadBody { body: 1, field: "start time", .. })));
+}

@@ -6,8 +6,8 @@
 //! the ground or is at rest.
 //!
 //! What is approximate: a body of revolution is a row of balls and rings (see [`crate::shape::Revolution`]); bumps of a table are felt at the feelers only
-//! ([`RigidWorld::skin`]); two cuboids do not collide with each other's edges, only a cuboid with balls and bodies of revolution; the direction of a slip within an impact and the
-//! steps of lasting contact follow the preset. Energy grows only by what pushing a body out of an overlap takes, less than a thousandth of its weight times its size at the standard
+//! ([`RigidWorld::skin`]); half way through a step of lasting contact corners may be in what they touch, two cuboids in each other by about a thousandth of their size; the direction
+//! of a slip within an impact and the steps of lasting contact follow the preset. Energy grows only by what pushing a body out of an overlap takes, less than a thousandth of its weight times its size at the standard
 //! preset. Rolling and spinning resistance of a law are not used here.
 //!
 //! ```
@@ -25,12 +25,14 @@
 
 mod body;
 mod boxes;
+mod capsule;
 mod contact;
 mod detect;
 mod glide;
 mod mechanics;
 mod pair;
 mod part;
+mod pile;
 mod rest;
 mod solve;
 mod step;
@@ -161,10 +163,10 @@ impl Rigid {
             }
         }
         let mut spacing = f64::INFINITY;
-        for part in &world.parts {
+        for (k, part) in world.parts.iter().enumerate() {
             world.laws.require(part.material())?;
+            part.check(k)?;
             if let Part::Table(table) = part {
-                table.check()?;
                 spacing = spacing.min(world.skin * table.height.grid().spacing);
             }
         }

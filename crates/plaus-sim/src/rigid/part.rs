@@ -101,6 +101,9 @@ impl Table {
     }
 }
 
+/// How far the length of a plane's normal may be from 1: rounding.
+const UNIT: f64 = 1e-12;
+
 /// Rounds of [`Table::foot`] for a ball: each reduces the error by the ratio of its radius to the surface's radius of curvature.
 pub(crate) const ROUNDS: usize = 4;
 
@@ -110,6 +113,45 @@ impl Part {
             Self::Plane(plane) => plane.material,
             Self::Block { material, .. } => *material,
             Self::Table(table) => table.material,
+        }
+    }
+
+    /// Checks the numbers of the part with this index.
+    pub(crate) fn check(&self, index: usize) -> Result<(), WorldError> {
+        let bad = |field, value, expected| {
+            Err(WorldError::BadSurface { surface: format!("part {index}"), field, value, expected })
+        };
+        match self {
+            Self::Plane(plane) => {
+                let length = plane.normal.length();
+                if (length - 1.0).abs() > UNIT || length.is_nan() {
+                    return bad("length of the normal", length, "1");
+                }
+                if !plane.offset.is_finite() {
+                    return bad("offset", plane.offset, "a finite number");
+                }
+                Ok(())
+            }
+            Self::Block { bounds, stretches, .. } => {
+                for axis in 0..3 {
+                    let (low, high) = (bounds.min[axis], bounds.max[axis]);
+                    if low.is_nan() || high.is_nan() || low >= high {
+                        return bad("extent along an axis", high - low, "a positive length");
+                    }
+                }
+                let mut last = f64::NEG_INFINITY;
+                for s in stretches {
+                    if s.from.is_nan() || s.from < last {
+                        return bad("begin of a stretch", s.from, "ascending numbers");
+                    }
+                    if !(s.friction >= 0.0 && s.friction.is_finite()) {
+                        return bad("friction of a stretch", s.friction, "a number from 0 on");
+                    }
+                    last = s.from;
+                }
+                Ok(())
+            }
+            Self::Table(table) => table.check(),
         }
     }
 

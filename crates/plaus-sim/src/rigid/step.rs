@@ -41,7 +41,7 @@ pub(super) struct Place {
     pub(super) body: usize,
     pub(super) start: Pose,
     turn: DQuat,
-    end: Pose,
+    pub(super) end: Pose,
     end_turn: DQuat,
 }
 
@@ -51,7 +51,7 @@ impl Place {
         self.drifted_at(m.v, m.w, h)
     }
 
-    fn drifted_at(&self, v: DVec3, w: DVec3, h: f64) -> Pose {
+    pub(super) fn drifted_at(&self, v: DVec3, w: DVec3, h: f64) -> Pose {
         let turn = (rotation(w * h) * self.turn).normalize();
         Pose { x: self.start.x + v * h, r: DMat3::from_quat(turn), v, w }
     }
@@ -69,9 +69,6 @@ const PASSES: usize = 2;
 /// The same where cuboids touch each other: a corner of one turns against a face that turns too. Passes end where all gaps are right.
 const PASSES_OF_CUBOIDS: usize = 8;
 
-/// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values make fast turning in contact dearer, as their inverse root.
-const SAG: f64 = 1e-3;
-
 /// Gap that lasting contacts keep, over the gap at which bodies touch. Default 0.75; below 1, so that they go on touching.
 pub(super) const KEEP: f64 = 0.75;
 
@@ -82,7 +79,7 @@ pub(super) const TOUCHING: f64 = 2.0;
 const SHORTENINGS: usize = 4;
 
 /// Distance from the gap that is to be kept within which a step needs no correction, over the gap. Default 0.2.
-const CLOSE: f64 = 0.2;
+pub(super) const CLOSE: f64 = 0.2;
 
 /// Largest speed with which a point is pushed out of an overlap, over that below which bounces last. Default 1; only the drift has it, not the velocities.
 pub(super) const PUSH: f64 = 1.0;
@@ -225,31 +222,6 @@ impl RigidScratch {
             time = world.duration;
         }
         world.accuracy.step * time
-    }
-
-    /// The part of a step within which cuboids that touch do not turn far into each other between its ends: a straight drift leaves the curve of a corner by an eighth of what
-    /// turning adds over the step, squared.
-    fn straightness(&self, world: &Rigid, h: f64) -> f64 {
-        let mut worst = 0.0_f64;
-        for (ab, t) in self.pairs.iter().filter(|p| p.1.feature.is_some()) {
-            let [p, q] = ab.map(|k| &self.places[k]);
-            let [a, b] = [p, q].map(|p| p.drifted_at(p.start.v, p.start.w, h));
-            let both = [p.body, q.body];
-            let bend = world.pair_again(both, [&a, &b], t).gap - t.gap - h * t.rate(&p.start, &q.start);
-            worst = worst.max(bend.abs() / world.specs[p.body].size.min(world.specs[q.body].size));
-        }
-        if worst > 4.0 * SAG { (4.0 * SAG / worst).sqrt() } else { 1.0 }
-    }
-
-    /// Whether cuboids end a step deeper in each other than they were to; then it is too long for the passes.
-    fn misses(&self, world: &Rigid, h: f64) -> Option<f64> {
-        let deep = |(ab, t): &([usize; 2], PairTouch)| {
-            let [p, q] = ab.map(|k| &self.places[k]);
-            let both = [p.body, q.body];
-            let after = world.pair_again(both, [&p.end, &q.end], t).gap;
-            after < world.pair_goal(both, t.gap, h) - world.pair_gap(both)
-        };
-        self.pairs.iter().filter(|p| p.1.feature.is_some()).any(deep).then_some(0.5)
     }
 
     /// Whether the drift of a step brings a point back that is just leaving, and by what part the step is too long then.
@@ -422,24 +394,6 @@ impl RigidScratch {
                 m.w *= part;
             }
         }
-    }
-
-    /// Whether cuboids are in lasting contact with each other. They come to rest where they are: what tidies one up could push it into another.
-    pub(super) fn has_cuboids_in_touch(&self) -> bool {
-        self.pairs.iter().any(|p| p.1.feature.is_some())
-    }
-
-    /// How far at most the ends of a step may be off where cuboids touch, in m. What they are off more, others undo, and bodies that lean on each other never come to rest.
-    fn fine(&self, world: &Rigid) -> f64 {
-        let cuboids = self.pairs.iter().filter(|p| p.1.feature.is_some());
-        cuboids.map(|(ab, _)| CLOSE * world.pair_gap(ab.map(|k| self.places[k].body))).fold(f64::INFINITY, f64::min)
-    }
-
-    /// The least gap of all contacts, over the gap at which bodies touch.
-    pub(super) fn least_gap(&self, world: &Rigid) -> f64 {
-        let fixed = self.touches.iter().map(|(k, t)| t.gap / world.specs[self.places[*k].body].gap);
-        let pairs = self.pairs.iter().map(|(ab, t)| t.gap / world.pair_gap(ab.map(|k| self.places[k].body)));
-        fixed.chain(pairs).fold(f64::INFINITY, f64::min)
     }
 
     /// Rest: without velocity, flat where the ground is, and lifted out of what overlap steps have left.

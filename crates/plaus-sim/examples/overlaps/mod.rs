@@ -1,0 +1,51 @@
+//! What the examples that count overlaps share: an observer that looks for bodies in each other or in what stands still.
+
+use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::trace::Observer;
+
+/// Looks whenever a body begins a new motion, at that time and half way from the last one: not only at the end.
+pub(crate) struct Overlaps<'w> {
+    world: &'w Rigid,
+    last: Vec<Option<Turning>>,
+    /// Deepest of two bodies and of a body and a fixed part so far, in m; below 0 where they only came near.
+    pub(crate) deepest: [f64; 2],
+    /// When and between which the first of those was.
+    pub(crate) worst: (f64, [usize; 2]),
+}
+
+impl<'w> Overlaps<'w> {
+    pub(crate) fn new(world: &'w Rigid) -> Self {
+        let last = (0..world.count()).map(|_| None).collect();
+        Self { world, last, deepest: [f64::NEG_INFINITY, 0.0], worst: (0.0, [0; 2]) }
+    }
+
+    fn look(&mut self, index: usize, body: &Turning) {
+        let time = body.path.t;
+        self.deepest[1] = self.deepest[1].max(self.world.depth(index, body));
+        for (other, there) in self.last.iter().enumerate() {
+            let Some(there) = there.as_ref().filter(|b| other != index && b.path.t <= time) else { continue };
+            let there = self.world.at(other, there, time);
+            let pair = [index.min(other), index.max(other)];
+            let both = if index < other { [body, &there] } else { [&there, body] };
+            let depth = -self.world.gap(pair, both);
+            if depth > self.deepest[0] {
+                self.deepest[0] = depth;
+                self.worst = (time, pair);
+            }
+        }
+    }
+}
+
+impl Observer<Rigid> for Overlaps<'_> {
+    fn motion(&mut self, index: usize, body: &Turning) {
+        if let Some(before) = self.last[index].take() {
+            let half = self.world.at(index, &before, 0.5 * (before.path.t + body.path.t));
+            self.look(index, &half);
+        }
+        if matches!(body.phase, Phase::Waiting | Phase::Gone) {
+            return;
+        }
+        self.look(index, body);
+        self.last[index] = Some(body.clone());
+    }
+}

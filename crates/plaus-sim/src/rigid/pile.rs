@@ -1,0 +1,60 @@
+//! What steps of lasting contact do where cuboids touch each other: piles, dice that lean or are pushed.
+//!
+//! A corner that turns against a face that turns too needs shorter steps than a corner on a table, and what one body's contacts are off, the next body's undo.
+
+use super::Rigid;
+use super::pair::PairTouch;
+use super::step::{CLOSE, RigidScratch};
+
+/// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values make fast turning in contact dearer, as their inverse root.
+const SAG: f64 = 1e-3;
+
+/// How much deeper, over the gap at which they touch, bodies other than cuboids may end a step than they were to. Default 300, 40 µm for a pin at the standard preset;
+/// looked at more closely, steps of pins get shorter and dearer by half.
+const ROUGH: f64 = 300.0;
+
+impl RigidScratch {
+    /// The part of a step within which cuboids that touch do not turn far into each other between its ends: a straight drift leaves the curve of a corner by an eighth of what
+    /// turning adds over the step, squared.
+    pub(super) fn straightness(&self, world: &Rigid, h: f64) -> f64 {
+        let mut worst = 0.0_f64;
+        for (ab, t) in self.pairs.iter().filter(|p| p.1.feature.is_some()) {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let [a, b] = [p, q].map(|p| p.drifted_at(p.start.v, p.start.w, h));
+            let both = [p.body, q.body];
+            let bend = world.pair_again(both, [&a, &b], t).gap - t.gap - h * t.rate(&p.start, &q.start);
+            worst = worst.max(bend.abs() / world.specs[p.body].size.min(world.specs[q.body].size));
+        }
+        if worst > 4.0 * SAG { (4.0 * SAG / worst).sqrt() } else { 1.0 }
+    }
+
+    /// Whether bodies end a step deeper in each other than they were to; then it is too long for the passes.
+    pub(super) fn misses(&self, world: &Rigid, h: f64) -> Option<f64> {
+        let deep = |(ab, t): &([usize; 2], PairTouch)| {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let both = [p.body, q.body];
+            let after = world.pair_again(both, [&p.end, &q.end], t).gap;
+            let most = if t.feature.is_some() { 1.0 } else { ROUGH };
+            after < world.pair_goal(both, t.gap, h) - most * world.pair_gap(both)
+        };
+        self.pairs.iter().any(deep).then_some(0.5)
+    }
+
+    /// Whether cuboids are in lasting contact with each other. They come to rest where they are: what tidies one up could push it into another.
+    pub(super) fn has_cuboids_in_touch(&self) -> bool {
+        self.pairs.iter().any(|p| p.1.feature.is_some())
+    }
+
+    /// How far at most the ends of a step may be off where cuboids touch, in m. What they are off more, others undo, and bodies that lean on each other never come to rest.
+    pub(super) fn fine(&self, world: &Rigid) -> f64 {
+        let cuboids = self.pairs.iter().filter(|p| p.1.feature.is_some());
+        cuboids.map(|(ab, _)| CLOSE * world.pair_gap(ab.map(|k| self.places[k].body))).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The least gap of all contacts, over the gap at which bodies touch.
+    pub(super) fn least_gap(&self, world: &Rigid) -> f64 {
+        let fixed = self.touches.iter().map(|(k, t)| t.gap / world.specs[self.places[*k].body].gap);
+        let pairs = self.pairs.iter().map(|(ab, t)| t.gap / world.pair_gap(ab.map(|k| self.places[k].body)));
+        fixed.chain(pairs).fold(f64::INFINITY, f64::min)
+    }
+}
