@@ -41,8 +41,12 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
 
   // It plays by itself: pictures differ, and are not empty.
   const first = await picture('#stage');
-  await page.waitForTimeout(700);
-  const second = await picture('#stage');
+  // At an animation's end the player rests for most of a second.
+  let second = first;
+  for (let tries = 0; tries < 8 && second === first; tries++) {
+    await page.waitForTimeout(350);
+    second = await picture('#stage');
+  }
   demand(first !== second, 'the player stands still');
   demand(second.length > 3000, 'the player is empty');
   const begin = await page.evaluate(() => [gallery.frames, performance.now()]);

@@ -139,7 +139,9 @@ impl Move<Dice> for Recast {
         let new = Led { rest, orientation: trip.orientation };
         let from = self.log_q(target, &current.draw, Some(old), die)?;
         let log_ratio = over(from, self.log_q(target, candidate, Some(new), die)?)?;
-        Ok(Proposal::Candidate { log_ratio, path: Path(die as u64), later: None })
+        // A die that leaves its table on the way has no way back.
+        let later = is_exact(target).then_some(LogRatio::ONE);
+        Ok(Proposal::Candidate { log_ratio, path: Path(die as u64), later })
     }
 
     fn log_ratio(
@@ -154,6 +156,18 @@ impl Move<Dice> for Recast {
             let led = led(target, &state.draw, Some(&state.outcome), die)?;
             self.log_q(target, &state.draw, led, die)
         };
-        over(log_q(from)?, log_q(to)?)
+        let there = log_q(to)?;
+        if there.is_zero() { Ok(LogRatio::ZERO) } else { over(log_q(from)?, there) }
+    }
+
+    fn log_ratio_after(
+        &self,
+        _: &Dice,
+        _: &StateOf<Dice>,
+        candidate: &StateOf<Dice>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        let is_at_rest = candidate.outcome.trips[path.0 as usize].end == End::AtRest;
+        Ok(if is_at_rest { LogRatio::ONE } else { LogRatio::ZERO })
     }
 }
