@@ -278,7 +278,7 @@ fn bad_numbers_are_named() {
     let block = |high: f64, friction: f64| Part::Block {
         bounds: Aabb { min: DVec3::NEG_ONE, max: DVec3::new(1.0, 1.0, high) },
         material: M,
-        stretches: vec![Stretch { from: 0.0, friction }],
+        stretches: vec![Stretch { from: 0.0, friction: Some(friction) }],
     };
     assert!(with(&|w| w.parts.push(block(0.0, 0.1))).is_ok());
     for (high, friction) in [(f64::NAN, 0.1), (-2.0, 0.1), (0.0, -0.1), (0.0, f64::NAN)] {
