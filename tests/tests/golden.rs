@@ -26,7 +26,9 @@ const CASES: &[Case] = &[
     ("ball2d-64-bounces", "ball2d.toml", &["world.ball2d.collisions=64", "world.ball2d.downward=mirror"], 100),
     ("bowling-strike", "bowling-strike.toml", &[], 12),
     ("bowling-paper", "bowling-leave-6-7.toml", &["moves=paper", "preset=as-printed"], 12),
-    ("bowling-regulation", "bowling-spare-7-10.toml", &[], 20),
+    ("bowling-spare", "bowling-spare-6-7.toml", &[], 12),
+    ("bowling-regulation", "bowling-spare-7-10.toml", &[], 12),
+    ("bowling-regulation-paper", "bowling-spare-7-10-paper.toml", &[], 12),
     ("spelling-hi", "spelling-hi.toml", &[], 300),
     ("spelling-hi-paper", "spelling-hi.toml", &["world.spelling.moves=paper"], 300),
     (

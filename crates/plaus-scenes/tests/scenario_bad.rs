@@ -177,7 +177,7 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
             &["unknown world `bal2d`", "did you mean `world.ball2d`?", "known: ball2d"],
         ),
         ("[world]", (1, 2), "world", &["no world", "add a table [world.ball2d]"]),
-        ("world.ball2d = {}\nworld.bowling = {}", (2, 7), "world.bowling", &["unknown world `bowling`"]),
+        ("world.ball2d = {}\nworld.billiards = {}", (2, 7), "world.billiards", &["unknown world `billiards`"]),
         // Keys that are each right, and together wrong.
         (
             "[world.ball2d]\n[world.ball2d.weights]\naim=0\nredraw=0\nperturb=0",
@@ -289,7 +289,7 @@ fn overrides_take_full_names_and_unique_ends() {
 #[test]
 fn overrides_are_blamed_by_their_own_words() {
     let known =
-        format!("--set world.bowling.x=1: world.bowling.x: unknown key; known in [world]: {}", NAMES.join(", "));
+        format!("--set world.billiards.x=1: world.billiards.x: unknown key; known in [world]: {}", NAMES.join(", "));
     let cases: &[(&str, &str)] = &[
         ("sigma_d=-1", "--set sigma_d=-1: world.ball2d.sigma_d: -1 is out of range: it must be from 1e-9 to 1e6 D"),
         (
@@ -298,7 +298,7 @@ fn overrides_are_blamed_by_their_own_words() {
         ),
         ("sgima_d=1", "--set sgima_d=1: sgima_d: unknown key; did you mean `world.ball2d.sigma_d`?"),
         ("sampler.sede=1", "--set sampler.sede=1: sampler.sede: unknown key; did you mean `sampler.seed`?"),
-        ("world.bowling.x=1", &known),
+        ("world.billiards.x=1", &known),
         ("gravity=1", "--set gravity=1: gravity: unknown key"),
         ("seed", "--set seed: seed: an override is `key=value`, and this has no `=`"),
         ("=1", "--set =1: unknown key"),

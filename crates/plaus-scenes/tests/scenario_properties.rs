@@ -252,7 +252,8 @@ fn valid_override(leaf: Leaf) -> BoxedStrategy<String> {
         }
         "boolean" => any::<bool>().prop_map(|x| x.to_string()).boxed(),
         "string" => select(&["\"\"", "\"HI\"", "\"a b!\"", "\"#.#\"", "\"é\""][..]).prop_map(str::to_owned).boxed(),
-        "array" => select(LISTS).prop_map(str::to_owned).boxed(),
+        "array" if leaf.key.ends_with("constraints") => select(LISTS).prop_map(str::to_owned).boxed(),
+        "array" => Just(leaf.list()).boxed(),
         _ => select(leaf.words()).boxed(),
     };
     value.prop_map(move |value| format!("{key}={value}")).boxed()

@@ -40,7 +40,9 @@ fn list(prefix: &str) -> String {
     let rows = scenario::keys().into_iter().filter(|doc| doc.key.starts_with(prefix)).map(|doc| {
         let first = doc.description.lines().next().unwrap_or_default();
         let sentence = first.split_once(". ").map_or(first, |(sentence, _)| sentence).trim_end_matches('.');
-        (doc.key, format!("{} = {}", sentence, doc.default))
+        // A default that takes several lines, in one.
+        let default: Vec<&str> = doc.default.split_whitespace().collect();
+        (doc.key, format!("{} = {}", sentence, default.join(" ")))
     });
     rows.map(|(key, about)| format!("{key}\n    {about}\n")).collect()
 }

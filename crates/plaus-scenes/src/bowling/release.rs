@@ -17,19 +17,19 @@ pub struct Release {
     #[schemars(extend("minimum" = 10.0, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub radius_min_mm: Option<f64>,
     /// Largest radius of the ball. Regulation: 107.95 to 109.16.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 1000.0, "x-unit" = "mm"))]
+    #[schemars(extend("minimum" = 10.0, "maximum" = 1000.0, "x-unit" = "mm", "x-example" = 110.0))]
     pub radius_max_mm: Option<f64>,
     /// Least density of the ball.
     #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³"))]
     pub density_min: Option<f64>,
     /// Largest density of the ball. Regulation: 1331, so that the largest ball has no more than 7.26 kg.
-    #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³"))]
+    #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³", "x-example" = 1440.0))]
     pub density_max: Option<f64>,
     /// Least radius of gyration over the ball's radius; a solid ball has 0.6325.
     #[schemars(range(min = 0.1, max = 1.0))]
     pub gyration_min: Option<f64>,
     /// Largest radius of gyration over the ball's radius.
-    #[schemars(range(min = 0.1, max = 1.0))]
+    #[schemars(extend("minimum" = 0.1, "maximum" = 1.0, "x-example" = 0.7))]
     pub gyration_max: Option<f64>,
     /// How far from the middle of the lane the ball's centre may be when it is released.
     #[schemars(extend("minimum" = 0.0, "maximum" = 0.6, "x-unit" = "m"))]
@@ -166,7 +166,8 @@ impl Laws {
         let bad = |key: &str, message: String| ConfigError::new(format!("world.bowling.release.{key}"), message);
         let wrong = |key: &'static str| move |error: ParamError| bad(key, error.to_string());
         let or = |set: Option<f64>, own: Option<f64>| set.or(own).unwrap_or(0.0);
-        let interval = |key: &'static str, low: f64, high: f64| match low.total_cmp(&high) {
+        // −0 is 0 here.
+        let interval = |key: &'static str, low: f64, high: f64| match (low + 0.0).total_cmp(&(high + 0.0)) {
             std::cmp::Ordering::Less => WrappedUniform::new(low, high).map(Law::Uniform).map_err(wrong(key)),
             std::cmp::Ordering::Equal => Ok(Law::Fixed(low)),
             std::cmp::Ordering::Greater => {

@@ -151,9 +151,18 @@ fn facts(shape: &Shape) -> Option<String> {
 
 /// A value that an unset key could have.
 fn example(shape: &Shape) -> String {
+    if let Some(example) = &shape.example {
+        return example.to_string();
+    }
     match &shape.kind {
         Kind::Boolean => "true".into(),
         Kind::Words(words) => words.first().map(|(word, _)| format!("\"{word}\"")).unwrap_or_default(),
+        // The end that lies nearer 0 is never an odd value.
+        Kind::Number(bounds) => {
+            let ends = [&bounds.lower, &bounds.upper].map(|end| end.as_ref().map(|end| end.value));
+            let nearest = ends.into_iter().flatten().min_by(|a, b| a.abs().total_cmp(&b.abs()));
+            toml::Value::Float(nearest.unwrap_or(1.0)).to_string()
+        }
         _ => "…".into(),
     }
 }

@@ -18,6 +18,8 @@ pub(super) struct Shape {
     pub(super) description: String,
     /// Unit, where the value has one.
     pub(super) unit: Option<String>,
+    /// A value to show where there is no default.
+    pub(super) example: Option<Value>,
     /// `None`: must be given. `Null`: may be left out, and then means something of its own.
     pub(super) default: Option<Value>,
     pub(super) kind: Kind,
@@ -64,15 +66,22 @@ impl Shape {
         let inner = target.or_else(|| nullable(part)).filter(|_| depth < MAX_DEPTH);
         let mut shape = match inner {
             Some(inner) => Self::of_schema(inner, root, depth + 1),
-            None => {
-                Self { description: String::new(), unit: None, default: None, kind: Kind::of_schema(part, root, depth) }
-            }
+            None => Self {
+                description: String::new(),
+                unit: None,
+                example: None,
+                default: None,
+                kind: Kind::of_schema(part, root, depth),
+            },
         };
         if let Some(description) = part.get("description").and_then(Value::as_str) {
             shape.description = paragraphs(description);
         }
         if let Some(unit) = part.get("x-unit").and_then(Value::as_str) {
             shape.unit = Some(unit.into());
+        }
+        if let Some(example) = part.get("x-example") {
+            shape.example = Some(example.clone());
         }
         if let Some(default) = part.get("default") {
             shape.default = Some(default.clone());

@@ -68,8 +68,17 @@ impl Leaf {
         ["minimum", "maximum"].map(|name| self.schema[name].as_i64().unwrap_or_else(|| panic!("{}: {name}", self.key)))
     }
 
+    /// A list that is allowed: the empty one, or the default where that is too short.
+    pub(crate) fn list(&self) -> String {
+        if self.schema.contains_key("minItems") { self.schema["default"].to_string() } else { "[]".into() }
+    }
+
     /// Whether a scenario's value, as JSON, is allowed.
     pub(crate) fn allows(&self, value: &Value) -> bool {
+        if value.is_null() {
+            // Only keys that may be left out have no value.
+            return matches!(self.schema.get("type"), Some(Value::Array(kinds)) if kinds.iter().any(|kind| kind == "null"));
+        }
         match self.kind() {
             "number" => {
                 let [least, most] = self.floats();
@@ -79,7 +88,7 @@ impl Leaf {
                 let [least, most] = self.integers();
                 value.as_i64().is_some_and(|value| (least..=most).contains(&value))
             }
-            "boolean" => value.is_boolean() || value.is_null(),
+            "boolean" => value.is_boolean(),
             "string" => value.is_string(),
             "array" => value.is_array(),
             "word" => self.words().iter().any(|word| value == word),

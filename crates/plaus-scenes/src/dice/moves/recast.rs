@@ -114,7 +114,7 @@ impl Move<Dice> for Recast {
         (throw.position.x, throw.position.y) = (within * open_unit(stream), within * open_unit(stream));
         let table = is_exact(target).then(|| &candidate.tables[die]);
         let Some(trip) = Work::default().try_out(plan, &throw, table)? else {
-            return Ok(Proposal::with_ratio(LogRatio::ZERO));
+            return Ok(Proposal::Stay);
         };
         let mut rest = trip.position;
         for axis in 0..2 {
