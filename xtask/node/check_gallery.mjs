@@ -57,8 +57,12 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   await page.waitForTimeout(300); // stopped pictures are drawn with all detail
   await page.screenshot({ path: join(shots, `${name}.png`) });
   const time = await page.evaluate(() => gallery.player.time);
+  // Before the first impact there is none to go back to, after the last none to go on to.
   await page.locator('body').press('Shift+ArrowLeft');
-  demand((await page.evaluate(() => gallery.player.time)) !== time, 'the arrow does not go to an impact');
+  const back = await page.evaluate(() => gallery.player.time);
+  await page.locator('body').press('Shift+ArrowRight');
+  const on = await page.evaluate(() => gallery.player.time);
+  demand(back !== time || on !== back, 'the arrows do not go to an impact');
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   demand(wide <= 0, `the page is ${wide} pixels too wide`);
 
