@@ -22,7 +22,7 @@ const EXPERIMENT: [(f64, f64, u32); 7] = [
 ];
 
 fn main() {
-    let throws: u64 = std::env::args().nth(1).map_or(4000, |a| a.parse().unwrap());
+    let throws: u64 = std::env::args().nth(1).map_or(20, |a| a.parse().unwrap());
     print!("{:<52}", "x/y");
     EXPERIMENT.iter().for_each(|e| print!("{:>7}", e.0));
     print!("\n{:<52}", "experiment");

@@ -27,7 +27,7 @@ fn argument<T: std::str::FromStr>(k: usize, usual: T) -> T {
 }
 
 fn main() {
-    let (shots, first): (u64, u64) = (argument(1, 1000), argument(3, 0));
+    let (shots, first): (u64, u64) = (argument(1, 60), argument(3, 0));
     let named: String = argument(2, "standard".into());
     let preset = Preset::ALL.into_iter().find(|p| p.name() == named).unwrap();
     let alley = Alley { accuracy: Accuracy::preset(preset), ..Alley::default() };

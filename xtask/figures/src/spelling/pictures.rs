@@ -15,6 +15,8 @@ use plaus_scenes::spelling::{Drops, Rest};
 const SEED: u64 = 1;
 /// Iterations between looks for a second solution.
 const APART: u64 = 500;
+/// Iterations after which two words should have been found, however few were asked for.
+const MOST: u64 = 20_000;
 
 /// Of a figure's three columns: title, direction to the eye, up, field of view in degrees, when.
 const VIEWS: [(&str, DVec3, DVec3, f64, f64); 3] = [
@@ -41,7 +43,8 @@ fn choose(word: &Word, looks: u64) -> Result<(Vec<Solution>, usize)> {
     let mut found: Vec<Solution> = Vec::new();
     let mut best: Option<(usize, Solution)> = None;
     let same = |a: &Rest, b: &Rest| a.bins.iter().zip(&b.bins).filter(|(a, b)| a.is_some() && a == b).count();
-    for _ in 0..looks * APART {
+    // Longer where that was too short to find two.
+    while chain.iteration() < looks * APART || (best.is_none() && chain.iteration() < MOST) {
         chain.step()?;
         let state = chain.state();
         let due = found.is_empty() || chain.iteration().is_multiple_of(APART);
