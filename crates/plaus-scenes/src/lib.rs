@@ -33,6 +33,7 @@ pub mod rules;
 pub mod scenario;
 pub mod scene;
 pub mod spelling;
+mod walk;
 
 pub use accuracy::AccuracyPreset;
 pub use animation::Animation;

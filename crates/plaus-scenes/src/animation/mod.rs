@@ -14,12 +14,14 @@
 //!
 //! Metres, seconds, radians, kilograms; right-handed, y up.
 
+mod axes;
 mod impact;
 mod look;
 mod motion;
 mod scenery;
 mod shape;
 
+pub(crate) use axes::{UPRIGHT, upright};
 pub use impact::Impact;
 pub use look::{Colour, Look, Material};
 pub use motion::{Piece, Track, Turn};

@@ -4,20 +4,16 @@ use super::draw::Shot;
 use super::lane::{Lane, Work};
 use super::props;
 use super::release::Quantity;
-use crate::animation::{Animation, Impact, Look, Material, Piece, Shape, Stripe, Track, Turn, View};
-use glam::{DQuat, DVec3};
+use crate::animation::{Animation, Impact, Look, Material, Piece, Shape, Stripe, Track, Turn, UPRIGHT, View, upright};
+use glam::DVec3;
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
 use plaus_sim::rigid::{Phase, Rigid, Turning};
 use plaus_sim::shape::{MassProperties, Profile};
 use plaus_sim::trace::Trace;
-use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Points of a pin's drawn outline.
 const OUTLINE: usize = 40;
-
-/// From the simulator's axes to an animation's: a quarter turn about x.
-const UPRIGHT: DQuat = DQuat::from_xyzw(-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2);
 
 pub(super) fn animate(lane: &Lane, draw: &Shot, shown: f64) -> Result<Animation, ModelError> {
     let (world, trace, end) = lane.record(draw, &mut Work::default())?;
@@ -94,9 +90,4 @@ fn stripes(balance: f64) -> Vec<Stripe> {
     let look = Look::new([200, 40, 40], Material::Glossy);
     let stripe = |from: f64| Stripe { from: from - balance, to: from + 0.008 - balance, look };
     vec![stripe(0.238), stripe(0.262)]
-}
-
-/// From the simulator's axes to an animation's.
-pub(super) fn upright(v: DVec3) -> DVec3 {
-    DVec3::new(v.x, v.z, -v.y)
 }

@@ -1,6 +1,6 @@
 //! What is seen of the alley: lane, gutters, kickbacks and pit.
 
-use super::animate::upright;
+use crate::animation::upright;
 use crate::animation::{Look, Material, Prop};
 use glam::DVec3;
 use plaus_sim::worlds::Alley;

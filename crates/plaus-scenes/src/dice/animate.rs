@@ -2,18 +2,14 @@
 
 use super::throwing::Work;
 use super::{Dice, Draw, props};
-use crate::animation::{Animation, Impact, Look, Piece, Shape, Track, Turn, View};
-use glam::{DQuat, DVec3};
+use crate::animation::{Animation, Impact, Look, Piece, Shape, Track, Turn, UPRIGHT, View, upright};
+use glam::DVec3;
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
 use plaus_sim::rigid::{Phase, Rigid, Turning};
-use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Pips of the faces +x, −x, +y, −y, +z, −z.
 const PIPS: [u8; 6] = [3, 4, 2, 5, 1, 6];
-
-/// From the simulator's axes to an animation's: a quarter turn about x.
-const UPRIGHT: DQuat = DQuat::from_xyzw(-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2);
 
 /// Longest piece, in s, of the flight of a body that does not turn at constant angular velocity.
 const WOBBLE: f64 = 0.004;
@@ -87,9 +83,4 @@ fn pieces(scene: &Dice, draw: &Draw, world: &Rigid, (first, die): (usize, usize)
         }
     }
     pieces
-}
-
-/// From the simulator's axes to an animation's.
-pub(super) fn upright(v: DVec3) -> DVec3 {
-    DVec3::new(v.x, v.z, -v.y)
 }

@@ -1,8 +1,8 @@
 //! What is seen of the table: its bumps where the dice are, what was spilt, and marks where dice should come to rest.
 
-use super::animate::upright;
 use super::constraint::Constraint;
 use super::{Dice, Draw, Field};
+use crate::animation::upright;
 use crate::animation::{Form, Look, Material, Prop};
 use glam::DVec3;
 use plaus_dist::math;

@@ -4,7 +4,7 @@ use super::arena::{Arena, GRAVITY};
 use super::draw::Drops;
 use super::settle::Work;
 use super::{Word, props};
-use crate::animation::{Animation, Impact, Look, Piece, Shape, Track, View};
+use crate::animation::{Animation, Impact, Look, Piece, Shape, Track, View, upright};
 use glam::DVec3;
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
@@ -45,9 +45,4 @@ pub(super) fn animate(arena: &Arena, word: &Word, draw: &Drops) -> Result<Animat
     let view = View::from(0.0, 1.0, 0.6).showing(DVec3::ZERO, DVec3::new(x, arena.bins().depth, -y));
     let scenery = props::props(arena, word, draw).map_err(ModelError::new)?;
     Ok(Animation::new(last.fold(shortest, f64::max), tracks, impacts).with_scenery(scenery).with_view(view))
-}
-
-/// From the simulator's axes to an animation's.
-pub(super) fn upright(v: DVec3) -> DVec3 {
-    DVec3::new(v.x, v.z, -v.y)
 }

@@ -1,9 +1,9 @@
 //! What is seen of the box: partitions with their vertices where the draw has them, bowls, glass walls, and marks in the bins to fill.
 
 use super::Word;
-use super::animate::upright;
 use super::arena::Arena;
 use super::draw::Drops;
+use crate::animation::upright;
 use crate::animation::{Form, Look, Prop};
 use glam::DVec3;
 use plaus_dist::math::square;

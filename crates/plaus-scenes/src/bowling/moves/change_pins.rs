@@ -1,7 +1,7 @@
 //! Some pins shifted.
 
-use super::step;
 use crate::bowling::{Bowling, Shot};
+use crate::walk;
 use plaus_dist::{LogRatio, Stream, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
@@ -28,7 +28,7 @@ impl Move<Bowling> for ChangePins {
     ) -> Result<Proposal, ModelError> {
         for offset in &mut candidate.pins {
             if open_unit(stream) < self.chance {
-                let by = step(self.sd, stream);
+                let by: [f64; 2] = walk::shift(self.sd, stream);
                 *offset = [offset[0] + by[0], offset[1] + by[1]];
             }
         }

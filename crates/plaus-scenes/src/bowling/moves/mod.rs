@@ -65,12 +65,3 @@ fn shift(
         Law::AboveRadius(_, sd) => *value += factor * steps.gaussian * sd * standard_normal(stream),
     }
 }
-
-/// A step in a uniformly random direction by a length N(0, `sd`). As likely as its opposite.
-fn step(sd: f64, stream: &mut Stream) -> [f64; 2] {
-    // Independent normal components have a uniform direction; they are never both 0.
-    let direction = [standard_normal(stream), standard_normal(stream)];
-    let norm = (direction[0] * direction[0] + direction[1] * direction[1]).sqrt();
-    let length = sd * standard_normal(stream);
-    direction.map(|x| x / norm * length)
-}

@@ -1,7 +1,8 @@
 //! Everything shifted a little.
 
-use super::{shift, step};
+use super::shift;
 use crate::bowling::{Bowling, Shot, Steps};
+use crate::walk;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
@@ -30,7 +31,7 @@ impl Move<Bowling> for Refine {
             shift(target, quantity, &self.steps, factor, candidate, stream);
         }
         for offset in &mut candidate.pins {
-            let by = step(factor * self.steps.pin_mm, stream);
+            let by: [f64; 2] = walk::shift(factor * self.steps.pin_mm, stream);
             *offset = [offset[0] + by[0], offset[1] + by[1]];
         }
         Ok(Proposal::SYMMETRIC)

@@ -22,7 +22,8 @@ pub use toggle::Toggle;
 use super::Spelling;
 use super::config::{Config, Weights};
 use crate::rules::Rules;
-use plaus_dist::{Stream, math, open_unit, standard_normal};
+use crate::walk::shift;
+use plaus_dist::{Stream, open_unit};
 use plaus_mcmc::Move;
 
 /// All moves with their weights.
@@ -39,15 +40,6 @@ pub(super) fn all(config: &Config, weights: &Weights, rules: &Rules) -> Vec<(f64
         (weights.birth_death, Box::new(BirthDeath { aimed: steps.aimed })),
         (weights.swap, Box::new(Swap)),
     ]
-}
-
-/// A shift in a uniformly random direction by a length N(0, `sd`). As likely as its opposite.
-fn shift<const D: usize>(sd: f64, stream: &mut Stream) -> [f64; D] {
-    // Independent normal components have a uniform direction; they are never all 0.
-    let direction: [f64; D] = std::array::from_fn(|_| standard_normal(stream));
-    let norm = direction.iter().map(|x| math::square(*x)).sum::<f64>().sqrt();
-    let length = sd * standard_normal(stream);
-    direction.map(|x| x / norm * length)
 }
 
 /// Whether something of this probability happens.
