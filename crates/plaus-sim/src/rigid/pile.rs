@@ -35,7 +35,7 @@ impl RigidScratch {
             let both = [p.body, q.body];
             let after = world.pair_again(both, [&p.end, &q.end], t).gap;
             // A cuboid's nearest points to a ball jump, whatever the step.
-            let jumps = both.iter().any(|&k| matches!(world.specs[k].skin, Skin::Cuboid { .. }));
+            let jumps = both.iter().any(|&k| matches!(world.specs[k].skin, Skin::Cuboid { .. } | Skin::Hull));
             let most = match (t.feature, jumps) {
                 (Some(_), _) => 1.0,
                 (None, false) => ROUGH,
