@@ -185,7 +185,7 @@ fn throws_end_in_an_outcome_and_none_goes_through_the_table() {
                 let mut state = world.state(&[start]).unwrap();
                 let outcome = world.run(&mut state, &mut scratch, 20.0, &mut ()).unwrap();
                 rest += u32::from(outcome == Outcome::AllAtRest);
-                assert!(matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached), "{kind:?} on {bumps}: {outcome:?} {start:?}");
+                assert!(!matches!(outcome, Outcome::NotFinite { .. } | Outcome::Stopped), "{kind:?}: {outcome:?}");
                 let body = &state.bodies()[0];
                 for &c in &corners {
                     let at = body.path.x + body.turn * c;
@@ -198,6 +198,7 @@ fn throws_end_in_an_outcome_and_none_goes_through_the_table() {
                 }
             }
         }
+        // A tetrahedron on two points of a bumpy table may rock, too little to be seen, for as long as it is looked at.
         assert!(rest > 1140, "{kind:?}: {rest} of 1150 at rest");
     }
 }

@@ -74,7 +74,8 @@ impl Rigid {
         linked: bool,
     ) -> Option<f64> {
         let arms = pair.map(|k| self.specs[k].reach);
-        let quest = Quest { pair, bodies, from, until, linked, arms };
-        self.first_of_convex(&quest, |poses| self.cuboids(pair, poses))
+        let (specs, level) = (pair.map(|k| &self.specs[k]), self.pair_gap(pair));
+        let quest = Quest { specs, bodies, level, from, until, linked, arms };
+        quest.first(|poses| self.cuboids(pair, poses))
     }
 }

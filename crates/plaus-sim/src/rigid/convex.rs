@@ -10,7 +10,7 @@
 
 use super::body::{Phase, Pose, Turning};
 use super::detect::earliest;
-use super::{Rigid, Spec};
+use super::Spec;
 use crate::shape::cuboid_pair::Meeting;
 use glam::DVec3;
 
@@ -146,8 +146,10 @@ fn fastest(spec: &Spec, body: &Turning) -> f64 {
 
 /// What a search is about.
 pub(super) struct Quest<'w> {
-    pub(super) pair: [usize; 2],
+    pub(super) specs: [&'w Spec; 2],
     pub(super) bodies: [&'w Turning; 2],
+    /// Gap at which they touch, in m.
+    pub(super) level: f64,
     pub(super) from: f64,
     pub(super) until: f64,
     /// Whether the bodies are in lasting contact: then only points count that are not part of it yet.
@@ -156,16 +158,10 @@ pub(super) struct Quest<'w> {
     pub(super) arms: [f64; 2],
 }
 
-impl Rigid {
+impl Quest<'_> {
     /// First time in `[from, until]` at which two bodies touch while approaching; `place` puts them where they are.
-    pub(super) fn first_of_convex<'w, P: ConvexPair>(
-        &'w self,
-        quest: &Quest,
-        place: impl Fn([&Pose; 2]) -> Option<P> + 'w,
-    ) -> Option<f64> {
-        let Quest { pair, bodies, from, until, linked, arms } = *quest;
-        let [s, t] = pair.map(|k| &self.specs[k]);
-        let level = self.pair_gap(pair);
+    pub(super) fn first<P: ConvexPair>(&self, place: impl Fn([&Pose; 2]) -> Option<P>) -> Option<f64> {
+        let Quest { specs: [s, t], bodies, level, from, until, linked, arms } = *self;
         let pull = (bodies[0].path.a - bodies[1].path.a).length();
         let swing = [fastest(s, bodies[0]), fastest(t, bodies[1])];
         let reach = s.reach + t.reach;

@@ -120,7 +120,8 @@ impl Rigid {
         linked: bool,
     ) -> Option<f64> {
         let arms = pair.map(|k| self.specs[k].core.as_ref().map_or(0.0, |c| c.0.reach));
-        let quest = Quest { pair, bodies, from, until, linked, arms };
-        self.first_of_convex(&quest, |poses| self.hulls(pair, poses))
+        let (specs, level) = (pair.map(|k| &self.specs[k]), self.pair_gap(pair));
+        let quest = Quest { specs, bodies, level, from, until, linked, arms };
+        quest.first(|poses| self.hulls(pair, poses))
     }
 }

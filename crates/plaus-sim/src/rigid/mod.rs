@@ -36,6 +36,7 @@ mod detect;
 mod energy;
 mod glide;
 mod hulls;
+mod ledges;
 mod mechanics;
 mod meet;
 mod pair;
@@ -51,6 +52,7 @@ mod tumble;
 pub use body::{Phase, Start, Turning};
 pub use glide::Stretch;
 pub use part::{Part, Table};
+use ledges::Ledge;
 use spec::{RIM_POINTS, Skin, Spec};
 pub use step::RigidScratch;
 
@@ -111,6 +113,8 @@ pub struct RigidWorld {
 pub struct Rigid {
     specs: Vec<Spec>,
     parts: Vec<Part>,
+    /// Those parts that are boxes, as polyhedra see them.
+    ledges: Vec<Option<Ledge>>,
     laws: Laws,
     gravity: DVec3,
     strength: f64,
@@ -150,11 +154,12 @@ impl Rigid {
             .enumerate()
             .map(|(k, b)| Spec::new(k, b, &world, spacing, strength))
             .collect::<Result<_, _>>()?;
+        let ledges = Ledge::all(&world)?;
         let RigidWorld { parts, laws, gravity, accuracy, sink, duration, .. } = world;
         if sink.is_nan() {
             return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
         }
-        Ok(Self { specs, parts, laws, gravity, strength, accuracy, sink, duration })
+        Ok(Self { specs, parts, ledges, laws, gravity, strength, accuracy, sink, duration })
     }
 
     /// A state in which every body waits for its release.

@@ -26,7 +26,7 @@ impl Search<'_> {
             // The box is part of the half space behind that side, so nothing touches it before.
             let edges = Some((bounds, side.axis));
             let Some((time, point)) = self.half_space(part, (side.normal, side.offset), edges) else { return };
-            if point != BEYOND && self.is_on_side(bounds, &side, time, point) {
+            if self.is_at_side(bounds, &side, time, point) {
                 return self.hit(time, part, point);
             }
             t = time;
@@ -133,7 +133,10 @@ impl Search<'_> {
     }
 
     /// Whether a point of the body is within the edges of a box's side.
-    fn is_on_side(&self, bounds: &Aabb, side: &Side, time: f64, point: usize) -> bool {
+    pub(in crate::rigid) fn is_at_side(&self, bounds: &Aabb, side: &Side, time: f64, point: usize) -> bool {
+        if point == BEYOND {
+            return false;
+        }
         let (x, r) = (self.body.path.after(time), self.body.tumble(self.spec).at(time));
         let swing = r.transpose() * side.normal.cross(self.spin_at(time));
         let feeler = self.spec.point(point, r.transpose() * side.normal, swing);

@@ -42,16 +42,16 @@ pub(super) fn earliest(f: f64, rate: f64, m: f64) -> f64 {
 }
 
 /// A search for the first contact of one body.
-struct Search<'s> {
-    spec: &'s Spec,
-    body: &'s Turning,
+pub(super) struct Search<'s> {
+    pub(super) spec: &'s Spec,
+    pub(super) body: &'s Turning,
     /// Largest angular speed.
     fastest: f64,
     /// Acceleration of a point per its distance from the centre.
     turning: f64,
     /// The same for points on the axis of a body of revolution.
     axial: f64,
-    until: f64,
+    pub(super) until: f64,
     found: Option<(f64, Surface)>,
 }
 
@@ -85,7 +85,10 @@ impl Rigid {
                         search.hit(time, k as u16, point);
                     }
                 }
-                Part::Block { .. } => search.block(k as u16, part),
+                Part::Block { bounds, .. } => match (&self.ledges[k], spec.skin) {
+                    (Some(ledge), Skin::Hull) => search.ledge(k as u16, bounds, ledge),
+                    _ => search.block(k as u16, part),
+                },
                 Part::Table(table) => search.table(k as u16, table),
             }
         }
@@ -97,12 +100,12 @@ impl Rigid {
 impl Search<'_> {
     /// Whether a point of the body is in lasting contact with the part already.
     #[inline]
-    fn lasts(&self, part: u16, point: usize) -> bool {
+    pub(super) fn lasts(&self, part: u16, point: usize) -> bool {
         matches!(self.body.phase, Phase::Step | Phase::Glide)
             && self.body.touching().contains(&Surface::Part { part, point: point as u16 })
     }
 
-    fn hit(&mut self, time: f64, part: u16, point: usize) {
+    pub(super) fn hit(&mut self, time: f64, part: u16, point: usize) {
         self.until = time;
         self.found = Some((time, Surface::Part { part, point: point as u16 }));
     }
@@ -119,7 +122,7 @@ impl Search<'_> {
 
     /// Angular velocity after `t`; only a top's moves.
     #[inline]
-    fn spin_at(&self, t: f64) -> DVec3 {
+    pub(super) fn spin_at(&self, t: f64) -> DVec3 {
         if self.spec.wobble == 0.0 || self.body.phase != Phase::Flight {
             self.body.spin
         } else {

@@ -73,7 +73,7 @@ impl Next {
 
 impl Search<'_> {
     /// When and with which point the body first comes to a half space of a part; [`BEYOND`] where `edges` are given and it gets behind the plane beyond them.
-    pub(super) fn half_space(
+    pub(in crate::rigid) fn half_space(
         &self,
         part: u16,
         (n, offset): (DVec3, f64),
