@@ -164,7 +164,9 @@ pub enum WorldError {
         most: usize,
     },
     /// Points so nearly in one plane that rounding would decide on the faces of their hull.
-    #[error("the faces of a hull near point {point} cannot be told apart: move it into their plane, or farther out of it")]
+    #[error(
+        "the faces of a hull near point {point} cannot be told apart: move it into their plane, or farther out of it"
+    )]
     UnclearHull {
         /// Index of a point near there.
         point: usize,

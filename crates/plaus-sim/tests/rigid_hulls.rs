@@ -101,7 +101,8 @@ fn a_cuboid_of_points_moves_as_a_cuboid() {
         let cuboid = Cuboid::new(edges, 0.0).unwrap();
         let shapes = [Shape::Cuboid(cuboid), hull(&cuboid.corners(), 0.0)];
         for start in throws(3, 20) {
-            let [(a, end), (b, other)] = shapes.clone().map(|s| traced(&world(vec![s], vec![flat()], WOOD), &[start], 20.0));
+            let [(a, end), (b, other)] =
+                shapes.clone().map(|s| traced(&world(vec![s], vec![flat()], WOOD), &[start], 20.0));
             let (p, q) = (&a.impacts[0], &b.impacts[0]);
             assert!((p.time - q.time).abs() < 1e-12 && (p.point - q.point).length() < 1e-12, "{p:?} {q:?}");
             assert!((p.impulse - q.impulse).length() < 1e-11 * p.impulse.length(), "{p:?} {q:?}");
@@ -111,7 +112,8 @@ fn a_cuboid_of_points_moves_as_a_cuboid() {
         for k in 0..20 {
             let starts = together(k, 2).into_iter().map(|s| Start { velocity: -s.position.with_z(0.0) * 30.0, ..s });
             let starts: Vec<Start> = starts.collect();
-            let run = |s: &Shape, t: &Shape| traced(&world(vec![s.clone(), t.clone()], Vec::new(), law), &starts, 0.1).0;
+            let run =
+                |s: &Shape, t: &Shape| traced(&world(vec![s.clone(), t.clone()], Vec::new(), law), &starts, 0.1).0;
             let first = run(&shapes[0], &shapes[0]);
             let Some(p) = first.impacts.first() else { continue };
             for pair in [[1, 1], [0, 1], [1, 0]] {
@@ -298,7 +300,10 @@ fn thrown_together_they_come_to_rest_and_are_never_in_each_other() {
             let mut state = world.state(&together(k, 6)).unwrap();
             let mut overlaps = Overlaps { world: &world, last: state.bodies().to_vec(), worst: 0.0 };
             let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut overlaps).unwrap();
-            assert!(matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached), "{outcome:?} in throw {k} on bumps {bumps}");
+            assert!(
+                matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached),
+                "{outcome:?} in throw {k} on bumps {bumps}"
+            );
             assert!(overlaps.worst < 5e-3 * 0.5 * EDGE, "{} m in throw {k} on bumps {bumps}", overlaps.worst);
         }
     }

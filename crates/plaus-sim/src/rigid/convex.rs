@@ -8,9 +8,9 @@
 //!
 //! Bodies in lasting contact are looked at in the same way, without the pairs of corners that span their contact: the steps deal with those.
 
+use super::Spec;
 use super::body::{Phase, Pose, Turning};
 use super::detect::earliest;
-use super::Spec;
 use crate::shape::cuboid_pair::Meeting;
 use glam::DVec3;
 
@@ -43,12 +43,7 @@ pub(super) trait ConvexPair: Sized {
     /// The nearest points; `last` are those of a pose shortly before.
     fn nearest(&self, last: Option<&Meeting<Self::Feature>>) -> Meeting<Self::Feature>;
     /// Calls `each` for the points with a gap of at most `within`.
-    fn touching(
-        &self,
-        nearest: &Meeting<Self::Feature>,
-        within: f64,
-        each: impl FnMut(Meeting<Self::Feature>),
-    );
+    fn touching(&self, nearest: &Meeting<Self::Feature>, within: f64, each: impl FnMut(Meeting<Self::Feature>));
     /// Rate of a feature's normal while the bodies turn at these angular velocities.
     fn turning(&self, feature: Self::Feature, normal: DVec3, spins: [DVec3; 2]) -> DVec3;
     /// The corners of each that span a feature.
@@ -97,7 +92,8 @@ impl<P: ConvexPair> Held<P> {
         let base = bodies.offset_along(n) - bodies.roundings();
         for (i, &(p, _)) in p.as_ref().iter().enumerate().filter(|(i, _)| held.corners[0] >> i & 1 == 1) {
             let low = |(j, &(q, _)): (usize, &(f64, f64))| u64::from(base + (p - q) <= within) << j;
-            held.flat.as_mut()[i] = q.as_ref().iter().enumerate().map(low).fold(0, |set, bit| set | bit) & held.corners[1];
+            held.flat.as_mut()[i] =
+                q.as_ref().iter().enumerate().map(low).fold(0, |set, bit| set | bit) & held.corners[1];
         }
         held
     }
@@ -224,8 +220,11 @@ impl Quest<'_> {
             let turn = across.length();
             let search = Advance { bodies: &placed, poses: [&a, &b], normal: nearest.normal, across, level };
             let m = bound + turn * (turn * (distance + reach) + 2.0 * speed);
-            let step =
-                search.time(m, held.flat.as_ref()).min(longest).min(if linked { (until - from) / LOOKS } else { longest });
+            let step = search.time(m, held.flat.as_ref()).min(longest).min(if linked {
+                (until - from) / LOOKS
+            } else {
+                longest
+            });
             // Nothing that touches approaches: an overlap may grow to twice what it is until then.
             let least = (LEAST * level).max(-nearest.gap);
             time += step.max(least / speed.max(f64::MIN_POSITIVE));

@@ -82,9 +82,11 @@ pub(super) fn check_pairs(bodies: &[BodySpec]) -> Result<(), WorldError> {
     let hull = find(|s| matches!(s, Shape::Hull(_)));
     let revolved = find(|s| matches!(s, Shape::Revolution(_)));
     match (hull, revolved) {
-        (Some(a), Some(b)) => {
-            Err(WorldError::UnservedPair { a: a.min(b), b: a.max(b), what: "a convex polyhedron and a body of revolution" })
-        }
+        (Some(a), Some(b)) => Err(WorldError::UnservedPair {
+            a: a.min(b),
+            b: a.max(b),
+            what: "a convex polyhedron and a body of revolution",
+        }),
         _ => Ok(()),
     }
 }

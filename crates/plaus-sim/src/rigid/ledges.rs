@@ -1,7 +1,7 @@
 //! Polyhedra at the edges and corners of boxes, where no corner of theirs need be.
 //!
 //! A box is a polyhedron that stands still, so first contact and points of contact are those of two polyhedra. The points of a body on a box are numbered: its corners, then the
-//! box's corners, then each of its edges with each of the box's.
+//! box's corners on each of its faces, edges and corners, then each of its edges with each of the box's.
 
 use super::body::{Phase, Pose, Start, Turning};
 use super::contact::Touch;
@@ -13,7 +13,7 @@ use super::{BodySpec, Rigid, RigidWorld, step};
 use crate::error::WorldError;
 use crate::scenery::{Aabb, Surface};
 use crate::shape::hull_pair::{Feature, HullPair, Placed};
-use crate::shape::{Cuboid, MassProperties, Polyhedron, Shape};
+use crate::shape::{Cuboid, MassProperties, On, Polyhedron, Shape};
 use glam::{DMat3, DVec3};
 
 /// A box as a body that stands still.
@@ -45,7 +45,8 @@ impl Ledge {
                     });
                 }
                 let shape = Shape::Cuboid(Cuboid::new(edges, 0.0)?);
-                let body = BodySpec { shape, mass: MassProperties { mass: 1.0, inertia: DVec3::ONE }, material: *material };
+                let body =
+                    BodySpec { shape, mass: MassProperties { mass: 1.0, inertia: DVec3::ONE }, material: *material };
                 let spec = Spec::new(world.bodies.len(), &body, world, f64::INFINITY, world.gravity.length())?;
                 let middle = (bounds.min + bounds.max) * 0.5;
                 let still = Turning::waiting(&Start::at_rest(middle));
@@ -59,18 +60,51 @@ impl Ledge {
     fn pair<'s>(&'s self, spec: &'s Spec, pose: &Pose) -> Option<HullPair<'s>> {
         let (core, rounding) = spec.core.as_ref()?;
         let body = Placed { axes: pose.r, core, rounding: *rounding };
-        Some(HullPair::new(pose.x - self.middle, body, Placed { axes: DMat3::IDENTITY, core: &self.core, rounding: 0.0 }))
+        Some(HullPair::new(
+            pose.x - self.middle,
+            body,
+            Placed { axes: DMat3::IDENTITY, core: &self.core, rounding: 0.0 },
+        ))
     }
 }
 
-/// The number of a point of contact; `corners` is how many the body has.
-fn number(corners: usize, feature: Feature) -> u16 {
+/// The number of a point of contact of a body's core.
+fn number(core: &Polyhedron, feature: Feature) -> u16 {
+    let [corners, faces, edges] = counts(core);
     let number = match feature {
         Feature::Corner { of: 0, corner, .. } => usize::from(corner),
-        Feature::Corner { corner, .. } => corners + usize::from(corner),
-        Feature::Edges(i, j) => corners + CORNERS + usize::from(i) * EDGES + usize::from(j),
+        Feature::Corner { corner, on, .. } => {
+            let on = match on {
+                On::Face(k) => usize::from(k),
+                On::Edge(k) => faces + usize::from(k),
+                On::Corner(k) => faces + edges + usize::from(k),
+            };
+            corners + on * CORNERS + usize::from(corner)
+        }
+        Feature::Edges(i, j) => corners + (faces + edges + corners) * CORNERS + usize::from(i) * EDGES + usize::from(j),
     };
     number as u16
+}
+
+/// The point of that number, if it is not a corner of the body.
+fn feature(core: &Polyhedron, number: u16) -> Option<Feature> {
+    let [corners, faces, edges] = counts(core);
+    let k = usize::from(number).checked_sub(corners)?;
+    if let Some(both) = k.checked_sub((faces + edges + corners) * CORNERS) {
+        return Some(Feature::Edges((both / EDGES) as u8, (both % EDGES) as u8));
+    }
+    let (on, corner) = (k / CORNERS, (k % CORNERS) as u8);
+    let on = match (on.checked_sub(faces), on.checked_sub(faces + edges)) {
+        (_, Some(k)) => On::Corner(k as u8),
+        (Some(k), _) => On::Edge(k as u8),
+        _ => On::Face(on as u8),
+    };
+    Some(Feature::Corner { of: 1, corner, on })
+}
+
+/// How many corners, faces and edges there are.
+fn counts(core: &Polyhedron) -> [usize; 3] {
+    [core.corners.len(), core.faces.len(), core.edges.len()]
 }
 
 impl Rigid {
@@ -91,25 +125,33 @@ impl Rigid {
     pub(super) fn ledge_touch(&self, index: usize, pose: &Pose, part: u16, point: u16) -> Option<Touch> {
         let (spec, ledge) = self.ledge(index, part)?;
         let pair = ledge.pair(spec, pose)?;
-        let k = usize::from(point).checked_sub(spec.hull)?;
-        let meeting = match k.checked_sub(CORNERS) {
-            None => pair.of_corner(1, k as u8),
-            Some(both) => {
-                let (i, j) = (both / EDGES, both % EDGES);
-                let out = ledge.core.edges[j].faces.map(|f| ledge.core.face(f).normal);
-                pair.again(Feature::Edges(i as u8, j as u8), out[0] + out[1])
+        let feature = feature(&spec.core.as_ref()?.0, point)?;
+        let out = match feature {
+            // Edges as lines know no side: that on which the box's own faces are.
+            Feature::Edges(_, j) => {
+                let [f, g] = ledge.core.edge(j).faces.map(|k| ledge.core.face(k).normal);
+                f + g
             }
+            Feature::Corner { .. } => DVec3::ZERO,
         };
+        let meeting = pair.again(feature, out);
         Some(Touch { part, point, arm: meeting.arms[0], normal: meeting.normal, gap: meeting.gap })
     }
 
     /// Calls `each` for the points at edges and corners of a box that are within `within` of it.
-    pub(super) fn for_ledge_touches(&self, index: usize, pose: &Pose, part: u16, within: f64, mut each: impl FnMut(Touch)) {
+    pub(super) fn for_ledge_touches(
+        &self,
+        index: usize,
+        pose: &Pose,
+        part: u16,
+        within: f64,
+        mut each: impl FnMut(Touch),
+    ) {
         let Some((spec, ledge)) = self.ledge(index, part) else { return };
-        let Some(pair) = ledge.pair(spec, pose) else { return };
+        let (Some(pair), Some((core, _))) = (ledge.pair(spec, pose), &spec.core) else { return };
         pair.touching(&pair.nearest(None), within, |m| {
             if !matches!(m.feature, Feature::Corner { of: 0, .. }) {
-                let point = number(spec.hull, m.feature);
+                let point = number(core, m.feature);
                 each(Touch { part, point, arm: m.arms[0], normal: m.normal, gap: m.gap });
             }
         });
@@ -120,6 +162,7 @@ impl Search<'_> {
     /// First contact of a polyhedron with a box.
     pub(super) fn ledge(&mut self, part: u16, bounds: &Aabb, ledge: &Ledge) {
         let (spec, body) = (self.spec, self.body);
+        let Some((core, _)) = &spec.core else { return };
         let swept = body.path.bounds(0.0, self.until).grown(spec.reach);
         if !bounds.grown(spec.gap).meets(&swept) {
             return;
@@ -127,7 +170,8 @@ impl Search<'_> {
         let mut from = 0.0;
         if let Some(side) = farthest_side(bounds, body.path.x) {
             // As for other bodies: the box is behind that side's plane.
-            let Some((time, point)) = self.half_space(part, (side.normal, side.offset), Some((bounds, side.axis))) else {
+            let Some((time, point)) = self.half_space(part, (side.normal, side.offset), Some((bounds, side.axis)))
+            else {
                 return;
             };
             if self.is_at_side(bounds, &side, time, point) {
@@ -146,7 +190,7 @@ impl Search<'_> {
             from: start + if linked { 0.0 } else { from },
             until: start + self.until,
             linked,
-            arms: [spec.core.as_ref().map_or(0.0, |c| c.0.reach), ledge.core.reach],
+            arms: [core.reach, ledge.core.reach],
         };
         let Some(time) = quest.first(|[a, _]| ledge.pair(spec, a)) else { return };
         let after = time - start;
@@ -161,10 +205,32 @@ impl Search<'_> {
         let mut fastest = (f64::INFINITY, nearest.feature);
         pair.touching(&nearest, step::TOUCHING * spec.gap, |m| {
             let rate = pose.velocity(m.arms[0]).dot(m.normal);
-            if rate < fastest.0 && !self.lasts(part, usize::from(number(spec.hull, m.feature))) {
+            if rate < fastest.0 && !self.lasts(part, usize::from(number(core, m.feature))) {
                 fastest = (rate, m.feature);
             }
         });
-        self.hit(after, part, usize::from(number(spec.hull, fastest.1)));
+        self.hit(after, part, usize::from(number(core, fastest.1)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::{ConvexHull, Solid};
+
+    #[test]
+    fn numbers_name_points() {
+        let hull = ConvexHull::new(&Solid::Icosahedron.corners(1.0), 0.0).unwrap();
+        let mut numbers = std::collections::BTreeSet::new();
+        let ons = (0..20).map(On::Face).chain((0..30).map(On::Edge)).chain((0..12).map(On::Corner));
+        let corners = ons.flat_map(|on| (0..8).map(move |corner| Feature::Corner { of: 1, corner, on }));
+        let edges = (0..30).flat_map(|i| (0..12).map(move |j| Feature::Edges(i, j)));
+        for f in corners.chain(edges) {
+            let k = number(&hull.core, f);
+            assert!(k >= 12 && numbers.insert(k));
+            assert_eq!(feature(&hull.core, k), Some(f));
+        }
+        assert_eq!(numbers.len(), 62 * 8 + 30 * 12);
+        assert_eq!(feature(&hull.core, 11), None);
     }
 }

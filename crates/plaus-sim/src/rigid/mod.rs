@@ -51,8 +51,8 @@ mod tumble;
 
 pub use body::{Phase, Start, Turning};
 pub use glide::Stretch;
-pub use part::{Part, Table};
 use ledges::Ledge;
+pub use part::{Part, Table};
 use spec::{RIM_POINTS, Skin, Spec};
 pub use step::RigidScratch;
 

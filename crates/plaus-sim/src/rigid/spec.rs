@@ -53,7 +53,13 @@ pub(crate) enum Skin {
 pub(crate) const RIM_POINTS: usize = 4;
 
 impl Spec {
-    pub(super) fn new(body: usize, b: &BodySpec, world: &RigidWorld, spacing: f64, strength: f64) -> Result<Self, WorldError> {
+    pub(super) fn new(
+        body: usize,
+        b: &BodySpec,
+        world: &RigidWorld,
+        spacing: f64,
+        strength: f64,
+    ) -> Result<Self, WorldError> {
         let bad = |field, value| WorldError::BadBody { body, field, value, expected: "a positive number" };
         let MassProperties { mass, inertia } = b.mass;
         for (field, value) in [

@@ -314,8 +314,7 @@ impl RigidScratch {
                 c.push(&mut self.members, c.impulse);
             }
         }
-        let at_ledge = |(k, t): &(usize, Touch)| world.is_at_ledge(self.places[*k].body, t.part, t.point);
-        let passes = if self.has_cuboids_in_touch() || self.touches.iter().any(at_ledge) { PASSES_OF_CUBOIDS } else { PASSES };
+        let passes = if self.has_cuboids_in_touch() || self.is_at_ledges(world) { PASSES_OF_CUBOIDS } else { PASSES };
         for pass in 0..passes {
             sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
             for (p, m) in self.places.iter_mut().zip(&self.members) {

@@ -12,7 +12,7 @@ mod revolution;
 
 pub use cuboid::Cuboid;
 pub use hull::{ConvexHull, Solid};
-pub(crate) use hull::{MOST_CORNERS, Polyhedron};
+pub(crate) use hull::{MOST_CORNERS, On, Polyhedron};
 pub use mass::MassProperties;
 pub use revolution::{Profile, Revolution, Ring};
 

@@ -93,7 +93,11 @@ impl Polyhedron {
         let side = |axis: usize, upper: usize| {
             let (i, j) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
             let base = upper << axis;
-            if upper == 1 { vec![base, base | i, base | i | j, base | j] } else { vec![base, base | j, base | i | j, base | i] }
+            if upper == 1 {
+                vec![base, base | i, base | i | j, base | j]
+            } else {
+                vec![base, base | j, base | i | j, base | i]
+            }
         };
         let loops: Vec<Vec<usize>> = (0..6).map(|k| side(k / 2, k % 2)).collect();
         Self::new((0..8).map(corner).collect(), &loops)

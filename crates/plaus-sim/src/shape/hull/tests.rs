@@ -26,14 +26,19 @@ fn regular_solids_have_their_moments() {
         (Solid::Icosahedron, 5.0 * (3.0 + r5) / 12.0, (3.0 + r5) / 20.0),
     ] {
         let body = hull(&solid.corners(1.0), 0.0);
-        assert_eq!((body.faces().count(), body.edges().count()), (solid.faces(), body.corners().len() + solid.faces() - 2));
+        assert_eq!(
+            (body.faces().count(), body.edges().count()),
+            (solid.faces(), body.corners().len() + solid.faces() - 2)
+        );
         let mass = body.mass_properties(3.0);
         assert!(close(mass.mass, 3.0 * volume), "{solid:?}: {mass:?}");
         assert!(close(mass.inertia.x, moment * mass.mass), "{solid:?}: {mass:?}");
         // Equal to the bit, and along the axes given: free rotation is uniform.
         assert!(mass.inertia.x == mass.inertia.y && mass.inertia.y == mass.inertia.z);
         assert_eq!(body.turn(), DQuat::IDENTITY);
-        assert!(body.edges().all(|[a, b]| close((body.corners()[a as usize] - body.corners()[b as usize]).length(), 1.0)));
+        assert!(
+            body.edges().all(|[a, b]| close((body.corners()[a as usize] - body.corners()[b as usize]).length(), 1.0))
+        );
     }
 }
 
@@ -74,7 +79,8 @@ fn axes_are_principal_and_told() {
 /// A lattice of cells whose middles are in the body: each cell on the skin is wrong by half of it at most, by chance, so 64³ of them are exact to well below 1e-3.
 #[test]
 fn rounding_agrees_with_a_plain_sum() {
-    let points = [[1.0, 0.1, 0.0], [-0.6, 0.8, 0.1], [-0.5, -0.9, 0.0], [0.1, 0.2, 1.1], [0.2, 0.1, -0.7]].map(DVec3::from);
+    let points =
+        [[1.0, 0.1, 0.0], [-0.6, 0.8, 0.1], [-0.5, -0.9, 0.0], [0.1, 0.2, 1.1], [0.2, 0.1, -0.7]].map(DVec3::from);
     let body = hull(&points, 0.25);
     let (n, most) = (64, body.reach());
     let step = 2.0 * most / f64::from(n);
@@ -132,7 +138,8 @@ fn bad_points_are_named() {
     for rounding in [-0.1, f64::NAN, f64::INFINITY] {
         assert!(matches!(ConvexHull::new(&cube, rounding), Err(WorldError::BadNumber { field: "rounding", .. })));
     }
-    let prism: Vec<DVec3> = (0..26).map(|k| (DQuat::from_rotation_z(0.5 * f64::from(k / 2)) * DVec3::X).with_z(f64::from(k % 2))).collect();
+    let prism: Vec<DVec3> =
+        (0..26).map(|k| (DQuat::from_rotation_z(0.5 * f64::from(k / 2)) * DVec3::X).with_z(f64::from(k % 2))).collect();
     assert!(matches!(err(&prism), WorldError::LargeHull { what: "corners of a face", .. }), "{}", err(&prism));
 }
 

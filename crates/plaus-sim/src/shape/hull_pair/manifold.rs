@@ -28,7 +28,10 @@ impl HullPair<'_> {
             let [own, other] = [&self.hulls[of], &self.hulls[1 - of]];
             let out = if of == 0 { nearest.normal } else { -nearest.normal };
             let other_out = other.axes.transpose() * out;
-            let level = other.core.support(other_out) + within + self.roundings() + self.other[of].dot(own.axes.transpose() * out);
+            let level = other.core.support(other_out)
+                + within
+                + self.roundings()
+                + self.other[of].dot(own.axes.transpose() * out);
             let own_out = own.axes.transpose() * out;
             for corner in 0..own.core.corners.len() as u8 {
                 if own.core.corner(corner).dot(own_out) <= level

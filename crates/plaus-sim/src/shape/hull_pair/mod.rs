@@ -109,17 +109,6 @@ impl<'h> HullPair<'h> {
         (meeting, is_on)
     }
 
-    /// The meeting of a corner with what is nearest to it on the other; from inside with the face that it is least deep behind.
-    pub(crate) fn of_corner(&self, of: usize, corner: u8) -> Meeting {
-        let other = self.hulls[1 - of].core;
-        let seen = self.corner_seen(of, corner);
-        let on = match other.farthest_face(seen) {
-            Some((face, beyond)) if beyond <= 0.0 => On::Face(face),
-            _ => other.nearest(seen),
-        };
-        self.at_corner(of, corner, on).0
-    }
-
     /// The same feature's point at this pose. `towards` is its normal at a pose nearby.
     pub(crate) fn again(&self, feature: Feature, towards: DVec3) -> Meeting {
         match feature {

@@ -36,9 +36,8 @@ impl HullPair<'_> {
             }
         };
         let distance = meeting.gap + self.roundings();
-        let is_nearest = is_on
-            && distance > TOUCHING * self.size
-            && distance <= self.apart(meeting.normal) + SLACK * self.size;
+        let is_nearest =
+            is_on && distance > TOUCHING * self.size && distance <= self.apart(meeting.normal) + SLACK * self.size;
         is_nearest.then_some(meeting)
     }
 
