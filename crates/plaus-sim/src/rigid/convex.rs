@@ -170,8 +170,9 @@ impl Quest<'_> {
             let (spec, b) = ([s, t][k], bodies[k]);
             let dt = time - b.path.t;
             let free = spec.wobble != 0.0 && b.phase == Phase::Flight;
-            let w = if free { b.motion_after(spec, dt).w } else { b.spin };
-            Pose { x: b.path.after(dt), r: tumbles[k].at(dt), v: b.path.velocity_after(dt), w }
+            let r = tumbles[k].at(dt);
+            let w = if free { tumbles[k].spin().unwrap_or_else(|| b.motion_after(spec, dt).w) } else { b.spin };
+            Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
         };
         let mut held = Held::<P>::none();
         let (mut time, mut clear) = (from, from);

@@ -194,12 +194,10 @@ impl Search<'_> {
         };
         let Some(time) = quest.first(|[a, _]| ledge.pair(spec, a)) else { return };
         let after = time - start;
-        let pose = Pose {
-            x: body.path.after(after),
-            r: body.tumble(spec).at(after),
-            v: body.path.velocity_after(after),
-            w: self.spin_at(after),
-        };
+        let mut tumble = body.tumble(spec);
+        let r = tumble.at(after);
+        let (x, v) = (body.path.after(after), body.path.velocity_after(after));
+        let pose = Pose { x, r, v, w: self.spin_at(&tumble, after) };
         let Some(pair) = ledge.pair(spec, &pose) else { return };
         let nearest = pair.nearest(None);
         let mut fastest = (f64::INFINITY, nearest.feature);

@@ -162,12 +162,13 @@ impl Rigid {
         let mut pose = |k: usize, time: f64| {
             let (spec, b) = ([s, t][k], bodies[k]);
             let dt = time - b.path.t;
+            let r = tumbles[k].at(dt);
             let w = if (spec.wobble == 0.0 && b.phase != Phase::Glide) || b.phase == Phase::Step {
                 b.spin
             } else {
-                b.motion_after(spec, dt).w
+                tumbles[k].spin().unwrap_or_else(|| b.motion_after(spec, dt).w)
             };
-            Pose { x: b.path.after(dt), r: tumbles[k].at(dt), v: b.path.velocity_after(dt), w }
+            Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
         };
         let mut time = from;
         // The last time at which they were apart, if they have been.

@@ -46,7 +46,7 @@ impl Search<'_> {
                     .max(1e-3 * away / (v.length() + pull * away).max(f64::MIN_POSITIVE).sqrt().max(v.length()));
             } else {
                 let r = tumble.at(t);
-                let w = self.spin_at(t);
+                let w = self.spin_at(&tumble, t);
                 if let Some(apart) = self.beside(bounds, &(x, v, w, r), pull) {
                     t += apart;
                     if t >= self.until || t.is_nan() {
@@ -137,8 +137,9 @@ impl Search<'_> {
         if point == BEYOND {
             return false;
         }
-        let (x, r) = (self.body.path.after(time), self.body.tumble(self.spec).at(time));
-        let swing = r.transpose() * side.normal.cross(self.spin_at(time));
+        let mut tumble = self.body.tumble(self.spec);
+        let (x, r) = (self.body.path.after(time), tumble.at(time));
+        let swing = r.transpose() * side.normal.cross(self.spin_at(&tumble, time));
         let feeler = self.spec.point(point, r.transpose() * side.normal, swing);
         is_over(bounds, side.axis, x + r * feeler.centre)
     }

@@ -10,6 +10,7 @@ mod table;
 
 use super::body::{Phase, Turning};
 use super::part::Part;
+use super::tumble::Tumble;
 use super::{Rigid, Skin, Spec};
 use crate::roots::fall_of_quadratic;
 use crate::scenery::Surface;
@@ -120,13 +121,13 @@ impl Search<'_> {
         fall_of_quadratic([height, normal.dot(path.v), 0.5 * normal.dot(path.a)], self.until)
     }
 
-    /// Angular velocity after `t`; only a top's moves.
+    /// Angular velocity after `t`, for which `tumble` was asked last; it changes only in free flight, and not if all moments are equal.
     #[inline]
-    pub(super) fn spin_at(&self, t: f64) -> DVec3 {
+    pub(super) fn spin_at(&self, tumble: &Tumble, t: f64) -> DVec3 {
         if self.spec.wobble == 0.0 || self.body.phase != Phase::Flight {
             self.body.spin
         } else {
-            self.body.motion_after(self.spec, t).w
+            tumble.spin().unwrap_or_else(|| self.body.motion_after(self.spec, t).w)
         }
     }
 }

@@ -103,7 +103,7 @@ impl Search<'_> {
                 height: n.dot(x) - offset - 0.5 * spec.gap,
                 fall: n.dot(path.velocity_after(t)),
                 lever: turned * n,
-                swing: turned * n.cross(self.spin_at(t)),
+                swing: turned * n.cross(self.spin_at(&tumble, t)),
                 pull,
             };
             let mut next = Next { step: self.until - t, first: None, is_beyond: false };
