@@ -1,4 +1,4 @@
-//! Worlds of turning bodies: balls, cuboids and bodies of revolution among planes, boxes and tables with a spline surface.
+//! Worlds of turning bodies: balls, cuboids, bodies of revolution and convex polyhedra among planes, boxes and tables with a spline surface.
 //!
 //! A body in the air is on a parabola and rotates freely, both in closed form; a ball on level ground slides and rolls in closed form. A body touches when the first of
 //! its [feelers](crate::shape::Feeler) comes within half of `accuracy.gap` of a part. Impacts follow Stronge's law. A contact whose rebound would be slower than
@@ -10,6 +10,9 @@
 //! of a slip within an impact and the steps of lasting contact follow the preset. A ring is felt at its lowest point, in lasting contact also at three others of the rim, so that it may be
 //! some millimetres in the edge of a box. Energy grows only by what pushing a body out of an overlap takes: in shots at ten pins by less than a hundredth of a pin's weight times its
 //! size at a time at the standard preset (the example `energy` counts), 3e-4 at the fine one.
+//!
+//! A convex polyhedron may meet any body but one of revolution, and touches boxes with faces and edges too, not only with its corners as a cuboid does. One that is wedged between boxes so that each
+//! pushes it into the other may find no rest: it sinks, by a fifth of its size at worst in the tests, until its run is out of events.
 //!
 //! Rolling and spinning resistance act in the steps of lasting contact on fixed parts, with the distance of the point from the centre of gravity as the radius; not between bodies, nor on
 //! a ball that glides: that goes on until it meets something or the run ends.
