@@ -343,6 +343,34 @@ fn scaling_keeps_the_bits() {
     }
 }
 
+/// Two relabelled bodies do the same to the last bit, whichever is a polyhedron.
+#[test]
+fn relabelling_permutes_flights_and_impacts() {
+    let mut impacts = 0;
+    for k in 0..60 {
+        let all = [rock(k, 1.0), solid(Solid::Octahedron), Shape::Ball(0.5 * EDGE), rock(k + 100, 0.9)];
+        let other = 1 + (k as usize) % 3;
+        let run = |order: [usize; 2]| {
+            let shapes = order.map(|b| all[b * other].clone()).to_vec();
+            let open = RigidWorld { gravity: DVec3::ZERO, ..plain(shapes, Vec::new(), Law::new(0.3, 0.8)) };
+            let world = Rigid::new(open).unwrap();
+            let starts = together(k, 2).into_iter().map(|s| Start { velocity: s.velocity - s.position * 20.0, ..s });
+            let starts: Vec<Start> = starts.collect();
+            let mut state = world.state(&order.map(|b| starts[b])).unwrap();
+            world.run(&mut state, &mut Scratch::default(), 0.12, &mut ()).unwrap();
+            (state, world)
+        };
+        let ((plain, a), (shuffled, b)) = (run([0, 1]), run([1, 0]));
+        impacts += plain.counts().impacts;
+        for label in 0..2 {
+            let p = a.at(label, &plain.bodies()[label], 0.12);
+            let q = b.at(1 - label, &shuffled.bodies()[1 - label], 0.12);
+            assert_eq!((p.path.x, p.path.v, p.turn, p.spin), (q.path.x, q.path.v, q.turn, q.spin), "throw {k}");
+        }
+    }
+    assert!(impacts > 20, "{impacts}");
+}
+
 /// A ball falls onto the middle of a resting d20's upper face: it meets it when a ball meets a plane there, and keeps what an impact keeps.
 #[test]
 fn a_ball_meets_a_face_when_it_should() {

@@ -252,7 +252,7 @@ impl Rigid {
             - s.mass * self.gravity.dot(body.path.x)
     }
 
-    /// How far apart the skins of two bodies are at their clocks, in m; negative where they overlap, then by the shortest way out of it for balls and cuboids.
+    /// How far apart the skins of two bodies are at their clocks, in m; negative where they overlap, then by the shortest way out of it for balls, cuboids and polyhedra.
     #[must_use]
     pub fn gap(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> f64 {
         let [a, b] = bodies.map(Turning::pose);

@@ -98,9 +98,19 @@ impl<'h> HullPair<'h> {
         let (own, other) = (&self.hulls[of], &self.hulls[1 - of]);
         let seen = self.corner_seen(of, corner);
         let (normal, distance, is_on) = foot(other.core, seen, on);
-        let (p, q) = (own.axes * own.core.corner(corner), other.axes * (seen - normal * distance));
-        let normal = other.axes * normal;
+        let p = own.axes * own.core.corner(corner);
         let feature = Feature::Corner { of: of as u8, corner, on };
+        if let On::Corner(k) = on
+            && distance > 0.0
+        {
+            // The same bits from both sides: neither corner is more than the other.
+            let q = other.axes * other.core.corner(k);
+            let points = if of == 0 { [p, q] } else { [q, p] };
+            let between = self.offset + (points[0] - points[1]);
+            let distance = between.length();
+            return (self.meeting(points, between / distance, distance, feature), is_on);
+        }
+        let (q, normal) = (other.axes * (seen - normal * distance), other.axes * normal);
         let meeting = if of == 0 {
             self.meeting([p, q], normal, distance, feature)
         } else {
