@@ -390,6 +390,34 @@ fn a_ball_meets_a_face_when_it_should() {
     assert!(hit.normal.z.abs() > 1.0 - 1e-9 && (hit.approach - speed).abs() < 1e-4 * speed, "{hit:?}");
 }
 
+/// A thousand metres a second and ten thousand radians, from a tenth of a millimetre to a hundred metres, a million times heavier or lighter: what is on its way into another hits it.
+#[test]
+fn nothing_fast_or_small_or_heavy_passes() {
+    for size in [1e-4, 1e-2, 1.0, 1e2] {
+        for (heavy, speed) in [(1.0, 1e3), (1e6, 1e3), (1e-6, 1.0), (1.0, 1e-3)] {
+            for (k, target) in [Solid::Icosahedron, Solid::Tetrahedron, Solid::Dodecahedron].into_iter().enumerate() {
+                let shapes = vec![hull(&Solid::Tetrahedron.corners(size), 0.0), hull(&target.corners(size), 0.1 * size)];
+                let reach: f64 = shapes.iter().map(Shape::reach).sum();
+                let mut plain = plain(shapes, Vec::new(), Law::new(0.3, 0.9));
+                plain.gravity = DVec3::ZERO;
+                plain.bodies[1].mass = plain.bodies[1].mass.with_mass(plain.bodies[0].mass.mass * heavy);
+                plain.duration = 1e9;
+                let world = Rigid::new(plain).unwrap();
+                let (far, spin) = (10.0 * size, 10.0 * speed / size);
+                let flying = Start {
+                    velocity: DVec3::X * speed,
+                    spin: DVec3::new(0.3, -0.2 * k as f64, 1.0) * spin,
+                    ..Start::at_rest(DVec3::new(-far, 0.1 * size, 0.0))
+                };
+                let (trace, state) = traced(&world, &[flying, Start::at_rest(DVec3::ZERO)], 20.0 * size / speed);
+                let first = trace.impacts.first().expect("an impact");
+                assert!(first.time >= (far - reach) / speed && first.time <= far / speed, "{first:?}");
+                assert!(state.bodies().iter().all(|b| b.path.v.is_finite() && b.spin.is_finite()));
+            }
+        }
+    }
+}
+
 #[test]
 fn what_is_not_served_is_said() {
     let pin = Shape::Revolution(Alley::default().pin().unwrap().into());
