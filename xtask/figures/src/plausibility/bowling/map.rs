@@ -19,7 +19,7 @@ const CURVES: [(f64, RGBColor); 3] = [(0.0, colour::FAINT), (3.0, colour::PAPER)
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
     let scene = scene(Contact::default())?;
-    let (shots, boards) = work.size((60, Boards(15.5, 20.0, 0.25)), (2, Boards(17.0, 18.5, 0.5)));
+    let (shots, boards) = work.size((50, Boards(15.5, 20.0, 0.25)), (2, Boards(17.0, 18.5, 0.5)));
     let angles: Vec<f64> = work.size((0..=8).map(|k| STEP * f64::from(k)).collect(), vec![0.0, 3.0, 6.0]);
     let count = angles.len() * boards.all().count();
     work.say(format_args!("bowling: strike rate on {count} lines, {shots} shots of each"));

@@ -33,8 +33,9 @@ pub(crate) fn make(work: &mut Work) -> Result<()> {
 }
 
 fn professionals(work: &mut Work) -> Result<()> {
-    professional::make(
-        work,
-        &[("The scene's coefficients", Contact::default()), ("Where the search began", search::guessed())],
-    )
+    let sets = [
+        ("The scene's coefficients", Contact::default(), published::FIRST_BALLS),
+        ("Where the search began", search::guessed(), 3_000),
+    ];
+    professional::make(work, &sets)
 }

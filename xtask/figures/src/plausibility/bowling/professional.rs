@@ -44,17 +44,18 @@ fn scene(contact: Contact, spread: f64) -> Result<Bowling> {
     Ok(Bowling::new(&config)?)
 }
 
-pub(super) fn make(work: &mut Work, cases: &[(&str, Contact)]) -> Result<()> {
+/// Sets of coefficients by name, with how many first balls are bowled with each.
+pub(super) fn make(work: &mut Work, cases: &[(&str, Contact, u64)]) -> Result<()> {
     let mut text = String::new();
-    for (k, (name, contact)) in cases.iter().enumerate() {
-        text += &one(work, name, *contact, SEED + 20_000 + 1_000 * k as u64)?;
+    for (k, (name, contact, balls)) in cases.iter().enumerate() {
+        text += &one(work, name, *contact, *balls, SEED + 20_000 + 1_000 * k as u64)?;
     }
     work.report.section("Bowling: what professionals leave", &text);
     Ok(())
 }
 
-fn one(work: &Work, name: &str, contact: Contact, seed: u64) -> Result<String> {
-    let (tries, shots) = work.size((500, FIRST_BALLS), (4, 8));
+fn one(work: &Work, name: &str, contact: Contact, balls: u64, seed: u64) -> Result<String> {
+    let (tries, shots) = work.size((300, balls), (4, 8));
     let spreads = if work.quick { &SPREADS[2..4] } else { &SPREADS[..] };
     work.say(format_args!(
         "bowling, {name}: spread of {} deliveries, then {} first balls",

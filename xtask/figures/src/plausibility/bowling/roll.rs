@@ -5,6 +5,7 @@ use crate::plausibility::chance::Count;
 use plaus_dist::math::square;
 use plaus_dist::{Purpose, Seed, Stream, math, standard_normal};
 use plaus_mcmc::{ModelError, StateOf, Target};
+use plaus_scenes::AccuracyPreset;
 use plaus_scenes::bowling::{Bowling, Config, Contact, Delivery, Quantity, Rest, Shot, Work};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -165,7 +166,12 @@ impl Tally {
 
 /// The regulation scene with these coefficients.
 pub(super) fn scene(contact: Contact) -> Result<Bowling> {
-    Ok(Bowling::new(&Config { delivery: Delivery::Regulation, contact, ..Config::default() })?)
+    scene_at(AccuracyPreset::default(), contact)
+}
+
+/// The same at some accuracy.
+pub(super) fn scene_at(accuracy: AccuracyPreset, contact: Contact) -> Result<Bowling> {
+    Ok(Bowling::new(&Config { delivery: Delivery::Regulation, contact, accuracy, ..Config::default() })?)
 }
 
 /// Bowls so many shots, each with pins set at random as the scene has it; `shot` says which line the ball takes.

@@ -105,7 +105,7 @@ mod tests {
     #[test]
     fn misfits_are_in_boards() {
         let mut hooked = row(&[80, 100, 100, 80]);
-        hooked.strikes.iter_mut().for_each(|s| s.0 = 16.0 + s.0);
+        hooked.strikes.iter_mut().for_each(|s| s.0 += 16.0);
         // From 16.5 to 18.5 where 17 to 18.5 is published; the straight ball has 2 boards where at most a half is.
         assert!((misfit(&hooked, &hooked) - (0.5 + 0.0 + 1.5)).abs() < 1e-9);
     }
