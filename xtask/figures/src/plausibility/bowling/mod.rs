@@ -35,7 +35,7 @@ pub(crate) fn make(work: &mut Work) -> Result<()> {
 fn professionals(work: &mut Work) -> Result<()> {
     let sets = [
         ("The scene's coefficients", Contact::default(), published::FIRST_BALLS),
-        ("Where the search began", search::guessed(), 3_000),
+        ("The coefficients of least misfit in the search", search::least_misfit(), 3_000),
     ];
     professional::make(work, &sets)
 }

@@ -4,6 +4,7 @@ mod cube;
 mod plot;
 mod published;
 mod sensitivity;
+mod smooth;
 mod throws;
 
 use super::chance::{Count, chi_squared_tail, shown_p, signed};
@@ -73,15 +74,17 @@ fn compare(work: &mut Work, rolled: &[Rolled], defaults: &Compared, chosen: &Com
         let of = |compared: &Compared| compared.shown(rolled, held_out);
         format!("- {name}: defaults {}; chosen {}", of(defaults), of(chosen))
     });
+    let (least, freedom) = smooth::misfit(rolled);
     text += &format!(
         "\nHow often a square face was uppermost; {} throws of each, y = 16 mm, sharp edges, seeds {SEED} and {} on. Errors are binomial. z: difference in standard errors of both; p: Fisher's exact \
          test. Published: fifteen cuboids cut out of a steel bar and rolled by students (The Mathematical Gazette, March 2013, note 97.16); how and onto what is not said. Conditions were chosen by the \
-         cuboids with † alone (below); chosen: {}.\n\nΣ z² (how many), probability of more by chance:\n\n{}\n\nThe published shares scatter by more than their binomial errors about any smooth curve that \
-         falls: 1.23 has more than 1.16, 1.71 more than 1.60.\n",
+         cuboids with † alone (below); chosen: {}.\n\nΣ z² (how many), probability of more by chance:\n\n{}\n\nNor does a smooth curve agree: the best polynomial of fourth degree in ln(x/y) for \
+         ln(p/(1 − p)), with a cube's third, leaves {least:.1} with {freedom} degrees of freedom (more by chance: {}).\n",
         thousands(throws),
         SEED + 2_000,
         sensitivity::name(&chosen.conditions),
         sums.join("\n"),
+        shown_p(chi_squared_tail(least, freedom)),
     );
     work.report.section("Dice: a square face up", &text);
 }
