@@ -20,6 +20,9 @@ use std::sync::Arc;
 /// Width of the lane in m.
 pub(super) const WIDTH: f64 = Alley::WIDTH;
 
+/// From the foul line to the head pin's spot in m.
+pub(super) const LENGTH: f64 = Alley::LENGTH;
+
 /// What all shots of a scenario have in common.
 #[derive(Debug)]
 pub(super) struct Lane {
@@ -133,9 +136,9 @@ impl Lane {
         }
     }
 
-    /// The world of a draw, and where everything starts.
-    pub(super) fn world(&self, draw: &Shot) -> Result<(Rigid, Vec<Start>), WorldError> {
-        let position = DVec3::new(draw.get(Quantity::Across), -Alley::LENGTH, draw.get(Quantity::Height));
+    /// The world of a draw, and where everything starts: the ball so far in m before the head pin's spot.
+    pub(super) fn world(&self, draw: &Shot, distance: f64) -> Result<(Rigid, Vec<Start>), WorldError> {
+        let position = DVec3::new(draw.get(Quantity::Across), -distance, draw.get(Quantity::Height));
         let ball = Start {
             position,
             orientation: DQuat::IDENTITY,
@@ -151,15 +154,17 @@ impl Lane {
         Ok((self.alley(draw).world_of(&self.pin)?, starts))
     }
 
-    /// Bowls. Stops as soon as no pin's fate can change, or `hopeless` says so of the pins that are down; then there is no answer.
+    /// Bowls from `distance` m before the head pin's spot. Stops as soon as no pin's fate can change, or `hopeless` says so of the pins that are down; then there is no
+    /// answer.
     pub(super) fn bowl(
         &self,
         draw: &Shot,
+        distance: f64,
         work: &mut Work,
         hopeless: impl FnMut(Pins) -> bool,
         observer: impl Observer<Rigid>,
     ) -> Result<Option<Rest>, ModelError> {
-        let (world, starts) = self.world(draw).map_err(ModelError::new)?;
+        let (world, starts) = self.world(draw, distance).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
         let mut umpire = Umpire::new(&world, Verdict::of(&self.alley(draw), &self.pin), hopeless);
         let duration = self.alley.duration;
@@ -186,7 +191,7 @@ impl Lane {
 
     /// Bowls until everything is at rest, and records it: the world, all motions, and when it ends.
     pub(super) fn record(&self, draw: &Shot, work: &mut Work) -> Result<(Rigid, Trace<Turning>, f64), ModelError> {
-        let (world, starts) = self.world(draw).map_err(ModelError::new)?;
+        let (world, starts) = self.world(draw, LENGTH).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
         let mut trace = Trace::default();
         world.run(&mut state, &mut work.scratch, self.alley.duration, &mut trace).map_err(ModelError::new)?;

@@ -79,6 +79,16 @@ impl Bowling {
         (k, m)
     }
 
+    /// What a shot leaves whose ball begins `distance` m before the head pin's spot, in the place and with the velocities of the draw: for deliveries that are to meet the pins just
+    /// so.
+    ///
+    /// # Errors
+    /// [`ModelError`] where there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
+    pub fn bowl_from(&self, distance: f64, draw: &Shot, work: &mut Work) -> Result<Rest, ModelError> {
+        let rest = self.lane.bowl(draw, distance, work, |_| false, &mut ())?;
+        rest.ok_or_else(|| ModelError::new("a shot was given up that nobody called hopeless"))
+    }
+
     /// The most that k + m can still become once these pins are down, by their places in the rack.
     fn most(&self, down: Pins) -> u64 {
         let one = |(place, leave): (usize, &bool)| match (down.contains(place), leave) {
@@ -126,7 +136,7 @@ impl Target for Bowling {
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
         let hopeless = |down| self.goal.log_potential(self.most(down)) <= floor;
-        let rest = self.lane.bowl(draw, work, hopeless, &mut ())?;
+        let rest = self.lane.bowl(draw, lane::LENGTH, work, hopeless, &mut ())?;
         Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
 
