@@ -6,6 +6,8 @@
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 
 mod ball2d;
+mod bowling;
+mod clock;
 mod plausibility;
 mod sampler;
 mod spelling;
@@ -20,7 +22,7 @@ use std::process::ExitCode;
 type Make = fn(&mut Work) -> Result<()>;
 
 /// Scenes with figures.
-const SCENES: &[(&str, Make)] = &[("ball2d", ball2d::make), ("spelling", spelling::make)];
+const SCENES: &[(&str, Make)] = &[("ball2d", ball2d::make), ("spelling", spelling::make), ("bowling", bowling::make)];
 
 /// A command of this program.
 struct Chore {

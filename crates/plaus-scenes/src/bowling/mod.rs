@@ -1,6 +1,7 @@
 //! Bowling (section 5.2, appendix A): which pins are left is demanded; the ball, its delivery and the places of the pins are uncertain.
 
 mod animate;
+mod approach;
 mod config;
 mod draw;
 mod lane;
@@ -12,7 +13,7 @@ mod release;
 pub use config::{Config, Contact, Delivery, Moves, Rewarded, Steps, Weights};
 pub use draw::{Prior, Shot};
 pub use lane::{Entry, Fate, Rest, Work};
-pub use moves::{ChangeAll, ChangeBall, ChangePins, Mirror, Redraw, RedrawPins, Refine};
+pub use moves::{Aim, ChangeAll, ChangeBall, ChangePins, Mirror, Redraw, RedrawPins, Refine};
 pub use rack::Rack;
 pub use release::{Law, Laws, Quantity, Release};
 
@@ -23,6 +24,7 @@ use crate::scene::{ConfigError, Role, Scalar, Scene};
 use lane::{Lane, Pins};
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
+use plaus_sim::rigid::{Rigid, Start};
 
 /// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, k the pins that end as they should, m those that stand as they should and have not moved far.
 #[derive(Debug)]
@@ -64,6 +66,14 @@ impl Bowling {
     #[must_use]
     pub fn prior(&self) -> &Prior {
         &self.prior
+    }
+
+    /// The simulator's world of a draw, and how everything starts: the ball, then the pins that are set up, in ascending order of their numbers.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the draw's numbers make no world.
+    pub fn world(&self, draw: &Shot) -> Result<(Rigid, Vec<Start>), ModelError> {
+        self.lane.world(draw, lane::LENGTH).map_err(ModelError::new)
     }
 
     /// k and m.

@@ -1,5 +1,7 @@
 //! Chains of words, and what is noted about them.
 
+pub(super) use crate::clock::seconds;
+
 use crate::Result;
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal, Mixture, MoveCounts, SolutionClass, Verdict};
@@ -176,19 +178,4 @@ pub(super) fn shown(value: f64, digits: usize) -> String {
     } else {
         crate::report::significant(value, digits)
     }
-}
-
-/// Seconds of processor time of this thread, where Linux tells; else those since some fixed time.
-pub(super) fn seconds() -> f64 {
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
-    nanoseconds.map_or_else(since_start, |ns| ns * 1e-9)
-}
-
-#[allow(clippy::disallowed_methods, reason = "times of the report are read from the clock")]
-fn since_start() -> f64 {
-    use std::sync::OnceLock;
-    use std::time::Instant;
-    static START: OnceLock<Instant> = OnceLock::new();
-    START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
