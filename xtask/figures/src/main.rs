@@ -6,6 +6,7 @@
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 
 mod ball2d;
+mod dice;
 mod sampler;
 mod spelling;
 mod stats;
@@ -19,7 +20,7 @@ use std::process::ExitCode;
 type Make = fn(&mut Work) -> Result<()>;
 
 /// Scenes with figures.
-const SCENES: &[(&str, Make)] = &[("ball2d", ball2d::make), ("spelling", spelling::make)];
+const SCENES: &[(&str, Make)] = &[("ball2d", ball2d::make), ("spelling", spelling::make), ("dice", dice::make)];
 
 const USAGE: &str = "usage: cargo xtask reproduce-figures [--out FOLDER] [--quick] [--only SCENE]\n\n\
     --out FOLDER   where the files go, out/figures by default; files of the same names are replaced\n\

@@ -161,12 +161,12 @@ impl Seen {
 }
 
 /// The value that a share `q` of them does not exceed.
-pub(super) fn quantile(sorted: &[f64], q: f64) -> f64 {
+pub(crate) fn quantile(sorted: &[f64], q: f64) -> f64 {
     sorted.get(((sorted.len() as f64 * q).ceil() as usize).saturating_sub(1)).copied().unwrap_or(f64::NAN)
 }
 
 /// A number of a table: "never" for ∞, "–" for NaN.
-pub(super) fn shown(value: f64, digits: usize) -> String {
+pub(crate) fn shown(value: f64, digits: usize) -> String {
     if value.is_infinite() {
         "never".into()
     } else if value.is_nan() {
@@ -179,7 +179,7 @@ pub(super) fn shown(value: f64, digits: usize) -> String {
 }
 
 /// Seconds of processor time of this thread, where Linux tells; else those since some fixed time.
-pub(super) fn seconds() -> f64 {
+pub(crate) fn seconds() -> f64 {
     let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
     nanoseconds.map_or_else(since_start, |ns| ns * 1e-9)
