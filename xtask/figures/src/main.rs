@@ -8,6 +8,7 @@
 mod ball2d;
 mod bowling;
 mod clock;
+mod dice;
 mod plausibility;
 mod sampler;
 mod spelling;
@@ -22,7 +23,8 @@ use std::process::ExitCode;
 type Make = fn(&mut Work) -> Result<()>;
 
 /// Scenes with figures.
-const SCENES: &[(&str, Make)] = &[("ball2d", ball2d::make), ("spelling", spelling::make), ("bowling", bowling::make)];
+const SCENES: &[(&str, Make)] =
+    &[("ball2d", ball2d::make), ("spelling", spelling::make), ("bowling", bowling::make), ("dice", dice::make)];
 
 /// A command of this program.
 struct Chore {
