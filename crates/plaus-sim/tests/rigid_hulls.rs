@@ -396,7 +396,8 @@ fn nothing_fast_or_small_or_heavy_passes() {
     for size in [1e-4, 1e-2, 1.0, 1e2] {
         for (heavy, speed) in [(1.0, 1e3), (1e6, 1e3), (1e-6, 1.0), (1.0, 1e-3)] {
             for (k, target) in [Solid::Icosahedron, Solid::Tetrahedron, Solid::Dodecahedron].into_iter().enumerate() {
-                let shapes = vec![hull(&Solid::Tetrahedron.corners(size), 0.0), hull(&target.corners(size), 0.1 * size)];
+                let shapes =
+                    vec![hull(&Solid::Tetrahedron.corners(size), 0.0), hull(&target.corners(size), 0.1 * size)];
                 let reach: f64 = shapes.iter().map(Shape::reach).sum();
                 let mut plain = plain(shapes, Vec::new(), Law::new(0.3, 0.9));
                 plain.gravity = DVec3::ZERO;
