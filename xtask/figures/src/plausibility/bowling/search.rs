@@ -123,8 +123,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     let mut text = table(&head, rows);
     text += &format!(
         "\nBoards on which at least nine of ten balls strike; published: {}–{} at 6°, less than {STRAIGHT} boards wide for a straight ball. The misfit is how far both ends of the first are off, in \
-         boards, plus by how much the second is too wide. {} shots of each line, a line every quarter of a board, seeds from {} on, the same for all sets. The first row is where the search began; no \
-         leave entered it. Least misfit: {}. Restitution of ball and pin is kept within what the rules allow, 0.65 to 0.78.\n",
+         boards, plus by how much the second is too wide. {} shots of each line, a line every quarter of a board, seeds from {} on, the same for all sets but the last two. The first row is the scene's \
+         set, and so are the last two with other seeds: what they differ by is chance. No leave entered the search. Least misfit: {}. Restitution of ball and pin is kept within what the rules allow, 0.65 to 0.78.\n",
         WINDOW.0,
         WINDOW.1,
         thousands(shots),
