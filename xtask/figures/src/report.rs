@@ -55,7 +55,9 @@ impl Report {
         }
         text += "Numbers after ± are one Monte Carlo standard error.";
         text += &if self.claims.is_empty() { "\n".to_owned() } else { self.claims() };
-        text += "\n## Figures\n";
+        if !self.figures.is_empty() {
+            text += "\n## Figures\n";
+        }
         for (name, caption) in &self.figures {
             let _ = write!(text, "\n![{name}]({name}.png)\n\n**{name}** ([SVG]({name}.svg)). {caption}\n");
         }

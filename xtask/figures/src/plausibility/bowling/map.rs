@@ -19,7 +19,7 @@ const CURVES: [(f64, RGBColor); 3] = [(0.0, colour::FAINT), (3.0, colour::PAPER)
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
     let scene = scene(Contact::default())?;
-    let (shots, boards) = work.size((50, Boards(15.5, 20.0, 0.25)), (2, Boards(17.0, 18.5, 0.5)));
+    let (shots, boards) = work.size((50, Boards(15.5, 20.0, 0.25)), (1, Boards(17.0, 18.5, 0.5)));
     let angles: Vec<f64> = work.size((0..=8).map(|k| STEP * f64::from(k)).collect(), vec![0.0, 3.0, 6.0]);
     let count = angles.len() * boards.all().count();
     work.say(format_args!("bowling: strike rate on {count} lines, {shots} shots of each"));
@@ -51,7 +51,7 @@ fn windows(work: &mut Work, scene: &Bowling, rows: &[Row], shots: u64) -> Result
     });
     let head = ["angle of entry, °", "best board", "strikes there, %", "boards with nine strikes in ten", "published"];
     let mut text = table(&head, lines);
-    let (at, seed) = (work.size(1_000, 6), SEED + 900);
+    let (at, seed) = (work.size(1_000, 2), SEED + 900);
     let best = along(scene, at, seed, |_| Line::new(BEST.0, BEST.1))?;
     text += &format!(
         "\n{shots} shots of each line. A board is where the ball's centre would cross the head pin's row on a straight way; it meets the pin some 16 cm earlier, at 6° 0.6 boards farther to the right, and \

@@ -55,7 +55,7 @@ pub(super) fn make(work: &mut Work, cases: &[(&str, Contact, u64)]) -> Result<()
 }
 
 fn one(work: &Work, name: &str, contact: Contact, balls: u64, seed: u64) -> Result<String> {
-    let (tries, shots) = work.size((300, balls), (4, 8));
+    let (tries, shots) = work.size((300, balls), (3, 4));
     let spreads = if work.quick { &SPREADS[2..4] } else { &SPREADS[..] };
     work.say(format_args!(
         "bowling, {name}: spread of {} deliveries, then {} first balls",

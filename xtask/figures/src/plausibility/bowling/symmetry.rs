@@ -19,7 +19,7 @@ const SPREAD: f64 = 1.0;
 const ENOUGH: u64 = 20;
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
-    let (shots, fine) = work.size((2_000, 700), (12, 4));
+    let (shots, fine) = work.size((2_000, 700), (6, 1));
     work.say(format_args!(
         "bowling: left and right, {} shots of each; {} at a finer accuracy",
         thousands(shots),
