@@ -14,7 +14,7 @@ const CHAINS: u32 = 4;
 const RUNGS: u32 = 6;
 const SWAP_EVERY: u64 = 20;
 /// Iterations between two looks at how near the pins come.
-const LOOK: u64 = 25;
+const LOOK: u64 = 50;
 
 /// What chains of one kind reached.
 #[derive(Debug, Clone, Copy)]
@@ -96,7 +96,7 @@ fn reach(bowler: &Bowler, chain: u32, rungs: u32, warmup: u64, iterations: u64) 
 }
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
-    let (warmup, iterations) = work.size((500, 20_000), (5, 50));
+    let (warmup, iterations) = work.size((500, 10_000), (5, 50));
     let mut rows = Vec::new();
     for (shot, kind) in [(SEVEN_TEN_PAPER, "the paper's"), (SEVEN_TEN, "regulation")] {
         for rungs in [1, RUNGS] {
