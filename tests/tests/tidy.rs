@@ -15,7 +15,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("plaus-export", &["plaus-dist", "plaus-scenes"]),
     ("plaus-gallery", &["plaus-dist", "plaus-export", "plaus-run", "plaus-scenes"]),
     ("plaus-cli", &["plaus-dist", "plaus-export", "plaus-gallery", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
-    ("plaus-figures", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
+    ("plaus-figures", &["plaus-dist", "plaus-export", "plaus-mcmc", "plaus-scenes"]),
     ("plaus-tradeoff", &["plaus-dist", "plaus-figures", "plaus-mcmc", "plaus-scenes", "plaus-sim"]),
     ("plaus-tests", &[]),
     ("xtask", &[]),

@@ -34,6 +34,7 @@ pub mod scenario;
 pub mod scene;
 pub mod spelling;
 mod walk;
+mod way;
 
 pub use accuracy::AccuracyPreset;
 pub use animation::Animation;

@@ -151,6 +151,49 @@ fn savings_change_nothing() {
     let moves = dice.moves(&Rules::exact()).unwrap();
     let report = early_exit(&dice, std::sync::Arc::new(moves), Seed(3), 150).unwrap();
     assert!(report.passed(), "{report}");
+    // On one table: dice of groups that a candidate leaves as they are.
+    let dice = scene(|config| {
+        (config.dice, config.together, config.accuracy) = (3, true, plaus_scenes::AccuracyPreset::Draft);
+        config.throw.place_sd_mm = 20.0;
+    });
+    let moves = dice.moves(&Rules::exact()).unwrap();
+    let report = early_exit(&dice, std::sync::Arc::new(moves), Seed(3), 100).unwrap();
+    assert!(report.passed(), "{report}");
+}
+
+/// Several dice of one table at once, half of them not led: with the ratio the target stays as it is, without it does not.
+#[test]
+fn recasts_of_several_dice_leave_the_constrained_target_invariant() {
+    let dice = scene(|config| {
+        (config.dice, config.together, config.accuracy) = (2, true, plaus_scenes::AccuracyPreset::Draft);
+        (config.table.bumps_mm, config.table.bounce_sd, config.table.grip_sd) = (0.0, 0.0, 0.0);
+        (config.throw.place_sd_mm, config.table.width_mm) = (60.0, 800.0);
+        let at = |die| RestAt { die, x_mm: 90.0, y_mm: 40.0, sigma_mm: 150.0, ..RestAt::default() };
+        let up = FaceUp { die: 2, ln_lambda: 0.7, ..FaceUp::default() };
+        config.constraints = vec![Constraint::RestAt(at(1)), Constraint::RestAt(at(2)), Constraint::FaceUp(up)];
+    });
+    let statistics = [
+        Statistic::new("rest x", |state: &Thrown| state.outcome.trips[0].position.x),
+        Statistic::new("rest y", |state: &Thrown| state.outcome.trips[1].position.y),
+        Statistic::new("face", |state: &Thrown| f64::from(state.outcome.faces[1] == 6)),
+        Statistic::new("x", |state: &Thrown| dice.prior().value(&state.draw, 0, 0)),
+        Statistic::new("velocity", |state: &Thrown| state.draw.throws[1].velocity.x),
+    ];
+    let report = |kernel: AnyMove, steps: u64| {
+        let plan = OneStep { samples: 1000, steps, ..OneStep::default() };
+        one_step(&dice, &Mixture::of(kernel), rejection(&dice, LogPotential::ONE), &statistics, plan).unwrap()
+    };
+    let recast = || Recast { sd: 0.06 };
+    let right = report(Box::new(recast()), 1);
+    assert!(right.passed() && right.accepted() > 100, "{right}");
+    let wrong = report(Box::new(Faulty(Box::new(recast()), Fault::Forgets)), 3);
+    assert!(!wrong.passed(), "not caught: {wrong}");
+    // On a random table as well, proposals have the densities that they are said to have.
+    let dice = scene(|config| (config.dice, config.together) = (3, true));
+    let mixture = Mixture::of(Box::new(recast()) as AnyMove);
+    let (_, kernel) = mixture.iter().next().unwrap();
+    let report = ratios(&dice, kernel, prior(&dice), Ratios { pairs: 30, ..Ratios::default() }).unwrap();
+    assert!(report.passed(), "{report}");
 }
 
 /// Turning the pips changes which face comes up, a shift with the table where the die lies, and neither any bit of the motion; a state is what its draw alone

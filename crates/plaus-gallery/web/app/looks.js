@@ -40,13 +40,14 @@ function grain(colour) {
 
 // Texture coordinates by the axis a corner's normal is nearest to.
 function lay(geometry, size) {
-  if (geometry.getAttribute('uv')) return;
   const p = geometry.getAttribute('position'), n = geometry.getAttribute('normal'), uv = new Float32Array(2 * p.count);
   for (let k = 0; k < p.count; k++) {
     const [x, y, z] = [p.getX(k), p.getY(k), p.getZ(k)], up = Math.abs(n.getY(k)), side = Math.abs(n.getX(k));
     uv.set(up > 0.6 ? [x / size, z / size] : side > 0.6 ? [z / size, y / size] : [x / size, y / size], 2 * k);
   }
   geometry.setAttribute('uv', new THREE.BufferAttribute(uv, 2));
+  geometry.userData.grain = size;
+  return geometry;
 }
 
 const materials = new Map();

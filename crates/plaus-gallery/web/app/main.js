@@ -180,7 +180,7 @@ async function begin() {
   try {
     const { meta, bytes } = await unpack(document.getElementById('data'));
     window.gallery = new App(meta, bytes);
-    requestAnimationFrame(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = performance.now().toFixed(0); }));
+    requestAnimationFrame(() => window.gallery.views.drawn(() => { document.documentElement.dataset.ready = performance.now().toFixed(0); }));
     message.textContent = '';
     window.gallery.player.play();
   } catch (error) {

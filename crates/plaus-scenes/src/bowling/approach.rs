@@ -1,7 +1,7 @@
 //! Where a delivery leads, were there neither pins nor gutters.
 
 use super::draw::Shot;
-use super::lane::Lane;
+use super::lane::{LENGTH, Lane};
 use super::release::Quantity;
 use plaus_mcmc::ModelError;
 use plaus_sim::motion::Parabola;
@@ -17,7 +17,7 @@ impl Lane {
         draw.ball[Quantity::Across as usize] = 0.0;
         let alley = self.alley(&draw);
         let world = alley.practice().map_err(ModelError::new)?;
-        let mut state = world.state(&[Self::start(&draw)]).map_err(ModelError::new)?;
+        let mut state = world.state(&[Self::start(&draw, LENGTH)]).map_err(ModelError::new)?;
         let Some(farthest) = distances.last() else { return Ok(Some(Vec::new())) };
         let mut way = Way { pieces: Vec::new(), beyond: *farthest };
         world.run(&mut state, &mut Scratch::default(), alley.duration, &mut way).map_err(ModelError::new)?;

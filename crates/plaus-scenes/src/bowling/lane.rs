@@ -20,6 +20,9 @@ use std::sync::Arc;
 /// Width of the lane in m.
 pub(super) const WIDTH: f64 = Alley::WIDTH;
 
+/// From the foul line to the head pin's spot in m.
+pub(super) const LENGTH: f64 = Alley::LENGTH;
+
 /// What all shots of a scenario have in common.
 #[derive(Debug)]
 pub(super) struct Lane {
@@ -140,10 +143,10 @@ impl Lane {
         }
     }
 
-    /// How the ball starts.
-    pub(super) fn start(draw: &Shot) -> Start {
+    /// How the ball starts, so far in m before the head pin's spot.
+    pub(super) fn start(draw: &Shot, distance: f64) -> Start {
         Start {
-            position: DVec3::new(draw.get(Quantity::Across), -Alley::LENGTH, draw.get(Quantity::Height)),
+            position: DVec3::new(draw.get(Quantity::Across), -distance, draw.get(Quantity::Height)),
             orientation: DQuat::IDENTITY,
             velocity: DVec3::new(draw.get(Quantity::Drift), draw.get(Quantity::Speed), 0.0),
             spin: DVec3::new(-draw.get(Quantity::Roll), draw.get(Quantity::Hook), draw.get(Quantity::Twist)),
@@ -161,24 +164,27 @@ impl Lane {
         places
     }
 
-    /// The world of a draw, and where everything starts.
-    pub(super) fn world(&self, draw: &Shot) -> Result<(Rigid, Vec<Start>), WorldError> {
+    /// The world of a draw, and where everything starts: the ball so far in m before the head pin's spot.
+    pub(super) fn world(&self, draw: &Shot, distance: f64) -> Result<(Rigid, Vec<Start>), WorldError> {
         let up = self.pin.balance();
         let pin =
             |(number, offset): (&usize, &[f64; 2])| Start::at_rest(place(*number, offset) + DVec3::new(0.0, 0.0, up));
-        let starts = std::iter::once(Self::start(draw)).chain(self.pins.iter().zip(&draw.pins).map(pin)).collect();
+        let starts =
+            std::iter::once(Self::start(draw, distance)).chain(self.pins.iter().zip(&draw.pins).map(pin)).collect();
         Ok((self.alley(draw).world_of(&self.pin)?, starts))
     }
 
-    /// Bowls. Stops as soon as no pin's fate can change, or `hopeless` says so of the pins that are down; then there is no answer.
+    /// Bowls from `distance` m before the head pin's spot. Stops as soon as no pin's fate can change, or `hopeless` says so of the pins that are down; then there is no
+    /// answer.
     pub(super) fn bowl(
         &self,
         draw: &Shot,
+        distance: f64,
         work: &mut Work,
         hopeless: impl FnMut(Pins) -> bool,
         observer: impl Observer<Rigid>,
     ) -> Result<Option<Rest>, ModelError> {
-        let (world, starts) = self.world(draw).map_err(ModelError::new)?;
+        let (world, starts) = self.world(draw, distance).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
         let mut umpire = Umpire::new(&world, self.verdict.with_ball(&self.alley(draw)), hopeless);
         let duration = self.alley.duration;
@@ -205,7 +211,7 @@ impl Lane {
 
     /// Bowls until everything is at rest, and records it: the world, all motions, and when it ends.
     pub(super) fn record(&self, draw: &Shot, work: &mut Work) -> Result<(Rigid, Trace<Turning>, f64), ModelError> {
-        let (world, starts) = self.world(draw).map_err(ModelError::new)?;
+        let (world, starts) = self.world(draw, LENGTH).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
         let mut trace = Trace::default();
         world.run(&mut state, &mut work.scratch, self.alley.duration, &mut trace).map_err(ModelError::new)?;

@@ -73,7 +73,7 @@ impl Bowling {
     /// # Errors
     /// [`ModelError`] where the draw's numbers make no world.
     pub fn world(&self, draw: &Shot) -> Result<(Rigid, Vec<Start>), ModelError> {
-        self.lane.world(draw).map_err(ModelError::new)
+        self.lane.world(draw, lane::LENGTH).map_err(ModelError::new)
     }
 
     /// k and m.
@@ -87,6 +87,16 @@ impl Bowling {
             m += u64::from(counts && matches!(fate, Fate::Standing(way) if *way <= far));
         }
         (k, m)
+    }
+
+    /// What a shot leaves whose ball begins `distance` m before the head pin's spot, in the place and with the velocities of the draw: for deliveries that are to meet the pins just
+    /// so.
+    ///
+    /// # Errors
+    /// [`ModelError`] where there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
+    pub fn bowl_from(&self, distance: f64, draw: &Shot, work: &mut Work) -> Result<Rest, ModelError> {
+        let rest = self.lane.bowl(draw, distance, work, |_| false, &mut ())?;
+        rest.ok_or_else(|| ModelError::new("a shot was given up that nobody called hopeless"))
     }
 
     /// The most that k + m can still become once these pins are down, by their places in the rack.
@@ -136,7 +146,7 @@ impl Target for Bowling {
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
         let hopeless = |down| self.goal.log_potential(self.most(down)) <= floor;
-        let rest = self.lane.bowl(draw, work, hopeless, &mut ())?;
+        let rest = self.lane.bowl(draw, lane::LENGTH, work, hopeless, &mut ())?;
         Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
 

@@ -1,6 +1,6 @@
 //! The animation of a draw. The simulator's z points up; an animation's y does.
 
-use super::throwing::Work;
+use super::throwing::{Recorded, Work};
 use super::{Dice, Draw, props};
 use crate::animation::{Animation, Impact, Look, Piece, Shape, Track, Turn, UPRIGHT, View, upright};
 use glam::DVec3;
@@ -17,31 +17,31 @@ const WOBBLE: f64 = 0.004;
 pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError> {
     let (mut tracks, mut impacts, mut duration) = (Vec::new(), Vec::new(), 0.0_f64);
     let mut extent = [DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)];
-    for (world, trace) in Work::default().record(&scene.plan, draw)? {
-        let first = tracks.len();
-        let name = |die: usize| format!("die_{}", first + die + 1);
-        for (die, motions) in trace.motions.iter().enumerate() {
-            let (pieces, offset) =
-                (pieces(scene, draw, &world, (first, die), motions), scene.offset(draw, first + die));
+    for Recorded { members, world, trace, .. } in Work::default().record(&scene.plan, draw)? {
+        let name = |k: usize| format!("die_{}", members[k] + 1);
+        for (k, (&die, motions)) in members.iter().zip(&trace.motions).enumerate() {
+            let (pieces, offset) = (pieces(scene, draw, &world, (k, die), motions), scene.offset(draw, die));
             for motion in motions {
                 let x = motion.path.x + offset;
                 extent = [extent[0].min(x), extent[1].max(x)];
             }
             duration = pieces.last().map_or(duration, |piece| duration.max(piece.start));
             let shape = Shape::Cuboid { half: scene.plan.cuboid.half(), pips: Some(PIPS) };
-            let look = if scene.config.dice == 1 { Look::IVORY } else { Look::nth(first + die) };
-            tracks.push(Track::new(name(die), shape, look, pieces));
+            let look = if scene.config.dice == 1 { Look::IVORY } else { Look::nth(die) };
+            tracks.push((die, Track::new(name(k), shape, look, pieces)));
         }
         impacts.extend(trace.impacts.iter().map(|hit| {
             let other = match hit.other {
                 Other::Body(other) => name(other),
                 Other::Surface(_) => "table".into(),
             };
-            let point = hit.point + scene.offset(draw, first + hit.body);
+            let point = hit.point + scene.offset(draw, members[hit.body]);
             Impact::new(hit.time, name(hit.body), other, upright(point), upright(hit.normal))
                 .with_strength(hit.approach, hit.impulse.length())
         }));
     }
+    tracks.sort_by_key(|(die, _)| *die);
+    let tracks = tracks.into_iter().map(|(_, track)| track).collect();
     impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
     // One frame at least.
     let duration = duration.max(0.04);
@@ -52,10 +52,10 @@ pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError
     Ok(Animation::new(duration, tracks, impacts).with_scenery(scenery).with_view(view))
 }
 
-/// One die's motions as pieces, with the orientation of its pips.
-fn pieces(scene: &Dice, draw: &Draw, world: &Rigid, (first, die): (usize, usize), motions: &[Turning]) -> Vec<Piece> {
-    let pips = &scene.plan.rotations[usize::from(draw.throws[first + die].turn)];
-    let offset = scene.offset(draw, first + die);
+/// The motions of one die, body `body` of its world, as pieces, with the orientation of its pips.
+fn pieces(scene: &Dice, draw: &Draw, world: &Rigid, (body, die): (usize, usize), motions: &[Turning]) -> Vec<Piece> {
+    let pips = &scene.plan.rotations[usize::from(draw.throws[die].turn)];
+    let offset = scene.offset(draw, die);
     let wobbles = scene.plan.rotations.len() != 24;
     let mut pieces: Vec<Piece> = Vec::with_capacity(motions.len());
     let mut add = |body: &Turning| {
@@ -71,14 +71,14 @@ fn pieces(scene: &Dice, draw: &Draw, world: &Rigid, (first, die): (usize, usize)
         }
         pieces.push(piece);
     };
-    for (k, body) in motions.iter().enumerate() {
-        add(body);
-        let until = motions.get(k + 1).map_or(body.path.t, |next| next.path.t);
-        if wobbles && body.phase == Phase::Flight {
-            let parts = ((until - body.path.t) / WOBBLE).ceil().min(1e5) as u32;
+    for (k, motion) in motions.iter().enumerate() {
+        add(motion);
+        let until = motions.get(k + 1).map_or(motion.path.t, |next| next.path.t);
+        if wobbles && motion.phase == Phase::Flight {
+            let parts = ((until - motion.path.t) / WOBBLE).ceil().min(1e5) as u32;
             for part in 1..parts {
-                let time = body.path.t + (until - body.path.t) * f64::from(part) / f64::from(parts);
-                add(&world.at(die, body, time));
+                let time = motion.path.t + (until - motion.path.t) * f64::from(part) / f64::from(parts);
+                add(&world.at(body, motion, time));
             }
         }
     }

@@ -192,6 +192,30 @@ impl Realisation {
         self.key == other.key && self.changed == other.changed
     }
 
+    /// The points whose scores differ from another table's; `None` where that can be all of them.
+    pub(super) fn differing(&self, other: &Self) -> Option<Vec<Site>> {
+        if self.key != other.key || self.shifted != other.shifted {
+            return None;
+        }
+        // Both lists are in order of their sites.
+        let (mut ours, mut theirs) = (self.changed.iter().peekable(), other.changed.iter().peekable());
+        let mut sites = Vec::new();
+        loop {
+            match (ours.peek(), theirs.peek()) {
+                (None, None) => return Some(sites),
+                (Some(a), Some(b)) if a.0 == b.0 => {
+                    if a.1 != b.1 {
+                        sites.push(a.0);
+                    }
+                    ours.next();
+                    theirs.next();
+                }
+                (Some(a), b) if b.is_none_or(|b| a.0 < b.0) => sites.extend(ours.next().map(|point| point.0)),
+                _ => sites.extend(theirs.next().map(|point| point.0)),
+            }
+        }
+    }
+
     /// How many points moves have changed since the table was drawn.
     #[must_use]
     pub fn changed(&self) -> usize {
@@ -230,6 +254,13 @@ mod tests {
         table.set(site(Field::Height, 0, 0), -0.5);
         table.set(here, 1.0);
         assert_eq!((table.score(site(Field::Height, 0, 0)), table.changed()), (-0.5, 2));
+        let mut other = Realisation { key: table.key, shifted: [5, -1], changed: Vec::new() };
+        other.set(here, 1.0);
+        other.set(site(Field::Friction, 9, 9), 0.0);
+        let differing = Some(vec![site(Field::Height, 0, 0), site(Field::Friction, 9, 9)]);
+        assert_eq!((table.differing(&other), other.differing(&table)), (differing.clone(), differing));
+        other.shifted = [0; 2];
+        assert_eq!(table.differing(&other), None);
     }
 
     /// Mean, variance and correlation of neighbours over 10⁵ points: five standard errors, a false alarm in 10⁶ for all.

@@ -1,9 +1,11 @@
 //! What a throw leaves behind: where its die comes to rest, where it touched the table, and what the constraints ask about the way.
 
 use super::Rotation;
+use crate::way::{Way, follow};
 use glam::{DQuat, DVec3};
 use plaus_mcmc::SolutionClass;
 use plaus_sim::mechanics::{Impact, Other};
+use plaus_sim::motion::Parabola;
 use plaus_sim::rigid::{Phase, Rigid, Turning};
 use plaus_sim::state::State;
 use plaus_sim::trace::Observer;
@@ -124,6 +126,7 @@ pub(super) struct Watch<'a> {
     /// Each die's motion before the current one's begin.
     last: Vec<Option<Turning>>,
     trips: Vec<Trip>,
+    paths: Vec<Vec<Parabola>>,
     left: bool,
 }
 
@@ -144,13 +147,17 @@ impl<'a> Watch<'a> {
             extent: [[f64::MAX; 2], [f64::MIN; 2]],
         };
         let trips: Vec<Trip> = asked.iter().map(trip).collect();
-        Self { rigid, last: vec![None; trips.len()], asked, looking, trips, offset, left: false }
+        let paths = vec![Vec::new(); trips.len()];
+        Self { rigid, last: vec![None; trips.len()], asked, looking, trips, paths, offset, left: false }
     }
 
-    /// The trips, after a run that ended with the bodies as given.
-    pub(super) fn finish(mut self, bodies: &[Turning]) -> Vec<Trip> {
+    /// The trips, after a run that ended with the bodies as given; and the ways, on which a die at rest lies there until the time `longest`.
+    pub(super) fn finish(mut self, bodies: &[Turning], longest: f64) -> (Vec<Trip>, Vec<Way>) {
+        let mut ways = Vec::with_capacity(bodies.len());
         for (k, body) in bodies.iter().enumerate() {
             self.cover(k, body, f64::INFINITY);
+            follow(&mut self.paths[k], path(body));
+            ways.push(Way::new(&self.paths[k], if body.phase == Phase::Rest { longest } else { body.path.t }));
             let trip = &mut self.trips[k];
             (trip.time, trip.position, trip.orientation) = (body.path.t, body.path.x, body.turn);
             trip.end = match body.phase {
@@ -159,7 +166,7 @@ impl<'a> Watch<'a> {
                 _ => End::Unfinished,
             };
         }
-        self.trips
+        (self.trips, ways)
     }
 
     /// Answers what is asked about a motion until it ends.
@@ -206,6 +213,14 @@ fn from_chord(point: DVec3, from: DVec3, to: DVec3) -> f64 {
     (off - along * part).length()
 }
 
+/// The motion of a body's centre.
+fn path(body: &Turning) -> Parabola {
+    match body.phase {
+        Phase::Rest | Phase::Waiting => Parabola { v: DVec3::ZERO, a: DVec3::ZERO, ..body.path },
+        _ => body.path,
+    }
+}
+
 fn is_on(edge: &[f64; 2], x: DVec3) -> bool {
     x.x.abs() <= edge[0] && x.y.abs() <= edge[1]
 }
@@ -231,6 +246,7 @@ impl Observer<Rigid> for Watch<'_> {
         let [low, high] = &mut trip.extent;
         *low = [low[0].min(x.x), low[1].min(x.y)];
         *high = [high[0].max(x.x), high[1].max(x.y)];
+        follow(&mut self.paths[index], path(body));
         self.left |= !is_on(&self.looking.edge, x + self.offset);
         self.last[index] = Some(body.clone());
     }

@@ -18,6 +18,7 @@ mod moves;
 mod plan;
 mod prior;
 mod props;
+mod settle;
 mod steps;
 mod surface;
 mod symmetry;
@@ -40,6 +41,8 @@ use plan::{Demand, Plan};
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use surface::Touched;
 
 /// Dice: `p ∝ Π constraints · Π priors of the throws`, with respect to the law of the tables.
 #[derive(Debug)]
@@ -97,6 +100,18 @@ impl Dice {
         &self.prior
     }
 
+    /// Which dice are simulated together, as they come near each other.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the simulation fails.
+    pub fn groups(&self, draw: &Draw) -> Result<Vec<Vec<usize>>, ModelError> {
+        if self.plan.together {
+            Work::default().groups(&self.plan, draw)
+        } else {
+            Ok((0..draw.throws.len()).map(|die| vec![die]).collect())
+        }
+    }
+
     /// By how much a die stands farther on than its trip says, in m.
     #[must_use]
     pub fn offset(&self, draw: &Draw, die: usize) -> glam::DVec3 {
@@ -120,9 +135,13 @@ impl Dice {
     /// # Errors
     /// [`ModelError`] where the simulation fails.
     pub fn touched(&self, draw: &Draw) -> Result<(usize, usize), ModelError> {
-        let recorded = Work::default().record(&self.plan, draw)?;
-        let splines = recorded.iter().flat_map(|(world, _)| world.parts()).flat_map(surface::splines);
-        Ok(splines.fold((0, 0), |(points, bytes), spline| (points + spline.touched_count(), bytes + spline.bytes())))
+        let (mut sites, mut bytes) = (BTreeSet::new(), 0);
+        for mut recorded in Work::default().record(&self.plan, draw)? {
+            bytes += surface::bytes(recorded.world.parts_mut());
+            let touched = Touched::take(recorded.world.parts_mut());
+            sites.extend(touched.sites().map(|site| (recorded.table, site)));
+        }
+        Ok((sites.len(), bytes))
     }
 
     /// The same scene, whose move [`Turn`] takes every die for a cube: wrong for any other cuboid, where it no longer leaves the target as it is. For tests of
@@ -173,6 +192,10 @@ impl Target for Dice {
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
         work.simulate(self, draw, current, floor)
+    }
+
+    fn settle(&self, accepted: bool, work: &mut Work) {
+        work.settle(accepted);
     }
 
     fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {

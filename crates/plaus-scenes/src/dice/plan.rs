@@ -95,7 +95,7 @@ impl Plan {
 
     /// The prior, with heights of release clear of the table.
     pub(super) fn prior(&self, config: &Config) -> Result<Prior, ConfigError> {
-        let reach = Shape::Cuboid(self.cuboid).reach();
+        let reach = self.reach_of_die();
         let lowest = self.surface.highest() + reach + CLEARANCE;
         let bad = |error| ConfigError::new("world.dice.throw", error);
         let config = Config { together: self.together, ..config.clone() };
@@ -107,6 +107,11 @@ impl Plan {
     /// Whether each die has a random table of its own, so that both can be shifted together.
     pub(super) fn carries(&self) -> bool {
         !self.together && !self.surface.random().is_empty()
+    }
+
+    /// Radius of the sphere about a die's middle that holds it, in m.
+    pub(super) fn reach_of_die(&self) -> f64 {
+        Shape::Cuboid(self.cuboid).reach()
     }
 
     /// The indices of the table's control points along x and y go from minus these to these.

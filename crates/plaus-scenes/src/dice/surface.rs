@@ -5,7 +5,7 @@ use super::draw::{Field, LARGEST_SCORE, Realisation, Site};
 use crate::scene::ConfigError;
 use glam::DVec3;
 use plaus_dist::{TruncatedGaussian, math, normal_quantile};
-use plaus_sim::field::{Grid, Spline};
+use plaus_sim::field::{Grid, Points, Spline};
 use plaus_sim::rigid::{Part, Table as Uneven};
 use plaus_sim::scenery::Plane;
 use plaus_sim::{Law, Laws, Material, WorldError};
@@ -140,6 +140,11 @@ impl Surface {
         self.spilt.is_some()
     }
 
+    /// Whether the table is plain and the same throughout.
+    pub(super) fn is_plain(&self) -> bool {
+        self.random.is_empty() && self.spilt.is_none()
+    }
+
     fn is_wet(&self, shifted: [i32; 2], site: Site) -> bool {
         self.spilt.is_some_and(|spilt| {
             let there = [site.i.wrapping_add(shifted[0]), site.j.wrapping_add(shifted[1])];
@@ -207,12 +212,47 @@ impl Surface {
 }
 
 /// The fields of a part.
-pub(super) fn splines(part: &Part) -> impl Iterator<Item = &Spline> {
+fn splines(part: &mut Part) -> impl Iterator<Item = (Field, &mut Spline)> {
     let table = match part {
         Part::Table(table) => Some(table),
         _ => None,
     };
-    table.into_iter().flat_map(|table| std::iter::once(&table.height).chain(&table.restitution).chain(&table.friction))
+    table.into_iter().flat_map(|table| {
+        let rest = table.friction.iter_mut().map(|spline| (Field::Friction, spline));
+        let bounce = table.restitution.iter_mut().map(|spline| (Field::Restitution, spline));
+        std::iter::once((Field::Height, &mut table.height)).chain(bounce).chain(rest)
+    })
+}
+
+/// Memory of what was made of the fields of parts, in bytes.
+pub(super) fn bytes(parts: &mut [Part]) -> usize {
+    parts.iter_mut().flat_map(splines).map(|(_, spline)| spline.bytes()).sum()
+}
+
+/// Which control points of a table were looked at.
+#[derive(Debug, Default)]
+pub(super) struct Touched(Vec<(Field, Points)>);
+
+impl Touched {
+    /// Those of a world's parts, which forget them.
+    pub(super) fn take(parts: &mut [Part]) -> Self {
+        Self(parts.iter_mut().flat_map(splines).map(|(field, spline)| (field, spline.take_touched())).collect())
+    }
+
+    /// Whether one is among them.
+    pub(super) fn has(&self, site: Site) -> bool {
+        let here = [i64::from(site.i), i64::from(site.j)];
+        self.0.iter().any(|(field, points)| *field == site.field && points.has(here))
+    }
+
+    /// Those of each field, in order.
+    pub(super) fn sites(&self) -> impl Iterator<Item = Site> {
+        let of = |(field, points): &(Field, Points)| {
+            let site = |[i, j]: [i64; 2]| Site { field: *field, i: i as i32, j: j as i32 };
+            points.in_order().into_iter().map(site).collect::<Vec<_>>()
+        };
+        self.0.iter().flat_map(of)
+    }
 }
 
 #[cfg(test)]

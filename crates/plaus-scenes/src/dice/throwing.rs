@@ -1,9 +1,10 @@
-//! Simulating a draw: each die alone on its own table, or all on one.
+//! Simulating a draw: each die alone on its own table, or groups of dice on one.
 
 use super::draw::{Draw, Realisation, Throw};
 use super::flight::{Asked, End, Looking, Trip, Watch};
 use super::plan::Plan;
-use super::surface::MATERIAL;
+use super::settle::{Fall, Falls};
+use super::surface::{MATERIAL, Touched};
 use super::{Dice, Rest};
 use glam::DVec3;
 use plaus_dist::LogPotential;
@@ -24,6 +25,10 @@ const SKIN: f64 = 1.0;
 pub struct Work {
     scratch: Scratch<RigidScratch>,
     runs: u64,
+    dice: u64,
+    /// Of dice thrown onto one table: what is known about the chain's state, and about the candidate that was simulated last.
+    pub(super) current: Falls,
+    pub(super) candidate: Falls,
 }
 
 impl Work {
@@ -31,6 +36,12 @@ impl Work {
     #[must_use]
     pub fn runs(&self) -> u64 {
         self.runs
+    }
+
+    /// How many dice were simulated in those runs.
+    #[must_use]
+    pub fn dice(&self) -> u64 {
+        self.dice
     }
 
     pub(super) fn simulate(
@@ -41,23 +52,19 @@ impl Work {
         floor: LogPotential,
     ) -> Result<Simulated<Rest>, ModelError> {
         let plan = &scene.plan;
+        if plan.together {
+            let trips = self.throw_together(plan, draw, current.map(|state| &state.draw))?;
+            return Ok(Simulated::Complete(scene.judge(draw, trips)));
+        }
         let dice = draw.throws.len();
         let same = |die: usize| current.and_then(|state| known(plan, state, draw, die)).cloned();
         let mut trips: Vec<Option<Trip>> = (0..dice).map(same).collect();
-        if plan.together {
-            if trips.iter().any(Option::is_none) {
-                let all = self.throw(plan, &draw.throws, &draw.tables[0], plan.asked.iter().collect(), plan.looking)?;
-                trips = all.into_iter().map(Some).collect();
-            }
-        } else {
-            for die in 0..dice {
-                if trips[die].is_none() {
-                    if cannot_exceed(plan, draw, &trips, floor)? {
-                        return Ok(Simulated::CannotExceedFloor);
-                    }
-                    let (thrown, table) = (&draw.throws[die..=die], &draw.tables[die]);
-                    trips[die] = self.throw(plan, thrown, table, vec![&plan.asked[die]], plan.looking)?.pop();
+        for die in 0..dice {
+            if trips[die].is_none() {
+                if cannot_exceed(plan, draw, &trips, floor)? {
+                    return Ok(Simulated::CannotExceedFloor);
                 }
+                trips[die] = self.fall(plan, draw, vec![die])?.trips.pop();
             }
         }
         Ok(Simulated::Complete(scene.judge(draw, trips.into_iter().flatten().collect())))
@@ -78,25 +85,20 @@ impl Work {
         };
         let mut watch = Watch::new(&world, vec![&asked], endless, DVec3::ZERO);
         let bodies = self.run(plan, &world, std::slice::from_ref(throw), &mut watch)?;
-        let trip = watch.finish(&bodies).pop();
+        let trip = watch.finish(&bodies, plan.longest).0.pop();
         Ok(trip.filter(|trip| trip.end == End::AtRest))
     }
 
-    /// Throws dice onto a table.
-    fn throw(
-        &mut self,
-        plan: &Plan,
-        throws: &[Throw],
-        table: &Realisation,
-        asked: Vec<&Asked>,
-        looking: Looking,
-    ) -> Result<Vec<Trip>, ModelError> {
-        let world = plan.world(throws.len(), plan.surface.part(table))?;
-        let [x, y] = table.shifted.map(|cells| f64::from(cells) * plan.surface.spacing());
-        let offset = DVec3::new(x, y, 0.0);
-        let mut watch = Watch::new(&world, asked, looking, offset);
-        let bodies = self.run(plan, &world, throws, &mut watch)?;
-        Ok(watch.finish(&bodies))
+    /// Throws some dice onto their table, by themselves.
+    pub(super) fn fall(&mut self, plan: &Plan, draw: &Draw, members: Vec<usize>) -> Result<Fall, ModelError> {
+        let first = members.first().copied().unwrap_or(0);
+        let mut world = plan.world(members.len(), plan.surface.part(&draw.tables[draw.table_of(first)]))?;
+        let throws: Vec<Throw> = members.iter().map(|&die| draw.throws[die]).collect();
+        let asked = members.iter().map(|&die| &plan.asked[die]).collect();
+        let mut watch = Watch::new(&world, asked, plan.looking, draw.offset(first, plan.surface.spacing()));
+        let bodies = self.run(plan, &world, &throws, &mut watch)?;
+        let (trips, ways) = watch.finish(&bodies, plan.longest);
+        Ok(Fall { members, trips, ways, touched: Touched::take(world.parts_mut()) })
     }
 
     fn run(
@@ -107,6 +109,7 @@ impl Work {
         observer: &mut impl Observer<Rigid>,
     ) -> Result<Vec<Turning>, ModelError> {
         self.runs += 1;
+        self.dice += throws.len() as u64;
         let start = |throw: &Throw| Start {
             position: throw.position,
             orientation: throw.orientation,
@@ -123,19 +126,33 @@ impl Work {
         Ok(state.bodies().to_vec())
     }
 
-    /// Simulates a draw with all motions and impacts: one recording for all dice, or one for each.
-    pub(super) fn record(&mut self, plan: &Plan, draw: &Draw) -> Result<Vec<(Rigid, Trace<Turning>)>, ModelError> {
-        let count = if plan.together { draw.throws.len() } else { 1 };
-        let recorded = |(throws, table): (&[Throw], &Realisation)| {
-            let (world, mut trace) = (plan.world(throws.len(), plan.surface.part(table))?, Trace::default());
-            let bodies = self.run(plan, &world, throws, &mut trace)?;
+    /// Simulates a draw with all motions and impacts, group by group.
+    pub(super) fn record(&mut self, plan: &Plan, draw: &Draw) -> Result<Vec<Recorded>, ModelError> {
+        let alone = || (0..draw.throws.len()).map(|die| vec![die]).collect();
+        let groups = if plan.together { self.groups(plan, draw)? } else { alone() };
+        let record = |members: Vec<usize>| {
+            let throws: Vec<Throw> = members.iter().map(|&die| draw.throws[die]).collect();
+            let table = draw.table_of(members.first().copied().unwrap_or(0));
+            let (world, mut trace) =
+                (plan.world(members.len(), plan.surface.part(&draw.tables[table]))?, Trace::default());
+            let bodies = self.run(plan, &world, &throws, &mut trace)?;
             for (motions, last) in trace.motions.iter_mut().zip(bodies) {
                 motions.push(last);
             }
-            Ok((world, trace))
+            Ok(Recorded { members, table, world, trace })
         };
-        draw.throws.chunks(count).zip(&draw.tables).map(recorded).collect()
+        groups.into_iter().map(record).collect()
     }
+}
+
+/// Dice that were simulated together, with all that happened.
+pub(super) struct Recorded {
+    /// Which dice, in ascending order.
+    pub(super) members: Vec<usize>,
+    /// Which of the draw's tables they are on.
+    pub(super) table: usize,
+    pub(super) world: Rigid,
+    pub(super) trace: Trace<Turning>,
 }
 
 impl Plan {

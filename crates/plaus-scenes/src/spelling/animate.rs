@@ -15,7 +15,7 @@ pub(super) fn animate(arena: &Arena, word: &Word, draw: &Drops) -> Result<Animat
     for (fall, hits) in Work::default().record(arena, draw)? {
         let name = |member: usize| format!("ball_{}", fall.members[member]);
         for (member, way) in fall.ways.iter().enumerate() {
-            let piece = |piece: &super::fall::Piece| {
+            let piece = |piece: &crate::way::Piece| {
                 let path = &piece.path;
                 Piece::ballistic(path.t, upright(path.x), upright(path.v), upright(path.a))
             };

@@ -1,12 +1,12 @@
 //! Some balls simulated by themselves: their ways, where they end, and which vertices that can depend on.
 
 use super::arena::Arena;
+use crate::way::{Way, follow};
 use glam::DVec3;
 use plaus_mcmc::ModelError;
 use plaus_sim::marbles::{Marble, MarbleScratch, Marbles, Phase, Start};
 use plaus_sim::mechanics::Impact;
 use plaus_sim::motion::Parabola;
-use plaus_sim::scenery::Aabb;
 use plaus_sim::trace::Observer;
 use plaus_sim::worlds::Bins;
 use plaus_sim::{Outcome, Scratch};
@@ -24,23 +24,6 @@ pub(super) struct Fall {
     pub(super) complete: bool,
     /// Bit k: what became of a ball alone can depend on random vertex k.
     touched: Vec<u64>,
-}
-
-/// The way of one ball.
-#[derive(Debug, Default)]
-pub(super) struct Way {
-    pub(super) pieces: Vec<Piece>,
-    /// Around the centre at all times.
-    around: Option<Aabb>,
-}
-
-/// A parabola of a way; it ends where the next begins.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Piece {
-    pub(super) path: Parabola,
-    pub(super) until: f64,
-    /// Around the centre.
-    around: Aabb,
 }
 
 /// Records ways, and impacts where wanted.
@@ -63,12 +46,7 @@ impl Observer<Marbles> for Recorder {
         if body.phase == Phase::Waiting {
             return;
         }
-        let way = &mut self.ways[index];
-        // A motion that ended when it began is none.
-        if way.last().is_some_and(|last| last.t >= body.path.t) {
-            way.pop();
-        }
-        way.push(body.path);
+        follow(&mut self.ways[index], body.path);
     }
 }
 
@@ -120,61 +98,6 @@ impl Fall {
     pub(super) fn meets(&self, other: &Self, reach: f64) -> bool {
         self.ways.iter().any(|way| other.ways.iter().any(|their| way.meets(their, reach)))
     }
-}
-
-impl Way {
-    fn new(paths: &[Parabola], end: f64) -> Self {
-        let pieces: Vec<Piece> = paths
-            .iter()
-            .enumerate()
-            .map(|(k, path)| {
-                let until = paths.get(k + 1).map_or(end.max(path.t), |next| next.t);
-                Piece { path: *path, until, around: path.bounds(0.0, until - path.t) }
-            })
-            .collect();
-        let around = pieces.iter().map(|piece| piece.around).reduce(Aabb::union);
-        Self { pieces, around }
-    }
-
-    /// Whether the two centres come nearer than `reach`. Answers yes where it is close: then the balls are simulated together, which is right in any case.
-    fn meets(&self, other: &Self, reach: f64) -> bool {
-        let (Some(a), Some(b)) = (&self.around, &other.around) else { return false };
-        if !a.grown(reach).meets(b) {
-            return false;
-        }
-        let (mut i, mut j) = (0, 0);
-        while let (Some(a), Some(b)) = (self.pieces.get(i), other.pieces.get(j)) {
-            let (from, until) = (a.path.t.max(b.path.t), a.until.min(b.until));
-            if from < until && a.around.grown(reach).meets(&b.around) && come_near(a, b, from, until, reach) {
-                return true;
-            }
-            if a.until <= b.until {
-                i += 1;
-            } else {
-                j += 1;
-            }
-        }
-        false
-    }
-}
-
-/// Seconds below which two centres that could be near each other count as near. Default 1e-7; larger merges more groups than needed.
-const SHORTEST: f64 = 1e-7;
-
-/// Whether two centres may come nearer than `reach` between two times: no where their distance in the middle, less what they can cover until the ends, is more.
-fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> bool {
-    let velocity = |t: f64| a.path.velocity_after(t - a.path.t) - b.path.velocity_after(t - b.path.t);
-    // A velocity that changes linearly is largest at an end.
-    let fastest = velocity(from).length_squared().max(velocity(until).length_squared()).sqrt();
-    let (middle, half) = (0.5 * (from + until), 0.5 * (until - from));
-    let distance = (a.path.at(middle) - b.path.at(middle)).length();
-    if distance - fastest * half > reach {
-        return false;
-    }
-    half < SHORTEST
-        || distance <= reach
-        || come_near(a, b, from, middle, reach)
-        || come_near(a, b, middle, until, reach)
 }
 
 /// Which vertices a way can depend on.

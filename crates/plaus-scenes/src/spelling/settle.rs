@@ -8,6 +8,7 @@ use super::Rest;
 use super::arena::Arena;
 use super::draw::Drops;
 use super::fall::{Fall, Recorder};
+use crate::way::merge;
 use plaus_mcmc::ModelError;
 use plaus_sim::Scratch;
 use plaus_sim::marbles::{MarbleScratch, Marbles, Start};
@@ -189,7 +190,7 @@ impl Work {
     ) -> Result<(), ModelError> {
         let reach = NEAR * arena.bins().marble;
         loop {
-            let merged = merge(&next.groups, reach);
+            let merged = merge(next.groups.len(), |a, b| next.groups[a].meets(&next.groups[b], reach));
             if merged.len() == next.groups.len() {
                 return Ok(());
             }
@@ -266,21 +267,6 @@ impl Falls {
         let Some(old) = &self.draw else { return Vec::new() };
         (0..draw.offsets.len()).filter(|&k| old.offsets[k] != draw.offsets[k]).collect()
     }
-}
-
-/// Groups that meet, directly or through others, as lists of indices in order of the first.
-fn merge(groups: &[Arc<Fall>], reach: f64) -> Vec<Vec<usize>> {
-    let mut leader: Vec<usize> = (0..groups.len()).collect();
-    for a in 0..groups.len() {
-        for b in 0..a {
-            if leader[a] != leader[b] && groups[a].meets(&groups[b], reach) {
-                let (low, high) = (leader[a].min(leader[b]), leader[a].max(leader[b]));
-                leader.iter_mut().filter(|leader| **leader == high).for_each(|leader| *leader = low);
-            }
-        }
-    }
-    let leaders = (0..groups.len()).filter(|&k| leader[k] == k);
-    leaders.map(|first| (0..groups.len()).filter(|&k| leader[k] == first).collect()).collect()
 }
 
 #[cfg(test)]

@@ -41,56 +41,98 @@ impl Bounds {
     }
 }
 
-/// Coefficients of `uᵃ vᵇ`, `u` and `v` from 0 to 1 within the cell.
+/// Control values over a cell, the second index along y.
+pub(super) type Values = [[f64; 4]; 4];
+
+/// A cell: its bounds at once, its polynomial from the first time that somebody looks into it. Most cells are only passed over.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cell {
-    power: [[f64; 4]; 4],
+    /// Control values; once it is ready, coefficients: those of `vᵇ` in row `b`, from that of `u⁰` to that of `u³`.
+    numbers: [Lanes; 4],
+    is_ready: bool,
     pub(super) bounds: Bounds,
 }
 
-/// Row `a`: coefficients of `uᵃ` from the four control values.
-const TO_POWER: [[f64; 4]; 4] = [
-    [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0, 0.0],
-    [-0.5, 0.0, 0.5, 0.0],
-    [0.5, -1.0, 0.5, 0.0],
-    [-1.0 / 6.0, 0.5, -0.5, 1.0 / 6.0],
-];
-/// Row `a`: the Bernstein coefficient from the four control values.
-const TO_BERNSTEIN: [[f64; 4]; 4] = [
-    [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0, 0.0],
-    [0.0, 2.0 / 3.0, 1.0 / 3.0, 0.0],
-    [0.0, 1.0 / 3.0, 2.0 / 3.0, 0.0],
-    [0.0, 1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0],
-];
+/// Four numbers that undergo the same.
+type Lanes = [f64; 4];
 
-fn transform(by: &[[f64; 4]; 4], points: &[[f64; 4]; 4]) -> [[f64; 4]; 4] {
-    let dot = |m: &[f64; 4], p: [f64; 4]| m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3] * p[3];
-    let mut half = [[0.0; 4]; 4];
-    for a in 0..4 {
-        for (j, h) in half[a].iter_mut().enumerate() {
-            *h = dot(&by[a], [points[0][j], points[1][j], points[2][j], points[3][j]]);
-        }
-    }
-    half.map(|row| [dot(&by[0], row), dot(&by[1], row), dot(&by[2], row), dot(&by[3], row)])
+#[inline]
+fn scaled(by: f64, p: &Lanes) -> Lanes {
+    [by * p[0], by * p[1], by * p[2], by * p[3]]
+}
+
+#[inline]
+fn plus(a: &Lanes, b: &Lanes) -> Lanes {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]]
+}
+
+/// Coefficients of `u⁰` to `u³` from four control values, in each lane.
+#[inline]
+fn to_power(p: &[Lanes; 4]) -> [Lanes; 4] {
+    let sixth = |k: usize| scaled(1.0 / 6.0, &p[k]);
+    let half = |k: usize| scaled(0.5, &p[k]);
+    let minus = |by: f64, k: usize| scaled(-by, &p[k]);
+    [
+        plus(&plus(&sixth(0), &scaled(4.0 / 6.0, &p[1])), &sixth(2)),
+        plus(&minus(0.5, 0), &half(2)),
+        plus(&plus(&half(0), &minus(1.0, 1)), &half(2)),
+        plus(&plus(&plus(&minus(1.0 / 6.0, 0), &half(1)), &minus(0.5, 2)), &sixth(3)),
+    ]
+}
+
+/// Bernstein coefficients from four control values, in each lane.
+#[inline]
+fn to_bernstein(p: &[Lanes; 4]) -> [Lanes; 4] {
+    let thirds = |two: usize, one: usize| [scaled(2.0 / 3.0, &p[two]), scaled(1.0 / 3.0, &p[one])];
+    let ([a, b], [d, c]) = (thirds(1, 2), thirds(2, 1));
+    let end =
+        |k: usize| plus(&plus(&scaled(1.0 / 6.0, &p[k]), &scaled(4.0 / 6.0, &p[k + 1])), &scaled(1.0 / 6.0, &p[k + 2]));
+    [end(0), plus(&a, &b), plus(&c, &d), end(1)]
+}
+
+#[inline]
+fn transposed(p: &[Lanes; 4]) -> [Lanes; 4] {
+    let column = |k: usize| [p[0][k], p[1][k], p[2][k], p[3][k]];
+    [column(0), column(1), column(2), column(3)]
 }
 
 impl Cell {
     /// The cell over control values `points[a][b]`.
-    pub(super) fn new(points: &[[f64; 4]; 4], spacing: f64) -> Self {
-        Self { power: transform(&TO_POWER, points), bounds: bounds(&transform(&TO_BERNSTEIN, points), spacing) }
+    pub(super) fn new(points: &Values, spacing: f64) -> Self {
+        let along_y = to_bernstein(&transposed(&to_bernstein(points)));
+        Self { numbers: *points, is_ready: false, bounds: bounds(&along_y, spacing) }
+    }
+
+    /// Makes the polynomial; to be called before the first look.
+    #[inline]
+    pub(super) fn prepare(&mut self) {
+        if !self.is_ready {
+            self.numbers = to_power(&transposed(&to_power(&self.numbers)));
+            self.is_ready = true;
+        }
+    }
+
+    /// Values of the polynomials in `v` whose coefficients the lanes hold.
+    #[inline]
+    fn along(&self, v: f64) -> Lanes {
+        let c = &self.numbers;
+        plus(&c[0], &scaled(v, &plus(&c[1], &scaled(v, &plus(&c[2], &scaled(v, &c[3]))))))
+    }
+
+    /// Their derivatives.
+    #[inline]
+    fn slopes(&self, v: f64) -> Lanes {
+        let c = &self.numbers;
+        plus(&c[1], &scaled(v, &plus(&scaled(2.0, &c[2]), &scaled(v, &scaled(3.0, &c[3])))))
     }
 
     /// Value and derivatives; `per` is 1/spacing.
     #[inline]
     pub(super) fn at(&self, u: f64, v: f64, per: f64) -> Sample {
-        let mut rows = [[0.0; 3]; 4];
-        for (row, c) in rows.iter_mut().zip(&self.power) {
-            *row = horner(c, v);
-        }
-        let column = |k: usize| [rows[0][k], rows[1][k], rows[2][k], rows[3][k]];
-        let (along, across) = (horner(&column(0), u), horner(&column(1), u));
-        let c = column(2);
-        let yy = c[0] + u * (c[1] + u * (c[2] + u * c[3]));
+        let c = &self.numbers;
+        let bends = plus(&scaled(2.0, &c[2]), &scaled(v, &scaled(6.0, &c[3])));
+        let (along, across) = (horner(&self.along(v), u), horner(&self.slopes(v), u));
+        let yy = bends[0] + u * (bends[1] + u * (bends[2] + u * bends[3]));
         Sample {
             value: along[0],
             slope: [along[1] * per, across[0] * per],
@@ -101,21 +143,14 @@ impl Cell {
     /// Value and first derivatives, the same bits as those of [`at`](Self::at).
     #[inline]
     pub(super) fn slope_at(&self, u: f64, v: f64, per: f64) -> (f64, [f64; 2]) {
-        let mut rows = [[0.0; 2]; 4];
-        for (row, c) in rows.iter_mut().zip(&self.power) {
-            let [value, slope, _] = horner(c, v);
-            *row = [value, slope];
-        }
-        let column = |k: usize| [rows[0][k], rows[1][k], rows[2][k], rows[3][k]];
-        let (along, across) = (horner(&column(0), u), horner(&column(1), u));
+        let (along, across) = (horner(&self.along(v), u), horner(&self.slopes(v), u));
         (along[0], [along[1] * per, across[0] * per])
     }
 
     #[inline]
     pub(super) fn value(&self, u: f64, v: f64) -> f64 {
-        let row = |c: &[f64; 4]| c[0] + v * (c[1] + v * (c[2] + v * c[3]));
-        let p = &self.power;
-        row(&p[0]) + u * (row(&p[1]) + u * (row(&p[2]) + u * row(&p[3])))
+        let row = self.along(v);
+        row[0] + u * (row[1] + u * (row[2] + u * row[3]))
     }
 }
 
@@ -129,7 +164,8 @@ fn horner(c: &[f64; 4], x: f64) -> [f64; 3] {
     ]
 }
 
-fn bounds(b: &[[f64; 4]; 4], spacing: f64) -> Bounds {
+/// What follows from Bernstein coefficients, the first index along y.
+fn bounds(b: &[Lanes; 4], spacing: f64) -> Bounds {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut x, mut y, mut xx, mut yy, mut xy) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
     for i in 0..4 {
@@ -145,7 +181,7 @@ fn bounds(b: &[[f64; 4]; 4], spacing: f64) -> Bounds {
                 yy = yy.max((b[j][i + 2] - 2.0 * b[j][i + 1] + b[j][i]).abs());
             }
             if i < 3 && j < 3 {
-                xy = xy.max((b[i + 1][j + 1] - b[i][j + 1] - b[i + 1][j] + b[i][j]).abs());
+                xy = xy.max((b[i + 1][j + 1] - b[i + 1][j] - b[i][j + 1] + b[i][j]).abs());
             }
         }
     }

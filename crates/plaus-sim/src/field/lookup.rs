@@ -1,4 +1,4 @@
-//! A hash table from cell or point indices to places in a list. Nothing ever iterates over it, so results cannot depend on its order.
+//! A hash table from cell or point indices to places in a list. What iterates over it sorts what comes, so results cannot depend on its order.
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lookup {
@@ -57,6 +57,11 @@ impl Lookup {
         let at = self.find(key);
         self.used += usize::from(self.slots[at].place == FREE);
         self.slots[at] = Slot { key, place };
+    }
+
+    /// In no order that means anything.
+    pub(super) fn keys(&self) -> impl Iterator<Item = [i64; 2]> {
+        self.slots.iter().filter(|slot| slot.place != FREE).map(|slot| slot.key)
     }
 
     pub(super) fn bytes(&self) -> usize {

@@ -19,4 +19,4 @@ mod lookup;
 mod spline;
 
 pub use cell::{Bounds, Sample};
-pub use spline::{Grid, MOST_CELLS, Spline};
+pub use spline::{Grid, MOST_CELLS, Points, Spline};

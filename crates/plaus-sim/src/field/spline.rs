@@ -1,6 +1,6 @@
 //! A lazily realised spline field.
 
-use super::cell::{Bounds, Cell, Sample};
+use super::cell::{Bounds, Cell, Sample, Values};
 use super::lookup::Lookup;
 use crate::error::WorldError;
 use std::cell::RefCell;
@@ -26,8 +26,25 @@ pub struct Spline {
     made: RefCell<Made>,
 }
 
-/// Control values over a cell, the second index along y.
-type Points = [[f64; 4]; 4];
+/// A set of control points.
+#[derive(Debug, Clone, Default)]
+pub struct Points(Lookup);
+
+impl Points {
+    /// Whether a point is among them.
+    #[must_use]
+    pub fn has(&self, key: [i64; 2]) -> bool {
+        self.0.get(key).is_some()
+    }
+
+    /// All of them, in order of their indices.
+    #[must_use]
+    pub fn in_order(&self) -> Vec<[i64; 2]> {
+        let mut keys: Vec<[i64; 2]> = self.0.keys().collect();
+        keys.sort_unstable();
+        keys
+    }
+}
 
 /// What has been asked for so far.
 #[derive(Clone, Default)]
@@ -197,6 +214,11 @@ impl Spline {
         self.made.borrow().points.len()
     }
 
+    /// Forgets all that has been made, and says which control points that were: nothing else of the field had any influence on what was looked at.
+    pub fn take_touched(&mut self) -> Points {
+        Points(std::mem::take(self.made.get_mut()).point_places)
+    }
+
     /// Memory of what has been made, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
@@ -212,6 +234,7 @@ impl Spline {
         let made = &mut *self.made.borrow_mut();
         let value = checked(self.range, made, key, value);
         made.window = None;
+        made.last = None;
         match made.point_places.get(key) {
             Some(place) => made.points[place as usize].1 = value,
             None => made.push_point(key, value),
@@ -230,6 +253,7 @@ impl Spline {
             Some((last, place)) if last == key => place,
             _ => {
                 let place = made.cell_places.get(key).unwrap_or_else(|| self.add(made, key, &mut None));
+                made.cells[place as usize].prepare();
                 made.last = Some((key, place));
                 place
             }
@@ -238,7 +262,7 @@ impl Spline {
 
     /// Makes a cell. `near` holds the control values of the last cell that was made here: its neighbour along y has three rows of them.
     #[cold]
-    fn add(&self, made: &mut Made, key: [i64; 2], near: &mut Option<([i64; 2], Points)>) -> u32 {
+    fn add(&self, made: &mut Made, key: [i64; 2], near: &mut Option<([i64; 2], Values)>) -> u32 {
         let points = self.points(made, key, near.take());
         let cell = Cell::new(&points, self.grid.spacing);
         *near = Some((key, points));
@@ -249,7 +273,7 @@ impl Spline {
     }
 
     /// The control values over a cell.
-    fn points(&self, made: &mut Made, [i, j]: [i64; 2], near: Option<([i64; 2], Points)>) -> Points {
+    fn points(&self, made: &mut Made, [i, j]: [i64; 2], near: Option<([i64; 2], Values)>) -> Values {
         let mut points = [[0.0; 4]; 4];
         let known = match near {
             Some((key, last)) if key == [i, j - 1] => {

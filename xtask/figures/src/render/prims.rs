@@ -1,6 +1,7 @@
 //! An animation at one moment as balls and triangles.
 
 use glam::{DQuat, DVec3};
+use plaus_export::mesh::{self, Mesh, Part};
 use plaus_scenes::Animation;
 use plaus_scenes::animation::{Form, Look, Shape, Stripe};
 
@@ -71,6 +72,16 @@ impl Solid {
     }
 }
 
+/// The triangles of a body's mesh.
+fn placed(mesh: &Mesh, at: DVec3, turned: DQuat) -> impl Iterator<Item = Option<Solid>> {
+    let of = move |list: &[[f32; 3]], id: u32| turned * DVec3::from_array(list[id as usize].map(f64::from));
+    mesh.triangles.iter().map(move |ids| {
+        let [a, b, c] = ids.map(|id| at + of(&mesh.positions, id));
+        let normals = ids.map(|id| of(&mesh.normals, id));
+        Some(Solid::Triangle { corner: a, edges: [b - a, c - a], normals })
+    })
+}
+
 fn flat(corners: [DVec3; 3]) -> Option<Solid> {
     let edges = [corners[1] - corners[0], corners[2] - corners[0]];
     let normal = edges[0].cross(edges[1]).try_normalize()?;
@@ -86,7 +97,13 @@ pub(super) fn of(animation: &Animation, time: f64) -> Vec<Thing> {
             Shape::Sphere { radius, .. } | Shape::Disc { radius, .. } => {
                 things.push(Thing { solid: Solid::Ball { centre: at, radius: *radius }, look: track.look });
             }
-            Shape::Cuboid { half, .. } => add(&mut things, track.look, block(at, *half, turned)),
+            // Rounded, and with its pips.
+            Shape::Cuboid { pips: Some(_), .. } => {
+                for Part { look, mesh } in mesh::of_shape(&track.shape, track.look) {
+                    add(&mut things, look, placed(&mesh, at, turned));
+                }
+            }
+            Shape::Cuboid { half, pips: None } => add(&mut things, track.look, block(at, *half, turned)),
             Shape::Revolution { profile, stripes } => {
                 things.extend(Turned { at, turned, look: track.look }.things(profile, stripes));
             }

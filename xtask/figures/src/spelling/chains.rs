@@ -1,8 +1,8 @@
 //! Chains of words, and what is noted about them.
 
-pub(super) use crate::clock::seconds;
-
 use crate::Result;
+use crate::clock::seconds;
+use crate::stats::quantile;
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal, Mixture, MoveCounts, SolutionClass, Verdict};
 use plaus_scenes::spelling::{Config, Savings, Spelling};
@@ -159,23 +159,5 @@ impl Seen {
     /// Distinct full words a minute.
     pub(super) fn distinct(&self) -> f64 {
         60.0 * self.classes.len() as f64 / self.seconds
-    }
-}
-
-/// The value that a share `q` of them does not exceed.
-pub(super) fn quantile(sorted: &[f64], q: f64) -> f64 {
-    sorted.get(((sorted.len() as f64 * q).ceil() as usize).saturating_sub(1)).copied().unwrap_or(f64::NAN)
-}
-
-/// A number of a table: "never" for ∞, "–" for NaN.
-pub(super) fn shown(value: f64, digits: usize) -> String {
-    if value.is_infinite() {
-        "never".into()
-    } else if value.is_nan() {
-        "–".into()
-    } else if value >= 1000.0 {
-        crate::report::thousands(value.round() as u64)
-    } else {
-        crate::report::significant(value, digits)
     }
 }

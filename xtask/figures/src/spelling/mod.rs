@@ -1,7 +1,7 @@
 //! The balls that spell: figures 5 to 8, the claims of section 5.3, and what the moves and savings bring.
 
 mod accelerators;
-mod chains;
+pub(crate) mod chains;
 mod change_all;
 mod confirmed;
 mod lambda;

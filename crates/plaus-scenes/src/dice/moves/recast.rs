@@ -2,10 +2,10 @@
 
 use super::{aimed, log_between};
 use crate::dice::constraint::Constraint;
-use crate::dice::{Dice, Draw, End, Rest, Work};
+use crate::dice::{Dice, Draw, End, MOST_DICE, Rest, Work};
 use glam::{DQuat, DVec3};
 use plaus_dist::stream::below;
-use plaus_dist::{LogDensity, LogRatio, Stream, math, open_unit, standard_normal};
+use plaus_dist::{Density, Gaussian, LogDensity, LogRatio, Sample, Stream, math, open_unit, standard_normal};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
 /// A die gets a fresh throw from the prior, and a fresh table where it has one of its own, from a place from where it should come to rest near its target, with its pips
@@ -13,11 +13,15 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 ///
 /// The throw is tried out to see how far it leads. A die with a random table of its own is tried out on that: it begins at a uniform place within a cell, the table goes
 /// with it by whole cells, and it comes to rest just where it is led. Any other die, and any where something was spilt, is tried out alone on a plain table, and led by any
-/// length; what bumps and other dice do to it is seen when it is simulated.
+/// length; then alone on its own table from there, which tells how its pips have to be turned. What other dice do to it is seen when it is simulated.
 ///
 /// The density of such a proposal is that of the throw under the prior, but for its place; times that of the error of the place aimed at; times the chance that the
 /// pips are turned so. It depends on the state led to and not on that led from, so the ratio is that of the old state over that of the new one. A die whose try-out does
 /// not come to rest is neither led to nor from.
+///
+/// Of dice thrown onto one table one, two or three that stand in a row are recast at once, as likely whatever the state: dice that are in each other's way hold each
+/// other where they are, for neither comes to its own place before the other goes. Half of those are not led, but thrown from where the prior has them: what they
+/// leave may be led anywhere, as a die is that another one pushed to its place, and there must be a way back to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recast {
     /// Standard deviation of the place aimed at, along each axis, in m.
@@ -36,7 +40,12 @@ fn is_exact(target: &Dice) -> bool {
     target.plan.carries() && !target.plan.surface.is_patched()
 }
 
-/// Where a die's throw leads, as a try-out tells; `None` where it does not come to rest.
+/// Whether half of all throws are left where they were drawn.
+fn is_mixed(target: &Dice) -> bool {
+    target.plan.together
+}
+
+/// Where a die's throw leads, as try-outs tell; `None` where it does not come to rest.
 fn led(target: &Dice, draw: &Draw, rest: Option<&Rest>, die: usize) -> Result<Option<Led>, ModelError> {
     let offset = target.offset(draw, die);
     if is_exact(target) {
@@ -46,8 +55,18 @@ fn led(target: &Dice, draw: &Draw, rest: Option<&Rest>, die: usize) -> Result<Op
     let mut throw = draw.throws[die];
     let start = DVec3::new(throw.position.x, throw.position.y, 0.0);
     throw.position -= start;
-    let trip = Work::default().try_out(&target.plan, &throw, None)?;
-    Ok(trip.map(|trip| Led { rest: start + offset + trip.position, orientation: trip.orientation }))
+    let Some(plain) = Work::default().try_out(&target.plan, &throw, None)? else { return Ok(None) };
+    let Some(orientation) = turned_on_table(target, draw, die, plain.orientation)? else { return Ok(None) };
+    Ok(Some(Led { rest: start + offset + plain.position, orientation }))
+}
+
+/// How a die lies at last that is thrown alone onto its table; `None` where it does not come to rest. `plain`: how it does on a plain one.
+fn turned_on_table(target: &Dice, draw: &Draw, die: usize, plain: DQuat) -> Result<Option<DQuat>, ModelError> {
+    if target.plan.surface.is_plain() {
+        return Ok(Some(plain));
+    }
+    let (throw, table) = (&draw.throws[die], &draw.tables[draw.table_of(die)]);
+    Ok(Work::default().try_out(&target.plan, throw, Some(table))?.map(|trip| trip.orientation))
 }
 
 /// Weights of the turns of a die's pips, given how its body lies: what the demands of a face make of them.
@@ -64,24 +83,105 @@ fn weights(target: &Dice, die: usize, orientation: DQuat) -> Vec<f64> {
     logs.into_iter().map(|log| math::exp(log - most)).collect()
 }
 
+/// Most dice of one table that are recast at once.
+const MOST_AT_ONCE: usize = 3;
+
+/// The dice of a path: one a bit.
+fn members(path: Path) -> impl Iterator<Item = usize> {
+    (0..MOST_DICE as usize).filter(move |die| path.0 >> die & 1 == 1)
+}
+
 impl Recast {
+    /// Casts one die anew: where it is led; `None` where its try-out does not come to rest.
+    fn cast(
+        self,
+        target: &Dice,
+        candidate: &mut Draw,
+        (die, place): (usize, [f64; 2]),
+        stream: &mut Stream,
+    ) -> Result<Option<Led>, ModelError> {
+        let (plan, cell) = (&target.plan, target.plan.surface.spacing());
+        let mut throw = target.prior().throw(die, stream);
+        if plan.carries() {
+            candidate.tables[die].renew(stream);
+        }
+        let within = if is_exact(target) { cell } else { 0.0 };
+        (throw.position.x, throw.position.y) = (within * open_unit(stream), within * open_unit(stream));
+        let table = is_exact(target).then(|| &candidate.tables[die]);
+        let Some(trip) = Work::default().try_out(plan, &throw, table)? else { return Ok(None) };
+        let mut rest = trip.position;
+        let is_left = is_mixed(target) && open_unit(stream) < 0.5;
+        for axis in 0..2 {
+            if is_left {
+                // In place of what the throw was drawn with.
+                let place = target.prior().number(die, axis).sample(stream);
+                rest[axis] += place - throw.position[axis];
+                throw.position[axis] = place;
+                continue;
+            }
+            let aim = place[axis] - trip.position[axis] + self.sd * standard_normal(stream);
+            if is_exact(target) {
+                let cells = (aim / cell).round();
+                candidate.tables[die].shifted[axis] = cells as i32;
+                rest[axis] += cells * cell;
+            } else {
+                throw.position[axis] += aim;
+                rest[axis] += aim;
+            }
+        }
+        candidate.throws[die] = throw;
+        let orientation = if is_exact(target) {
+            trip.orientation
+        } else {
+            let Some(orientation) = turned_on_table(target, candidate, die, trip.orientation)? else { return Ok(None) };
+            orientation
+        };
+        let weights = weights(target, die, orientation);
+        let mut left = weights.iter().sum::<f64>() * open_unit(stream);
+        let chosen = weights.iter().position(|weight| {
+            left -= weight;
+            left < 0.0
+        });
+        candidate.throws[die].turn = chosen.unwrap_or(weights.len() - 1) as u8;
+        Ok(Some(Led { rest, orientation }))
+    }
+
     /// Log density of proposing a die's throw as it is, but for what is the same for all.
     fn log_q(self, target: &Dice, draw: &Draw, led: Option<Led>, die: usize) -> Result<LogDensity, ModelError> {
         let (Some(place), Some(led)) = (target.plan.places[die], led) else { return Ok(LogDensity::ZERO) };
         let half = 0.5 * target.plan.surface.spacing();
         let along = |axis: usize| {
             let off = led.rest[axis] - place[axis];
-            if is_exact(target) {
-                log_between((off - half) / self.sd, (off + half) / self.sd)
-            } else {
-                -0.5 * math::square(off / self.sd)
-            }
+            log_between((off - half) / self.sd, (off + half) / self.sd)
+        };
+        let place = if is_exact(target) {
+            LogDensity::new(along(0) + along(1))?
+        } else {
+            self.log_place(target, draw, (die, led.rest, place))?
         };
         let throw = &draw.throws[die];
         let weights = weights(target, die, led.orientation);
         let turned = math::ln(weights[usize::from(throw.turn)] / weights.iter().sum::<f64>());
         let elsewhere = target.prior().log_density_elsewhere(throw, die)?;
-        Ok(elsewhere + LogDensity::new(along(0) + along(1) + turned)?)
+        Ok(elsewhere + place + LogDensity::new(turned)?)
+    }
+
+    /// Log density of the place of a throw that is led by any length, or left where it was drawn.
+    fn log_place(
+        self,
+        target: &Dice,
+        draw: &Draw,
+        (die, rest, place): (usize, DVec3, [f64; 2]),
+    ) -> Result<LogDensity, ModelError> {
+        let about = |axis: usize| Gaussian::new(place[axis], self.sd).map_err(ModelError::new);
+        let led = about(0)?.log_density(&rest[0])?.value() + about(1)?.log_density(&rest[1])?.value();
+        let drawn = |axis: usize| target.prior().number(die, axis).log_density(&target.prior().value(draw, die, axis));
+        if !is_mixed(target) {
+            return Ok(LogDensity::new(led)?);
+        }
+        let drawn = drawn(0)?.value() + drawn(1)?.value();
+        let most = led.max(drawn);
+        Ok(LogDensity::new(most + math::ln(0.5 * (math::exp(led - most) + math::exp(drawn - most))))?)
     }
 }
 
@@ -103,45 +203,20 @@ impl Move<Dice> for Recast {
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         let count = aimed(target).count();
-        let Some((die, place)) = aimed(target).nth(below(stream, count)) else { return Ok(Proposal::Stay) };
-        let Some(old) = led(target, &current.draw, Some(&current.outcome), die)? else { return Ok(Proposal::Stay) };
-        let (plan, cell) = (&target.plan, target.plan.surface.spacing());
-        let mut throw = target.prior().throw(die, stream);
-        if plan.carries() {
-            candidate.tables[die].renew(stream);
+        let most = if target.plan.together { count.min(MOST_AT_ONCE) } else { 1 };
+        let size = if most > 1 { 1 + below(stream, most) } else { 1 };
+        let first = below(stream, count + 1 - size);
+        let (mut from, mut to, mut dice) = (LogDensity::ONE, LogDensity::ONE, 0);
+        for (die, place) in aimed(target).skip(first).take(size) {
+            let Some(old) = led(target, &current.draw, Some(&current.outcome), die)? else { return Ok(Proposal::Stay) };
+            let Some(new) = self.cast(target, candidate, (die, place), stream)? else { return Ok(Proposal::Stay) };
+            from = from + self.log_q(target, &current.draw, Some(old), die)?;
+            to = to + self.log_q(target, candidate, Some(new), die)?;
+            dice |= 1 << die;
         }
-        let within = if is_exact(target) { cell } else { 0.0 };
-        (throw.position.x, throw.position.y) = (within * open_unit(stream), within * open_unit(stream));
-        let table = is_exact(target).then(|| &candidate.tables[die]);
-        let Some(trip) = Work::default().try_out(plan, &throw, table)? else {
-            return Ok(Proposal::Stay);
-        };
-        let mut rest = trip.position;
-        for axis in 0..2 {
-            let aim = place[axis] - trip.position[axis] + self.sd * standard_normal(stream);
-            if is_exact(target) {
-                let cells = (aim / cell).round();
-                candidate.tables[die].shifted[axis] = cells as i32;
-                rest[axis] += cells * cell;
-            } else {
-                throw.position[axis] += aim;
-                rest[axis] += aim;
-            }
-        }
-        let weights = weights(target, die, trip.orientation);
-        let mut left = weights.iter().sum::<f64>() * open_unit(stream);
-        let chosen = weights.iter().position(|weight| {
-            left -= weight;
-            left < 0.0
-        });
-        throw.turn = chosen.unwrap_or(weights.len() - 1) as u8;
-        candidate.throws[die] = throw;
-        let new = Led { rest, orientation: trip.orientation };
-        let from = self.log_q(target, &current.draw, Some(old), die)?;
-        let log_ratio = over(from, self.log_q(target, candidate, Some(new), die)?)?;
         // A die that leaves its table on the way has no way back.
         let later = is_exact(target).then_some(LogRatio::ONE);
-        Ok(Proposal::Candidate { log_ratio, path: Path(die as u64), later })
+        Ok(Proposal::Candidate { log_ratio: over(from, to)?, path: Path(dice), later })
     }
 
     fn log_ratio(
@@ -151,10 +226,11 @@ impl Move<Dice> for Recast {
         to: &StateOf<Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        let die = path.0 as usize;
         let log_q = |state: &StateOf<Dice>| {
-            let led = led(target, &state.draw, Some(&state.outcome), die)?;
-            self.log_q(target, &state.draw, led, die)
+            members(path).try_fold(LogDensity::ONE, |sum, die| -> Result<_, ModelError> {
+                let led = led(target, &state.draw, Some(&state.outcome), die)?;
+                Ok(sum + self.log_q(target, &state.draw, led, die)?)
+            })
         };
         let there = log_q(to)?;
         if there.is_zero() { Ok(LogRatio::ZERO) } else { over(log_q(from)?, there) }
@@ -167,7 +243,7 @@ impl Move<Dice> for Recast {
         candidate: &StateOf<Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        let is_at_rest = candidate.outcome.trips[path.0 as usize].end == End::AtRest;
-        Ok(if is_at_rest { LogRatio::ONE } else { LogRatio::ZERO })
+        let are_at_rest = members(path).all(|die| candidate.outcome.trips[die].end == End::AtRest);
+        Ok(if are_at_rest { LogRatio::ONE } else { LogRatio::ZERO })
     }
 }

@@ -1,0 +1,144 @@
+//! The ways of bodies that were simulated apart: which come near each other, and so which have to be simulated together.
+
+use plaus_sim::motion::Parabola;
+use plaus_sim::scenery::Aabb;
+
+/// The way of one body's centre.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Way {
+    pub(crate) pieces: Vec<Piece>,
+    /// Around the centre at all times.
+    around: Option<Aabb>,
+}
+
+/// A parabola of a way; it ends where the next begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Piece {
+    pub(crate) path: Parabola,
+    pub(crate) until: f64,
+    /// Around the centre.
+    pub(crate) around: Aabb,
+}
+
+/// Adds a motion to those of a body; one that ended when it began is none.
+#[inline]
+pub(crate) fn follow(paths: &mut Vec<Parabola>, path: Parabola) {
+    if paths.last().is_some_and(|last| last.t >= path.t) {
+        paths.pop();
+    }
+    paths.push(path);
+}
+
+impl Way {
+    /// Of motions that follow each other, the last until `end`.
+    pub(crate) fn new(paths: &[Parabola], end: f64) -> Self {
+        let pieces: Vec<Piece> = paths
+            .iter()
+            .enumerate()
+            .map(|(k, path)| {
+                let until = paths.get(k + 1).map_or(end.max(path.t), |next| next.t);
+                Piece { path: *path, until, around: path.bounds(0.0, until - path.t) }
+            })
+            .collect();
+        let around = pieces.iter().map(|piece| piece.around).reduce(Aabb::union);
+        Self { pieces, around }
+    }
+
+    /// Whether the two centres come nearer than `reach`. Answers yes where it is close: then the bodies are simulated together, which is right in any case.
+    pub(crate) fn meets(&self, other: &Self, reach: f64) -> bool {
+        let (Some(a), Some(b)) = (&self.around, &other.around) else { return false };
+        if !a.grown(reach).meets(b) {
+            return false;
+        }
+        let (mut i, mut j) = (0, 0);
+        while let (Some(a), Some(b)) = (self.pieces.get(i), other.pieces.get(j)) {
+            let (from, until) = (a.path.t.max(b.path.t), a.until.min(b.until));
+            if from < until && a.around.grown(reach).meets(&b.around) && come_near(a, b, from, until, reach) {
+                return true;
+            }
+            if a.until <= b.until {
+                i += 1;
+            } else {
+                j += 1;
+            }
+        }
+        false
+    }
+}
+
+/// Seconds below which two centres that could be near each other count as near. Default 1e-7; larger merges more groups than needed.
+const SHORTEST: f64 = 1e-7;
+
+/// Whether two centres may come nearer than `reach` between two times: no where their distance in the middle, less what they can cover until the ends, is more.
+fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> bool {
+    let velocity = |t: f64| a.path.velocity_after(t - a.path.t) - b.path.velocity_after(t - b.path.t);
+    // A velocity that changes linearly is largest at an end.
+    let fastest = velocity(from).length_squared().max(velocity(until).length_squared()).sqrt();
+    let (middle, half) = (0.5 * (from + until), 0.5 * (until - from));
+    let distance = (a.path.at(middle) - b.path.at(middle)).length();
+    if distance - fastest * half > reach {
+        return false;
+    }
+    half < SHORTEST
+        || distance <= reach
+        || come_near(a, b, from, middle, reach)
+        || come_near(a, b, middle, until, reach)
+}
+
+/// Groups of `count` things that meet, directly or through others, as lists of indices in order of the first. `meets` is asked for indices that are not in one
+/// group yet, the larger first.
+pub(crate) fn merge(count: usize, meets: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+    let mut leader: Vec<usize> = (0..count).collect();
+    for a in 0..count {
+        for b in 0..a {
+            if leader[a] != leader[b] && meets(a, b) {
+                let (low, high) = (leader[a].min(leader[b]), leader[a].max(leader[b]));
+                leader.iter_mut().filter(|leader| **leader == high).for_each(|leader| *leader = low);
+            }
+        }
+    }
+    let leaders = (0..count).filter(|&k| leader[k] == k);
+    leaders.map(|first| (0..count).filter(|&k| leader[k] == first).collect()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    fn way(x: DVec3, v: DVec3, until: f64) -> Way {
+        let flight = Parabola { t: 0.0, x, v, a: DVec3::new(0.0, 0.0, -2.0) };
+        let rest = Parabola { t: until, x: flight.at(until), v: DVec3::ZERO, a: DVec3::ZERO };
+        Way::new(&[flight, rest], 10.0)
+    }
+
+    /// Two that cross the same place: at one time, at different times, and one that comes by where the other rests.
+    #[test]
+    fn ways_meet_in_space_and_time() {
+        let right = way(DVec3::new(-1.0, 0.0, 0.0), DVec3::X, 2.0);
+        let left = |start: f64, until: f64| way(DVec3::new(start, 0.05, 0.0), -DVec3::X, until);
+        assert!(right.meets(&left(1.0, 2.0), 0.1) && left(1.0, 2.0).meets(&right, 0.1));
+        assert!(!right.meets(&left(1.0, 2.0), 0.04));
+        // It falls by its own gravity while the other still waits at another height.
+        let late = Way::new(
+            &[
+                Parabola { t: 0.0, x: DVec3::new(0.0, 5.0, 0.0), v: DVec3::ZERO, a: DVec3::ZERO },
+                Parabola { t: 3.0, x: DVec3::new(0.0, 5.0, -1.0), v: -5.0 * DVec3::Y, a: DVec3::ZERO },
+            ],
+            10.0,
+        );
+        assert!(!right.meets(&late, 0.2), "when it comes, the other has passed");
+        let resting = way(DVec3::new(0.0, -20.0, 0.0), 5.0 * DVec3::Y, 1.0);
+        assert!(!right.meets(&resting, 0.5));
+        let rests_there =
+            Way::new(&[Parabola { t: 0.0, x: DVec3::new(0.0, 0.0, -1.0), v: DVec3::ZERO, a: DVec3::ZERO }], 10.0);
+        assert!(right.meets(&rests_there, 0.05) && late.meets(&rests_there, 0.05));
+    }
+
+    #[test]
+    fn groups_are_joined_through_others() {
+        let meets = |a: usize, b: usize| [(4, 1), (3, 1), (5, 2)].contains(&(a, b));
+        assert_eq!(merge(6, meets), [vec![0], vec![1, 3, 4], vec![2, 5]]);
+        assert!(merge(0, meets).is_empty());
+    }
+}

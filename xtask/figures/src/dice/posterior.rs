@@ -1,0 +1,144 @@
+//! Heights of the table where a die touches it: in solutions, and in solutions of one throw, against the prior.
+
+use super::Thrown;
+use super::sensitivity::mean;
+use super::steering::{KINDS, Row, basis, contact, lift};
+use crate::{Result, Work};
+use plaus_dist::{Purpose, Seed, math};
+use plaus_mcmc::diagnose::{mcse_mean, mcse_sd};
+use plaus_mcmc::{Chain, Goal, Mixture, Move, State, StateOf, Target};
+use plaus_scenes::dice::{Dice, Near, Point, Scale, Work as Memory};
+use rayon::prelude::*;
+
+/// The posterior given a throw, of heights at places that a solution touches: over throws the root mean square of the mean, and the mean of the standard deviation.
+pub(super) struct Fixed {
+    pub(super) shift: Row,
+    pub(super) spread: Row,
+}
+
+/// Heights at the contacts of the animation itself.
+pub(super) struct Free {
+    /// Their mean over solutions, and over throws of the prior that come to rest.
+    pub(super) solutions: Row,
+    pub(super) prior: Row,
+    /// Their standard deviation over solutions over that of the prior's.
+    pub(super) spread: Row,
+}
+
+/// The heights at the contacts of every kind of one animation.
+fn lifts(scene: &Dice, state: &StateOf<Dice>) -> [Option<f64>; KINDS] {
+    let (trip, cell) = (&state.outcome.trips[0], scene.config().table.grid_mm * 1e-3);
+    std::array::from_fn(|kind| {
+        let [_, x, y] = trip.impacts[contact(kind, trip.impacts.len(), 0.5)?];
+        Some(lift(&state.draw.tables[0], &basis(x, y, cell).collect::<Vec<_>>()))
+    })
+}
+
+/// Chains that keep the throw of a solution and change the table alone. Which places are looked at is decided by the solution that they start from.
+pub(super) fn given_the_throw(work: &Work, thrown: &Thrown) -> Result<Fixed> {
+    let scene = &thrown.scene;
+    let (throws, iterations): (u64, u64) = work.size((48, 6000), (1, 12));
+    let warmup = iterations / 4;
+    // By kind of contact: mean and standard deviation of the chain, each with its error.
+    let of_throw = |seed: u64| -> Result<Vec<Option<[f64; 4]>>> {
+        let (_, state) = thrown.solution(100 + seed, work.size(100_000, 2))?;
+        let cell = scene.config().table.grid_mm * 1e-3;
+        let trip = &state.outcome.trips[0];
+        let places: Vec<Option<Vec<([i32; 2], f64)>>> = (0..KINDS)
+            .map(|kind| {
+                let [_, x, y] = trip.impacts[contact(kind, trip.impacts.len(), 0.5)?];
+                Some(basis(x, y, cell).collect())
+            })
+            .collect();
+        let scale = Scale::new(0.05, 1.0);
+        let kernels: Vec<(f64, Box<dyn Move<Dice>>)> =
+            vec![(0.9, Box::new(Near { scale })), (0.1, Box::new(Point { scale }))];
+        let moves = Mixture::new(kernels)?;
+        let fresh = vec![plaus_mcmc::MoveCounts::default(); moves.names().len()];
+        let mut chain = Chain::resume(scene, &moves, Seed(10).chain(seed), 0, state, fresh);
+        let mut traces = vec![Vec::new(); KINDS];
+        for iteration in 0..iterations {
+            chain.step()?;
+            if iteration >= warmup {
+                for (trace, place) in traces.iter_mut().zip(&places) {
+                    trace.extend(place.as_ref().map(|sites| lift(&chain.state().draw.tables[0], sites)));
+                }
+            }
+        }
+        Ok(traces.iter().map(|trace| summary(trace)).collect())
+    };
+    let all = (0..throws).into_par_iter().map(of_throw).collect::<Result<Vec<_>>>()?;
+    let of = |kind: usize| all.iter().filter_map(move |row| row[kind]);
+    // What the chains' own errors add to the square of a mean is taken off.
+    let shift = |kind: usize| {
+        let squares: Vec<f64> = of(kind).map(|[mean, error, ..]| math::square(mean) - math::square(error)).collect();
+        let (square, error) = mean(&squares);
+        let root = square.max(0.0).sqrt();
+        (root, error / (2.0 * root.max(error.sqrt())))
+    };
+    let spread = |kind: usize| mean(&of(kind).map(|[_, _, sd, _]| sd).collect::<Vec<_>>());
+    Ok(Fixed { shift: std::array::from_fn(shift), spread: std::array::from_fn(spread) })
+}
+
+/// Mean and standard deviation of a chain with their errors; `None` where it is too short for any.
+fn summary(trace: &[f64]) -> Option<[f64; 4]> {
+    let n = trace.len() as f64;
+    let mean = trace.iter().sum::<f64>() / n;
+    let sd = (trace.iter().map(|x| math::square(x - mean)).sum::<f64>() / (n - 1.0)).sqrt();
+    let chain = [trace];
+    // A chain that never moved has no error: all that is known is where it is.
+    let (error, error_of_sd) = (mcse_mean(&chain).ok()?, mcse_sd(&chain).ok()?);
+    [mean, error, sd, error_of_sd].iter().all(|x| x.is_finite()).then_some([mean, error, sd, error_of_sd])
+}
+
+/// Heights at the contacts of solutions of chains with all moves, beside those of throws of the prior.
+pub(super) fn of_solutions(work: &Work, thrown: &Thrown) -> Result<Free> {
+    let scene = &thrown.scene;
+    let (chains, iterations, apart): (u64, u64, u64) = work.size((16, 6000, 10), (2, 6, 1));
+    type Lifts = Vec<[Option<f64>; KINDS]>;
+    let of_chain = |k: u64| -> Result<Lifts> {
+        let mut chain = Chain::start(scene, &thrown.moves, Seed(11).chain(k))?;
+        let mut found = Vec::new();
+        for iteration in 0..iterations {
+            chain.step()?;
+            let due = iteration >= iterations / 8 && iteration.is_multiple_of(apart);
+            if due && (work.quick || scene.class(chain.state()).is_some()) {
+                found.push(lifts(scene, chain.state()));
+            }
+        }
+        Ok(found)
+    };
+    let of_prior = |k: u64| -> Result<Lifts> {
+        let (mut stream, mut memory) = (Seed(12).chain(k).at(0, Purpose::START), Memory::default());
+        let mut found = Vec::new();
+        for _ in 0..work.size(250, 2) {
+            let state = State::evaluate(scene, scene.start(&mut stream), &mut memory)?;
+            if state.outcome.complete() {
+                found.push(lifts(scene, &state));
+            }
+        }
+        Ok(found)
+    };
+    let solutions = (0..chains).into_par_iter().map(of_chain).collect::<Result<Vec<_>>>()?;
+    let prior = (0..chains).into_par_iter().map(of_prior).collect::<Result<Vec<_>>>()?;
+    // Chains are independent of each other: errors follow from the spread of their means and standard deviations.
+    let each = |all: &[Lifts], kind: usize| -> Vec<(f64, f64)> {
+        let of = |chain: &Lifts| {
+            let values: Vec<f64> = chain.iter().filter_map(|row| row[kind]).collect();
+            let (mean, error) = mean(&values);
+            (mean, error * (values.len() as f64).sqrt())
+        };
+        all.iter().map(of).filter(|(mean, sd)| mean.is_finite() && sd.is_finite()).collect()
+    };
+    let average = |all: &[Lifts], kind: usize| mean(&each(all, kind).iter().map(|(mean, _)| *mean).collect::<Vec<_>>());
+    let spread = |kind: usize| {
+        let of = |all: &[Lifts]| mean(&each(all, kind).iter().map(|(_, sd)| *sd).collect::<Vec<_>>());
+        let ((a, da), (b, db)) = (of(&solutions), of(&prior));
+        (a / b, a / b * (math::square(da / a) + math::square(db / b)).sqrt())
+    };
+    Ok(Free {
+        solutions: std::array::from_fn(|kind| average(&solutions, kind)),
+        prior: std::array::from_fn(|kind| average(&prior, kind)),
+        spread: std::array::from_fn(spread),
+    })
+}
