@@ -66,9 +66,11 @@ const TOLERANCE: f64 = 1e-12;
 fn balls_slide_hook_and_roll_as_the_closed_form_says() {
     use Quantity::{Across, Drift, Gyration, Hook, Radius, Roll, Speed, Twist};
     let scene = scene(|config| config.delivery = Delivery::Regulation);
-    for (roll, hook, twist) in [(12.0, -27.0, 6.0), (0.0, 0.0, 0.0), (30.0, 35.0, -8.0)] {
-        let draw =
-            laid_down(&scene, &[(Across, 0.1), (Speed, 8.0), (Drift, 0.1), (Roll, roll), (Hook, hook), (Twist, twist)]);
+    for (across, drift, roll, hook, twist) in
+        [(0.2, 0.1, 12.0, -27.0, 6.0), (0.1, 0.1, 0.0, 0.0, 0.0), (-0.2, -0.15, 30.0, 30.0, -8.0)]
+    {
+        let spin = [(Roll, roll), (Hook, hook), (Twist, twist)];
+        let draw = laid_down(&scene, &[&[(Across, across), (Speed, 8.0), (Drift, drift)][..], &spin].concat());
         let (world, starts) = scene.world(&draw).unwrap();
         let size = [draw.get(Radius), draw.get(Gyration) * draw.get(Radius)];
         for until in [0.7, 1.4, 1.7, 2.0, 2.2] {
@@ -78,7 +80,11 @@ fn balls_slide_hook_and_roll_as_the_closed_form_says() {
             let mut ball = Ball { x: starts[0].position, v: starts[0].velocity, w: starts[0].spin };
             let left = glide(&mut ball, size, 0.04, OIL - LANE, until);
             glide(&mut ball, size, 0.2, f64::INFINITY, left);
-            assert!(ball.x.y < -0.3, "the pins are not reached by {until} s: {}", ball.x);
+            assert!(
+                ball.x.y < -0.3 && ball.x.x.abs() < 0.5,
+                "still on the lane, before the pins, at {until} s: {}",
+                ball.x
+            );
             for (name, found, expected) in
                 [("at", body.path.x, ball.x), ("with", body.path.v, ball.v), ("spinning", body.spin, ball.w)]
             {
@@ -118,7 +124,7 @@ fn mirrored_shots_have_mirrored_results() {
     for (pins, twins) in [(vec![1], &[0][..]), ((1..=10).collect(), &ten[..])] {
         let scene = scene(|config| (config.pins, config.delivery) = (pins.clone(), Delivery::Regulation));
         let mut met = 0;
-        for shot in 0..12 {
+        for shot in 0..if pins.len() == 1 { 60 } else { 12 } {
             let draw = scene.start(&mut Seed(5).chain(shot).at(0, Purpose::START));
             let (here, there) = (bowl(&scene, &draw), bowl(&scene, &mirrored(&draw, twins)));
             let sides = [&here, &there].map(|rest| rest.entry.map(|entry| (entry.across, entry.angle)));
@@ -176,7 +182,7 @@ fn energy_does_not_grow_over_a_shot() {
         world.run(&mut state, &mut Scratch::default(), scene.config().duration_s, &mut ledger).unwrap();
         let reached = StateOf::<Bowling>::evaluate(&scene, draw, &mut Work::default()).unwrap().outcome.struck.len();
         assert!(ledger.worst <= bound, "shot {shot}: {} J, of {bound} J", ledger.worst);
-        assert!(ledger.before < first, "shot {shot}");
+        assert!(ledger.each.iter().sum::<f64>() < first, "shot {shot}");
         assert!(reached > 0, "shot {shot} meets no pin");
     }
 }

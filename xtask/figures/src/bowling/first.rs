@@ -109,14 +109,14 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     text += &format!(
         "\nDistinct: the ball meets the first pin on another board, or strikes other pins, or in another order. {CHAINS} chains one after the other from draws of the prior, the way to the first solution included, beside independent draws of the prior \
          that end as soon as they cannot satisfy the constraint; each {} s of one core, in turn in one run. A chain's hits depend on each other.\n",
-        significant(work.size(60.0, 0.05), 2)
+        significant(work.size(30.0, 0.05), 2)
     );
     work.report.section("Bowling: distinct solutions a minute", &text);
     Ok(())
 }
 
 fn rate(work: &Work, shot: Shot, bowler: &Bowler) -> Result<Vec<String>> {
-    let each = work.size(60.0, 0.05) / CHAINS as f64;
+    let each = work.size(30.0, 0.05) / CHAINS as f64;
     work.say(format_args!("{}: distinct solutions a minute", shot.name));
     let (mut chains, mut rejection) = (Haul::default(), Haul::default());
     for turn in 0..CHAINS {

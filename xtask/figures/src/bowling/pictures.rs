@@ -17,13 +17,16 @@ const MOST: u64 = 20_000;
 /// When frames are taken, in s from when the ball first touches a pin; the last is at the end.
 const TIMES: [f64; 4] = [-0.1, 0.08, 0.2, 0.5];
 
-/// What must be seen, and from which direction it is looked at. The box goes down to below the pit, where the ground is.
-const FRAME: [DVec3; 2] = [DVec3::new(-0.79, -0.31, -1.72), DVec3::new(0.79, 0.42, 0.6)];
+/// What must be seen: deck, ball before it, and the pins' heights. The ground is below the pit.
+const FRAME: [DVec3; 2] = [DVec3::new(-0.72, -0.05, -0.95), DVec3::new(0.72, 0.4, 0.42)];
+const GROUND: f64 = -0.31;
+
+/// From which direction it is looked at.
 const FROM: DVec3 = DVec3::new(0.0, 0.62, 1.0);
 const FIELD: f64 = 22.0;
 
 /// Size of a frame in pixels, and gaps.
-const PANEL: (f64, f64) = (300.0, 290.0);
+const PANEL: (f64, f64) = (300.0, 220.0);
 const GAP: f64 = 8.0;
 const HEAD: f64 = 58.0;
 
@@ -40,8 +43,9 @@ fn strip(shot: Shot, most: u64) -> Result<Strip> {
     if !first.found && most == MOST {
         return Err(format!("no {} within {MOST} iterations of seed {SEED}", shot.name).into());
     }
-    let animation =
-        bowler.scene.animate(&first.state.draw)?.with_view(View::from(FROM.x, FROM.y, FROM.z).only(FRAME[0], FRAME[1]));
+    // The renderer puts its ground at the bottom of what a view shows.
+    let view = View::from(FROM.x, FROM.y, FROM.z).only(DVec3 { y: GROUND, ..FRAME[0] }, FRAME[1]);
+    let animation = bowler.scene.animate(&first.state.draw)?.with_view(view);
     Ok(Strip { shot, animation, iterations: first.iterations })
 }
 
@@ -57,7 +61,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     let wanted = work.size(&[STRIKE, LEAVE, SPARE][..], &[SPARE][..]);
     let strips = wanted.iter().map(|shot| strip(*shot, work.size(MOST, 40))).collect::<Result<Vec<_>>>()?;
     let dense = work.size(1.25, 0.12);
-    let quality = Quality { width: (PANEL.0 * dense) as u32, height: (PANEL.1 * dense) as u32, rays: work.size(12, 1) };
+    let quality = Quality { width: (PANEL.0 * dense) as u32, height: (PANEL.1 * dense) as u32, rays: work.size(6, 1) };
     let camera = Camera::fitting(FRAME, FROM, DVec3::Y, FIELD, PANEL.0 / PANEL.1);
     let mut pictures = Vec::new();
     for (row, strip) in (0_u8..).zip(&strips) {
