@@ -144,7 +144,8 @@ impl Drop for Going {
 #[test]
 fn a_run_that_is_being_written_is_read_as_of_its_last_checkpoint() {
     let place = Place::new();
-    let mut command = place.command("sample ball.toml --out run -q --warmup 0 --iterations 1000000000 --thin 1000 --threads 1");
+    let mut command =
+        place.command("sample ball.toml --out run -q --warmup 0 --iterations 1000000000 --thin 1000 --threads 1");
     let going = Going(command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap());
     // Checkpoints are a second apart: wait for one with enough draws in it.
     let enough = (0..600).any(|_| {

@@ -11,7 +11,8 @@ function atDetail(geometry, pixel) {
   if (geometry.index.count < 3 * FEW) return geometry;
   const levels = (geometry.userData.levels ??= new Map()), level = Math.floor(Math.log2(CELL * pixel));
   if (!levels.has(level)) {
-    const made = coarser(geometry, 2 ** level), spares = made.index.count < 0.75 * geometry.index.count;
+    const made = coarser(geometry, 2 ** level), corners = (g) => g.getAttribute('position').count;
+    const spares = made.index.count < 0.75 * geometry.index.count || corners(made) < 0.75 * corners(geometry);
     levels.set(level, spares ? made : geometry);
   }
   return levels.get(level);

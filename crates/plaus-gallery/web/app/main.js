@@ -162,7 +162,7 @@ class App {
     const { jobs, moving } = this.tiles.jobs(now);
     const preview = document.getElementById('preview'), previewing = !preview.hidden && this.hovered;
     if (previewing) {
-      const time = cycle((now - this.hoveredSince) / 1000, this.hovered.duration);
+      const time = cycle(((now - this.hoveredSince) / 1000) * +this.player.speed.value, this.hovered.duration);
       jobs.push({ canvas: preview.firstElementChild, solution: this.hovered, time, flash: true, moving: true });
     }
     const main = this.player.job();
