@@ -37,7 +37,7 @@ fn lifts(scene: &Dice, state: &StateOf<Dice>) -> [Option<f64>; KINDS] {
 /// Chains that keep the throw of a solution and change the table alone. Which places are looked at is decided by the solution that they start from.
 pub(super) fn given_the_throw(work: &Work, thrown: &Thrown) -> Result<Fixed> {
     let scene = &thrown.scene;
-    let (throws, iterations): (u64, u64) = work.size((48, 6000), (1, 12));
+    let (throws, iterations): (u64, u64) = work.size((24, 2400), (1, 12));
     let warmup = iterations / 4;
     // By kind of contact: mean and standard deviation of the chain, each with its error.
     let of_throw = |seed: u64| -> Result<Vec<Option<[f64; 4]>>> {
@@ -94,7 +94,7 @@ fn summary(trace: &[f64]) -> Option<[f64; 4]> {
 /// Heights at the contacts of solutions of chains with all moves, beside those of throws of the prior.
 pub(super) fn of_solutions(work: &Work, thrown: &Thrown) -> Result<Free> {
     let scene = &thrown.scene;
-    let (chains, iterations, apart): (u64, u64, u64) = work.size((16, 6000, 10), (2, 6, 1));
+    let (chains, iterations, apart): (u64, u64, u64) = work.size((16, 2400, 10), (2, 6, 1));
     type Lifts = Vec<[Option<f64>; KINDS]>;
     let of_chain = |k: u64| -> Result<Lifts> {
         let mut chain = Chain::start(scene, &thrown.moves, Seed(11).chain(k))?;
@@ -111,7 +111,7 @@ pub(super) fn of_solutions(work: &Work, thrown: &Thrown) -> Result<Free> {
     let of_prior = |k: u64| -> Result<Lifts> {
         let (mut stream, mut memory) = (Seed(12).chain(k).at(0, Purpose::START), Memory::default());
         let mut found = Vec::new();
-        for _ in 0..work.size(250, 2) {
+        for _ in 0..work.size(100, 2) {
             let state = State::evaluate(scene, scene.start(&mut stream), &mut memory)?;
             if state.outcome.complete() {
                 found.push(lifts(scene, &state));
