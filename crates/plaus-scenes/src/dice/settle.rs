@@ -159,7 +159,7 @@ mod tests {
         let (mut work, mut at_once) = (Work::default(), Work::default());
         let mut stream = Seed(7).chain(0).at(0, Purpose::START);
         let (mut draws, mut dice, mut differing, mut met) = (0, 0, 0, 0);
-        while draws < 40 {
+        while draws < 60 {
             let draw = scene.start(&mut stream);
             if scene.log_prior(&draw).unwrap().is_zero() {
                 continue;

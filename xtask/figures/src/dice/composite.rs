@@ -21,7 +21,13 @@ const POINT: f64 = 6e-4;
 /// Title, direction to the eye, up, field of view in degrees, and whether trails are shown.
 const VIEWS: [(&str, DVec3, DVec3, f64, bool); 2] = [
     ("Poses every 0.05 s, and the ways of the middles", DVec3::new(-0.15, 0.8, 1.0), DVec3::Y, 26.0, true),
-    ("At rest, from above; marks are the places demanded", DVec3::new(0.0, 1.0, 0.0), DVec3::NEG_Z, 12.0, false),
+    (
+        "At rest, from above, thrown upwards; marks are the places demanded",
+        DVec3::new(0.0, 1.0, 0.0),
+        DVec3::X,
+        12.0,
+        false,
+    ),
 ];
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
@@ -34,7 +40,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     }
     let animation = six.scene.animate(&state.draw)?;
     let (width, gap, head) = (900.0, 14.0, 62.0);
-    let heights = [520.0, 560.0];
+    let heights = [480.0, 420.0];
     let (mut pictures, mut top) = (Vec::new(), head);
     for (&(_, from, up, field, trails), height) in VIEWS.iter().zip(heights) {
         let shown = if trails { with_trails(&animation, work.quick) } else { at_rest(&animation) };

@@ -4,13 +4,13 @@ use super::Thrown;
 use super::sensitivity::mean;
 use super::steering::{KINDS, Row, basis, contact, lift};
 use crate::{Result, Work};
-use plaus_dist::{Purpose, Seed, math};
+use plaus_dist::{Purpose, Seed, Stream, math, open_unit, standard_normal};
 use plaus_mcmc::diagnose::{mcse_mean, mcse_sd};
-use plaus_mcmc::{Chain, Goal, Mixture, Move, State, StateOf, Target};
-use plaus_scenes::dice::{Dice, Near, Point, Scale, Work as Memory};
+use plaus_mcmc::{Chain, Goal, State, StateOf, Target};
+use plaus_scenes::dice::{Dice, Field, LARGEST_SCORE, Site, Work as Memory};
 use rayon::prelude::*;
 
-/// The posterior given a throw, of heights at places that a solution touches: over throws the root mean square of the mean, and the mean of the standard deviation.
+/// The posterior, given the throw and the rest of the table, of the height at a place that a solution touches: over throws the root mean square of the mean, and the mean of the standard deviation.
 pub(super) struct Fixed {
     pub(super) shift: Row,
     pub(super) spread: Row,
@@ -34,38 +34,22 @@ fn lifts(scene: &Dice, state: &StateOf<Dice>) -> [Option<f64>; KINDS] {
     })
 }
 
-/// Chains that keep the throw of a solution and change the table alone. Which places are looked at is decided by the solution that they start from.
+/// Chains that keep all of a solution but the sixteen control points under one of its contacts: which place that is, the solution that they start from decides.
 pub(super) fn given_the_throw(work: &Work, thrown: &Thrown) -> Result<Fixed> {
     let scene = &thrown.scene;
-    let (throws, iterations): (u64, u64) = work.size((48, 6000), (1, 12));
-    let warmup = iterations / 4;
+    let (throws, iterations): (u64, u64) = work.size((24, 300), (1, 3));
     // By kind of contact: mean and standard deviation of the chain, each with its error.
     let of_throw = |seed: u64| -> Result<Vec<Option<[f64; 4]>>> {
         let (_, state) = thrown.solution(100 + seed, work.size(100_000, 2))?;
         let cell = scene.config().table.grid_mm * 1e-3;
-        let trip = &state.outcome.trips[0];
-        let places: Vec<Option<Vec<([i32; 2], f64)>>> = (0..KINDS)
-            .map(|kind| {
-                let [_, x, y] = trip.impacts[contact(kind, trip.impacts.len(), 0.5)?];
-                Some(basis(x, y, cell).collect())
-            })
-            .collect();
-        let scale = Scale::new(0.05, 1.0);
-        let kernels: Vec<(f64, Box<dyn Move<Dice>>)> =
-            vec![(0.9, Box::new(Near { scale })), (0.1, Box::new(Point { scale }))];
-        let moves = Mixture::new(kernels)?;
-        let fresh = vec![plaus_mcmc::MoveCounts::default(); moves.names().len()];
-        let mut chain = Chain::resume(scene, &moves, Seed(10).chain(seed), 0, state, fresh);
-        let mut traces = vec![Vec::new(); KINDS];
-        for iteration in 0..iterations {
-            chain.step()?;
-            if iteration >= warmup {
-                for (trace, place) in traces.iter_mut().zip(&places) {
-                    trace.extend(place.as_ref().map(|sites| lift(&chain.state().draw.tables[0], sites)));
-                }
-            }
-        }
-        Ok(traces.iter().map(|trace| summary(trace)).collect())
+        let impacts = &state.outcome.trips[0].impacts;
+        let of_kind = |kind: usize| -> Result<Option<[f64; 4]>> {
+            let Some(contact) = contact(kind, impacts.len(), 0.5) else { return Ok(None) };
+            let sites: Vec<([i32; 2], f64)> = basis(impacts[contact][1], impacts[contact][2], cell).collect();
+            let mut stream = Seed(10).chain(seed).at(kind as u64, Purpose::START);
+            Ok(summary(&heights(scene, state.clone(), &sites, iterations, &mut stream)?))
+        };
+        (0..KINDS).map(of_kind).collect()
     };
     let all = (0..throws).into_par_iter().map(of_throw).collect::<Result<Vec<_>>>()?;
     let of = |kind: usize| all.iter().filter_map(move |row| row[kind]);
@@ -78,6 +62,38 @@ pub(super) fn given_the_throw(work: &Work, thrown: &Thrown) -> Result<Fixed> {
     };
     let spread = |kind: usize| mean(&of(kind).map(|[_, _, sd, _]| sd).collect::<Vec<_>>());
     Ok(Fixed { shift: std::array::from_fn(shift), spread: std::array::from_fn(spread) })
+}
+
+/// The height at a place along a chain that changes the control points under it alone: autoregressive steps of all sizes, which leave their law as it is, accepted with
+/// the ratio of the constraints.
+fn heights(
+    scene: &Dice,
+    mut state: StateOf<Dice>,
+    sites: &[([i32; 2], f64)],
+    iterations: u64,
+    stream: &mut Stream,
+) -> Result<Vec<f64>> {
+    let (mut memory, mut trace) = (Memory::default(), Vec::new());
+    for iteration in 0..iterations {
+        let step = math::exp(math::ln(0.03) * open_unit(stream));
+        let mut draw = state.draw.clone();
+        for &([i, j], _) in sites {
+            let site = Site { field: Field::Height, i, j };
+            let score = (1.0 - step * step).sqrt() * draw.tables[0].score(site) + step * standard_normal(stream);
+            draw.tables[0].set(site, score);
+        }
+        let possible = draw.tables[0].changed_points().iter().all(|(_, score)| score.abs() <= LARGEST_SCORE);
+        if possible {
+            let new = State::evaluate(scene, draw, &mut memory)?;
+            if math::ln(open_unit(stream)) < new.log_constraint.value() - state.log_constraint.value() {
+                state = new;
+            }
+        }
+        if 10 * iteration >= iterations {
+            trace.push(lift(&state.draw.tables[0], sites));
+        }
+    }
+    Ok(trace)
 }
 
 /// Mean and standard deviation of a chain with their errors; `None` where it is too short for any.
@@ -94,7 +110,7 @@ fn summary(trace: &[f64]) -> Option<[f64; 4]> {
 /// Heights at the contacts of solutions of chains with all moves, beside those of throws of the prior.
 pub(super) fn of_solutions(work: &Work, thrown: &Thrown) -> Result<Free> {
     let scene = &thrown.scene;
-    let (chains, iterations, apart): (u64, u64, u64) = work.size((16, 6000, 10), (2, 6, 1));
+    let (chains, iterations, apart): (u64, u64, u64) = work.size((16, 2400, 10), (2, 6, 1));
     type Lifts = Vec<[Option<f64>; KINDS]>;
     let of_chain = |k: u64| -> Result<Lifts> {
         let mut chain = Chain::start(scene, &thrown.moves, Seed(11).chain(k))?;
@@ -111,7 +127,7 @@ pub(super) fn of_solutions(work: &Work, thrown: &Thrown) -> Result<Free> {
     let of_prior = |k: u64| -> Result<Lifts> {
         let (mut stream, mut memory) = (Seed(12).chain(k).at(0, Purpose::START), Memory::default());
         let mut found = Vec::new();
-        for _ in 0..work.size(250, 2) {
+        for _ in 0..work.size(100, 2) {
             let state = State::evaluate(scene, scene.start(&mut stream), &mut memory)?;
             if state.outcome.complete() {
                 found.push(lifts(scene, &state));

@@ -26,7 +26,7 @@ pub(super) struct Felt {
 type Tried = [Option<(f64, bool, f64)>; KINDS];
 
 pub(super) fn measure(work: &Work, thrown: &Thrown) -> Result<Felt> {
-    let count: u64 = work.size(1500, 2);
+    let count: u64 = work.size(800, 2);
     let of_prior = (0..count).into_par_iter().map(|k| {
         let mut stream = Seed(7).chain(k).at(0, Purpose::START);
         let mut memory = Memory::default();
@@ -39,7 +39,7 @@ pub(super) fn measure(work: &Work, thrown: &Thrown) -> Result<Felt> {
     });
     let of_prior = of_prior.collect::<Result<Vec<Tried>>>()?;
     // Solutions: of several chains, far apart.
-    let (chains, each, apart): (u64, u64, u64) = work.size((16, 80, 25), (1, 2, 1));
+    let (chains, each, apart): (u64, u64, u64) = work.size((16, 40, 25), (1, 2, 1));
     let of_chain = |k: u64| -> Result<Vec<Tried>> {
         let mut chain = Chain::start(&thrown.scene, &thrown.moves, Seed(8).chain(k))?;
         let mut stream = Seed(9).chain(k).at(0, Purpose::START);

@@ -71,8 +71,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         "dice-steering",
         format!(
             "What control points near the n-th contact with the table do, for bumps of {} (blue) and {} mm (orange) standard deviation; bars are one standard error. How far the resting place moves when one point is \
-             drawn anew (median over throws of the prior); how often such a change of a solution is accepted; shift and spread of the height at the n-th contact of a solution in the posterior given its throw, in prior \
-             standard deviations (the prior: 0 and 1).",
+             drawn anew (median over throws of the prior); how often such a change of a solution is accepted; shift and spread of the height at the n-th contact of a solution in the posterior given its throw and all other \
+             points, in prior standard deviations (the prior: 0 and 1).",
             BUMPS[0], BUMPS[1]
         ),
     );
