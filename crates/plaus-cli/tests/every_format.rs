@@ -91,7 +91,7 @@ fn a_run_without_draws_is_refused() {
     let place = Place::new();
     // Stopped in the warm-up, whose draws have no numbers.
     place.ok("sample ball.toml --out run -q --warmup 1000000 --max-time 0s");
-    all_are_refused(&place, &["error: run: ", "holds no draws yet", "`plaus resume`"]);
+    all_are_refused(&place, &["error: run: ", "holds no draws yet", "warm-up", "`plaus resume`"]);
 }
 
 #[test]

@@ -91,7 +91,9 @@ pub enum RunFileProblem {
     #[error(transparent)]
     Encode(#[from] EncodeError),
     /// There is nothing to read yet.
-    #[error("holds no draws yet: the run was stopped before its first checkpoint; `plaus resume` goes on with it")]
+    #[error(
+        "holds no draws yet: the run was stopped in its warm-up, whose draws do not count, or before its first checkpoint; `plaus resume` goes on with it"
+    )]
     Empty,
     /// A sample that does not exist.
     #[error("{0}")]
