@@ -48,7 +48,6 @@ fn told(mut seconds: Vec<f64>, asked: &Asked) -> (String, usize) {
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
     let mut rows = Vec::new();
-    let mut rates = Vec::new();
     for asked in ASKED {
         let (seeds, most) = (work.size(asked.of, 1), work.size(MOST, 30));
         work.say(format_args!("{}: {seeds} chains until the first one", asked.shot.name));
@@ -79,7 +78,6 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
             pair_within.map_or("–".into(), |within| format!("{within} of {seeds}")),
             format!("{} s in {} of {} on {cores}: {verdict}", asked.seconds, asked.least, asked.of),
         ]);
-        rates.push(rate(work, asked.shot, &bowler)?);
     }
     let head = [
         "shot",
@@ -97,6 +95,15 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         thousands(work.size(MOST, 30))
     );
     work.report.section("Bowling: how soon", &text);
+    Ok(())
+}
+
+/// Distinct solutions a minute, by chains and by rejection.
+pub(super) fn rates(work: &mut Work) -> Result<()> {
+    let mut rates = Vec::new();
+    for shot in [STRIKE, LEAVE, SPARE] {
+        rates.push(rate(work, shot, &shot.bowler()?)?);
+    }
     let head = [
         "shot",
         "chains: distinct a minute",

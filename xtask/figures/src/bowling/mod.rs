@@ -23,6 +23,7 @@ const PARTS: &[Part] = &[
     ("paths", paths::make),
     ("falls", falls::make),
     ("first", first::make),
+    ("rates", first::rates),
     ("moves", moves::make),
     ("seven-ten", seven_ten::make),
 ];
