@@ -56,13 +56,17 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   demand(await page.evaluate(() => !gallery.player.playing), 'the space bar does not pause');
   await page.waitForTimeout(300); // stopped pictures are drawn with all detail
   await page.screenshot({ path: join(shots, `${name}.png`) });
-  const time = await page.evaluate(() => gallery.player.time);
-  // Before the first impact there is none to go back to, after the last none to go on to.
-  await page.locator('body').press('Shift+ArrowLeft');
-  const back = await page.evaluate(() => gallery.player.time);
-  await page.locator('body').press('Shift+ArrowRight');
-  const on = await page.evaluate(() => gallery.player.time);
-  demand(back !== time || on !== back, 'the arrows do not go to an impact');
+  // Wherever it was paused: from the begin to the first impact, on to the next that is later, and back.
+  await page.evaluate(() => gallery.player.seek(0));
+  const hits = await page.evaluate(() => gallery.a.impacts.map((hit) => hit.time)), ends = await page.evaluate(() => gallery.player.duration);
+  let expected = 0;
+  for (const [key, next] of [['ArrowRight', (t) => hits.find((hit) => hit > t + 1e-4) ?? ends], ['ArrowRight', (t) => hits.find((hit) => hit > t + 1e-4) ?? ends],
+    ['ArrowLeft', (t) => hits.findLast((hit) => hit < t - 1e-4) ?? 0]]) {
+    await page.locator('body').press(`Shift+${key}`);
+    expected = next(expected);
+    const time = await page.evaluate(() => gallery.player.time);
+    demand(time === expected, `shift and ${key} lead to ${time} s, not to the impact at ${expected} s`);
+  }
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   demand(wide <= 0, `the page is ${wide} pixels too wide`);
 

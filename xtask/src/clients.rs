@@ -23,6 +23,11 @@ fn iterations(scenario: &str) -> &'static str {
     }
 }
 
+/// npm tries three times, seconds apart: a registry that is out of reach is known to be so within half a minute.
+const RETRIES: [&str; 3] = ["--fetch-retries=2", "--fetch-retry-mintimeout=2000", "--fetch-retry-maxtimeout=8000"];
+/// Why there are no packages of Node.js; npm has said above what happened.
+const NO_PACKAGES: &str = "npm cannot install the packages of this check (no npm, or its registry is out of reach)";
+
 fn folder() -> PathBuf {
     target().join("clients")
 }
@@ -95,7 +100,7 @@ fn with_tables(ending: &str, table: &str) -> Result<Vec<PathBuf>, Failure> {
 
 /// The Khronos validator and three.js read every GLB.
 pub(crate) fn gltf() -> Result<Done, Failure> {
-    let Some(node) = node()? else { return registry::absent("Node.js packages cannot be installed") };
+    let Some(node) = node()? else { return registry::absent(NO_PACKAGES) };
     let script = Command::new("node").args([node.join("check_glb.mjs")]).args(with_tables(".glb", ".between.csv")?);
     script.run().map(|()| Done::Passed)
 }
@@ -110,7 +115,7 @@ pub(crate) fn usd() -> Result<Done, Failure> {
 
 /// Chromium opens every gallery from disk, offline, and uses it.
 pub(crate) fn gallery() -> Result<Done, Failure> {
-    let Some(node) = node()? else { return registry::absent("Node.js packages cannot be installed") };
+    let Some(node) = node()? else { return registry::absent(NO_PACKAGES) };
     let temporary = folder().join("tmp");
     fs::create_dir_all(&temporary).map_err(Failure::new)?;
     let pages = with_ending(&folder().join("exports"), ".html")?;
@@ -122,7 +127,7 @@ pub(crate) fn gallery() -> Result<Done, Failure> {
 pub(crate) fn bundle() -> Result<Done, Failure> {
     let files = ["build.mjs", "three.js", "dist/three.iife.js"];
     let Some(web) = packages("crates/plaus-gallery/web", "web", &files)? else {
-        return registry::absent("Node.js packages cannot be installed");
+        return registry::absent(NO_PACKAGES);
     };
     Command::new("node").args([web.join("build.mjs")]).args(["--check"]).run().map(|()| Done::Passed)
 }
@@ -143,8 +148,11 @@ fn packages(from: &str, to: &str, scripts: &[&str]) -> Result<Option<PathBuf>, F
     if fs::read(&stamp).is_ok_and(|found| found == wanted) {
         return Ok(Some(to));
     }
-    let install =
-        Command::new("npm").args(["ci", "--no-audit", "--no-fund", "--loglevel=error", "--prefix"]).args([&to]);
+    let install = Command::new("npm")
+        .args(["ci", "--no-audit", "--no-fund", "--loglevel=error"])
+        .args(RETRIES)
+        .args(["--prefix"])
+        .args([&to]);
     println!("$ {}", install.shown());
     if !matches!(install.status(), Ok(0)) {
         return Ok(None);

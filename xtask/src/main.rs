@@ -21,6 +21,8 @@ usage: cargo xtask CHORE
   clients              of that, only what other programs make of exports and galleries
   reproduce-figures [--out FOLDER] [--quick] [--only SCENE]
                        the paper's figures and claims, sampled anew, into out/figures
+  plausibility [--out FOLDER] [--quick] [--only SCENE]
+                       dice and bowling beside what was published of real ones, into out/plausibility
   golden               compare golden traces with fresh runs
   golden --bless       make golden traces anew
   tradeoff [...]       compare with peers: cargo run --release -p plaus-tradeoff
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
         Some((&("test" | "ci"), [])) => test::run(),
         Some((&"clients", [])) => test::clients(),
         Some((&"reproduce-figures", rest)) => figures(rest),
+        Some((&"plausibility", rest)) => plausibility(rest),
         Some((&"golden", rest)) => golden::run(rest),
         Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),
         Some((&"bench", rest)) => cargo(&["bench"]).args(rest).run(),
@@ -56,4 +59,9 @@ fn main() -> ExitCode {
 
 fn figures(arguments: &[&str]) -> Result<(), Failure> {
     cargo(&["run", "--release", "--package", "plaus-figures", "--"]).args(arguments).run()
+}
+
+fn plausibility(arguments: &[&str]) -> Result<(), Failure> {
+    let program = ["run", "--release", "--package", "plaus-figures", "--", "plausibility"];
+    cargo(&program).args(arguments).run()
 }

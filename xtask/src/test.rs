@@ -16,6 +16,9 @@ pub(crate) fn run() -> Result<(), Failure> {
     let golden = ["--package", "plaus-tests", "--test", "golden"];
     let quick = target().join("figures-quick");
     let figures = Command::new(built("debug", "plaus-figures")).args(["--quick", "--out"]).args([&quick]);
+    let plausible = target().join("plausibility-quick");
+    let plausible =
+        Command::new(built("debug", "plaus-figures")).args(["plausibility", "--quick", "--out"]).args([&plausible]);
     let mut all = vec![
         Step::command("format", cargo(&["fmt", "--all", "--", "--check"])),
         Step::command("clippy", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])),
@@ -28,6 +31,7 @@ pub(crate) fn run() -> Result<(), Failure> {
         Step::command("docs", cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings")),
         Step::new("examples", examples),
         Step::command("figures, quick", figures),
+        Step::command("plausibility, quick", plausible),
         Step::new("ArviZ reads a run", crate::arviz::run),
         Step::new("licences and advisories", deny),
     ];

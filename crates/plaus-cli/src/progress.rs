@@ -3,7 +3,7 @@
 use crate::clock::{Stopwatch, in_words};
 use crate::console;
 use crate::interrupt;
-use crate::table::{grouped, percent, rate};
+use crate::table::{grouped, lay_out, percent, rate};
 use plaus_mcmc::{Control, Hits, MoveCounts, Progress};
 use plaus_run::{Manifest, Watch};
 use serde_json::{Value, json};
@@ -150,16 +150,26 @@ impl Monitor {
         [far, format!("hits {hits}  distinct {}{wanted}{fresh}", grouped(progress.distinct.count()))]
     }
 
+    /// A column a chain: how fast it is, what it hits, what it accepts of each move.
     fn chain_lines(&self, manifest: &Manifest, progress: &Progress<'_>) -> Vec<String> {
-        let speed = rate(self.rate() / f64::from(manifest.plan.chains));
-        let line = |(chain, (counts, hits)): (usize, &(&[MoveCounts], Hits))| {
-            let moves = manifest.moves.iter().zip(*counts);
-            let accepted: Vec<_> =
-                moves.map(|(name, count)| format!("{name} {}", percent(count.acceptance()))).collect();
-            let hit = percent(hits.count as f64 / self.done as f64);
-            format!("  chain {chain:<2}  {speed}  hits {hit}  accepted: {}", accepted.join("  "))
+        let chains = &progress.chains[..progress.chains.len().min(SHOWN_CHAINS)];
+        let row = |name: &str, cell: &dyn Fn(usize) -> String| -> Vec<String> {
+            std::iter::once(name.to_owned()).chain((0..chains.len()).map(cell)).collect()
         };
-        let mut lines: Vec<String> = progress.chains.iter().enumerate().take(SHOWN_CHAINS).map(line).collect();
+        let speed = rate(self.rate() / f64::from(manifest.plan.chains));
+        let hits = |chain: usize| percent(chains[chain].1.count as f64 / self.done as f64);
+        let mut rows = vec![
+            row("", &|chain| format!("chain {chain}")),
+            row("  iterations", &|_| speed.clone()),
+            row("  hits", &hits),
+            vec!["  accepted:".to_owned()],
+        ];
+        rows.extend(manifest.moves.iter().enumerate().map(|(index, name)| {
+            row(&format!("    {name}"), &|chain| {
+                chains[chain].0.get(index).map_or_else(String::new, |count| percent(count.acceptance()))
+            })
+        }));
+        let mut lines: Vec<String> = lay_out(&rows).lines().map(str::to_owned).collect();
         if let Some(more) = progress.chains.len().checked_sub(SHOWN_CHAINS).filter(|&more| more > 0) {
             lines.push(format!("  and {more} more chains"));
         }

@@ -109,7 +109,16 @@ fn progress_without_a_terminal_is_lines() {
     let place = Place::new();
     let arguments = "sample ball.toml --iterations 100000000 --chains 2 --threads 2 --max-time 1.5s --out run";
     let ended = place.ok(&format!("{arguments} -v"));
-    ended.says(&["ball2d ", "  iteration ", "  ETA ", "  hits ", "  distinct ", "  chain 1 ", "accepted: perturb "]);
+    ended.says(&[
+        "ball2d ",
+        "  iteration ",
+        "  ETA ",
+        "  hits ",
+        "  distinct ",
+        "  chain 1\n",
+        "  accepted:\n",
+        "    perturb ",
+    ]);
     assert!(!ended.err.contains('\x1b') && !ended.err.contains("  0 /s"), "{}", ended.err);
     let json = place.ok(&format!("{arguments}2 --json")).out;
     let progress: Vec<Value> = json.lines().map(|line| serde_json::from_str(line).unwrap()).collect();

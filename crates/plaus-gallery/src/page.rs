@@ -20,6 +20,8 @@ const PROGRAM: &[&str] = &[
     include_str!("../web/app/data.js"),
     include_str!("../web/app/motion.js"),
     include_str!("../web/app/looks.js"),
+    include_str!("../web/app/lod.js"),
+    include_str!("../web/app/trails.js"),
     include_str!("../web/app/stage.js"),
     include_str!("../web/app/views.js"),
     include_str!("../web/app/glb.js"),

@@ -1,21 +1,110 @@
-//! Times shots that are drawn from the prior, and counts what they leave: `cargo run --release -p plaus-scenes --example bowling_shots -- [SCENARIO] [SHOTS]`.
-
+//! Shots that are drawn from the prior: how long they take, what they leave, and, with `--whole`, whether anything goes through anything.
+//!
+//!     cargo run --release -p plaus-scenes --example bowling_shots -- [SCENARIO] [SHOTS] [FIRST] [--whole]
+//!
+//! Shot k is the same whatever the first is, so that many can be made in parts. Whole shots go on until all is at rest: at every new motion each pair of bodies near each other, and
+//! each body's place in the alley, are looked at; and the pins that ever fell are held against those of which the early end told.
 #![allow(clippy::print_stdout, reason = "an example reports to the terminal")]
 
-use plaus_dist::{Purpose, Seed};
 mod shared;
 
+use glam::DVec3;
+use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{StateOf, Target};
-use plaus_scenes::bowling::{Bowling, Work};
+use plaus_scenes::bowling::{Bowling, Fate, Quantity, Shot, Work};
 use plaus_scenes::registry::World;
 use plaus_scenes::scenario::Scenario;
+use plaus_sim::rigid::{Phase, Rigid, Turning};
+use plaus_sim::trace::Observer;
+use plaus_sim::worlds::Verdict;
+use plaus_sim::{Outcome, Scratch};
 use shared::seconds;
 use std::error::Error;
 
+/// Depths in m of overlaps that are counted: what steps of lasting contact may leave, and far less than it takes to go through a pin's neck, 46 mm.
+const DEPTHS: [f64; 3] = [1e-4, 1e-3, 1e-2];
+
+/// Inside of the alley: half its width, and where its cushion is, in m.
+const INSIDE: [f64; 2] = [0.5 * 41.5 * 0.0254 + 9.3125 * 0.0254, 66.0 * 0.0254];
+/// Half the width of the lane, and its end, in m.
+const LANE: [f64; 2] = [0.5 * 41.5 * 0.0254, 34.1875 * 0.0254];
+
+/// Watches a shot.
+struct Watch<'w> {
+    world: &'w Rigid,
+    last: Vec<Option<Turning>>,
+    /// The deepest overlap, and by how far a middle was where none can be.
+    deepest: f64,
+    outside: f64,
+    /// Whether each body ever fell.
+    fell: Vec<bool>,
+}
+
+impl Watch<'_> {
+    /// By how far the middle of a body is within the lane or beyond the walls.
+    fn beyond(x: DVec3) -> f64 {
+        let beyond = (x.x.abs() - INSIDE[0]).max(x.y - INSIDE[1]);
+        let within = (LANE[0] - x.x.abs()).min(LANE[1] - x.y).min(-x.z);
+        beyond.max(within)
+    }
+}
+
+impl Observer<Rigid> for Watch<'_> {
+    fn motion(&mut self, index: usize, body: &Turning) {
+        self.fell[index] |= Verdict::has_fallen(body);
+        if body.phase == Phase::Gone {
+            self.last[index] = None;
+            return;
+        }
+        self.outside = self.outside.max(Self::beyond(body.path.x));
+        self.last[index] = Some(body.clone());
+        for (other, there) in self.last.iter().enumerate().filter(|(other, _)| *other != index) {
+            let Some(there) = there.as_ref().filter(|there| there.path.t <= body.path.t) else { continue };
+            let there = self.world.at(other, there, body.path.t);
+            self.deepest = self.deepest.max(-self.world.gap([index, other], [body, &there]));
+        }
+    }
+}
+
+/// What was counted of whole shots.
+#[derive(Default)]
+struct Whole {
+    deeper: [u64; DEPTHS.len()],
+    deepest: f64,
+    outside: f64,
+    unfinished: u64,
+    other: u64,
+}
+
+impl Whole {
+    fn add(&mut self, scene: &Bowling, draw: &Shot, early: &[Fate]) -> Result<(), Box<dyn Error>> {
+        let (world, starts) = scene.world(draw)?;
+        let mut state = world.state(&starts)?;
+        let count = starts.len();
+        let mut watch = Watch {
+            world: &world,
+            last: vec![None; count],
+            deepest: 0.0,
+            outside: f64::NEG_INFINITY,
+            fell: vec![false; count],
+        };
+        let outcome = world.run(&mut state, &mut Scratch::default(), scene.config().duration_s, &mut watch)?;
+        for (count, depth) in self.deeper.iter_mut().zip(DEPTHS) {
+            *count += u64::from(watch.deepest > depth);
+        }
+        (self.deepest, self.outside) = (self.deepest.max(watch.deepest), self.outside.max(watch.outside));
+        self.unfinished += u64::from(!matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached));
+        let told = early.iter().map(|fate| !fate.stands());
+        self.other += u64::from(!watch.fell[1..].iter().copied().eq(told));
+        Ok(())
+    }
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = std::env::args().skip(1);
-    let file = arguments.next().unwrap_or_else(|| "scenarios/bowling-strike.toml".into());
-    let shots: u64 = arguments.next().map_or(Ok(20), |count| count.parse())?;
+    let (flags, given): (Vec<String>, Vec<String>) = std::env::args().skip(1).partition(|said| said.starts_with("--"));
+    let file = given.first().cloned().unwrap_or_else(|| "scenarios/bowling-strike.toml".into());
+    let number = |place: usize, default: u64| given.get(place).map_or(Ok(default), |count| count.parse());
+    let (shots, first) = (number(1, 20)?.max(1), number(2, 0)?);
     // Examples may be run from anywhere in the workspace.
     let path = [file.clone(), format!("{}/../../{file}", env!("CARGO_MANIFEST_DIR"))];
     let text = path.iter().find_map(|path| std::fs::read_to_string(path).ok()).ok_or("no such scenario")?;
@@ -24,13 +113,25 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let scene = Bowling::new(&config)?;
     let (mut work, mut times, mut satisfied, mut falls) = (Work::default(), Vec::new(), 0, [0; 11]);
-    for shot in 0..shots {
+    let mut whole = flags.iter().any(|flag| flag == "--whole").then(Whole::default);
+    for shot in first..first + shots {
         let draw = scene.start(&mut Seed(1).chain(shot).at(0, Purpose::START));
         let begin = seconds();
         let state = StateOf::<Bowling>::evaluate(&scene, draw, &mut work)?;
         times.push(((seconds() - begin) * 1e3, shot));
         satisfied += u32::from(scene.is_satisfied(&state.outcome));
         falls[state.outcome.pins.iter().filter(|fate| !fate.stands()).count()] += 1;
+        // A ball in the gutter is dead, whatever it does there.
+        if let Some(whole) = whole.as_mut().filter(|_| !state.outcome.struck.is_empty()) {
+            let before = whole.other;
+            whole.add(&scene, &state.draw, &state.outcome.pins)?;
+            if whole.other > before {
+                println!(
+                    "shot {shot} ends with other pins than it was told early ({:.3} m across)",
+                    state.draw.get(Quantity::Across)
+                );
+            }
+        }
     }
     let total: f64 = times.iter().map(|time| time.0).sum();
     times.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -44,5 +145,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         at(1.0).1
     );
     println!("satisfied: {satisfied}; pins that fell, 0 to 10: {falls:?}");
+    if let Some(whole) = whole {
+        println!(
+            "whole shots: overlaps deeper than 0.1, 1, 10 mm in {:?}, deepest {:.3} mm; middles where none can be: by {:.3} mm at most; out of events: {}; other pins than told early: {}",
+            whole.deeper,
+            whole.deepest * 1e3,
+            whole.outside.max(0.0) * 1e3,
+            whole.unfinished,
+            whole.other
+        );
+    }
     Ok(())
 }

@@ -1,5 +1,7 @@
 //! What can be wrong with a world before any stepping. Running out of events is no error but an [`Outcome`](crate::Outcome).
 
+use glam::DVec3;
+
 /// A world or a state that cannot be simulated, with the body, triangle or surface at fault.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WorldError {
@@ -128,6 +130,56 @@ pub enum WorldError {
         value: f64,
         /// What it should be.
         expected: &'static str,
+    },
+    /// A point of a hull that is not finite.
+    #[error("point {point} of a hull is {at}, expected finite numbers")]
+    BadPoint {
+        /// Index of the point.
+        point: usize,
+        /// Its coordinates.
+        at: DVec3,
+    },
+    /// Too few points for a hull.
+    #[error("{points} distinct points have no hull, at least 4 have")]
+    FewPoints {
+        /// How many there are.
+        points: usize,
+    },
+    /// Points of a hull that are all in one plane.
+    #[error("the {points} points of a hull are all within {thickness} m of one plane")]
+    FlatHull {
+        /// How many there are.
+        points: usize,
+        /// Distance in metres up to which they count as in it.
+        thickness: f64,
+    },
+    /// A hull with too many points, corners or corners of one face.
+    #[error("a hull has {count} {what}, at most {most} are served")]
+    LargeHull {
+        /// What there are too many of.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        most: usize,
+    },
+    /// Points so nearly in one plane that rounding would decide on the faces of their hull.
+    #[error(
+        "the faces of a hull near point {point} cannot be told apart: move it into their plane, or farther out of it"
+    )]
+    UnclearHull {
+        /// Index of a point near there.
+        point: usize,
+    },
+    /// Two bodies whose contact is not served.
+    #[error("bodies {a} and {b}: contact of {what} is not served")]
+    UnservedPair {
+        /// The lower index.
+        a: usize,
+        /// The higher index.
+        b: usize,
+        /// What they are.
+        what: &'static str,
     },
     /// A state that was made for another world.
     #[error("the state has {state} bodies, the world {world}")]

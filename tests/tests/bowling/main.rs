@@ -4,6 +4,7 @@
 
 mod configuration;
 mod moves;
+mod physics;
 mod prior;
 mod shots;
 mod straight;

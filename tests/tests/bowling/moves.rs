@@ -6,7 +6,7 @@ use plaus_mcmc::check::{OneStep, OneStepReport, Ratios, any_of, one_step, prior,
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, StateOf};
 use plaus_scenes::bowling::{
-    Bowling, ChangeAll, ChangeBall, Delivery, Mirror, Quantity, Redraw, RedrawPins, Shot, Steps,
+    Aim, Bowling, ChangeAll, ChangeBall, Delivery, Mirror, Quantity, Redraw, RedrawPins, Shot, Steps,
 };
 use plaus_scenes::{Rules, Scene};
 
@@ -121,6 +121,8 @@ fn wrong_twins_are_caught() {
         Box::new(ChangeAll { symmetric: false, radial_offsets: true }),
         Box::new(Redraw { symmetric: true }),
         Box::new(Faulty(Box::new(RedrawPins { chance: 0.3 }), Fault::Symmetric)),
+        Box::new(Faulty(Box::new(Aim { anew: 0.0 }), Fault::Symmetric)),
+        Box::new(Faulty(Box::new(Aim { anew: 1.0 }), Fault::Symmetric)),
         Box::new(Faulty(ball(&[Quantity::Radius]), Fault::Clamps)),
         Box::new(Faulty(ball(&[Quantity::Speed, Quantity::Drift]), Fault::Leans)),
         Box::new(Faulty(Box::new(Mirror), Fault::Forgets)),

@@ -79,3 +79,30 @@ fn animations_show_the_outcome() {
         }
     }
 }
+
+/// Begun at the foul line, a shot is that of its draw; a ball that rolls from just before the pins meets them on the straight line that it was sent along.
+#[test]
+fn balls_may_begin_before_the_pins() {
+    let scene = scene(|_| ());
+    let (mut work, mut draw) = (Work::default(), shot(&scene, 2));
+    let Simulated::Complete(whole) = simulate(&scene, &draw, LogPotential::ZERO, &mut work) else { panic!() };
+    assert_eq!(scene.bowl_from(60.0 * 12.0 * 0.0254, &draw, &mut work).unwrap(), whole);
+    assert!(whole.entry.is_some());
+    let radius = draw.get(Quantity::Radius);
+    let (speed, drift) = (8.0, -0.8);
+    for (quantity, value) in [
+        (Quantity::Across, 0.12),
+        (Quantity::Height, radius),
+        (Quantity::Speed, speed),
+        (Quantity::Drift, drift),
+        (Quantity::Roll, speed / radius),
+        (Quantity::Hook, drift / radius),
+        (Quantity::Twist, 0.0),
+    ] {
+        draw.ball[quantity as usize] = value;
+    }
+    let entry = scene.bowl_from(0.6, &draw, &mut work).unwrap().entry.unwrap();
+    let angle = plaus_dist::math::atan2(drift, speed).to_degrees();
+    assert!((entry.angle - angle).abs() < 1e-9, "{} for {angle}", entry.angle);
+    assert!(entry.across < 0.12 && entry.across > 0.06);
+}

@@ -6,8 +6,8 @@ use plaus_mcmc::check::Statistic;
 use plaus_mcmc::view::View;
 use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target};
 use plaus_scenes::bowling::{
-    Bowling, ChangeAll, ChangeBall, ChangePins, Config, Delivery, Entry, Fate, Mirror, Quantity, Redraw, RedrawPins,
-    Refine, Rest, Shot, Steps,
+    Aim, Bowling, ChangeAll, ChangeBall, ChangePins, Config, Delivery, Entry, Fate, Mirror, Quantity, Redraw,
+    RedrawPins, Refine, Rest, Shot, Steps,
 };
 
 pub(crate) type AnyMove = Box<dyn Move<Bowling>>;
@@ -108,6 +108,7 @@ pub(crate) fn all_moves() -> Vec<AnyMove> {
         Box::new(ChangePins { chance: 0.5, sd: 0.5 }),
         Box::new(Redraw::default()),
         Box::new(RedrawPins { chance: 0.3 }),
+        Box::new(Aim { anew: 0.5 }),
         Box::new(Refine { steps }),
         Box::new(Mirror),
     ]

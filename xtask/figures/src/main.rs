@@ -1,12 +1,15 @@
-//! The paper's figures and claims, sampled anew: `cargo xtask reproduce-figures`.
+//! The paper's figures and claims, sampled anew: `cargo xtask reproduce-figures`; and what is simulated beside what was published of the real thing: `cargo xtask plausibility`.
 //!
-//! Each scene is a folder of its own that adds figures and rows of the report; [`SCENES`] lists them. Everything but the times that are measured follows from fixed
+//! Each scene is a folder of its own that adds figures and rows of the report; [`SCENES`] lists them, [`plausibility::SCENES`] those of the second. Everything but the times that are measured follows from fixed
 //! seeds, so the same version makes the same files.
 
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 
 mod ball2d;
+mod bowling;
+mod clock;
 mod dice;
+mod plausibility;
 mod sampler;
 mod spelling;
 mod stats;
@@ -20,12 +23,39 @@ use std::process::ExitCode;
 type Make = fn(&mut Work) -> Result<()>;
 
 /// Scenes with figures.
-const SCENES: &[(&str, Make)] = &[("ball2d", ball2d::make), ("spelling", spelling::make), ("dice", dice::make)];
+const SCENES: &[(&str, Make)] =
+    &[("ball2d", ball2d::make), ("spelling", spelling::make), ("bowling", bowling::make), ("dice", dice::make)];
 
-const USAGE: &str = "usage: cargo xtask reproduce-figures [--out FOLDER] [--quick] [--only SCENE]\n\n\
-    --out FOLDER   where the files go, out/figures by default; files of the same names are replaced\n\
-    --quick        far shorter runs: shows that everything works, its numbers mean nothing
-    --only SCENE   only that scene's figures; SCENE/PART where a scene has parts: only that part's";
+/// A command of this program.
+struct Chore {
+    name: &'static str,
+    /// Where its files go unless told otherwise.
+    folder: &'static str,
+    heading: &'static str,
+    scenes: &'static [(&'static str, Make)],
+}
+
+const FIGURES: Chore =
+    Chore { name: "reproduce-figures", folder: "out/figures", heading: report::THE_PAPER, scenes: SCENES };
+
+const PLAUSIBILITY: Chore = Chore {
+    name: "plausibility",
+    folder: "out/plausibility",
+    heading: plausibility::HEADING,
+    scenes: plausibility::SCENES,
+};
+
+impl Chore {
+    fn usage(&self) -> String {
+        format!(
+            "usage: cargo xtask {} [--out FOLDER] [--quick] [--only SCENE]\n\n\
+            --out FOLDER   where the files go, {} by default; files of the same names are replaced\n\
+            --quick        far shorter runs: shows that everything works, its numbers mean nothing\n\
+            --only SCENE   only that scene's figures; SCENE/PART where a scene has parts: only that part's",
+            self.name, self.folder
+        )
+    }
+}
 
 /// What a scene works with.
 struct Work {
@@ -55,16 +85,17 @@ impl Work {
 }
 
 fn main() -> ExitCode {
-    let mut out = PathBuf::from("out/figures");
+    let mut arguments = std::env::args().skip(1).peekable();
+    let chore = if arguments.next_if(|first| first == PLAUSIBILITY.name).is_some() { PLAUSIBILITY } else { FIGURES };
+    let mut out = PathBuf::from(chore.folder);
     let (mut quick, mut only) = (false, None);
-    let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
-        match (argument.as_str(), arguments.size_hint()) {
+        match (argument.as_str(), arguments.peek()) {
             ("--quick", _) => quick = true,
-            ("--only", (1.., _)) => only = arguments.next(),
-            ("--out", (1.., _)) => out = arguments.next().unwrap_or_default().into(),
+            ("--only", Some(_)) => only = arguments.next(),
+            ("--out", Some(_)) => out = arguments.next().unwrap_or_default().into(),
             _ => {
-                eprintln!("{USAGE}");
+                eprintln!("{}", chore.usage());
                 return ExitCode::from(2);
             }
         }
@@ -73,26 +104,27 @@ fn main() -> ExitCode {
         Some((scene, part)) => (Some(scene), Some(part.to_owned()).filter(|part| !part.is_empty())),
         None => (None, None),
     };
-    match run(Work { out, quick, part, report: Report::new(quick) }, scene) {
+    match run(&chore, Work { out, quick, part, report: Report::new(chore.heading, quick) }, scene) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("reproduce-figures: {error}");
+            eprintln!("{}: {error}", chore.name);
             ExitCode::FAILURE
         }
     }
 }
 
-fn run(mut work: Work, only: Option<&str>) -> Result<()> {
-    if let Some(name) = only.filter(|name| !SCENES.iter().any(|(known, _)| known == name)) {
-        let known: Vec<&str> = SCENES.iter().map(|(name, _)| *name).collect();
+fn run(chore: &Chore, mut work: Work, only: Option<&str>) -> Result<()> {
+    let scenes = chore.scenes;
+    if let Some(name) = only.filter(|name| !scenes.iter().any(|(known, _)| known == name)) {
+        let known: Vec<&str> = scenes.iter().map(|(name, _)| *name).collect();
         return Err(format!("there are no figures of `{name}`, only of {}", known.join(", ")).into());
     }
     std::fs::create_dir_all(&work.out).map_err(|error| format!("{}: {error}", work.out.display()))?;
-    for (name, make) in SCENES.iter().filter(|(name, _)| only.is_none_or(|only| only == *name)) {
+    for (name, make) in scenes.iter().filter(|(name, _)| only.is_none_or(|only| only == *name)) {
         eprintln!("{name}");
         make(&mut work)?;
+        work.write_report()?;
     }
-    work.write_report()?;
     eprintln!("wrote {}", work.out.join("report.md").display());
     Ok(())
 }

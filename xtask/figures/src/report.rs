@@ -14,8 +14,15 @@ pub struct Claim {
     pub verdict: String,
 }
 
+/// What the report of the paper's figures begins with.
+pub const THE_PAPER: &str = "# The paper's figures and claims, sampled anew\n\n\
+    S. Chenney, D. A. Forsyth, \"Sampling Plausible Solutions to Multi-body Constraint Problems\", SIGGRAPH 2000.\n\
+    This file and the figures beside it are made by one command, from fixed seeds; a second run of the same version gives the same\n\
+    bytes, but for times, which are those of the machine:\n\n    cargo xtask reproduce-figures\n\n";
+
 /// The report as it grows.
 pub struct Report {
+    heading: &'static str,
     quick: bool,
     figures: Vec<(String, String)>,
     claims: Vec<Claim>,
@@ -23,8 +30,8 @@ pub struct Report {
 }
 
 impl Report {
-    pub fn new(quick: bool) -> Self {
-        Self { quick, figures: Vec::new(), claims: Vec::new(), sections: String::new() }
+    pub fn new(heading: &'static str, quick: bool) -> Self {
+        Self { heading, quick, figures: Vec::new(), claims: Vec::new(), sections: String::new() }
     }
 
     /// A figure by the name of its files, with its caption.
@@ -42,25 +49,28 @@ impl Report {
     }
 
     pub fn to_markdown(&self) -> String {
-        let mut text = "# The paper's figures and claims, sampled anew\n\n".to_owned();
-        text += "S. Chenney, D. A. Forsyth, \"Sampling Plausible Solutions to Multi-body Constraint Problems\", SIGGRAPH 2000.\n";
-        text += "This file and the figures beside it are made by one command, from fixed seeds; a second run of the same version gives the same\n";
-        text += "bytes, but for times, which are those of the machine:\n\n    cargo xtask reproduce-figures\n\n";
+        let mut text = self.heading.to_owned();
         if self.quick {
             text += "**Made with `--quick`: the runs are far too short for the numbers to mean anything.**\n\n";
         }
-        text += "Numbers after ± are one Monte Carlo standard error. ESS is the effective sample size of the bulk (Vehtari et al. 2021).\n";
-        text += "\n## Claims\n\n";
-        let rows = self
-            .claims
-            .iter()
-            .map(|claim| [&claim.paper, &claim.ours, &claim.how, &claim.verdict].map(String::clone).to_vec());
-        text += &table(&["The paper's claim", "Our number", "How computed", "Verdict"], rows);
-        text += "\n## Figures\n";
+        text += "Numbers after ± are one Monte Carlo standard error.";
+        text += &if self.claims.is_empty() { "\n".to_owned() } else { self.claims() };
+        if !self.figures.is_empty() {
+            text += "\n## Figures\n";
+        }
         for (name, caption) in &self.figures {
             let _ = write!(text, "\n![{name}]({name}.png)\n\n**{name}** ([SVG]({name}.svg)). {caption}\n");
         }
         text + &self.sections
+    }
+
+    fn claims(&self) -> String {
+        let rows = self
+            .claims
+            .iter()
+            .map(|claim| [&claim.paper, &claim.ours, &claim.how, &claim.verdict].map(String::clone).to_vec());
+        let table = table(&["The paper's claim", "Our number", "How computed", "Verdict"], rows);
+        format!(" ESS is the effective sample size of the bulk (Vehtari et al. 2021).\n\n## Claims\n\n{table}")
     }
 }
 

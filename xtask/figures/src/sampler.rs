@@ -1,15 +1,16 @@
 //! Chains of a scene, as columns of numbers.
 
 use crate::Result;
-use plaus_dist::Seed;
-use plaus_mcmc::{Chain, Mixture, MoveCounts, StateOf};
+use crate::clock::seconds;
+use plaus_dist::{ChainStreams, Seed};
+use plaus_mcmc::{Chain, Mixture, MoveCounts, StateOf, Verdict};
 use plaus_scenes::{Rules, Scene};
 use rayon::prelude::*;
 
 /// A scene with the moves it is sampled with, exactly.
 pub(crate) struct Sampler<S: Scene> {
     pub(crate) scene: S,
-    moves: Mixture<S>,
+    pub(crate) moves: Mixture<S>,
 }
 
 /// Scalars of several chains.
@@ -18,6 +19,18 @@ pub(crate) struct Traces {
     pub(crate) columns: Vec<Vec<Vec<f64>>>,
     /// Accepted share of all iterations after the warm-up.
     pub(crate) acceptance: f64,
+}
+
+/// How a chain fared until it first satisfied its constraint.
+pub(crate) struct First<S: Scene> {
+    /// Iterations made.
+    pub(crate) iterations: u64,
+    /// Processor time, the start's included.
+    pub(crate) seconds: f64,
+    /// Where the chain is.
+    pub(crate) state: StateOf<S>,
+    /// Whether that satisfies it.
+    pub(crate) found: bool,
 }
 
 /// How long, from which seed.
@@ -96,5 +109,17 @@ impl<S: Scene> Sampler<S> {
             Ok(Some(chain.iteration()))
         };
         (0..chains).into_par_iter().map(first).collect()
+    }
+
+    /// A chain that ends with the first iteration that satisfies the constraint, or after `limit`.
+    pub(crate) fn first(&self, streams: ChainStreams, limit: u64) -> Result<First<S>> {
+        let begin = seconds();
+        let mut chain = Chain::start(&self.scene, &self.moves, streams)?;
+        let mut found = self.scene.class(chain.state()).is_some();
+        while !found && chain.iteration() < limit {
+            found = chain.step()?.verdict == Verdict::Accepted && self.scene.class(chain.state()).is_some();
+        }
+        let (iterations, state) = (chain.iteration(), chain.state().clone());
+        Ok(First { iterations, seconds: seconds() - begin, state, found })
     }
 }

@@ -1,6 +1,6 @@
 //! Numbers with their errors.
 
-use crate::report::significant;
+use crate::report::{significant, thousands};
 use plaus_dist::math::square;
 use plaus_mcmc::diagnose::{DiagnoseError, ess_bulk, mcse_mean};
 
@@ -112,6 +112,24 @@ impl Ess {
         let [a, b] = self.halves;
         let [value, low, high] = [self.value, a.min(b), a.max(b)].map(|ess| significant(ess, 2));
         if low == high { value } else { format!("{value} ({low}–{high})") }
+    }
+}
+
+/// The value that a share `q` of them does not exceed.
+pub(crate) fn quantile(sorted: &[f64], q: f64) -> f64 {
+    sorted.get(((sorted.len() as f64 * q).ceil() as usize).saturating_sub(1)).copied().unwrap_or(f64::NAN)
+}
+
+/// A number of a table: "never" for ∞, "–" for NaN.
+pub(crate) fn shown(value: f64, digits: usize) -> String {
+    if value.is_infinite() {
+        "never".into()
+    } else if value.is_nan() {
+        "–".into()
+    } else if value >= 1000.0 {
+        thousands(value.round() as u64)
+    } else {
+        significant(value, digits)
     }
 }
 

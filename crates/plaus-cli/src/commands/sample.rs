@@ -278,6 +278,11 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     // Restarts count from the end of the warm-up on, in all sessions; the clock knows this session.
     let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
     text += &report::tempering(diagnosis, (monitor.begun_at() == 0).then_some(sampling));
+    if diagnosis.draws == 0 {
+        // Warm-up draws are neither diagnosed nor exported.
+        text += &format!("\nstill in the warm-up: nothing to look at yet\n\nnext:\n  plaus resume {path}\n");
+        return text;
+    }
     text += &format!("\n{}", report::scalar_table(diagnosis));
     if diagnosis.stride > 1 {
         text += &format!("(from one draw in {}; `plaus diagnose` uses all)\n", diagnosis.stride);

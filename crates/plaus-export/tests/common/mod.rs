@@ -51,6 +51,8 @@ pub struct Body {
     splines: Vec<Vec3>,
     turn_times: Vec<f32>,
     turns: Vec<Quat>,
+    /// The node's own orientation, of a body that does not turn.
+    still: Quat,
 }
 
 impl Glb {
@@ -68,7 +70,9 @@ impl Glb {
     }
 
     pub fn body(&self, name: &str) -> Body {
-        let mut body = Body { times: vec![], splines: vec![], turn_times: vec![], turns: vec![] };
+        let node = self.document.nodes().find(|node| node.name() == Some(name)).unwrap();
+        let still = Quat::from_array(node.transform().decomposed().1);
+        let mut body = Body { times: vec![], splines: vec![], turn_times: vec![], turns: vec![], still };
         for channel in self.document.animations().flat_map(|animation| animation.channels()) {
             if channel.target().node().name() != Some(name) {
                 continue;
@@ -118,6 +122,9 @@ impl Body {
     }
 
     pub fn orientation(&self, time: f64) -> DQuat {
+        if self.turns.is_empty() {
+            return self.still.as_dquat();
+        }
         let (k, t, _) = place(&self.turn_times, time);
         self.turns[k].as_dquat().slerp(self.turns[k + 1].as_dquat(), t)
     }

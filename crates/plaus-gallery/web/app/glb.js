@@ -46,14 +46,14 @@ function glbOf({ meta, stage }, solution, fps = 60) {
   const children = [];
   for (const index of solution.props) {
     const { name, look } = meta.props[index];
-    const mesh = json.meshes.push({ name, primitives: [primitive(stage.prop(index).geometry, look)] }) - 1;
+    const mesh = json.meshes.push({ name, primitives: [primitive(stage.prop(index).userData.whole, look)] }) - 1;
     children.push(json.nodes.push({ name, mesh }) - 1);
   }
   const animation = { name: `sample_${solution.id.replace(':', '_')}`, channels: [], samplers: [] };
   const models = new Map();
   solution.tracks.forEach(([name, model], track) => {
     if (!models.has(model)) {
-      const primitives = meta.models[model].parts.map((part, k) => primitive(stage.bodies[0][model][k].geometry, part.look));
+      const primitives = meta.models[model].parts.map((part, k) => primitive(stage.parts(model, false)[k].userData.whole, part.look));
       models.set(model, json.meshes.push({ name: meta.names[name], primitives }) - 1);
     }
     const keys = keysOf(solution, track, fps), node = json.nodes.length;

@@ -31,6 +31,30 @@ function grain(colour) {
     pen.bezierCurveTo(80, y + 8 * (random() - 0.5), 170, y + 8 * (random() - 0.5), 261, y);
     pen.stroke();
   }
+  return tiled(canvas);
+}
+
+// Cloth: fibres in all directions, a little lighter and darker than the rest.
+function cloth(colour) {
+  const canvas = document.createElement('canvas');
+  canvas.width = canvas.height = 256;
+  const pen = canvas.getContext('2d');
+  pen.fillStyle = `rgb(${colour})`;
+  pen.fillRect(0, 0, 256, 256);
+  let seed = 11;
+  const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647;
+  for (let k = 0; k < 9000; k++) {
+    const [x, y, turn, length] = [256 * random(), 256 * random(), 6.3 * random(), 1 + 4 * random()];
+    pen.strokeStyle = random() < 0.5 ? `rgba(0,0,0,${0.16 * random()})` : `rgba(255,255,255,${0.1 * random()})`;
+    pen.beginPath();
+    pen.moveTo(x, y);
+    pen.lineTo(x + length * Math.cos(turn), y + length * Math.sin(turn));
+    pen.stroke();
+  }
+  return tiled(canvas);
+}
+
+function tiled(canvas) {
   const texture = new THREE.CanvasTexture(canvas);
   texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
   texture.colorSpace = THREE.SRGBColorSpace;
@@ -40,13 +64,14 @@ function grain(colour) {
 
 // Texture coordinates by the axis a corner's normal is nearest to.
 function lay(geometry, size) {
-  if (geometry.getAttribute('uv')) return;
   const p = geometry.getAttribute('position'), n = geometry.getAttribute('normal'), uv = new Float32Array(2 * p.count);
   for (let k = 0; k < p.count; k++) {
     const [x, y, z] = [p.getX(k), p.getY(k), p.getZ(k)], up = Math.abs(n.getY(k)), side = Math.abs(n.getX(k));
     uv.set(up > 0.6 ? [x / size, z / size] : side > 0.6 ? [z / size, y / size] : [x / size, y / size], 2 * k);
   }
   geometry.setAttribute('uv', new THREE.BufferAttribute(uv, 2));
+  geometry.userData.grain = size;
+  return geometry;
 }
 
 const materials = new Map();
@@ -65,6 +90,7 @@ function materialOf(look, ghost) {
   if (seen < 1) Object.assign(settings, { transparent: true, opacity: seen, depthWrite: ghost });
   if (look.material === 'glass') settings.side = THREE.DoubleSide;
   if (look.material === 'wood' && !ghost) Object.assign(settings, { map: grain(look.colour), color: 0xffffff });
+  if (look.material === 'felt' && !ghost) Object.assign(settings, { map: cloth(look.colour), color: 0xffffff });
   const Kind = !software ? THREE.MeshStandardMaterial : shiny ? THREE.MeshPhongMaterial : THREE.MeshLambertMaterial, material = new Kind(settings);
   materials.set(key, material);
   return material;

@@ -162,7 +162,7 @@ class App {
     const { jobs, moving } = this.tiles.jobs(now);
     const preview = document.getElementById('preview'), previewing = !preview.hidden && this.hovered;
     if (previewing) {
-      const time = cycle((now - this.hoveredSince) / 1000, this.hovered.duration);
+      const time = cycle(((now - this.hoveredSince) / 1000) * +this.player.speed.value, this.hovered.duration);
       jobs.push({ canvas: preview.firstElementChild, solution: this.hovered, time, flash: true, moving: true });
     }
     const main = this.player.job();
@@ -180,7 +180,7 @@ async function begin() {
   try {
     const { meta, bytes } = await unpack(document.getElementById('data'));
     window.gallery = new App(meta, bytes);
-    requestAnimationFrame(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = performance.now().toFixed(0); }));
+    requestAnimationFrame(() => window.gallery.views.drawn(() => { document.documentElement.dataset.ready = performance.now().toFixed(0); }));
     message.textContent = '';
     window.gallery.player.play();
   } catch (error) {

@@ -83,30 +83,3 @@ class Solution {
 }
 
 const scratch = { q: new THREE.Quaternion(), v: new THREE.Vector3() };
-
-// Points along the ways of all bodies, as pairs of ends in order of time: [ends, times, model of each].
-function trailOf(solution) {
-  const segments = [], at = new THREE.Vector3();
-  const budget = Math.max(12, Math.floor(6000 / solution.tracks.length));
-  solution.tracks.forEach(([, model], track) => {
-    const open = solution.open(), first = open.firsts[track], count = solution.tracks[track][2];
-    const bends = Array.from(open.start.subarray(first, first + count));
-    const step = solution.duration / Math.min(budget, 160);
-    const times = [];
-    bends.forEach((from, k) => {
-      const to = Math.min(k + 1 < count ? bends[k + 1] : solution.duration, solution.duration), i = 3 * (first + k);
-      const bent = Math.hypot(...open.acceleration.subarray(i, i + 3)) > 0;
-      const parts = bent ? Math.max(1, Math.ceil((to - from) / step)) : 1;
-      for (let part = 0; part < parts; part++) times.push(from + ((to - from) * part) / parts);
-    });
-    times.push(solution.duration);
-    let last = null;
-    for (const time of times) {
-      solution.pose(track, time, at, null);
-      const here = at.toArray();
-      if (last && Math.hypot(here[0] - last[0], here[1] - last[1], here[2] - last[2]) > 0) segments.push({ ends: [...last, ...here], time, model });
-      last = here;
-    }
-  });
-  return segments.sort((a, b) => a.time - b.time);
-}

@@ -20,12 +20,19 @@ class Player {
     document.getElementById('view-reset').addEventListener('click', () => this.reset());
     document.getElementById('trails').addEventListener('click', () => app.toggleTrails());
     this.speed = document.getElementById('speed');
+    this.speed.value = this.gentle();
     this.scrub.addEventListener('input', () => { this.pause(); this.seek(+this.scrub.value); });
     new ResizeObserver(() => { this.fit(); this.drawMarks(); }).observe(this.canvas);
     this.reset();
   }
 
   get duration() { return Math.max(this.app.a.duration, this.app.b?.duration ?? 0); }
+
+  // What is over in a moment is shown slowly at first.
+  gentle() {
+    const durations = this.app.solutions.map((s) => s.duration).sort((a, b) => a - b), middle = durations[durations.length >> 1];
+    return middle < 0.8 ? '0.25' : middle < 1.6 ? '0.5' : '1';
+  }
 
   // Keeps the direction and distance that the user chose; fits anew only what they never touched.
   fit() {

@@ -6,11 +6,12 @@ class Stage {
     this.scene = new THREE.Scene();
     this.props = new Map();
     this.shown = new Set();
-    this.trails = new Map();
     this.frame = this.commonFrame();
     this.size = this.frame.low.distanceTo(this.frame.high);
-    this.bodies = [this.makeBodies(false)];
-    this.bodies.push(this.makeBodies(true));
+    this.most = this.mostBodies();
+    this.bodies = [new Map(), new Map()];
+    this.maps = new Map();
+    this.trails = new Trails(this.scene, meta, this.size);
     this.flashes = this.makeFlashes();
     this.light();
   }
@@ -34,27 +35,34 @@ class Stage {
     return { low, high };
   }
 
-  // One instanced mesh for each part of each model.
-  makeBodies(ghost) {
+  // How many bodies of each model there are at most.
+  mostBodies() {
     const most = this.meta.models.map(() => 1);
     for (const { tracks } of this.solutions) {
       const counts = this.meta.models.map(() => 0);
       for (const [, model] of tracks) counts[model]++;
       counts.forEach((count, model) => { most[model] = Math.max(most[model], count); });
     }
-    return this.meta.models.map((model, index) => model.parts.map((part) => {
-      const source = ghost ? this.bodies[0][index] : null;
-      const geometry = source ? source[model.parts.indexOf(part)].geometry : geometryOf(this.bytes, part.mesh);
-      lay(geometry, 4 * model.reach);
-      const mesh = new THREE.InstancedMesh(geometry, materialOf(part.look, ghost), most[index]);
-      mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
-      mesh.frustumCulled = false;
-      mesh.castShadow = !ghost;
-      mesh.receiveShadow = !ghost;
-      mesh.count = 0;
-      this.scene.add(mesh);
-      return mesh;
-    }));
+    return most;
+  }
+
+  // One instanced mesh for each part of a model, made when it is first seen.
+  parts(model, ghost) {
+    const made = this.bodies[ghost ? 1 : 0];
+    if (!made.has(model)) {
+      const { parts, reach } = this.meta.models[model], solid = ghost ? this.parts(model, false) : null;
+      made.set(model, parts.map((part, k) => {
+        const whole = solid?.[k].userData.whole ?? lay(geometryOf(this.bytes, part.mesh), 4 * reach);
+        const mesh = new THREE.InstancedMesh(whole, materialOf(part.look, ghost), this.most[model]);
+        mesh.instanceMatrix.setUsage(THREE.DynamicDrawUsage);
+        mesh.userData.whole = whole;
+        mesh.frustumCulled = mesh.visible = false;
+        mesh.castShadow = mesh.receiveShadow = !ghost;
+        this.scene.add(mesh);
+        return mesh;
+      }));
+    }
+    return made.get(model);
   }
 
   makeFlashes() {
@@ -72,13 +80,13 @@ class Stage {
     if (!this.props.has(index)) {
       if (this.props.size > 1500) this.forgetProps();
       const { look, mesh, grid } = this.meta.props[index];
-      const geometry = grid ? fieldOf(this.bytes, grid) : geometryOf(this.bytes, mesh);
-      lay(geometry, 0.6 * this.size);
+      const geometry = lay(grid ? fieldOf(this.bytes, grid) : geometryOf(this.bytes, mesh), 0.6 * this.size);
       const drawn = new THREE.Mesh(geometry, materialOf(look, false));
       const clear = look.material === 'glass' || look.material === 'mark';
       drawn.castShadow = !clear;
       drawn.receiveShadow = look.material !== 'glass';
       drawn.visible = false;
+      drawn.userData.whole = geometry;
       this.scene.add(drawn);
       this.props.set(index, drawn);
     }
@@ -96,6 +104,7 @@ class Stage {
 
   light() {
     const { low, high } = this.frame, middle = low.clone().lerp(high, 0.5), radius = 0.75 * this.size;
+    this.middle = middle;
     this.sky = new THREE.HemisphereLight(0xffffff, 0x8a7f72, 1.15);
     this.sun = new THREE.DirectionalLight(0xfff4e2, 2.4);
     this.sun.position.copy(middle).add(new THREE.Vector3(-0.55, 1.25, 0.7).multiplyScalar(2 * radius));
@@ -123,81 +132,54 @@ class Stage {
     this.ground.material.opacity = dark ? 0.5 : 0.28;
   }
 
-  // Ready to be drawn: a solution at a time, another over it, trails, flashes of impacts.
-  pose({ solution, time, other = null, trails = true, until = false, flash = false, camera }) {
+  // Ready to be drawn: a solution at a time, another over it, trails, `plain` where the picture is small or must be made fast, flashes of impacts.
+  pose({ solution, time, other = null, trails = true, until = false, flash = false, camera, width, height, seen, plain }) {
+    // How wide a pixel is, in the middle of what is seen.
+    const far = camera.position.distanceTo(this.middle), pixel = (2 * far * Math.tan((camera.fov * Math.PI) / 360)) / height;
+    this.shadows(width);
     const wanted = new Set(solution.props);
     for (const index of this.shown) if (!wanted.has(index)) this.props.get(index).visible = false;
-    for (const index of wanted) this.prop(index).visible = true;
+    for (const index of wanted) {
+      const prop = this.prop(index);
+      prop.geometry = atDetail(prop.userData.whole, pixel);
+      prop.visible = true;
+    }
     this.shown = wanted;
-    this.place(this.bodies[0], solution, time);
-    this.place(this.bodies[1], other, time);
-    this.drawTrails(solution, other, trails, until ? time : Infinity);
+    this.place(false, solution, time, pixel);
+    this.place(true, other, time, pixel);
+    this.trails.draw(trails ? solution : null, trails ? other : null, until ? time : Infinity, plain, seen);
     this.flash(flash ? solution : null, time, camera);
   }
 
-  place(bodies, solution, time) {
-    const counts = this.meta.models.map(() => 0), at = new THREE.Vector3(), turned = new THREE.Quaternion(), one = new THREE.Vector3(1, 1, 1), matrix = new THREE.Matrix4();
+  // A map of shadows that is about as fine as the picture; one of each size is kept.
+  shadows(width) {
+    if (!software) return;
+    const { shadow } = this.sun, size = Math.min(Math.max(2 ** Math.round(Math.log2(1.2 * width)), 256), 1024);
+    if (shadow.mapSize.x === size) return;
+    this.maps.set(shadow.mapSize.x, shadow.map);
+    shadow.mapSize.set(size, size);
+    shadow.map = this.maps.get(size) ?? null;
+  }
+
+  place(ghost, solution, time, pixel) {
+    const counts = new Map(), at = new THREE.Vector3(), turned = new THREE.Quaternion(), one = new THREE.Vector3(1, 1, 1), matrix = new THREE.Matrix4();
     solution?.tracks.forEach(([, model], track) => {
-      const round = this.meta.models[model].round;
+      const { round } = this.meta.models[model], count = counts.get(model) ?? 0;
       solution.pose(track, Math.min(time, solution.duration), at, round ? null : turned);
       matrix.compose(at, round ? turned.identity() : turned, one);
-      for (const mesh of bodies[model]) mesh.setMatrixAt(counts[model], matrix);
-      counts[model]++;
+      for (const mesh of this.parts(model, ghost)) mesh.setMatrixAt(count, matrix);
+      counts.set(model, count + 1);
     });
-    bodies.forEach((parts, model) => parts.forEach((mesh) => {
-      mesh.count = counts[model];
-      mesh.visible = counts[model] > 0;
-      mesh.instanceMatrix.needsUpdate = true;
-    }));
-  }
-
-  drawTrails(solution, other, on, until) {
-    for (const trail of this.trails.values()) trail.line.visible = false;
-    if (!on) return;
-    for (const [which, one] of [['a', solution], ['b', other]]) {
-      if (!one) continue;
-      const { line, times } = this.trail(one, which === 'b');
-      line.visible = true;
-      let count = times.length;
-      if (until !== Infinity) { count = 0; while (count < times.length && times[count] <= until) count++; }
-      line.geometry.instanceCount = count;
+    for (const [model, parts] of this.bodies[ghost ? 1 : 0]) {
+      const count = counts.get(model) ?? 0;
+      for (const mesh of parts) {
+        mesh.count = count;
+        mesh.visible = count > 0;
+        if (!count) continue;
+        mesh.geometry = atDetail(mesh.userData.whole, pixel);
+        mesh.instanceMatrix.needsUpdate = true;
+      }
     }
-  }
-
-  trail(solution, ghost) {
-    const key = `${solution.index}${ghost ? 'b' : ''}`;
-    if (!this.trails.has(key)) {
-      if (this.trails.size > 160) this.forgetTrails();
-      const segments = trailOf(solution), ends = new Float32Array(6 * segments.length), colours = new Float32Array(6 * segments.length);
-      const own = this.meta.models.map((model) => {
-        const colour = new THREE.Color().setRGB(...model.parts[0].look.colour.map((c) => c / 255), THREE.SRGBColorSpace);
-        return ghost ? new THREE.Color('#2f9bff') : colour;
-      });
-      segments.forEach((segment, k) => {
-        ends.set(segment.ends, 6 * k);
-        const { r, g, b } = own[segment.model];
-        colours.set([r, g, b, r, g, b], 6 * k);
-      });
-      const geometry = new THREE.LineSegmentsGeometry();
-      geometry.setPositions(ends);
-      geometry.setColors(colours);
-      const many = solution.tracks.length > 12;
-      const material = new THREE.LineMaterial({ linewidth: many ? 1 : ghost ? 2 : 2.5, vertexColors: true, transparent: true, opacity: many ? 0.35 : 0.8, depthWrite: false });
-      const line = new THREE.LineSegments2(geometry, material);
-      line.frustumCulled = false;
-      this.scene.add(line);
-      this.trails.set(key, { line, times: segments.map((segment) => segment.time) });
-    }
-    return this.trails.get(key);
-  }
-
-  forgetTrails() {
-    for (const { line } of this.trails.values()) {
-      this.scene.remove(line);
-      line.geometry.dispose();
-      line.material.dispose();
-    }
-    this.trails.clear();
   }
 
   flash(solution, time, camera) {

@@ -70,7 +70,7 @@ class Tiles {
     if (app.hovered && app.hoveredFrom === 'tile' && this.tiles.has(app.hovered)) moving.add(app.hovered);
     for (const solution of moving) {
       const since = app.animateAll ? now : now - app.hoveredSince;
-      jobs.push({ canvas: this.canvas(solution), solution, time: cycle(since / 1000, solution.duration), trails: true, flash: true, moving: true });
+      jobs.push({ canvas: this.canvas(solution), solution, time: cycle((since / 1000) * +app.player.speed.value, solution.duration), trails: true, flash: true, moving: true });
       this.stale.add(solution);
     }
     // What moves comes first.
@@ -88,7 +88,7 @@ class Tiles {
   canvas(solution) { return this.tile(solution).firstElementChild; }
 }
 
-// From 0 to the end, then a moment's rest.
+// From 0 to the end, then a moment's rest; in seconds of the animation.
 function cycle(seconds, duration) {
   return Math.min(seconds % (duration + 0.7), duration);
 }

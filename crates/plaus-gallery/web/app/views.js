@@ -58,6 +58,16 @@ class Views {
     flush();
   }
 
+  // Calls back once what was asked for so far is drawn: a processor that draws may be far behind.
+  drawn(then) {
+    const gl = this.renderer.getContext(), fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    const look = () => {
+      if (!fence || this.lost || gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED) { gl.deleteSync(fence); then(); } else requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+  }
+
   // Copying out of the canvas costs as much as all of it: it shrinks when for a while only small pictures were drawn.
   fit(width, height) {
     const { renderer } = this, roomy = 2 * width * height < this.width * this.height;
@@ -78,8 +88,7 @@ class Views {
     renderer.setScissorTest(true);
     for (const { job, x, y, width: w, height: h } of batch) {
       const camera = job.camera ?? this.fitted(this.camera, w / h);
-      stage.pose({ ...job, camera });
-      for (const { line } of stage.trails.values()) if (line.visible) line.material.resolution.set(job.canvas.clientWidth, job.canvas.clientHeight);
+      stage.pose({ ...job, camera, width: w, height: h, seen: [job.canvas.clientWidth, job.canvas.clientHeight], plain: w <= 300 || (job.moving && this.detail > 1) });
       renderer.setViewport(x, y, w, h);
       renderer.setScissor(x, y, w, h);
       renderer.clear();

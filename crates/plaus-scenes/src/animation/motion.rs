@@ -3,7 +3,9 @@
 use super::look::Look;
 use super::shape::Shape;
 use glam::{DQuat, DVec3};
+use plaus_dist::math::atan2;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// A body and its motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -52,6 +54,21 @@ impl Turn {
     #[must_use]
     pub fn still(orientation: DQuat) -> Self {
         Self { orientation, ..Self::default() }
+    }
+
+    /// The same orientation, but at that constant angular velocity, of all that reach `end` after `t` > 0 seconds, which is nearest to `spin`: where torques
+    /// act, the mean over the piece, so that a piece ends as the next begins.
+    #[must_use]
+    pub fn reaching(self, end: DQuat, t: f64) -> Self {
+        let way = end * self.orientation.conjugate();
+        let sine = way.xyz().length();
+        if sine == 0.0 || self.own != 0.0 {
+            return self;
+        }
+        let (axis, angle) = (way.xyz() / sine, 2.0 * atan2(sine, way.w));
+        // The same turn, and any number of full turns more.
+        let full = ((self.spin.dot(axis) * t - angle) / TAU).round();
+        Self { spin: axis * ((angle + TAU * full) / t), ..self }
     }
 
     /// Orientation after `t` seconds.
@@ -143,6 +160,20 @@ impl Track {
 mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, PI};
+
+    #[test]
+    fn a_piece_ends_in_the_orientation_asked_for_after_as_many_turns_as_it_had() {
+        // Slowed down from 38 rad/s about one axis and pushed about another: more than half a turn, so the short way round would be the wrong one.
+        let turn = Turn { orientation: DQuat::from_rotation_y(0.3), spin: DVec3::new(38.0, 2.0, -1.0), own: 0.0 };
+        let end = DQuat::from_scaled_axis(DVec3::new(36.5, 2.5, -1.0) * 0.14) * turn.orientation;
+        for end in [end, -end] {
+            let reaching = turn.reaching(end, 0.14);
+            assert!(reaching.after(0.14).dot(end).abs() > 1.0 - 1e-14);
+            assert!((reaching.spin - DVec3::new(36.5, 2.5, -1.0)).length() < 1e-11, "{}", reaching.spin);
+        }
+        let still = Turn::still(DQuat::from_rotation_z(1.0));
+        assert_eq!(still.reaching(still.orientation, 1.0).after(1.0), still.after(1.0));
+    }
 
     #[test]
     fn a_symmetric_top_turns_about_both_axes() {

@@ -204,6 +204,9 @@ pub struct Weights {
     /// Some pins are set anew.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub redraw_pins: f64,
+    /// The ball is released from where it should meet a pin of the first row.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub aim: f64,
     /// Everything is shifted a little, by steps of any size down to a ten-thousandth of the paper's: what a shot that has many collisions hangs on.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub refine: f64,
@@ -226,6 +229,7 @@ impl Weights {
             change_pins: 0.2,
             redraw: 0.0,
             redraw_pins: 0.0,
+            aim: 0.0,
             refine: 0.0,
             mirror: 0.0,
         }
@@ -244,6 +248,7 @@ impl Default for Weights {
             change_pins: 0.1,
             redraw: 0.12,
             redraw_pins: 0.1,
+            aim: 0.25,
             refine: 0.25,
             mirror: 0.05,
         }
@@ -269,6 +274,9 @@ pub struct Steps {
     /// Probability that `redraw_pins` sets a pin anew.
     #[schemars(range(min = 0.000001, max = 1.0))]
     pub redraw_chance: f64,
+    /// Probability that `aim` draws everything else anew.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub aim_anew: f64,
     /// The least factor on the steps of `refine`; the logarithm of the factor is uniform from this one's to 0.
     #[schemars(range(min = 1e-12, max = 0.99))]
     pub finest: f64,
@@ -276,6 +284,14 @@ pub struct Steps {
 
 impl Default for Steps {
     fn default() -> Self {
-        Self { gaussian: 0.5, uniform: 0.2, pin_chance: 0.5, pin_mm: 0.5, redraw_chance: 0.3, finest: 1e-4 }
+        Self {
+            gaussian: 0.5,
+            uniform: 0.2,
+            pin_chance: 0.5,
+            pin_mm: 0.5,
+            redraw_chance: 0.3,
+            aim_anew: 0.5,
+            finest: 1e-4,
+        }
     }
 }

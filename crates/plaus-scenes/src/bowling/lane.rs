@@ -20,11 +20,15 @@ use std::sync::Arc;
 /// Width of the lane in m.
 pub(super) const WIDTH: f64 = Alley::WIDTH;
 
+/// From the foul line to the head pin's spot in m.
+pub(super) const LENGTH: f64 = Alley::LENGTH;
+
 /// What all shots of a scenario have in common.
 #[derive(Debug)]
 pub(super) struct Lane {
     alley: Alley,
     pin: Arc<Revolution>,
+    verdict: Verdict,
     pins: Vec<usize>,
 }
 
@@ -65,6 +69,11 @@ impl Fate {
     pub fn stands(self) -> bool {
         matches!(self, Self::Standing(_))
     }
+}
+
+/// Where a pin with this offset in mm stands.
+fn place(number: usize, offset: &[f64; 2]) -> DVec3 {
+    Alley::spot(number) + DVec3::new(offset[0] / 1000.0, offset[1] / 1000.0, 0.0)
 }
 
 /// Whether the ball has left the lane before its end. By the rules of the game it is dead then, whatever it may still do.
@@ -116,14 +125,15 @@ impl Lane {
         for pin in rack.pins() {
             alley.standing[pin - 1] = true;
         }
-        let lane = Self { pin: Arc::new(alley.pin()?), alley, pins: rack.pins().to_vec() };
+        let pin = Arc::new(alley.pin()?);
+        let lane = Self { verdict: Verdict::of(&alley, &pin), pin, alley, pins: rack.pins().to_vec() };
         // What the configuration got wrong is said now, not in the middle of a run.
         lane.alley.world_of(&lane.pin)?;
         Ok(lane)
     }
 
     /// The alley with the ball of a draw.
-    fn alley(&self, draw: &Shot) -> Alley {
+    pub(super) fn alley(&self, draw: &Shot) -> Alley {
         let radius = draw.get(Quantity::Radius);
         Alley {
             ball_radius: radius,
@@ -133,35 +143,50 @@ impl Lane {
         }
     }
 
-    /// The world of a draw, and where everything starts.
-    pub(super) fn world(&self, draw: &Shot) -> Result<(Rigid, Vec<Start>), WorldError> {
-        let position = DVec3::new(draw.get(Quantity::Across), -Alley::LENGTH, draw.get(Quantity::Height));
-        let ball = Start {
-            position,
+    /// How the ball starts, so far in m before the head pin's spot.
+    pub(super) fn start(draw: &Shot, distance: f64) -> Start {
+        Start {
+            position: DVec3::new(draw.get(Quantity::Across), -distance, draw.get(Quantity::Height)),
             orientation: DQuat::IDENTITY,
             velocity: DVec3::new(draw.get(Quantity::Drift), draw.get(Quantity::Speed), 0.0),
             spin: DVec3::new(-draw.get(Quantity::Roll), draw.get(Quantity::Hook), draw.get(Quantity::Twist)),
             time: 0.0,
-        };
+        }
+    }
+
+    /// Where the pins that are nearest to the bowler stand, of those that are set up: one row.
+    pub(super) fn first_row(&self, draw: &Shot) -> Vec<DVec3> {
+        let row = |pin: usize| Alley::spot(pin).y;
+        let least = self.pins.iter().map(|pin| row(*pin)).fold(f64::INFINITY, f64::min);
+        let pins = self.pins.iter().zip(&draw.pins).filter(|(pin, _)| row(**pin) == least);
+        let mut places: Vec<DVec3> = pins.map(|(pin, offset)| place(*pin, offset)).collect();
+        places.sort_by(|a, b| a.y.total_cmp(&b.y));
+        places
+    }
+
+    /// The world of a draw, and where everything starts: the ball so far in m before the head pin's spot.
+    pub(super) fn world(&self, draw: &Shot, distance: f64) -> Result<(Rigid, Vec<Start>), WorldError> {
         let up = self.pin.balance();
-        let pin = |(number, offset): (&usize, &[f64; 2])| {
-            Start::at_rest(Alley::spot(*number) + DVec3::new(offset[0] / 1000.0, offset[1] / 1000.0, up))
-        };
-        let starts = std::iter::once(ball).chain(self.pins.iter().zip(&draw.pins).map(pin)).collect();
+        let pin =
+            |(number, offset): (&usize, &[f64; 2])| Start::at_rest(place(*number, offset) + DVec3::new(0.0, 0.0, up));
+        let starts =
+            std::iter::once(Self::start(draw, distance)).chain(self.pins.iter().zip(&draw.pins).map(pin)).collect();
         Ok((self.alley(draw).world_of(&self.pin)?, starts))
     }
 
-    /// Bowls. Stops as soon as no pin's fate can change, or `hopeless` says so of the pins that are down; then there is no answer.
+    /// Bowls from `distance` m before the head pin's spot. Stops as soon as no pin's fate can change, or `hopeless` says so of the pins that are down; then there is no
+    /// answer.
     pub(super) fn bowl(
         &self,
         draw: &Shot,
+        distance: f64,
         work: &mut Work,
         hopeless: impl FnMut(Pins) -> bool,
         observer: impl Observer<Rigid>,
     ) -> Result<Option<Rest>, ModelError> {
-        let (world, starts) = self.world(draw).map_err(ModelError::new)?;
+        let (world, starts) = self.world(draw, distance).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let mut umpire = Umpire::new(&world, Verdict::of(&self.alley(draw), &self.pin), hopeless);
+        let mut umpire = Umpire::new(&world, self.verdict.with_ball(&self.alley(draw)), hopeless);
         let duration = self.alley.duration;
         let outcome = world
             .run(&mut state, &mut work.scratch, duration, &mut (&mut umpire, observer))
@@ -186,7 +211,7 @@ impl Lane {
 
     /// Bowls until everything is at rest, and records it: the world, all motions, and when it ends.
     pub(super) fn record(&self, draw: &Shot, work: &mut Work) -> Result<(Rigid, Trace<Turning>, f64), ModelError> {
-        let (world, starts) = self.world(draw).map_err(ModelError::new)?;
+        let (world, starts) = self.world(draw, LENGTH).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
         let mut trace = Trace::default();
         world.run(&mut state, &mut work.scratch, self.alley.duration, &mut trace).map_err(ModelError::new)?;

@@ -1,6 +1,7 @@
 //! Bowling (section 5.2, appendix A): which pins are left is demanded; the ball, its delivery and the places of the pins are uncertain.
 
 mod animate;
+mod approach;
 mod config;
 mod draw;
 mod lane;
@@ -12,7 +13,7 @@ mod release;
 pub use config::{Config, Contact, Delivery, Moves, Rewarded, Steps, Weights};
 pub use draw::{Prior, Shot};
 pub use lane::{Entry, Fate, Rest, Work};
-pub use moves::{ChangeAll, ChangeBall, ChangePins, Mirror, Redraw, RedrawPins, Refine};
+pub use moves::{Aim, ChangeAll, ChangeBall, ChangePins, Mirror, Redraw, RedrawPins, Refine};
 pub use rack::Rack;
 pub use release::{Law, Laws, Quantity, Release};
 
@@ -23,6 +24,7 @@ use crate::scene::{ConfigError, Role, Scalar, Scene};
 use lane::{Lane, Pins};
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
+use plaus_sim::rigid::{Rigid, Start};
 
 /// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, k the pins that end as they should, m those that stand as they should and have not moved far.
 #[derive(Debug)]
@@ -66,6 +68,14 @@ impl Bowling {
         &self.prior
     }
 
+    /// The simulator's world of a draw, and how everything starts: the ball, then the pins that are set up, in ascending order of their numbers.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the draw's numbers make no world.
+    pub fn world(&self, draw: &Shot) -> Result<(Rigid, Vec<Start>), ModelError> {
+        self.lane.world(draw, lane::LENGTH).map_err(ModelError::new)
+    }
+
     /// k and m.
     #[must_use]
     pub fn counts(&self, rest: &Rest) -> (u64, u64) {
@@ -77,6 +87,16 @@ impl Bowling {
             m += u64::from(counts && matches!(fate, Fate::Standing(way) if *way <= far));
         }
         (k, m)
+    }
+
+    /// What a shot leaves whose ball begins `distance` m before the head pin's spot, in the place and with the velocities of the draw: for deliveries that are to meet the pins just
+    /// so.
+    ///
+    /// # Errors
+    /// [`ModelError`] where there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
+    pub fn bowl_from(&self, distance: f64, draw: &Shot, work: &mut Work) -> Result<Rest, ModelError> {
+        let rest = self.lane.bowl(draw, distance, work, |_| false, &mut ())?;
+        rest.ok_or_else(|| ModelError::new("a shot was given up that nobody called hopeless"))
     }
 
     /// The most that k + m can still become once these pins are down, by their places in the rack.
@@ -126,7 +146,7 @@ impl Target for Bowling {
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
         let hopeless = |down| self.goal.log_potential(self.most(down)) <= floor;
-        let rest = self.lane.bowl(draw, work, hopeless, &mut ())?;
+        let rest = self.lane.bowl(draw, lane::LENGTH, work, hopeless, &mut ())?;
         Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
 

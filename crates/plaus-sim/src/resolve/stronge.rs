@@ -3,7 +3,8 @@
 //! With `K` the inverse inertia seen at the contact, velocities change as `du/dp = K (−μ û, 1)` while the contact slips in direction `û`. Slip may
 //! stop, stay stuck (if the friction that would hold it is inside the cone) or turn. The normal work `W = ∫ u_n dp` decides the end:
 //! the impact is over when the fraction `e²` of the energy of compression has come back. Newton's rule gains energy under friction, Poisson's may too; this one
-//! cannot, because normal work is −(1−e²) of the compression's and friction only takes.
+//! cannot, because normal work is −(1−e²) of the compression's and friction only takes. Strong friction can press bodies together again before that: what they then
+//! take up is added to what has not come back yet.
 //!
 //! Sources: Keller, "Impact with friction", J. Appl. Mech. 53 (1986); Stronge, *Impact Mechanics* (2000), ch. 4; Darboux (1880).
 //! Deviation: where the slip turns while it shrinks (three dimensions), the path is followed by midpoint steps that turn it by at most
@@ -77,13 +78,23 @@ pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: 
     if u.z >= 0.0 {
         return path.impulse;
     }
-    let mut target = None;
-    for count in 0..MOST_STEPS {
-        let tiny = if count < MANY_STEPS { f64::EPSILON } else { WOUND } * u.length();
+    // The normal work at which all that is to come back has come back, and the work at the begin of the compression.
+    let mut released = 0.0;
+    let mut begin = 0.0;
+    let mut compresses = true;
+    let mut wound = WOUND;
+    let steps = |turns: f64| (turns / turn) as usize;
+    let (many, most) = (steps(MANY_TURNS), steps(MOST_TURNS));
+    for count in 0..most {
+        if count >= many {
+            wound += wound * WIDENS / many as f64;
+        }
+        let tiny = if count < many { f64::EPSILON } else { wound } * u.length();
         let stuck = path.slip.length() <= tiny;
         let (force, longest) = path.friction(k, friction, turn, stuck);
         let (slip_rate, normal_rate) = k.rate(force);
-        let end = path.until_end(normal_rate, target);
+        let (end, last) =
+            if compresses { (path.until_turn(normal_rate), false) } else { path.until_released(normal_rate, released) };
         let step = if end <= longest { end } else { longest };
         if !step.is_finite() {
             break;
@@ -95,26 +106,30 @@ pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: 
             normal_rate,
             stuck || (step == longest && longest.is_finite() && path.stops(slip_rate, step)),
         );
-        if step == end {
-            match target {
-                None => target = Some(path.work * (1.0 - restitution * restitution)),
-                Some(_) => break,
-            }
-            if restitution == 0.0 {
-                break;
-            }
+        if step < end {
+            continue;
         }
+        if compresses {
+            released += (path.work - begin) * (1.0 - restitution * restitution);
+        }
+        if last || restitution == 0.0 {
+            break;
+        }
+        begin = path.work;
+        compresses = !compresses;
     }
     path.impulse
 }
 
-/// A slip that turns needs π / `turn` steps or so; the bound only guards against our own mistakes.
-const MOST_STEPS: usize = 4096;
-
-/// A slip that winds round and round while it dies would take steps without end. From this many on it counts as stuck below this part of the relative velocity; default 1e-6,
-/// far less than what steps that turn by `turn` resolve.
-const MANY_STEPS: usize = 1024;
+/// A slip that winds round and round while it dies would take steps without end. When it has turned by so many radians (eight rounds), it counts as stuck below this part of the
+/// relative velocity; default 1e-6, far less than what steps that turn by `turn` resolve. Where a round takes next to nothing off, that part widens with each step, by a factor
+/// of 20,000 in eight more rounds.
+const MANY_TURNS: f64 = 51.2;
 const WOUND: f64 = 1e-6;
+const WIDENS: f64 = 10.0;
+
+/// The bound on turns only guards against our own mistakes.
+const MOST_TURNS: f64 = 4.0 * MANY_TURNS;
 
 struct Path {
     slip: DVec2,
@@ -161,20 +176,22 @@ impl Path {
         (self.slip + rate * step).length() <= 1e-3 * self.slip.length()
     }
 
-    /// Normal impulse until compression ends (no target yet) or until the work reaches its target.
-    fn until_end(&self, rate: f64, target: Option<f64>) -> f64 {
-        match target {
-            None if rate > 0.0 => -self.normal / rate,
-            None => f64::INFINITY,
-            Some(work) => {
-                // W + u p + r p²/2 = target, with u ≥ 0: the positive root in the form that does not cancel.
-                let missing = work - self.work;
-                let discriminant = self.normal * self.normal + 2.0 * rate * missing;
-                if missing <= 0.0 {
-                    return 0.0;
-                }
-                if discriminant < 0.0 { f64::INFINITY } else { 2.0 * missing / (self.normal + discriminant.sqrt()) }
-            }
+    /// Normal impulse until compression ends.
+    fn until_turn(&self, rate: f64) -> f64 {
+        if rate > 0.0 { (-self.normal / rate).max(0.0) } else { f64::INFINITY }
+    }
+
+    /// Normal impulse until the work reaches `released`, and true; or, where the bodies approach again before that, until they begin to, and false.
+    fn until_released(&self, rate: f64, released: f64) -> (f64, bool) {
+        // W + u p + r p²/2 = released, with u ≥ 0: the positive root in the form that does not cancel.
+        let missing = released - self.work;
+        let discriminant = self.normal * self.normal + 2.0 * rate * missing;
+        if missing <= 0.0 {
+            (0.0, true)
+        } else if discriminant >= 0.0 {
+            (2.0 * missing / (self.normal + discriminant.sqrt()), true)
+        } else {
+            ((self.normal / -rate).max(0.0), false)
         }
     }
 
@@ -203,6 +220,13 @@ mod tests {
             DVec3::new(0.0, 1.0, 0.0),
             DVec3::new(-1.5, 0.0, 2.5),
         ))
+    }
+
+    /// A body of unit mass with these inverse moments, touched at `r` from its centre.
+    fn matrix(inverse: DVec3, r: DVec3) -> ContactMatrix {
+        let cross =
+            DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0));
+        ContactMatrix(DMat3::IDENTITY - cross * DMat3::from_diagonal(inverse) * cross)
     }
 
     fn after(k: &ContactMatrix, u: DVec3, e: f64, mu: f64) -> (DVec3, f64) {
@@ -256,12 +280,39 @@ mod tests {
     fn slip_that_winds_into_sticking_ends() {
         let r = DVec3::new(-0.896_100_684_939_962_4, -0.048_564_373_434_830_63, 0.464_968_417_468_366_2);
         let inertia = DVec3::new(18.267_625_327_358_896, 2.628_152_610_138_884_3, 8.513_600_154_202_017);
-        let cross =
-            DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0));
-        let k = ContactMatrix(DMat3::IDENTITY - cross * DMat3::from_diagonal(inertia) * cross);
+        let k = matrix(inertia, r);
         let u = DVec3::new(-0.554_847_839_656_371_5, 2.901_160_441_551_255, -2.188_011_343_914_404);
         let (next, energy) = after(&k, u, 0.0, 0.718_941_642_833_180_6);
         assert!(next.z.abs() < 1e-9 && energy < 0.0, "{next}, {energy}");
+    }
+
+    /// Friction of 2.7 presses the bodies together again while they part. A spring that stores the work done on it and gives back e² of it says when they are apart.
+    #[test]
+    fn bodies_pressed_together_again_part_in_the_end() {
+        let r = DVec3::new(0.526_778_335_066_164_2, -0.914_060_086_875_240_7, 0.858_917_085_839_797_4);
+        let inertia = DVec3::new(6.899_890_939_022_494, 9.048_906_640_721_714, 11.109_895_380_266_735);
+        let k = matrix(inertia, r);
+        let u = DVec3::new(2.411_761_369_790_216, 1.997_349_731_276_005, -0.212_421_147_996_087_9);
+        let (e, mu) = (0.499_240_527_307_221_46, 2.699_420_945_821_742);
+        // Darboux and Keller's equations in steps of 1e-5 of the normal impulse, by Euler's rule: its error is of the order of the step.
+        let (mut v, mut stored) = (u, 0.0);
+        let step = 1e-5;
+        let mut again = false;
+        loop {
+            let slip = DVec2::new(v.x, v.y);
+            let force = if slip.length() < 1e-3 { k.holding() } else { -slip / slip.length() * mu };
+            let next = v + k.0 * DVec3::new(force.x, force.y, 1.0) * step;
+            let work = step * 0.5 * (v.z + next.z);
+            again |= stored > 0.0 && v.z >= 0.0 && next.z < 0.0;
+            stored -= if work < 0.0 { work } else { work / (e * e) };
+            v = next;
+            if stored <= 0.0 {
+                break;
+            }
+        }
+        let (next, energy) = after(&k, u, e, mu);
+        assert!(again && energy < 0.0, "{energy}");
+        assert!((next - v).length() < 2e-2 * u.length(), "{next} {v}");
     }
 
     proptest! {
@@ -272,9 +323,7 @@ mod tests {
             inertia in prop::array::uniform3(0.05..20.0_f64), r in prop::array::uniform3(-1.0..1.0_f64), u in prop::array::uniform3(-3.0..3.0_f64),
             e in 0.0..=1.0_f64, mu in 0.0..3.0_f64,
         ) {
-            let r = DVec3::from(r);
-            let cross = DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0));
-            let k = ContactMatrix(DMat3::IDENTITY - cross * DMat3::from_diagonal(DVec3::from(inertia)) * cross);
+            let k = matrix(DVec3::from(inertia), DVec3::from(r));
             let u = DVec3::new(u[0], u[1], -u[2].abs() - 1e-3);
             let impulse = stronge_impulse(&k, u, e, mu, TURN);
             let next = u + k.0 * impulse;

@@ -43,6 +43,11 @@ impl Rigid {
     #[inline]
     pub(super) fn touch(&self, index: usize, pose: &Pose, part: u16, point: u16) -> Touch {
         let (spec, part_here, k) = (&self.specs[index], &self.parts[usize::from(part)], usize::from(point));
+        if k >= spec.hull
+            && let Some(touch) = self.ledge_touch(index, pose, part, point)
+        {
+            return touch;
+        }
         let feeler = match spec.ring_of(k) {
             Some(ring) => {
                 let (up, turned) = (part_here.up_at_ring(ring, pose.x, &pose.r), pose.r.transpose());
@@ -111,6 +116,7 @@ impl Rigid {
                                 each(touch);
                             }
                         }
+                        self.for_ledge_touches(index, pose, k, within, &mut each);
                     }
                 }
                 Part::Table(table) => {

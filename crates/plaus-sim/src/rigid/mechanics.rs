@@ -79,10 +79,15 @@ impl Mechanics for Rigid {
     }
 
     fn first_new_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
-        if !self.are_cuboids(pair) || bodies.iter().all(|b| b.phase == Phase::Rest) {
-            return None;
+        if bodies.iter().all(|b| b.phase == Phase::Rest) {
+            None
+        } else if self.are_cuboids(pair) {
+            self.first_of_cuboids(pair, bodies, [from, until], true)
+        } else if self.are_hulls(pair) {
+            self.first_of_hulls(pair, bodies, [from, until], true)
+        } else {
+            None
         }
-        self.first_of_cuboids(pair, bodies, [from, until], true)
     }
 
     fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface) -> Option<Impact> {

@@ -1,4 +1,4 @@
-//! Worlds of turning bodies: balls, cuboids and bodies of revolution among planes, boxes and tables with a spline surface.
+//! Worlds of turning bodies: balls, cuboids, bodies of revolution and convex polyhedra among planes, boxes and tables with a spline surface.
 //!
 //! A body in the air is on a parabola and rotates freely, both in closed form; a ball on level ground slides and rolls in closed form. A body touches when the first of
 //! its [feelers](crate::shape::Feeler) comes within half of `accuracy.gap` of a part. Impacts follow Stronge's law. A contact whose rebound would be slower than
@@ -10,6 +10,9 @@
 //! of a slip within an impact and the steps of lasting contact follow the preset. A ring is felt at its lowest point, in lasting contact also at three others of the rim, so that it may be
 //! some millimetres in the edge of a box. Energy grows only by what pushing a body out of an overlap takes: in shots at ten pins by less than a hundredth of a pin's weight times its
 //! size at a time at the standard preset (the example `energy` counts), 3e-4 at the fine one.
+//!
+//! A convex polyhedron may meet any body but one of revolution, and touches boxes with faces and edges too, not only with its corners as a cuboid does. One that is wedged between boxes so that each
+//! pushes it into the other may find no rest: it sinks, by a fifth of its size at worst in the tests, until its run is out of events.
 //!
 //! Rolling and spinning resistance act in the steps of lasting contact on fixed parts, with the distance of the point from the centre of gravity as the radius; not between bodies, nor on
 //! a ball that glides: that goes on until it meets something or the run ends.
@@ -31,34 +34,40 @@ mod body;
 mod boxes;
 mod capsule;
 mod contact;
+mod convex;
 mod detect;
 mod energy;
 mod glide;
+mod hulls;
+mod ledges;
 mod mechanics;
+mod meet;
 mod pair;
 mod part;
 mod pile;
 mod rest;
 mod rim;
 mod solve;
+mod spec;
 mod step;
 mod tumble;
 
 pub use body::{Phase, Start, Turning};
 pub use glide::Stretch;
+use ledges::Ledge;
 pub use part::{Part, Table};
+use spec::{RIM_POINTS, Skin, Spec};
 pub use step::RigidScratch;
 
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::{Laws, Material};
 use crate::mechanics::Mechanics;
-use crate::shape::{Feeler, MassProperties, Ring, Shape};
+use crate::shape::{MassProperties, Shape};
 use crate::simulate::{Outcome, Scratch, simulate};
 use crate::state::State;
 use crate::trace::Observer;
 use glam::DVec3;
-use tumble::Inertia;
 
 /// One body of a world.
 #[derive(Debug, Clone)]
@@ -107,6 +116,8 @@ pub struct RigidWorld {
 pub struct Rigid {
     specs: Vec<Spec>,
     parts: Vec<Part>,
+    /// Those parts that are boxes, as polyhedra see them.
+    ledges: Vec<Option<Ledge>>,
     laws: Laws,
     gravity: DVec3,
     strength: f64,
@@ -114,47 +125,6 @@ pub struct Rigid {
     sink: f64,
     duration: f64,
 }
-
-/// A body with what follows from its shape.
-#[derive(Debug, Clone)]
-pub(crate) struct Spec {
-    pub(crate) mass: f64,
-    pub(crate) inertia: Inertia,
-    pub(crate) material: Material,
-    /// The balls of the hull first, then those for uneven ground.
-    feelers: Vec<Feeler>,
-    hull: usize,
-    /// Distances from the centre of gravity of the feelers, and of the rings' circles.
-    arms: Vec<f64>,
-    ring_arms: Vec<f64>,
-    pub(crate) reach: f64,
-    pub(crate) size: f64,
-    /// `√(g · size)`.
-    pub(crate) speed: f64,
-    /// Time in s within which many events make its contacts last: `accuracy.rattle · √(size/g)`.
-    pub(crate) rattle: f64,
-    /// Gap at which it touches, in m: the preset's over [`step::TOUCHING`].
-    pub(crate) gap: f64,
-    pub(crate) wobble: f64,
-    pub(crate) is_ball: bool,
-    /// Whether it can roll: a ball or a body of revolution.
-    pub(crate) is_round: bool,
-    rings: Vec<Ring>,
-    pub(crate) skin: Skin,
-    /// A capsule along the body's z axis that holds it: heights of its ends, and its radius.
-    pub(crate) capsule: [f64; 3],
-}
-
-/// How a body is looked at by others.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Skin {
-    Ball,
-    Revolved,
-    Cuboid { half: DVec3, rounding: f64 },
-}
-
-/// Points of the first ring, a quarter turn apart from its lowest on; other rings have their lowest only.
-pub(crate) const RIM_POINTS: usize = 4;
 
 impl Rigid {
     /// Checks a world.
@@ -179,6 +149,7 @@ impl Rigid {
                 spacing = spacing.min(world.skin * table.height.grid().spacing);
             }
         }
+        hulls::check_pairs(&world.bodies)?;
         let strength = world.gravity.length();
         let specs = world
             .bodies
@@ -186,11 +157,12 @@ impl Rigid {
             .enumerate()
             .map(|(k, b)| Spec::new(k, b, &world, spacing, strength))
             .collect::<Result<_, _>>()?;
+        let ledges = Ledge::all(&world)?;
         let RigidWorld { parts, laws, gravity, accuracy, sink, duration, .. } = world;
         if sink.is_nan() {
             return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
         }
-        Ok(Self { specs, parts, laws, gravity, strength, accuracy, sink, duration })
+        Ok(Self { specs, parts, ledges, laws, gravity, strength, accuracy, sink, duration })
     }
 
     /// A state in which every body waits for its release.
@@ -280,7 +252,7 @@ impl Rigid {
             - s.mass * self.gravity.dot(body.path.x)
     }
 
-    /// How far apart the skins of two bodies are at their clocks, in m; negative where they overlap, then by the shortest way out of it for balls and cuboids.
+    /// How far apart the skins of two bodies are at their clocks, in m; negative where they overlap, then by the shortest way out of it for balls, cuboids and polyhedra.
     #[must_use]
     pub fn gap(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> f64 {
         let [a, b] = bodies.map(Turning::pose);
@@ -304,121 +276,3 @@ impl Rigid {
 
 /// Overlap at the start that counts as touching, over the size. Default 1e-6; danger: larger values start bodies inside each other.
 const OVERLAP: f64 = 1e-6;
-
-impl Spec {
-    fn new(body: usize, b: &BodySpec, world: &RigidWorld, spacing: f64, strength: f64) -> Result<Self, WorldError> {
-        let bad = |field, value| WorldError::BadBody { body, field, value, expected: "a positive number" };
-        let MassProperties { mass, inertia } = b.mass;
-        for (field, value) in [
-            ("mass", mass),
-            ("inertia", inertia.x),
-            ("inertia", inertia.y),
-            ("inertia", inertia.z),
-            ("reach", b.shape.reach()),
-        ] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(bad(field, value));
-            }
-        }
-        world.laws.require(b.material)?;
-        let mut feelers = b.shape.feelers();
-        let hull = feelers.len();
-        if spacing.is_finite() {
-            feelers.extend(b.shape.feelers_between(spacing));
-        }
-        let (size, inertia) = (b.shape.size(), Inertia::new(inertia));
-        let (speed, gap) = ((strength * size).sqrt(), world.accuracy.gap * size / step::TOUCHING);
-        // Without gravity there is no time scale but that of the speeds, which is not known here.
-        let rattle = if strength > 0.0 { world.accuracy.rattle * (size / strength).sqrt() } else { 0.0 };
-        let (reach, wobble) = (b.shape.reach(), inertia.wobble());
-        let (skin, rings) = match &b.shape {
-            Shape::Ball(_) => (Skin::Ball, Vec::new()),
-            Shape::Revolution(r) => (Skin::Revolved, r.rings().to_vec()),
-            Shape::Cuboid(c) => (Skin::Cuboid { half: c.half(), rounding: c.rounding() }, Vec::new()),
-        };
-        let capsule = capsule(&b.shape, reach);
-        let arms = feelers.iter().map(|f| f.centre.length()).collect();
-        let ring_arms = rings.iter().map(|r| (r.circle * r.circle + r.height * r.height).sqrt()).collect();
-        let is_ball = matches!(skin, Skin::Ball);
-        let is_round = is_ball || matches!(skin, Skin::Revolved);
-        Ok(Self {
-            mass,
-            inertia,
-            material: b.material,
-            feelers,
-            hull,
-            arms,
-            ring_arms,
-            reach,
-            size,
-            speed,
-            rattle,
-            gap,
-            wobble,
-            is_ball,
-            is_round,
-            rings,
-            skin,
-            capsule,
-        })
-    }
-
-    /// The balls on the axis of a body of revolution.
-    pub(crate) fn row(&self) -> &[Feeler] {
-        &self.feelers[..self.hull]
-    }
-
-    /// How many points can touch a part: feelers of the hull, then points of rings.
-    pub(crate) fn ring_points(&self) -> std::ops::Range<usize> {
-        let count = if self.rings.is_empty() { 0 } else { RIM_POINTS + self.rings.len() - 1 };
-        self.hull..self.hull + count
-    }
-
-    /// The ring that a point belongs to.
-    pub(crate) fn ring_of(&self, point: usize) -> Option<&Ring> {
-        let k = point.checked_sub(self.hull)?;
-        self.rings.get((k + 1).saturating_sub(RIM_POINTS))
-    }
-
-    /// The points of a ring.
-    pub(crate) fn points_of(&self, ring: usize) -> std::ops::Range<usize> {
-        let first = self.hull + if ring == 0 { 0 } else { RIM_POINTS + ring - 1 };
-        first..first + if ring == 0 { RIM_POINTS } else { 1 }
-    }
-
-    /// A point that can touch a part, as a ball in body axes; `up` and `swing` as for [`ring_point`](Self::ring_point).
-    pub(crate) fn point(&self, point: usize, up: DVec3, swing: DVec3) -> Feeler {
-        if self.ring_of(point).is_some() { self.ring_point(point, up, swing).0 } else { self.feelers[point] }
-    }
-
-    /// A point of a ring as a ball, in body axes, where `up` (in body axes) points away from the part, and how it stands: 0 lowest, 1 and 3 sideways, 2 highest.
-    /// Of a ring that is level the point that sinks fastest counts as the lowest; `swing` is the rate of `up` in body axes.
-    pub(crate) fn ring_point(&self, point: usize, up: DVec3, swing: DVec3) -> (Feeler, usize) {
-        let k = point - self.hull;
-        let (ring, quarter) = if k < RIM_POINTS { (&self.rings[0], k) } else { (&self.rings[k + 1 - RIM_POINTS], 0) };
-        let is_level = up.x == 0.0 && up.y == 0.0;
-        let flat = if is_level { DVec3::new(swing.x, swing.y, 0.0) } else { DVec3::new(up.x, up.y, 0.0) };
-        let down = if flat == DVec3::ZERO { DVec3::X } else { -flat.normalize() };
-        let along = match quarter {
-            0 => down,
-            1 => DVec3::new(-down.y, down.x, 0.0),
-            2 => -down,
-            _ => DVec3::new(down.y, -down.x, 0.0),
-        };
-        (Feeler { centre: along * ring.circle + DVec3::new(0.0, 0.0, ring.height), radius: ring.radius }, quarter)
-    }
-}
-
-fn capsule(shape: &Shape, reach: f64) -> [f64; 3] {
-    let Shape::Revolution(body) = shape else { return [0.0, 0.0, reach] };
-    let widest =
-        body.row().iter().map(|f| f.radius).chain(body.rings().iter().map(|r| r.circle + r.radius)).fold(0.0, f64::max);
-    // Ends such that the balls there hold the cap and the foot.
-    let top = body.row().iter().map(|f| f.centre.z + f.radius - widest).fold(f64::NEG_INFINITY, f64::max);
-    let low = body.rings().iter().map(|r| {
-        let outer = r.circle + r.radius;
-        r.height - r.radius + (widest * widest - outer * outer).max(0.0).sqrt()
-    });
-    let low = low.chain(body.row().iter().map(|f| f.centre.z - f.radius + widest)).fold(f64::INFINITY, f64::min);
-    [low.min(top), top.max(low), widest]
-}

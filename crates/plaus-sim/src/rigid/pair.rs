@@ -10,9 +10,15 @@ use super::detect::earliest;
 use super::{Rigid, Skin, Spec, step};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
-use crate::shape::cuboid_pair::{Feature, Meeting};
-use crate::shape::{Feeler, Ring};
+use crate::shape::{Feeler, Ring, cuboid_pair, hull_pair};
 use glam::DVec3;
+
+/// What meets at a point of two bodies with flat faces.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Feature {
+    Cuboids(cuboid_pair::Feature),
+    Hulls(hull_pair::Feature),
+}
 
 /// The nearest points of two bodies.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +28,7 @@ pub(crate) struct PairTouch {
     /// From each centre of gravity to its nearest point.
     pub(crate) arms: [DVec3; 2],
     pub(crate) gap: f64,
-    /// What meets there, of two cuboids.
+    /// What meets there, of two cuboids or polyhedra.
     pub(crate) feature: Option<Feature>,
 }
 
@@ -34,9 +40,16 @@ impl PairTouch {
     }
 }
 
-impl From<Meeting> for PairTouch {
-    fn from(m: Meeting) -> Self {
-        Self { normal: m.normal, arms: m.arms, gap: m.gap, feature: Some(m.feature) }
+impl From<cuboid_pair::Meeting> for PairTouch {
+    #[inline]
+    fn from(m: cuboid_pair::Meeting) -> Self {
+        Self { normal: m.normal, arms: m.arms, gap: m.gap, feature: Some(Feature::Cuboids(m.feature)) }
+    }
+}
+
+impl From<hull_pair::Meeting> for PairTouch {
+    fn from(m: hull_pair::Meeting) -> Self {
+        Self { normal: m.normal, arms: m.arms, gap: m.gap, feature: Some(Feature::Hulls(m.feature)) }
     }
 }
 
@@ -109,8 +122,11 @@ impl Rigid {
     /// The nearest points of two bodies.
     pub(super) fn pair_touch(&self, [i, j]: [usize; 2], [a, b]: [&Pose; 2]) -> PairTouch {
         let (s, t) = (&self.specs[i], &self.specs[j]);
-        if let Some(touch) = self.nearest_of_cuboids([i, j], [a, b]) {
-            return touch;
+        if let Some(cuboids) = self.cuboids([i, j], [a, b]) {
+            return cuboids.nearest().into();
+        }
+        if let Some(hulls) = self.hulls([i, j], [a, b]) {
+            return hulls.nearest(None).into();
         }
         let offset = a.x - b.x;
         match (&s.skin, &t.skin) {
@@ -118,6 +134,8 @@ impl Rigid {
             (Skin::Revolved, Skin::Ball) => revolved_and_ball(s, a, offset, t.reach),
             (Skin::Ball, Skin::Revolved) => swapped(revolved_and_ball(t, b, -offset, s.reach)),
             (Skin::Revolved, Skin::Revolved) => two_revolved([s, t], [a, b], offset),
+            // What polyhedra meet has been looked at, and what they cannot meet is no world.
+            (Skin::Hull, _) | (_, Skin::Hull) => balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]),
             (Skin::Cuboid { .. }, _) => cuboid_and_balls(s, a, t, b, offset),
             (_, Skin::Cuboid { .. }) => swapped(cuboid_and_balls(t, b, s, a, -offset)),
         }
@@ -127,6 +145,9 @@ impl Rigid {
     pub(super) fn first_pair(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
         if self.are_cuboids(pair) {
             return self.first_of_cuboids(pair, bodies, [from, until], false);
+        }
+        if self.are_hulls(pair) {
+            return self.first_of_hulls(pair, bodies, [from, until], false);
         }
         let [s, t] = pair.map(|k| &self.specs[k]);
         let level = self.pair_gap(pair);
@@ -141,12 +162,13 @@ impl Rigid {
         let mut pose = |k: usize, time: f64| {
             let (spec, b) = ([s, t][k], bodies[k]);
             let dt = time - b.path.t;
+            let r = tumbles[k].at(dt);
             let w = if (spec.wobble == 0.0 && b.phase != Phase::Glide) || b.phase == Phase::Step {
                 b.spin
             } else {
-                b.motion_after(spec, dt).w
+                tumbles[k].spin().unwrap_or_else(|| b.motion_after(spec, dt).w)
             };
-            Pose { x: b.path.after(dt), r: tumbles[k].at(dt), v: b.path.velocity_after(dt), w }
+            Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
         };
         let mut time = from;
         // The last time at which they were apart, if they have been.

@@ -2,8 +2,9 @@
 //!
 //! A corner that turns against a face that turns too needs shorter steps than a corner on a table, and what one body's contacts are off, the next body's undo.
 
+use super::contact::Touch;
 use super::pair::PairTouch;
-use super::step::{CLOSE, RigidScratch};
+use super::step::{CLOSE, KEEP, PUSH, RigidScratch};
 use super::{Rigid, Skin};
 
 /// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values make fast turning in contact dearer, as their inverse root.
@@ -25,6 +26,15 @@ impl RigidScratch {
             let bend = world.pair_again(both, [&a, &b], t).gap - t.gap - h * t.rate(&p.start, &q.start);
             worst = worst.max(bend.abs() / world.specs[p.body].size.min(world.specs[q.body].size));
         }
+        for (k, t) in &self.touches {
+            let p = &self.places[*k];
+            if world.is_at_ledge(p.body, t.part, t.point) {
+                let there = p.drifted_at(p.start.v, p.start.w, h);
+                let rate = p.start.velocity(t.arm).dot(t.normal);
+                let bend = world.touch(p.body, &there, t.part, t.point).gap - t.gap - h * rate;
+                worst = worst.max(bend.abs() / world.specs[p.body].size);
+            }
+        }
         if worst > 4.0 * SAG { (4.0 * SAG / worst).sqrt() } else { 1.0 }
     }
 
@@ -35,7 +45,7 @@ impl RigidScratch {
             let both = [p.body, q.body];
             let after = world.pair_again(both, [&p.end, &q.end], t).gap;
             // A cuboid's nearest points to a ball jump, whatever the step.
-            let jumps = both.iter().any(|&k| matches!(world.specs[k].skin, Skin::Cuboid { .. }));
+            let jumps = both.iter().any(|&k| matches!(world.specs[k].skin, Skin::Cuboid { .. } | Skin::Hull));
             let most = match (t.feature, jumps) {
                 (Some(_), _) => 1.0,
                 (None, false) => ROUGH,
@@ -43,7 +53,14 @@ impl RigidScratch {
             };
             after < world.pair_goal(both, t.gap, h) - most * world.pair_gap(both)
         };
-        self.pairs.iter().any(deep).then_some(0.5)
+        let at_ledges = self.is_at_ledges(world);
+        let deep_at_ledge = |(k, t): &(usize, Touch)| {
+            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
+            let rise = PUSH * world.accuracy.settle * spec.speed * h;
+            at_ledges
+                && world.touch(p.body, &p.end, t.part, t.point).gap < (KEEP * spec.gap).min(t.gap + rise) - spec.gap
+        };
+        (self.pairs.iter().any(deep) || self.touches.iter().any(deep_at_ledge)).then_some(0.5)
     }
 
     /// Whether cuboids are in lasting contact with each other. They come to rest where they are: what tidies one up could push it into another.
@@ -54,7 +71,15 @@ impl RigidScratch {
     /// How far at most the ends of a step may be off where cuboids touch, in m. What they are off more, others undo, and bodies that lean on each other never come to rest.
     pub(super) fn fine(&self, world: &Rigid) -> f64 {
         let cuboids = self.pairs.iter().filter(|p| p.1.feature.is_some());
-        cuboids.map(|(ab, _)| CLOSE * world.pair_gap(ab.map(|k| self.places[k].body))).fold(f64::INFINITY, f64::min)
+        let fine = cuboids.map(|(ab, _)| CLOSE * world.pair_gap(ab.map(|k| self.places[k].body)));
+        let ledges = self.touches.iter().filter(|(k, t)| world.is_at_ledge(self.places[*k].body, t.part, t.point));
+        let fine_at_ledges = ledges.map(|(k, _)| CLOSE * world.specs[self.places[*k].body].gap);
+        fine.chain(fine_at_ledges).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether polyhedra touch edges or corners of boxes.
+    pub(super) fn is_at_ledges(&self, world: &Rigid) -> bool {
+        self.touches.iter().any(|(k, t)| world.is_at_ledge(self.places[*k].body, t.part, t.point))
     }
 
     /// The least gap of all contacts, over the gap at which bodies touch.

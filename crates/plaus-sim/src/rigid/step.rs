@@ -292,7 +292,11 @@ impl RigidScratch {
         // What a point may still fall, and how far turning alone lifts it towards its own circle.
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
-            let rise = if spec.is_round { 0.0 } else { p.start.w.cross(p.start.w.cross(t.arm)).dot(t.normal) };
+            let rise = if spec.is_round || world.is_at_ledge(p.body, t.part, t.point) {
+                0.0
+            } else {
+                p.start.w.cross(p.start.w.cross(t.arm)).dot(t.normal)
+            };
             c.target = ((KEEP * spec.gap - t.gap) / h).min(PUSH * world.accuracy.settle * spec.speed) - 0.5 * h * rise;
         }
         let first_pair = self.touches.len();
@@ -310,7 +314,7 @@ impl RigidScratch {
                 c.push(&mut self.members, c.impulse);
             }
         }
-        let passes = if self.has_cuboids_in_touch() { PASSES_OF_CUBOIDS } else { PASSES };
+        let passes = if self.has_cuboids_in_touch() || self.is_at_ledges(world) { PASSES_OF_CUBOIDS } else { PASSES };
         for pass in 0..passes {
             sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
             for (p, m) in self.places.iter_mut().zip(&self.members) {

@@ -158,6 +158,12 @@ impl Tumble {
         Self { fixed, cos, sin, rate, own: None, series: None }
     }
 
+    /// Angular velocity in world axes at the time last asked for, of a body with three different moments: it is known there.
+    #[inline]
+    pub(crate) fn spin(&self) -> Option<DVec3> {
+        self.series.as_ref().map(|(_, series)| series.turn * series.w)
+    }
+
     /// Orientation after `dt`. Times asked for one after the other should not fall: a series would start anew.
     #[inline]
     pub(crate) fn at(&mut self, dt: f64) -> DMat3 {

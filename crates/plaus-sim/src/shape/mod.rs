@@ -1,14 +1,19 @@
 //! Shapes of turning bodies, their mass properties, and the points and balls that make up their skin.
 //!
 //! A shape is described to the simulator as **feelers**: balls fixed in the body whose union has the shape's skin wherever it can touch something. A sharp corner is a
-//! ball of radius 0, a rounded one has its rounding radius, a sphere is a single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot.
+//! ball of radius 0, a rounded one has its rounding radius, a sphere is a single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot. Two bodies with
+//! flat faces are looked at by their faces, edges and corners.
 
 mod cuboid;
 pub(crate) mod cuboid_pair;
+mod hull;
+pub(crate) mod hull_pair;
 mod mass;
 mod revolution;
 
 pub use cuboid::Cuboid;
+pub use hull::{ConvexHull, Solid};
+pub(crate) use hull::{MOST_CORNERS, On, Polyhedron};
 pub use mass::MassProperties;
 pub use revolution::{Profile, Revolution, Ring};
 
@@ -33,6 +38,8 @@ pub enum Shape {
     Cuboid(Cuboid),
     /// A body of revolution about its z axis.
     Revolution(Arc<Revolution>),
+    /// A convex polyhedron.
+    Hull(Arc<ConvexHull>),
 }
 
 impl Shape {
@@ -43,6 +50,7 @@ impl Shape {
             Self::Ball(radius) => *radius,
             Self::Cuboid(c) => (c.half() - c.rounding()).length() + c.rounding(),
             Self::Revolution(r) => r.reach(),
+            Self::Hull(h) => h.reach(),
         }
     }
 
@@ -53,6 +61,7 @@ impl Shape {
             Self::Ball(radius) => *radius,
             Self::Cuboid(c) => c.half().min_element(),
             Self::Revolution(r) => r.rings()[0].circle,
+            Self::Hull(h) => h.size(),
         }
     }
 
@@ -63,6 +72,7 @@ impl Shape {
             Self::Ball(radius) => vec![Feeler { centre: DVec3::ZERO, radius: *radius }],
             Self::Cuboid(c) => c.corners().into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect(),
             Self::Revolution(r) => r.row().to_vec(),
+            Self::Hull(h) => h.corners().iter().map(|&centre| Feeler { centre, radius: h.rounding() }).collect(),
         }
     }
 
@@ -74,6 +84,9 @@ impl Shape {
             Self::Cuboid(c) => {
                 c.between(spacing).into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect()
             }
+            Self::Hull(h) => {
+                h.core.between(spacing).into_iter().map(|centre| Feeler { centre, radius: h.rounding() }).collect()
+            }
         }
     }
 
@@ -84,6 +97,7 @@ impl Shape {
             Self::Ball(radius) => MassProperties::ball(*radius, density),
             Self::Cuboid(c) => c.mass_properties(density),
             Self::Revolution(r) => r.mass_properties(density),
+            Self::Hull(h) => h.mass_properties(density),
         }
     }
 }

@@ -17,6 +17,12 @@ pub(super) const GRAVITY: f64 = 9.81;
 /// Where the deck ends and the pit begins: y in m.
 pub(super) const END: f64 = 34.1875 * INCH;
 
+/// Where the lane begins, behind the foul line: y in inches.
+const START: f64 = -740.0;
+
+/// Half the width, and the end, of a lane to practise on, in m: farther than a ball gets in any time that matters.
+const OPEN: f64 = 1000.0;
+
 /// An alley along y: the head pin's spot is the origin, the ball comes from below in y. Body 0 is the ball, the others are the pins that are set up, in ascending order
 /// of their numbers: with all ten, body k is pin k.
 #[derive(Debug, Clone, Copy)]
@@ -126,25 +132,36 @@ impl Alley {
     /// [`WorldError`] for impossible numbers.
     pub fn world_of(&self, pin: &Arc<Revolution>) -> Result<Rigid, WorldError> {
         let mass = pin.mass_properties(1.0).with_mass(self.pin_mass);
+        let pin = |_| BodySpec { shape: Shape::Revolution(Arc::clone(pin)), mass, material: PIN };
+        let bodies = std::iter::once(self.ball()).chain(self.set_up().map(pin)).collect();
+        self.among(bodies, self.parts()?)
+    }
+
+    /// The ball alone on a lane of the same friction that is wide and goes on behind the pins: there one sees where a delivery leads.
+    ///
+    /// # Errors
+    /// [`WorldError`] for impossible numbers.
+    pub fn practice(&self) -> Result<Rigid, WorldError> {
+        self.among(vec![self.ball()], vec![self.lane(OPEN, OPEN)])
+    }
+
+    fn ball(&self) -> BodySpec {
         let inertia = DVec3::splat(self.ball_mass * self.ball_gyration * self.ball_gyration);
-        let ball = BodySpec {
+        BodySpec {
             shape: Shape::Ball(self.ball_radius),
             mass: MassProperties { mass: self.ball_mass, inertia },
             material: BALL,
-        };
-        let mut bodies = vec![ball];
-        bodies.extend(self.set_up().map(|_| BodySpec {
-            shape: Shape::Revolution(Arc::clone(pin)),
-            mass,
-            material: PIN,
-        }));
+        }
+    }
+
+    fn among(&self, bodies: Vec<BodySpec>, parts: Vec<Part>) -> Result<Rigid, WorldError> {
         let mut laws = Laws::new(3, self.pin_lane)?;
         laws.set(BALL, WOOD, self.ball_lane)?;
         laws.set(BALL, PIN, self.ball_pin)?;
         laws.set(PIN, PIN, self.pin_pin)?;
         Rigid::new(RigidWorld {
             bodies,
-            parts: self.parts()?,
+            parts,
             laws,
             gravity: DVec3::new(0.0, 0.0, -GRAVITY),
             accuracy: self.accuracy,
@@ -154,11 +171,20 @@ impl Alley {
         })
     }
 
-    fn parts(&self) -> Result<Vec<Part>, WorldError> {
-        let (half, gutter, end, start) = (0.5 * Self::WIDTH / INCH, 9.25, END / INCH, -740.0);
-        let oiled = Stretch { from: start * INCH, friction: Some(self.oil_friction) };
+    /// The lane, of half this width and until there, in m.
+    fn lane(&self, half: f64, end: f64) -> Part {
+        let start = START * INCH;
+        let oiled = Stretch { from: start, friction: Some(self.oil_friction) };
         let dry = Stretch { from: self.oil - Self::LENGTH, friction: None };
-        let stretches = if self.oil > 0.0 { vec![oiled, dry] } else { Vec::new() };
+        Part::Block {
+            bounds: Aabb { min: DVec3::new(-half, start, -12.0 * INCH), max: DVec3::new(half, end, 0.0) },
+            material: WOOD,
+            stretches: if self.oil > 0.0 { vec![oiled, dry] } else { Vec::new() },
+        }
+    }
+
+    fn parts(&self) -> Result<Vec<Part>, WorldError> {
+        let (half, gutter, end, start) = (0.5 * Self::WIDTH / INCH, 9.25, END / INCH, START);
         let block = |min: [f64; 3], max: [f64; 3]| Part::Block {
             bounds: Aabb { min: DVec3::from(min) * INCH, max: DVec3::from(max) * INCH },
             material: WOOD,
@@ -169,11 +195,7 @@ impl Alley {
         let wall = half + gutter + 0.0625;
         Ok(vec![
             // Lane and deck, then the gutters' floors: deeper at the deck.
-            Part::Block {
-                bounds: Aabb { min: DVec3::new(-half, start, -12.0) * INCH, max: DVec3::new(half, end, 0.0) * INCH },
-                material: WOOD,
-                stretches,
-            },
+            self.lane(half * INCH, end * INCH),
             block([-wall, start, -12.0], [-half, -24.0, -1.875]),
             block([half, start, -12.0], [wall, -24.0, -1.875]),
             block([-wall, -24.0, -12.0], [-half, end, -3.5]),

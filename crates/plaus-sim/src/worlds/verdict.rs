@@ -8,6 +8,7 @@ use crate::rigid::{Phase, Rigid, Turning};
 use crate::shape::Revolution;
 use crate::state::State;
 use glam::DVec3;
+use plaus_dist::math;
 
 /// Height of a pin's axis (as a cosine) below which it has fallen for good. Default 0.5, 60° from upright: six times the angle from which it falls by itself. Danger: larger
 /// values count pins as fallen that a wall or another pin may still set upright again.
@@ -16,12 +17,19 @@ const FALLEN: f64 = 0.5;
 /// Energy that bodies moving on the deck may still have together, over that which tips a standing pin. Default 0.5.
 const HARMLESS: f64 = 0.5;
 
+/// Angles at which a lying pin's lowest height is looked for: less than 0.1 mm, or 2 mJ, apart. Default 8000.
+const ANGLES: u32 = 8000;
+
+/// How far in m below that of a standing pin the middle of one may be that still counts as on the deck. Default 0.01; gutters are 0.05 and more deep.
+const SUNK: f64 = 0.01;
+
 /// Way in m that the ball's middle is beyond the deck's end when it can no longer come back. Default 0.11, its radius.
 const PAST: f64 = 0.11;
 
 /// Says when a shot on an [`Alley`] is decided.
 ///
-/// Decided means: every pin is gone, has fallen or is at rest, and nothing that moves has the energy to tip one that stands. Asked after each event, it ends a shot early:
+/// Decided means: every pin is gone, has fallen, or stands on its foot, and all that moves, pins that still rock included, has too little energy together to tip one that
+/// stands; nothing gains any. Where a standing pin is slid by so little, it may go on for a few millimetres. Asked after each event, it ends a shot early:
 ///
 /// ```
 /// use glam::DVec3;
@@ -44,8 +52,12 @@ const PAST: f64 = 0.11;
 pub struct Verdict {
     /// Energy in J that tips a standing pin.
     tipping: f64,
-    /// Mass in kg and least height in m of the middle on the deck, of the ball and of a pin.
+    /// Height of a pin's axis, as a cosine, at which it tips.
+    tipped: f64,
+    /// Weight in N, and least height in m of the middle of what lies on the deck: of the ball and of a pin.
     lowest: [(f64, f64); 2],
+    /// Height of a standing pin's middle in m.
+    upright: f64,
 }
 
 impl Verdict {
@@ -60,12 +72,22 @@ impl Verdict {
     /// The same, with [`Alley::pin`] made before.
     #[must_use]
     pub fn of(alley: &Alley, pin: &Revolution) -> Self {
-        let rim = pin.rings()[0];
-        let raised = (rim.height * rim.height + rim.circle * rim.circle).sqrt() + rim.height;
-        // A pin that lies rests on its belly and its head: its middle is no lower than the thinner of them is thick.
-        let head = pin.row().last().map_or(0.0, |cap| cap.radius);
-        let lowest = [(alley.ball_mass, alley.ball_radius), (alley.pin_mass, head)];
-        Self { tipping: alley.pin_mass * GRAVITY * raised, lowest }
+        let (rim, weight) = (pin.rings()[0], alley.pin_mass * GRAVITY);
+        let slant = (rim.height * rim.height + rim.circle * rim.circle).sqrt();
+        Self {
+            tipping: weight * (slant + rim.height),
+            tipped: -rim.height / slant,
+            lowest: [(0.0, 0.0), (weight, lying(pin))],
+            upright: pin.balance(),
+        }
+        .with_ball(alley)
+    }
+
+    /// For shots that differ in the ball.
+    #[must_use]
+    pub fn with_ball(mut self, alley: &Alley) -> Self {
+        self.lowest[0] = (alley.ball_mass * GRAVITY, alley.ball_radius);
+        self
     }
 
     /// Whether a pin has fallen for good, or is gone.
@@ -78,29 +100,49 @@ impl Verdict {
     #[must_use]
     pub fn is_final(&self, world: &Rigid, state: &State<Turning>) -> bool {
         let mut standing = false;
-        for pin in state.bodies().iter().skip(1) {
-            let has_fallen = Self::has_fallen(pin);
-            if !has_fallen && pin.phase != Phase::Rest {
+        for pin in state.bodies().iter().skip(1).filter(|pin| !Self::has_fallen(pin)) {
+            // Not at rest it may only rock: not lean farther than it tips from, nor be on its way into gutter or pit.
+            let leans = (pin.turn * DVec3::Z).z < self.tipped || pin.path.x.z < self.upright - SUNK;
+            if pin.phase != Phase::Rest && leans {
                 return false;
             }
-            standing |= !has_fallen;
+            standing = true;
         }
         !standing || self.is_calm(world, state)
     }
 
     /// Whether all that moves has too little energy on the deck to tip a pin.
     fn is_calm(&self, world: &Rigid, state: &State<Turning>) -> bool {
+        let harmless = HARMLESS * self.tipping;
         let mut left = 0.0;
         for (k, body) in state.bodies().iter().enumerate() {
             if world.is_resting(body) || is_out(k == 0, body) {
                 continue;
             }
             // Over what it has at least with its middle on the deck; a pin in a gutter may have less.
-            let (mass, low) = self.lowest[usize::from(k > 0)];
-            left += (world.energy(k, body) - mass * GRAVITY * low).max(0.0);
+            let (weight, low) = self.lowest[usize::from(k > 0)];
+            let low = if k > 0 && !Self::has_fallen(body) { self.upright } else { low };
+            left += (world.energy(k, body) - weight * low).max(0.0);
+            if left > harmless {
+                return false;
+            }
         }
-        left <= HARMLESS * self.tipping
+        true
     }
+}
+
+/// The least height of the middle of a pin that lies on the deck, at whatever angle.
+fn lying(pin: &Revolution) -> f64 {
+    let step = std::f64::consts::PI / f64::from(ANGLES);
+    let height = |angle: f64| {
+        let (sin, cos) = math::sin_cos(angle);
+        let balls = pin.row().iter().map(|ball| ball.radius - ball.centre.z * cos);
+        let rings = pin.rings().iter().map(|ring| ring.radius + ring.circle * sin - ring.height * cos);
+        balls.chain(rings).fold(0.0, f64::max)
+    };
+    // Between two angles it is lower by what turning by half a step can lower it at most.
+    let least = (0..=ANGLES).map(|k| height(f64::from(k) * step)).fold(f64::INFINITY, f64::min);
+    least - 0.5 * step * pin.reach()
 }
 
 /// Whether a body has left the deck for the pit.

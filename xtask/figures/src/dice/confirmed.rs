@@ -1,9 +1,10 @@
 //! Solutions sampled at one accuracy and simulated again at the reference's.
 
 use super::{ONE, Thrown};
+use crate::clock::seconds;
 use crate::report::table;
-use crate::spelling::chains::{seconds, shown};
 use crate::stats::Estimate;
+use crate::stats::shown;
 use crate::{Result, Work};
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal, State, StateOf};

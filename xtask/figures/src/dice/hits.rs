@@ -1,8 +1,9 @@
 //! How long it takes to the first solution, and how many distinct ones follow.
 
 use super::{ONE, SIX, TOGETHER, Thrown};
+use crate::clock::seconds;
 use crate::report::table;
-use crate::spelling::chains::{quantile, seconds, shown};
+use crate::stats::{quantile, shown};
 use crate::{Result, Work};
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal};

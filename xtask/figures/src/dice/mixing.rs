@@ -1,10 +1,11 @@
 //! How well chains of one die mix: R-hat and effective sample sizes of where it rests and how it was thrown.
 
 use super::ONE;
+use crate::clock::seconds;
 use crate::report::{significant, table};
 use crate::sampler::{Length, Sampler};
-use crate::spelling::chains::{seconds, shown};
 use crate::stats::Ess;
+use crate::stats::shown;
 use crate::{Result, Work};
 use plaus_mcmc::diagnose::rhat;
 use plaus_scenes::Scene;

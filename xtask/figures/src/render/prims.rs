@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use plaus_export::mesh::{self, Mesh, Part};
 use plaus_scenes::Animation;
-use plaus_scenes::animation::{Form, Look, Shape};
+use plaus_scenes::animation::{Form, Look, Shape, Stripe};
 
 /// Something a ray can hit.
 #[derive(Debug, Clone, Copy)]
@@ -104,7 +104,9 @@ pub(super) fn of(animation: &Animation, time: f64) -> Vec<Thing> {
                 }
             }
             Shape::Cuboid { half, pips: None } => add(&mut things, track.look, block(at, *half, turned)),
-            Shape::Revolution { profile, .. } => add(&mut things, track.look, revolution(at, profile, turned)),
+            Shape::Revolution { profile, stripes } => {
+                things.extend(Turned { at, turned, look: track.look }.things(profile, stripes));
+            }
         }
     }
     for prop in &animation.scenery {
@@ -149,21 +151,69 @@ fn block(centre: DVec3, half: DVec3, turned: DQuat) -> Vec<Option<Solid>> {
     FACES.iter().flat_map(|&[a, b, c, d]| [flat([a, b, c].map(corner)), flat([a, c, d].map(corner))]).collect()
 }
 
-fn revolution(at: DVec3, profile: &[[f64; 2]], turned: DQuat) -> Vec<Option<Solid>> {
-    const SIDES: usize = 48;
-    let point = |[r, h]: [f64; 2], side: usize| {
+/// Sides of a drawn body of revolution.
+const SIDES: usize = 48;
+
+/// Where a body of revolution is, how it is turned, and how it looks where nothing is painted on it.
+struct Turned {
+    at: DVec3,
+    turned: DQuat,
+    look: Look,
+}
+
+impl Turned {
+    /// Triangles between the profile's points, shaded as if it were smooth; rings that are painted have their paint.
+    fn things(&self, profile: &[[f64; 2]], stripes: &[Stripe]) -> Vec<Thing> {
+        let edges = stripes.iter().flat_map(|stripe| [stripe.from, stripe.to]);
+        let points = with_heights(profile, edges);
+        let normals: Vec<[f64; 2]> = (0..points.len())
+            .map(|k| {
+                let ([r, h], [s, i]) = (points[k.saturating_sub(1)], points[(k + 1).min(points.len() - 1)]);
+                [i - h, r - s]
+            })
+            .collect();
+        let mut things = Vec::new();
+        for k in 1..points.len() {
+            let middle = 0.5 * (points[k - 1][1] + points[k][1]);
+            let paint = stripes.iter().find(|stripe| (stripe.from..stripe.to).contains(&middle));
+            let look = paint.map_or(self.look, |stripe| stripe.look);
+            for side in 0..SIDES {
+                let around = [(k - 1, side), (k - 1, side + 1), (k, side + 1), (k, side)];
+                let corners = around.map(|(k, side)| self.at + self.along(points[k], side));
+                let outwards = around.map(|(k, side)| self.along(normals[k], side).normalize_or(DVec3::Y));
+                let half = |[a, b, c]: [usize; 3]| {
+                    let edges = [corners[b] - corners[a], corners[c] - corners[a]];
+                    let normals = [a, b, c].map(|corner| outwards[corner]);
+                    let solid = Solid::Triangle { corner: corners[a], edges, normals };
+                    edges[0].cross(edges[1]).try_normalize().map(|_| Thing { solid, look })
+                };
+                things.extend([[0, 1, 2], [0, 2, 3]].into_iter().filter_map(half));
+            }
+        }
+        things
+    }
+
+    /// A vector of the profile's plane, at one of the sides.
+    fn along(&self, [radial, axial]: [f64; 2], side: usize) -> DVec3 {
         let (sin, cos) = plaus_dist::math::sin_cos(std::f64::consts::TAU * (side % SIDES) as f64 / SIDES as f64);
-        at + turned * DVec3::new(r * cos, r * sin, h)
-    };
-    let ring = |pair: &[[f64; 2]]| -> Vec<Option<Solid>> {
-        let quad = |side: usize| {
-            let corners =
-                [point(pair[0], side), point(pair[0], side + 1), point(pair[1], side + 1), point(pair[1], side)];
-            [[0, 1, 2], [0, 2, 3]].map(|ids| flat(ids.map(|id| corners[id])))
+        self.turned * DVec3::new(radial * cos, radial * sin, axial)
+    }
+}
+
+/// A profile with points at more heights.
+fn with_heights(profile: &[[f64; 2]], heights: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
+    let mut points = profile.to_vec();
+    for height in heights {
+        let place = points.partition_point(|point| point[1] < height);
+        let (Some(before), Some(after)) = (place.checked_sub(1).map(|k| points[k]), points.get(place).copied()) else {
+            continue;
         };
-        (0..SIDES).flat_map(quad).collect()
-    };
-    profile.windows(2).flat_map(ring).collect()
+        if after[1] > height {
+            let share = (height - before[1]) / (after[1] - before[1]);
+            points.insert(place, [before[0] + share * (after[0] - before[0]), height]);
+        }
+    }
+    points
 }
 
 /// Two triangles a cell, shaded as if it were smooth.

@@ -1,8 +1,9 @@
 //! What moves and savings bring: each switched off by itself.
 
-use super::chains::{Chains, Length, Word, shown};
+use super::chains::{Chains, Length, Word};
 use super::{acm, hi};
 use crate::report::{significant, table, thousands};
+use crate::stats::shown;
 use crate::{Result, Work};
 use plaus_scenes::spelling::{Config, Moves, Savings, Weights};
 

@@ -1,6 +1,8 @@
 //! Chains of words, and what is noted about them.
 
 use crate::Result;
+use crate::clock::seconds;
+use crate::stats::quantile;
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal, Mixture, MoveCounts, SolutionClass, Verdict};
 use plaus_scenes::spelling::{Config, Savings, Spelling};
@@ -158,37 +160,4 @@ impl Seen {
     pub(super) fn distinct(&self) -> f64 {
         60.0 * self.classes.len() as f64 / self.seconds
     }
-}
-
-/// The value that a share `q` of them does not exceed.
-pub(crate) fn quantile(sorted: &[f64], q: f64) -> f64 {
-    sorted.get(((sorted.len() as f64 * q).ceil() as usize).saturating_sub(1)).copied().unwrap_or(f64::NAN)
-}
-
-/// A number of a table: "never" for ∞, "–" for NaN.
-pub(crate) fn shown(value: f64, digits: usize) -> String {
-    if value.is_infinite() {
-        "never".into()
-    } else if value.is_nan() {
-        "–".into()
-    } else if value >= 1000.0 {
-        crate::report::thousands(value.round() as u64)
-    } else {
-        crate::report::significant(value, digits)
-    }
-}
-
-/// Seconds of processor time of this thread, where Linux tells; else those since some fixed time.
-pub(crate) fn seconds() -> f64 {
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
-    nanoseconds.map_or_else(since_start, |ns| ns * 1e-9)
-}
-
-#[allow(clippy::disallowed_methods, reason = "times of the report are read from the clock")]
-fn since_start() -> f64 {
-    use std::sync::OnceLock;
-    use std::time::Instant;
-    static START: OnceLock<Instant> = OnceLock::new();
-    START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }

@@ -1,8 +1,9 @@
 //! The claim of section 5.3: that redrawing everything brings the chain from one solution to the next.
 
-use super::chains::{Chains, Length, Word, shown};
+use super::chains::{Chains, Length, Word};
 use super::traces::paper;
 use crate::report::{Claim, significant, table, thousands};
+use crate::stats::shown;
 use crate::{Result, Work};
 use plaus_scenes::rules::Preset;
 

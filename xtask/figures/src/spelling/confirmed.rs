@@ -1,8 +1,9 @@
 //! Solutions simulated again at the reference accuracy: how many still spell their word.
 
-use super::chains::{Word, shown};
+use super::chains::Word;
 use super::{acm, hi};
 use crate::report::table;
+use crate::stats::shown;
 use crate::{Result, Work};
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal, State};

@@ -1,8 +1,9 @@
 //! What λ does: too small, and words are given up; too large, and chains stick.
 
-use super::chains::{Length, Word, shown};
+use super::chains::{Length, Word};
 use super::{acm, hi};
 use crate::report::{significant, table, thousands};
+use crate::stats::shown;
 use crate::{Result, Work};
 
 /// A word at a value of ln λ.

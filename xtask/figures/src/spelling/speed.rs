@@ -1,8 +1,10 @@
 //! How long words take, how fast solutions come and how soon one has forgotten the last; restarts by tempering.
 
-use super::chains::{Chains, Length, Word, seconds, shown};
+use super::chains::{Chains, Length, Word};
 use super::{acm, hi};
+use crate::clock::seconds;
 use crate::report::{Claim, table, thousands};
+use crate::stats::shown;
 use crate::{Result, Work};
 use plaus_dist::Seed;
 use plaus_mcmc::{Course, Goal, Ladder, Mixture, Redraw, Replicas, Tempering};

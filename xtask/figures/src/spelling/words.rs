@@ -1,10 +1,11 @@
 //! Words of one to eight letters: how time to the first full word grows with the number of balls.
 
-use super::chains::{Length, Word, shown};
+use super::chains::{Length, Word};
 use super::hi;
 use crate::canvas::{self, HPos, bold, colour, pen, px, text, write};
 use crate::plot::{Axes, curve, plain, power};
 use crate::report::{significant, table};
+use crate::stats::shown;
 use crate::{Result, Work};
 use plaus_dist::math;
 use plotters::prelude::*;

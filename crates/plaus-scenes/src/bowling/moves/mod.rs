@@ -1,5 +1,6 @@
 //! The moves of bowling, one a file. Those named `change_…` are the paper's seven (its appendix A.2).
 
+mod aim;
 mod change_all;
 mod change_ball;
 mod change_pins;
@@ -8,6 +9,7 @@ mod redraw;
 mod redraw_pins;
 mod refine;
 
+pub use aim::Aim;
 pub use change_all::ChangeAll;
 pub use change_ball::ChangeBall;
 pub use change_pins::ChangePins;
@@ -40,6 +42,7 @@ pub(super) fn all(config: &Config, weights: &Weights, rules: &Rules) -> Vec<(f64
         (weights.change_pins, Box::new(ChangePins { chance: steps.pin_chance, sd: steps.pin_mm })),
         (weights.redraw, Box::new(Redraw { symmetric: rules.symmetric_redraws() })),
         (weights.redraw_pins, Box::new(RedrawPins { chance: steps.redraw_chance })),
+        (weights.aim, Box::new(Aim { anew: steps.aim_anew })),
         (weights.refine, Box::new(Refine { steps })),
         (weights.mirror, Box::new(Mirror)),
     ]

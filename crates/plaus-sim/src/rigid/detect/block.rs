@@ -26,7 +26,7 @@ impl Search<'_> {
             // The box is part of the half space behind that side, so nothing touches it before.
             let edges = Some((bounds, side.axis));
             let Some((time, point)) = self.half_space(part, (side.normal, side.offset), edges) else { return };
-            if point != BEYOND && self.is_on_side(bounds, &side, time, point) {
+            if self.is_at_side(bounds, &side, time, point) {
                 return self.hit(time, part, point);
             }
             t = time;
@@ -46,7 +46,7 @@ impl Search<'_> {
                     .max(1e-3 * away / (v.length() + pull * away).max(f64::MIN_POSITIVE).sqrt().max(v.length()));
             } else {
                 let r = tumble.at(t);
-                let w = self.spin_at(t);
+                let w = self.spin_at(&tumble, t);
                 if let Some(apart) = self.beside(bounds, &(x, v, w, r), pull) {
                     t += apart;
                     if t >= self.until || t.is_nan() {
@@ -133,9 +133,13 @@ impl Search<'_> {
     }
 
     /// Whether a point of the body is within the edges of a box's side.
-    fn is_on_side(&self, bounds: &Aabb, side: &Side, time: f64, point: usize) -> bool {
-        let (x, r) = (self.body.path.after(time), self.body.tumble(self.spec).at(time));
-        let swing = r.transpose() * side.normal.cross(self.spin_at(time));
+    pub(in crate::rigid) fn is_at_side(&self, bounds: &Aabb, side: &Side, time: f64, point: usize) -> bool {
+        if point == BEYOND {
+            return false;
+        }
+        let mut tumble = self.body.tumble(self.spec);
+        let (x, r) = (self.body.path.after(time), tumble.at(time));
+        let swing = r.transpose() * side.normal.cross(self.spin_at(&tumble, time));
         let feeler = self.spec.point(point, r.transpose() * side.normal, swing);
         is_over(bounds, side.axis, x + r * feeler.centre)
     }

@@ -10,6 +10,7 @@ mod table;
 
 use super::body::{Phase, Turning};
 use super::part::Part;
+use super::tumble::Tumble;
 use super::{Rigid, Skin, Spec};
 use crate::roots::fall_of_quadratic;
 use crate::scenery::Surface;
@@ -42,16 +43,16 @@ pub(super) fn earliest(f: f64, rate: f64, m: f64) -> f64 {
 }
 
 /// A search for the first contact of one body.
-struct Search<'s> {
-    spec: &'s Spec,
-    body: &'s Turning,
+pub(super) struct Search<'s> {
+    pub(super) spec: &'s Spec,
+    pub(super) body: &'s Turning,
     /// Largest angular speed.
     fastest: f64,
     /// Acceleration of a point per its distance from the centre.
     turning: f64,
     /// The same for points on the axis of a body of revolution.
     axial: f64,
-    until: f64,
+    pub(super) until: f64,
     found: Option<(f64, Surface)>,
 }
 
@@ -85,7 +86,10 @@ impl Rigid {
                         search.hit(time, k as u16, point);
                     }
                 }
-                Part::Block { .. } => search.block(k as u16, part),
+                Part::Block { bounds, .. } => match (&self.ledges[k], spec.skin) {
+                    (Some(ledge), Skin::Hull) => search.ledge(k as u16, bounds, ledge),
+                    _ => search.block(k as u16, part),
+                },
                 Part::Table(table) => search.table(k as u16, table),
             }
         }
@@ -97,12 +101,12 @@ impl Rigid {
 impl Search<'_> {
     /// Whether a point of the body is in lasting contact with the part already.
     #[inline]
-    fn lasts(&self, part: u16, point: usize) -> bool {
+    pub(super) fn lasts(&self, part: u16, point: usize) -> bool {
         matches!(self.body.phase, Phase::Step | Phase::Glide)
             && self.body.touching().contains(&Surface::Part { part, point: point as u16 })
     }
 
-    fn hit(&mut self, time: f64, part: u16, point: usize) {
+    pub(super) fn hit(&mut self, time: f64, part: u16, point: usize) {
         self.until = time;
         self.found = Some((time, Surface::Part { part, point: point as u16 }));
     }
@@ -117,13 +121,13 @@ impl Search<'_> {
         fall_of_quadratic([height, normal.dot(path.v), 0.5 * normal.dot(path.a)], self.until)
     }
 
-    /// Angular velocity after `t`; only a top's moves.
+    /// Angular velocity after `t`, for which `tumble` was asked last; it changes only in free flight, and not if all moments are equal.
     #[inline]
-    fn spin_at(&self, t: f64) -> DVec3 {
+    pub(super) fn spin_at(&self, tumble: &Tumble, t: f64) -> DVec3 {
         if self.spec.wobble == 0.0 || self.body.phase != Phase::Flight {
             self.body.spin
         } else {
-            self.body.motion_after(self.spec, t).w
+            tumble.spin().unwrap_or_else(|| self.body.motion_after(self.spec, t).w)
         }
     }
 }

@@ -73,7 +73,7 @@ impl Next {
 
 impl Search<'_> {
     /// When and with which point the body first comes to a half space of a part; [`BEYOND`] where `edges` are given and it gets behind the plane beyond them.
-    pub(super) fn half_space(
+    pub(in crate::rigid) fn half_space(
         &self,
         part: u16,
         (n, offset): (DVec3, f64),
@@ -103,7 +103,7 @@ impl Search<'_> {
                 height: n.dot(x) - offset - 0.5 * spec.gap,
                 fall: n.dot(path.velocity_after(t)),
                 lever: turned * n,
-                swing: turned * n.cross(self.spin_at(t)),
+                swing: turned * n.cross(self.spin_at(&tumble, t)),
                 pull,
             };
             let mut next = Next { step: self.until - t, first: None, is_beyond: false };

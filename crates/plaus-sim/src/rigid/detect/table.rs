@@ -43,7 +43,7 @@ impl Search<'_> {
                 t += earliest(top, v.z, -path.a.z).min(step);
             } else {
                 let r = tumble.at(t);
-                let w = self.spin_at(t);
+                let w = self.spin_at(&tumble, t);
                 let mut first = None;
                 for (k, feeler) in spec.feelers.iter().enumerate() {
                     self.table_feeler((part, k), feeler, table, &bounds, &(x, v, w, r), &mut step, &mut first);

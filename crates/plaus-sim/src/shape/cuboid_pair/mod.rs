@@ -60,13 +60,13 @@ pub(crate) enum Feature {
 
 /// A point of contact, or of least distance.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Meeting {
+pub(crate) struct Meeting<F = Feature> {
     /// Unit normal towards the first.
     pub(crate) normal: DVec3,
     /// From each centre to its skin.
     pub(crate) arms: [DVec3; 2],
     pub(crate) gap: f64,
-    pub(crate) feature: Feature,
+    pub(crate) feature: F,
 }
 
 /// Sine of the angle between edges below which they count as parallel. Default 1e-7: the crossing of edges more parallel than that lies within 1e-7 of their length of where

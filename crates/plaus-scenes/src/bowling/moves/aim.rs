@@ -1,0 +1,115 @@
+//! The ball aimed at the pins in front.
+
+use crate::bowling::{Bowling, Law, Quantity, Shot};
+use plaus_dist::stream::below;
+use plaus_dist::{Density, LogDensity, LogRatio, NotANumber, Sample, Stream, WrappedUniform, math, open_unit};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+
+/// How often the place across the lane is drawn from its law instead, so that places from where no pin is met are left and come back.
+const STRAY: f64 = 0.1;
+
+/// Radius of a pin where it is widest, in m. Only where one aims depends on it.
+const PIN: f64 = 0.0605;
+
+/// The ball is released from where it should meet a pin of the first row: with its centre at a uniform distance to the side from that pin's at which the two touch. To see by
+/// how much it comes to the side on its way there, the ball is tried out on a lane without pins and gutters. With probability `anew` all else is drawn from the
+/// prior before that, and else it stays.
+///
+/// The density of the place depends on all else and not on the place before, so the ratio is that of the old place and of all else, over that of the new. Where that law is
+/// not uniform, or a ball does not reach the pins, the chain stays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aim {
+    /// Probability that all else is drawn from the prior.
+    pub anew: f64,
+}
+
+/// The density of places across the lane, given all else of a draw.
+struct Places {
+    law: WrappedUniform,
+    /// Places from where the middle of a pin of the first row is met.
+    middles: Vec<f64>,
+    /// How far to their sides the ball still touches.
+    reach: f64,
+}
+
+impl Places {
+    /// `None` where nothing can be aimed.
+    fn of(target: &Bowling, draw: &Shot) -> Result<Option<Self>, ModelError> {
+        let Law::Uniform(law) = *target.prior().laws().of(Quantity::Across) else { return Ok(None) };
+        let row = target.lane.first_row(draw);
+        let distances: Vec<f64> = row.iter().map(|spot| spot.y).collect();
+        let Some(to_the_side) = target.lane.approach(draw, &distances)? else { return Ok(None) };
+        let middles = row.iter().zip(to_the_side).map(|(spot, way)| spot.x - way).collect();
+        Ok(Some(Self { law, middles, reach: draw.get(Quantity::Radius) + PIN }))
+    }
+
+    fn sample(&self, stream: &mut Stream) -> f64 {
+        if open_unit(stream) < STRAY {
+            return self.law.sample(stream);
+        }
+        let middle = self.middles[below(stream, self.middles.len())];
+        middle + self.reach * (2.0 * open_unit(stream) - 1.0)
+    }
+
+    fn log_density(&self, place: f64) -> Result<LogDensity, NotANumber> {
+        let met = self.middles.iter().filter(|middle| (place - **middle).abs() < self.reach).count();
+        let aimed = (1.0 - STRAY) * met as f64 / (self.middles.len() as f64 * 2.0 * self.reach);
+        let stray = STRAY * math::exp(self.law.log_density(&place)?.value());
+        LogDensity::new(math::ln(aimed + stray))
+    }
+}
+
+/// Log density of all of a draw but its place across the lane.
+fn log_rest(target: &Bowling, draw: &Shot) -> Result<LogDensity, NotANumber> {
+    let laws = target.prior().laws();
+    let others = Quantity::ALL.into_iter().filter(|quantity| *quantity != Quantity::Across);
+    let ball = others.map(|quantity| laws.log_density(quantity, &draw.ball)).sum::<Result<LogDensity, _>>()?;
+    draw.pins.iter().try_fold(ball, |sum, offset| Ok(sum + target.prior().log_offset(offset)?))
+}
+
+/// Log density of proposing a draw, of what is proposed.
+fn log_q(target: &Bowling, draw: &Shot, places: &Places, anew: bool) -> Result<LogDensity, ModelError> {
+    let place = places.log_density(draw.get(Quantity::Across))?;
+    Ok(if anew { place + log_rest(target, draw)? } else { place })
+}
+
+impl Move<Bowling> for Aim {
+    fn name(&self) -> &'static str {
+        "aim"
+    }
+
+    fn propose(
+        &self,
+        target: &Bowling,
+        current: &StateOf<Bowling>,
+        candidate: &mut Shot,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let anew = open_unit(stream) < self.anew;
+        if anew {
+            target.prior().sample(false, candidate, stream);
+        }
+        let Some(there) = Places::of(target, candidate)? else { return Ok(Proposal::Stay) };
+        candidate.ball[Quantity::Across as usize] = there.sample(stream);
+        let to = log_q(target, candidate, &there, anew)?;
+        // Places are the same where all else is.
+        let here = if anew { Places::of(target, &current.draw)? } else { Some(there) };
+        let Some(here) = here else { return Ok(Proposal::Stay) };
+        let log_ratio = LogRatio::of(log_q(target, &current.draw, &here, anew)?, to)?;
+        Ok(Proposal::Candidate { log_ratio, path: Path(u64::from(anew)), later: None })
+    }
+
+    fn log_ratio(
+        &self,
+        target: &Bowling,
+        from: &StateOf<Bowling>,
+        to: &StateOf<Bowling>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        let anew = path == Path(1);
+        let (Some(here), Some(there)) = (Places::of(target, &from.draw)?, Places::of(target, &to.draw)?) else {
+            return Ok(LogRatio::ZERO);
+        };
+        Ok(LogRatio::of(log_q(target, &from.draw, &here, anew)?, log_q(target, &to.draw, &there, anew)?)?)
+    }
+}

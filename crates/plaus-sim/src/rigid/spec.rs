@@ -1,0 +1,181 @@
+//! What follows from a body's shape and mass.
+
+use super::tumble::Inertia;
+use super::{BodySpec, RigidWorld, hulls, step};
+use crate::error::WorldError;
+use crate::material::Material;
+use crate::shape::{Feeler, MassProperties, Polyhedron, Ring, Shape};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A body with what follows from its shape.
+#[derive(Debug, Clone)]
+pub(crate) struct Spec {
+    pub(crate) mass: f64,
+    pub(crate) inertia: Inertia,
+    pub(crate) material: Material,
+    /// The balls of the hull first, then those for uneven ground.
+    pub(super) feelers: Vec<Feeler>,
+    pub(super) hull: usize,
+    /// Distances from the centre of gravity of the feelers, and of the rings' circles.
+    pub(super) arms: Vec<f64>,
+    pub(super) ring_arms: Vec<f64>,
+    pub(crate) reach: f64,
+    pub(crate) size: f64,
+    /// `√(g · size)`.
+    pub(crate) speed: f64,
+    /// Time in s within which many events make its contacts last: `accuracy.rattle · √(size/g)`.
+    pub(crate) rattle: f64,
+    /// Gap at which it touches, in m: the preset's over [`step::TOUCHING`].
+    pub(crate) gap: f64,
+    pub(crate) wobble: f64,
+    pub(crate) is_ball: bool,
+    /// Whether it can roll: a ball or a body of revolution.
+    pub(crate) is_round: bool,
+    pub(super) rings: Vec<Ring>,
+    pub(crate) skin: Skin,
+    /// What polyhedra meet: a core, and the radius of what is round it. Only in worlds with polyhedra.
+    pub(super) core: Option<(Arc<Polyhedron>, f64)>,
+    /// A capsule along the body's z axis that holds it: heights of its ends, and its radius.
+    pub(crate) capsule: [f64; 3],
+}
+
+/// How a body is looked at by others.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Skin {
+    Ball,
+    Revolved,
+    Cuboid { half: DVec3, rounding: f64 },
+    Hull,
+}
+
+/// Points of the first ring, a quarter turn apart from its lowest on; other rings have their lowest only.
+pub(crate) const RIM_POINTS: usize = 4;
+
+impl Spec {
+    pub(super) fn new(
+        body: usize,
+        b: &BodySpec,
+        world: &RigidWorld,
+        spacing: f64,
+        strength: f64,
+    ) -> Result<Self, WorldError> {
+        let bad = |field, value| WorldError::BadBody { body, field, value, expected: "a positive number" };
+        let MassProperties { mass, inertia } = b.mass;
+        for (field, value) in [
+            ("mass", mass),
+            ("inertia", inertia.x),
+            ("inertia", inertia.y),
+            ("inertia", inertia.z),
+            ("reach", b.shape.reach()),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(bad(field, value));
+            }
+        }
+        world.laws.require(b.material)?;
+        let mut feelers = b.shape.feelers();
+        let hull = feelers.len();
+        if spacing.is_finite() {
+            feelers.extend(b.shape.feelers_between(spacing));
+        }
+        let (size, inertia) = (b.shape.size(), Inertia::new(inertia));
+        let (speed, gap) = ((strength * size).sqrt(), world.accuracy.gap * size / step::TOUCHING);
+        // Without gravity there is no time scale but that of the speeds, which is not known here.
+        let rattle = if strength > 0.0 { world.accuracy.rattle * (size / strength).sqrt() } else { 0.0 };
+        let (reach, wobble) = (b.shape.reach(), inertia.wobble());
+        let (skin, rings) = match &b.shape {
+            Shape::Ball(_) => (Skin::Ball, Vec::new()),
+            Shape::Revolution(r) => (Skin::Revolved, r.rings().to_vec()),
+            Shape::Cuboid(c) => (Skin::Cuboid { half: c.half(), rounding: c.rounding() }, Vec::new()),
+            Shape::Hull(_) => (Skin::Hull, Vec::new()),
+        };
+        let has_hulls = world.bodies.iter().any(|b| matches!(b.shape, Shape::Hull(_)));
+        let core = if has_hulls { hulls::core(&b.shape) } else { None };
+        let capsule = capsule(&b.shape, reach);
+        let arms = feelers.iter().map(|f| f.centre.length()).collect();
+        let ring_arms = rings.iter().map(|r| (r.circle * r.circle + r.height * r.height).sqrt()).collect();
+        let is_ball = matches!(skin, Skin::Ball);
+        let is_round = is_ball || matches!(skin, Skin::Revolved);
+        Ok(Self {
+            mass,
+            inertia,
+            material: b.material,
+            feelers,
+            hull,
+            arms,
+            ring_arms,
+            reach,
+            size,
+            speed,
+            rattle,
+            gap,
+            wobble,
+            is_ball,
+            is_round,
+            rings,
+            skin,
+            core,
+            capsule,
+        })
+    }
+
+    /// The balls on the axis of a body of revolution.
+    pub(crate) fn row(&self) -> &[Feeler] {
+        &self.feelers[..self.hull]
+    }
+
+    /// How many points can touch a part: feelers of the hull, then points of rings.
+    pub(crate) fn ring_points(&self) -> std::ops::Range<usize> {
+        let count = if self.rings.is_empty() { 0 } else { RIM_POINTS + self.rings.len() - 1 };
+        self.hull..self.hull + count
+    }
+
+    /// The ring that a point belongs to.
+    pub(crate) fn ring_of(&self, point: usize) -> Option<&Ring> {
+        let k = point.checked_sub(self.hull)?;
+        self.rings.get((k + 1).saturating_sub(RIM_POINTS))
+    }
+
+    /// The points of a ring.
+    pub(crate) fn points_of(&self, ring: usize) -> std::ops::Range<usize> {
+        let first = self.hull + if ring == 0 { 0 } else { RIM_POINTS + ring - 1 };
+        first..first + if ring == 0 { RIM_POINTS } else { 1 }
+    }
+
+    /// A point that can touch a part, as a ball in body axes; `up` and `swing` as for [`ring_point`](Self::ring_point).
+    pub(crate) fn point(&self, point: usize, up: DVec3, swing: DVec3) -> Feeler {
+        if self.ring_of(point).is_some() { self.ring_point(point, up, swing).0 } else { self.feelers[point] }
+    }
+
+    /// A point of a ring as a ball, in body axes, where `up` (in body axes) points away from the part, and how it stands: 0 lowest, 1 and 3 sideways, 2 highest.
+    /// Of a ring that is level the point that sinks fastest counts as the lowest; `swing` is the rate of `up` in body axes.
+    pub(crate) fn ring_point(&self, point: usize, up: DVec3, swing: DVec3) -> (Feeler, usize) {
+        let k = point - self.hull;
+        let (ring, quarter) = if k < RIM_POINTS { (&self.rings[0], k) } else { (&self.rings[k + 1 - RIM_POINTS], 0) };
+        let is_level = up.x == 0.0 && up.y == 0.0;
+        let flat = if is_level { DVec3::new(swing.x, swing.y, 0.0) } else { DVec3::new(up.x, up.y, 0.0) };
+        let down = if flat == DVec3::ZERO { DVec3::X } else { -flat.normalize() };
+        let along = match quarter {
+            0 => down,
+            1 => DVec3::new(-down.y, down.x, 0.0),
+            2 => -down,
+            _ => DVec3::new(down.y, -down.x, 0.0),
+        };
+        (Feeler { centre: along * ring.circle + DVec3::new(0.0, 0.0, ring.height), radius: ring.radius }, quarter)
+    }
+}
+
+fn capsule(shape: &Shape, reach: f64) -> [f64; 3] {
+    let Shape::Revolution(body) = shape else { return [0.0, 0.0, reach] };
+    let widest =
+        body.row().iter().map(|f| f.radius).chain(body.rings().iter().map(|r| r.circle + r.radius)).fold(0.0, f64::max);
+    // Ends such that the balls there hold the cap and the foot.
+    let top = body.row().iter().map(|f| f.centre.z + f.radius - widest).fold(f64::NEG_INFINITY, f64::max);
+    let low = body.rings().iter().map(|r| {
+        let outer = r.circle + r.radius;
+        r.height - r.radius + (widest * widest - outer * outer).max(0.0).sqrt()
+    });
+    let low = low.chain(body.row().iter().map(|f| f.centre.z - f.radius + widest)).fold(f64::INFINITY, f64::min);
+    [low.min(top), top.max(low), widest]
+}

@@ -1,0 +1,236 @@
+//! A convex polyhedron: corners, edges, faces, and which of them meet.
+
+use super::wrap::{around, newell};
+use glam::DVec3;
+
+/// Most corners of a polyhedron: sets of them are the bits of a number.
+pub(crate) const MOST_CORNERS: usize = 64;
+
+/// Most edges: those of triangles all around, `3n − 6`.
+pub(crate) const MOST_EDGES: usize = 3 * MOST_CORNERS - 6;
+
+/// Most faces, `2n − 4`.
+pub(crate) const MOST_FACES: usize = 2 * MOST_CORNERS - 4;
+
+/// A face: `normal · x ≤ offset` within the polyhedron.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Face {
+    pub(crate) normal: DVec3,
+    pub(crate) offset: f64,
+    /// Its corners, anticlockwise as seen from outside.
+    pub(crate) corners: Vec<u8>,
+    /// The same as a set.
+    pub(crate) set: u64,
+}
+
+/// An edge from its first corner to its second, anticlockwise about its first face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Edge {
+    pub(crate) ends: [u8; 2],
+    pub(crate) faces: [u8; 2],
+    /// Unit vector.
+    pub(crate) along: DVec3,
+    pub(crate) length: f64,
+}
+
+/// A convex polyhedron about the origin of its axes; or a single point, the core of a ball.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Polyhedron {
+    pub(crate) corners: Vec<DVec3>,
+    pub(crate) faces: Vec<Face>,
+    pub(crate) edges: Vec<Edge>,
+    /// Largest distance of a corner from the origin.
+    pub(crate) reach: f64,
+}
+
+/// What of a polyhedron is nearest to a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum On {
+    Face(u8),
+    Edge(u8),
+    Corner(u8),
+}
+
+impl Polyhedron {
+    /// From corners (at most [`MOST_CORNERS`]) and loops of their indices that form a closed surface.
+    pub(super) fn new(corners: Vec<DVec3>, loops: &[Vec<usize>]) -> Self {
+        let mut edges: Vec<Edge> = Vec::new();
+        for (k, face) in loops.iter().enumerate() {
+            for (a, b) in around(face) {
+                let ends = [a as u8, b as u8];
+                match edges.iter_mut().find(|e| e.ends == [ends[1], ends[0]]) {
+                    Some(edge) => edge.faces[1] = k as u8,
+                    None => {
+                        let way = corners[b] - corners[a];
+                        let length = way.length();
+                        edges.push(Edge { ends, faces: [k as u8; 2], along: way / length, length });
+                    }
+                }
+            }
+        }
+        let face = |face: &Vec<usize>| {
+            let normal = newell(&corners, face);
+            let offset = face.iter().map(|&k| normal.dot(corners[k])).fold(f64::NEG_INFINITY, f64::max);
+            let set = face.iter().fold(0, |set, &k| set | 1 << k);
+            Face { normal, offset, corners: face.iter().map(|&k| k as u8).collect(), set }
+        };
+        let faces = loops.iter().map(face).collect();
+        let reach = corners.iter().map(|c| c.length()).fold(0.0, f64::max);
+        Self { corners, faces, edges, reach }
+    }
+
+    /// The core of a ball.
+    pub(crate) fn point() -> Self {
+        Self { corners: vec![DVec3::ZERO], faces: Vec::new(), edges: Vec::new(), reach: 0.0 }
+    }
+
+    /// A cuboid with these half edges along the axes.
+    pub(crate) fn cuboid(half: DVec3) -> Self {
+        let corner = |k: usize| {
+            DVec3::from_array(std::array::from_fn(|axis| if k >> axis & 1 == 1 { half[axis] } else { -half[axis] }))
+        };
+        // Each side anticlockwise: along the next axis first where the side is at the upper end.
+        let side = |axis: usize, upper: usize| {
+            let (i, j) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
+            let base = upper << axis;
+            if upper == 1 {
+                vec![base, base | i, base | i | j, base | j]
+            } else {
+                vec![base, base | j, base | i | j, base | i]
+            }
+        };
+        let loops: Vec<Vec<usize>> = (0..6).map(|k| side(k / 2, k % 2)).collect();
+        Self::new((0..8).map(corner).collect(), &loops)
+    }
+
+    /// How far the polyhedron reaches in a direction.
+    #[inline]
+    pub(crate) fn support(&self, direction: DVec3) -> f64 {
+        self.corners.iter().map(|c| c.dot(direction)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The corner farthest in a direction, and how far; the first of those equally far.
+    #[inline]
+    pub(crate) fn farthest(&self, direction: DVec3) -> (u8, f64) {
+        let mut best = (0, f64::NEG_INFINITY);
+        for (k, c) in self.corners.iter().enumerate() {
+            let along = c.dot(direction);
+            if along > best.1 {
+                best = (k as u8, along);
+            }
+        }
+        best
+    }
+
+    pub(crate) fn corner(&self, k: u8) -> DVec3 {
+        self.corners[usize::from(k)]
+    }
+
+    pub(crate) fn face(&self, k: u8) -> &Face {
+        &self.faces[usize::from(k)]
+    }
+
+    pub(crate) fn edge(&self, k: u8) -> &Edge {
+        &self.edges[usize::from(k)]
+    }
+
+    /// Whether a point over a face is within its sides, or beyond them by at most `slack`.
+    #[inline]
+    pub(crate) fn is_over(&self, face: u8, p: DVec3, slack: f64) -> bool {
+        let f = self.face(face);
+        let ends = f.corners.iter().zip(f.corners.iter().cycle().skip(1));
+        ends.into_iter().all(|(&a, &b)| {
+            let (a, b) = (self.corner(a), self.corner(b));
+            let out = (b - a).cross(f.normal);
+            out.dot(p - a) <= slack * (b - a).length()
+        })
+    }
+
+    /// Where the foot of a point on an edge's line is, from its first end, in m.
+    #[inline]
+    pub(crate) fn along(&self, edge: u8, p: DVec3) -> f64 {
+        let e = self.edge(edge);
+        (p - self.corner(e.ends[0])).dot(e.along)
+    }
+
+    /// What edge or corner is nearest to a point, and the square of the distance.
+    pub(crate) fn nearest_edge(&self, p: DVec3) -> (On, f64) {
+        let mut best = (On::Corner(0), f64::INFINITY);
+        for (k, c) in self.corners.iter().enumerate() {
+            let squared = (p - *c).length_squared();
+            if squared < best.1 {
+                best = (On::Corner(k as u8), squared);
+            }
+        }
+        for (k, e) in self.edges.iter().enumerate() {
+            let from = p - self.corner(e.ends[0]);
+            let along = from.dot(e.along);
+            if along > 0.0 && along < e.length {
+                let squared = (from - e.along * along).length_squared();
+                if squared < best.1 {
+                    best = (On::Edge(k as u8), squared);
+                }
+            }
+        }
+        best
+    }
+
+    /// What is nearest to a point outside.
+    pub(crate) fn nearest(&self, p: DVec3) -> On {
+        for (k, f) in self.faces.iter().enumerate() {
+            let above = f.normal.dot(p) - f.offset;
+            if above > 0.0 && self.is_over(k as u8, p, 0.0) {
+                return On::Face(k as u8);
+            }
+        }
+        self.nearest_edge(p).0
+    }
+
+    /// The face whose plane a point is farthest beyond, and how far; negative inside.
+    pub(crate) fn farthest_face(&self, p: DVec3) -> Option<(u8, f64)> {
+        let mut best: Option<(u8, f64)> = None;
+        for (k, f) in self.faces.iter().enumerate() {
+            let beyond = f.normal.dot(p) - f.offset;
+            if best.is_none_or(|(_, most)| beyond > most) {
+                best = Some((k as u8, beyond));
+            }
+        }
+        best
+    }
+
+    /// The corners that span a part of the surface, as a set.
+    pub(crate) fn spanning(&self, on: On) -> u64 {
+        match on {
+            On::Face(k) => self.face(k).set,
+            On::Edge(k) => self.edge(k).ends.iter().fold(0, |set, &end| set | 1 << end),
+            On::Corner(k) => 1 << k,
+        }
+    }
+
+    /// Points on edges and faces, no farther from each other than about `spacing`, without the corners; at most 16 intervals per edge.
+    pub(crate) fn between(&self, spacing: f64) -> Vec<DVec3> {
+        let intervals = |length: f64| (length / spacing).ceil().clamp(1.0, 16.0) as usize;
+        let mut points = Vec::new();
+        for e in &self.edges {
+            let (from, n) = (self.corner(e.ends[0]), intervals(e.length));
+            points.extend((1..n).map(|k| from + e.along * (e.length * (k as f64 / n as f64))));
+        }
+        for f in &self.faces {
+            let first = self.corner(f.corners[0]);
+            let rest = &f.corners[1..];
+            for (k, pair) in rest.windows(2).enumerate() {
+                let (p, q) = (self.corner(pair[0]) - first, self.corner(pair[1]) - first);
+                let n = intervals(p.length().max(q.length()).max((p - q).length()));
+                let at = |i: usize, j: usize| first + (p * i as f64 + q * j as f64) / n as f64;
+                for i in 1..n {
+                    // The inside of each triangle, and the diagonal towards the next.
+                    points.extend((1..n - i).map(|j| at(i, j)));
+                    if k + 2 < rest.len() {
+                        points.push(at(0, i));
+                    }
+                }
+            }
+        }
+        points
+    }
+}

@@ -1,0 +1,96 @@
+//! Edges against edges.
+
+use super::{Feature, HullPair, Meeting, PARALLEL};
+use crate::shape::hull::{MOST_EDGES, MOST_FACES};
+use glam::DVec3;
+
+impl HullPair<'_> {
+    /// The directions of an edge of each, in the world.
+    pub(super) fn along(&self, [i, j]: [u8; 2]) -> [DVec3; 2] {
+        let [a, b] = &self.hulls;
+        [a.axes * a.core.edge(i).along, b.axes * b.core.edge(j).along]
+    }
+
+    /// The meeting of two edges as lines, its normal on the side of `towards`; with it by how much the points are within the ends of their edges, in m.
+    pub(super) fn at_edges(&self, [i, j]: [u8; 2], towards: DVec3) -> (Meeting, f64) {
+        let [a, b] = &self.hulls;
+        let [e, g] = self.along([i, j]);
+        let (first, second) = (a.core.edge(i), b.core.edge(j));
+        // From the middles: as exact at both ends.
+        let p = a.axes * (a.core.corner(first.ends[0]) + first.along * (0.5 * first.length));
+        let q = b.axes * (b.core.corner(second.ends[0]) + second.along * (0.5 * second.length));
+        let between = self.offset + (p - q);
+        let (cross, cosine) = (e.cross(g), e.dot(g));
+        let sine = cross.length_squared();
+        let normal = if sine < PARALLEL * PARALLEL {
+            towards
+        } else {
+            cross * (if cross.dot(towards) < 0.0 { -1.0 } else { 1.0 } / cross.length())
+        };
+        let (along_e, along_g) = (between.dot(e), between.dot(g));
+        let s = (cosine * along_g - along_e) / sine;
+        let t = (along_g - cosine * along_e) / sine;
+        let (most_s, most_t) = (0.5 * first.length, 0.5 * second.length);
+        let within = (most_s - s.abs()).min(most_t - t.abs());
+        let clamped = |x: f64, most: f64| if x.is_nan() { 0.0 } else { x.clamp(-most, most) };
+        let points = [p + e * clamped(s, most_s), q + g * clamped(t, most_t)];
+        let feature = Feature::Edges(i, j);
+        (self.meeting(points, normal, normal.dot(between), feature), if within.is_nan() { -1.0 } else { within })
+    }
+
+    /// The pair of edges whose common perpendicular keeps the cores farthest apart, if farther than `least`; with the direction, towards the first.
+    ///
+    /// Only pairs whose perpendicular is a normal of both surfaces count: on the sphere of normals the arcs between the faces of the edges cross (Gregorius, "The separating axis test
+    /// between convex polyhedra", GDC 2013).
+    pub(super) fn best_edges(&self, least: f64) -> Option<(f64, [u8; 2], DVec3)> {
+        let [a, b] = self.hulls.map(|h| h.core);
+        let into = &self.across[0];
+        // The second's edges, their first corners and its faces in the first's axes.
+        let (mut along, mut from) = ([DVec3::ZERO; MOST_EDGES], [DVec3::ZERO; MOST_EDGES]);
+        for (k, e) in b.edges.iter().enumerate() {
+            along[k] = *into * e.along;
+            from[k] = self.other[0] + *into * b.corner(e.ends[0]);
+        }
+        let mut normals = [DVec3::ZERO; MOST_FACES];
+        for (normal, face) in normals.iter_mut().zip(&b.faces) {
+            *normal = *into * face.normal;
+        }
+        let mut best = None;
+        let mut most = least;
+        let mut slants = [0.0; MOST_FACES];
+        for (i, e) in a.edges.iter().enumerate() {
+            for (slant, normal) in slants.iter_mut().zip(&normals[..b.faces.len()]) {
+                *slant = normal.dot(e.along);
+            }
+            let [n, m] = e.faces.map(|k| a.face(k).normal);
+            let start = a.corner(e.ends[0]);
+            for (j, g) in b.edges.iter().enumerate() {
+                let [x, y] = g.faces.map(|k| slants[usize::from(k)]);
+                if x * y >= 0.0 {
+                    continue;
+                }
+                let (u, v) = (n.dot(along[j]), m.dot(along[j]));
+                if u * v >= 0.0 || x * v >= 0.0 {
+                    continue;
+                }
+                let cross = e.along.cross(along[j]);
+                let sine = cross.length_squared();
+                if sine < PARALLEL * PARALLEL {
+                    continue;
+                }
+                let out = if cross.dot(n + m) < 0.0 { -cross } else { cross };
+                let apart = (from[j] - start).dot(out);
+                // Without the root where it cannot win.
+                if most > 0.0 && (apart <= 0.0 || apart * apart <= most * most * sine) {
+                    continue;
+                }
+                let apart = apart / sine.sqrt();
+                if apart > most {
+                    most = apart;
+                    best = Some((apart, [i as u8, j as u8], out));
+                }
+            }
+        }
+        best.map(|(apart, edges, out)| (apart, edges, self.hulls[0].axes * -out))
+    }
+}

@@ -1,0 +1,118 @@
+//! All points at which two polyhedra touch: corners near the other's surface, and crossings of edges near the plane of contact.
+
+use super::{HullPair, Meeting, PARALLEL};
+use crate::shape::hull::{MOST_EDGES, On};
+use glam::DVec3;
+
+/// Cosine of the angle to the nearest points' normal within which a point's own normal must lie. Default ½; others belong to sides that do not face each other.
+const FACING: f64 = 0.5;
+
+/// Sine of the slope against the plane of contact up to which an edge's crossings are looked at: the touching part of a steeper one is at its corner. Default ½.
+const STEEP: f64 = 0.5;
+
+impl HullPair<'_> {
+    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one where the nearest points are that near.
+    pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
+        if nearest.gap > within {
+            return;
+        }
+        let mut found = false;
+        let mut take = |m: Meeting| {
+            if m.gap <= within && m.normal.dot(nearest.normal) > FACING {
+                found = true;
+                each(m);
+            }
+        };
+        for of in 0..2 {
+            // Up to which plane of the other a corner can be near it.
+            let [own, other] = [&self.hulls[of], &self.hulls[1 - of]];
+            let out = if of == 0 { nearest.normal } else { -nearest.normal };
+            let other_out = other.axes.transpose() * out;
+            let level = other.core.support(other_out)
+                + within
+                + self.roundings()
+                + self.other[of].dot(own.axes.transpose() * out);
+            let own_out = own.axes.transpose() * out;
+            for corner in 0..own.core.corners.len() as u8 {
+                if own.core.corner(corner).dot(own_out) <= level
+                    && let Some(on) = self.region(of, corner, nearest, within)
+                {
+                    take(self.at_corner(of, corner, on).0);
+                }
+            }
+        }
+        self.crossings(nearest.normal, within, within, &mut take);
+        if !found {
+            each(*nearest);
+        }
+    }
+
+    /// What of the other polyhedron a corner is near, if it can be near. What is hardly beyond a face counts as above the face next to it.
+    fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: f64) -> Option<On> {
+        let other = self.hulls[1 - of].core;
+        let seen = self.corner_seen(of, corner);
+        let on = match other.farthest_face(seen) {
+            // The core of a ball.
+            None => On::Corner(0),
+            Some((_, top)) if top > within + self.roundings() => return None,
+            Some((_, top)) => {
+                let beyond = |k: usize| other.faces[k].normal.dot(seen) - other.faces[k].offset;
+                let mut sides = (0..other.faces.len()).filter(|&k| beyond(k) > within);
+                match (sides.next(), sides.next()) {
+                    (None, _) => {
+                        // On the skin of the core or inside: of the faces not deeper than the nearest points are, that which faces the other polyhedron most.
+                        let deepest = top.min(nearest.gap + self.roundings()) - within;
+                        let out = self.hulls[1 - of].axes.transpose() * nearest.normal;
+                        let out = if of == 0 { out } else { -out };
+                        let faces = |k: usize| other.faces[k].normal.dot(out);
+                        let near = (0..other.faces.len()).filter(|&k| beyond(k) >= deepest);
+                        On::Face(near.max_by(|&k, &l| faces(k).total_cmp(&faces(l)))? as u8)
+                    }
+                    (Some(only), None) => On::Face(only as u8),
+                    _ => other.nearest(seen),
+                }
+            }
+        };
+        // Two corners are found from both sides.
+        (of == 0 || !matches!(on, On::Corner(_))).then_some(on)
+    }
+
+    /// Calls `take` for the crossings of edges near the plane of contact that are within the ends of both by more than `margin`.
+    pub(super) fn crossings(&self, normal: DVec3, within: f64, margin: f64, mut take: impl FnMut(Meeting)) {
+        // Heights along the normal about the second centre.
+        let base = self.offset.dot(normal);
+        let lowest = base - self.hulls[0].core.support(self.hulls[0].axes.transpose() * -normal);
+        let highest = self.hulls[1].core.support(self.hulls[1].axes.transpose() * normal);
+        let reach = within + self.roundings();
+        let mut edges = [[0_u8; MOST_EDGES]; 2];
+        let mut counts = [0; 2];
+        for of in 0..2 {
+            let hull = &self.hulls[of];
+            let lever = hull.axes.transpose() * normal;
+            let is_near = |corner: u8| {
+                let height = hull.core.corner(corner).dot(lever);
+                if of == 0 { base + height - reach <= highest } else { lowest - reach <= height }
+            };
+            let near = (0..hull.core.corners.len() as u8).fold(0_u64, |set, c| set | u64::from(is_near(c)) << c);
+            for (k, e) in hull.core.edges.iter().enumerate() {
+                if e.ends.iter().any(|&end| near >> end & 1 == 1) && e.along.dot(lever).abs() <= STEEP {
+                    edges[of][counts[of]] = k as u8;
+                    counts[of] += 1;
+                }
+            }
+        }
+        for &i in &edges[0][..counts[0]] {
+            for &j in &edges[1][..counts[1]] {
+                let [e, g] = self.along([i, j]);
+                if e.cross(g).length_squared() < PARALLEL * PARALLEL {
+                    continue;
+                }
+                let (meeting, inside) = self.at_edges([i, j], normal);
+                // Where an edge ends its corner is looked at.
+                if inside > margin {
+                    take(meeting);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Two convex polyhedra, each with a rounding: how far apart they are, where they are nearest, and all the points at which they touch. A ball is a polyhedron of a single corner.
+//!
+//! The same questions as `cuboid_pair` answers for cuboids, and the same answers: what is nearest is named by its [`Feature`], whose exact geometry gives points, normal and
+//! gap at this and at other poses.
+
+mod edges;
+mod manifold;
+mod nearest;
+#[cfg(test)]
+mod tests;
+
+use super::cuboid_pair;
+use super::hull::{On, Polyhedron};
+use glam::{DMat3, DVec3};
+
+/// A polyhedron where it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Placed<'h> {
+    /// Its axes in the world, as columns.
+    pub(crate) axes: DMat3,
+    pub(crate) core: &'h Polyhedron,
+    /// Radius of what is round it, in m.
+    pub(crate) rounding: f64,
+}
+
+/// Two polyhedra, with what the questions about them share.
+#[derive(Debug)]
+pub(crate) struct HullPair<'h> {
+    hulls: [Placed<'h>; 2],
+    /// From the second centre to the first.
+    offset: DVec3,
+    /// Where the other's centre is seen from each, in own axes.
+    other: [DVec3; 2],
+    /// Axes of the second in those of the first, as columns, and the transpose.
+    across: [DMat3; 2],
+    /// Both reaches together.
+    size: f64,
+}
+
+/// The parts of two polyhedra that meet at a point of contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Feature {
+    /// A corner of the polyhedron `of` (0 or 1) and what is nearest to it on the other.
+    Corner { of: u8, corner: u8, on: On },
+    /// An edge of each.
+    Edges(u8, u8),
+}
+
+/// A point of contact, or of least distance.
+pub(crate) type Meeting = cuboid_pair::Meeting<Feature>;
+
+/// Sine of the angle between edges below which they count as parallel. Default 1e-7, as for cuboids.
+const PARALLEL: f64 = 1e-7;
+
+impl<'h> HullPair<'h> {
+    /// Two polyhedra; `offset` points from the centre of the second to that of the first.
+    #[inline]
+    pub(crate) fn new(offset: DVec3, a: Placed<'h>, b: Placed<'h>) -> Self {
+        let (ta, tb) = (a.axes.transpose(), b.axes.transpose());
+        let across = ta * b.axes;
+        let size = a.core.reach + b.core.reach;
+        Self { hulls: [a, b], offset, other: [-(ta * offset), tb * offset], across: [across, across.transpose()], size }
+    }
+
+    /// Both roundings together, in m.
+    pub(crate) fn roundings(&self) -> f64 {
+        self.hulls[0].rounding + self.hulls[1].rounding
+    }
+
+    /// From the second centre to the first, along a direction.
+    pub(crate) fn offset_along(&self, direction: DVec3) -> f64 {
+        self.offset.dot(direction)
+    }
+
+    /// A corner of the polyhedron `of`, in the axes of the other about its centre.
+    #[inline]
+    fn corner_seen(&self, of: usize, corner: u8) -> DVec3 {
+        self.other[1 - of] + self.across[1 - of] * self.hulls[of].core.corner(corner)
+    }
+
+    /// How far apart cores are along a direction in the world towards the first.
+    fn apart(&self, direction: DVec3) -> f64 {
+        let [a, b] = &self.hulls;
+        let low = a.core.support(a.axes.transpose() * -direction);
+        let high = b.core.support(b.axes.transpose() * direction);
+        self.offset.dot(direction) - (low + high)
+    }
+
+    /// The meeting of core points `p` and `q` (about their centres) along a normal.
+    fn meeting(&self, [p, q]: [DVec3; 2], normal: DVec3, distance: f64, feature: Feature) -> Meeting {
+        let [a, b] = &self.hulls;
+        let arms = [p - normal * a.rounding, q + normal * b.rounding];
+        Meeting { normal, arms, gap: distance - self.roundings(), feature }
+    }
+
+    /// The meeting of a corner with a part of the other's surface, wherever they are now; with it whether the foot is on that part.
+    fn at_corner(&self, of: usize, corner: u8, on: On) -> (Meeting, bool) {
+        let (own, other) = (&self.hulls[of], &self.hulls[1 - of]);
+        let seen = self.corner_seen(of, corner);
+        let (normal, distance, is_on) = foot(other.core, seen, on);
+        let p = own.axes * own.core.corner(corner);
+        let feature = Feature::Corner { of: of as u8, corner, on };
+        if let On::Corner(k) = on
+            && distance > 0.0
+        {
+            // The same bits from both sides: neither corner is more than the other.
+            let q = other.axes * other.core.corner(k);
+            let points = if of == 0 { [p, q] } else { [q, p] };
+            let between = self.offset + (points[0] - points[1]);
+            let distance = between.length();
+            return (self.meeting(points, between / distance, distance, feature), is_on);
+        }
+        let (q, normal) = (other.axes * (seen - normal * distance), other.axes * normal);
+        let meeting = if of == 0 {
+            self.meeting([p, q], normal, distance, feature)
+        } else {
+            self.meeting([q, p], -normal, distance, feature)
+        };
+        (meeting, is_on)
+    }
+
+    /// The same feature's point at this pose. `towards` is its normal at a pose nearby.
+    pub(crate) fn again(&self, feature: Feature, towards: DVec3) -> Meeting {
+        match feature {
+            Feature::Corner { of, corner, on } => self.at_corner(usize::from(of), corner, on).0,
+            Feature::Edges(a, b) => self.at_edges([a, b], towards).0,
+        }
+    }
+
+    /// Rate of a feature's normal while the bodies turn at these angular velocities; where edges are almost parallel or corners meet, what leaves no feature's own rate out of account.
+    pub(crate) fn turning(&self, feature: Feature, normal: DVec3, spins: [DVec3; 2]) -> DVec3 {
+        // A normal across an edge stays so.
+        let kept_across = |e: DVec3, w: DVec3| -normal.dot(w.cross(e));
+        match feature {
+            Feature::Corner { of, on, .. } => {
+                let k = 1 - usize::from(of);
+                match on {
+                    On::Face(_) => spins[k].cross(normal),
+                    On::Edge(edge) => {
+                        let e = self.hulls[k].axes * self.hulls[k].core.edge(edge).along;
+                        e * kept_across(e, spins[k])
+                    }
+                    On::Corner(_) => DVec3::ZERO,
+                }
+            }
+            Feature::Edges(i, j) => {
+                let [e, g] = self.along([i, j]);
+                let (x, y) = (kept_across(e, spins[0]), kept_across(g, spins[1]));
+                let (sine, c) = (e.cross(g).length_squared(), e.dot(g));
+                if sine < NEARLY_PARALLEL * NEARLY_PARALLEL {
+                    return e * x;
+                }
+                e * ((x - c * y) / sine) + g * ((y - c * x) / sine)
+            }
+        }
+    }
+
+    /// The corners of each that span a feature, as sets.
+    pub(crate) fn corners(&self, feature: Feature) -> [u64; 2] {
+        let [a, b] = self.hulls.map(|h| h.core);
+        match feature {
+            Feature::Corner { of: 0, corner, on } => [1 << corner, b.spanning(on)],
+            Feature::Corner { corner, on, .. } => [a.spanning(on), 1 << corner],
+            Feature::Edges(i, j) => [a.spanning(On::Edge(i)), b.spanning(On::Edge(j))],
+        }
+    }
+
+    /// Calls `each` with where the corners of a core are along two directions, about its centre.
+    #[inline]
+    pub(crate) fn corners_along(&self, of: usize, first: DVec3, second: DVec3, mut each: impl FnMut((f64, f64))) {
+        let Placed { axes, core, .. } = &self.hulls[of];
+        let turned = axes.transpose();
+        let (first, second) = (turned * first, turned * second);
+        core.corners.iter().for_each(|c| each((c.dot(first), c.dot(second))));
+    }
+}
+
+/// From a part of a core's surface to a point: the direction, how far, and whether the foot is on that part.
+fn foot(core: &Polyhedron, p: DVec3, on: On) -> (DVec3, f64, bool) {
+    let above = |face: u8| core.face(face).normal.dot(p) - core.face(face).offset;
+    let (away, is_on) = match on {
+        On::Face(face) => return (core.face(face).normal, above(face), core.is_over(face, p, 0.0)),
+        On::Edge(edge) => {
+            let e = core.edge(edge);
+            let along = core.along(edge, p);
+            let at = core.corner(e.ends[0]) + e.along * along.clamp(0.0, e.length);
+            (p - at, (0.0..=e.length).contains(&along))
+        }
+        On::Corner(corner) => (p - core.corner(corner), true),
+    };
+    // Of the faces that meet there, that which the point is farthest beyond.
+    let set = core.spanning(on);
+    let mut top = (f64::NEG_INFINITY, DVec3::Z);
+    for (k, face) in core.faces.iter().enumerate().filter(|(_, f)| f.set & set == set) {
+        let beyond = above(k as u8);
+        if beyond > top.0 {
+            top = (beyond, face.normal);
+        }
+    }
+    let length = away.length();
+    if core.faces.is_empty() {
+        return (if length > 0.0 { away / length } else { DVec3::Z }, length, is_on);
+    }
+    if length > 0.0 && top.0 > 0.0 {
+        (away / length, length, is_on)
+    } else {
+        // Inside all of them: out through the nearest.
+        (top.1, top.0, is_on)
+    }
+}
+
+/// Sine below which the normal of two edges turns too fast to be followed. Default 0.1, as for cuboids.
+const NEARLY_PARALLEL: f64 = 0.1;

@@ -1,0 +1,136 @@
+//! The distance of two polyhedra.
+//!
+//! Cores that are apart are kept farthest apart by a face's normal or the common perpendicular of two edges, or else the nearest point of one of them is a corner over an edge or a corner
+//! of the other. So the distance is exact after all faces, all pairs of edges that can face each other, and, where those do not tell, all corners against all edges: no
+//! iteration. Cores that overlap are as deep as their axis of least overlap says, which is the least way out.
+//!
+//! That two points are nearest is proved by themselves: they are as far apart as the planes across the line between them, each touching its core, keep the cores. So a guess from a
+//! pose nearby needs only that proof ([`HullPair::nearest`]).
+
+use super::{Feature, HullPair, Meeting};
+use crate::shape::hull::On;
+use glam::DVec3;
+
+/// How much farther apart edges must keep cores than the faces do, over their size, to be taken: rounding decides nothing. Default 1e-12.
+const SLACK: f64 = 1e-12;
+
+/// Distance over the size below which cores count as touching, so that the direction between their nearest points says nothing. Default 1e-11.
+const TOUCHING: f64 = 1e-11;
+
+/// Distance over the size by which nearest points may be farther apart than what separates the cores. Default 1e-10, above rounding.
+const TIE: f64 = 1e-10;
+
+impl HullPair<'_> {
+    /// The nearest points of two polyhedra; of cores that overlap, those along the axis of least overlap. `guess` is what was nearest at a pose nearby, with its normal.
+    pub(crate) fn nearest(&self, guess: Option<(Feature, DVec3)>) -> Meeting {
+        guess.and_then(|(feature, normal)| self.proved(feature, normal)).unwrap_or_else(|| self.searched())
+    }
+
+    /// A feature's points, if they are the nearest.
+    fn proved(&self, feature: Feature, towards: DVec3) -> Option<Meeting> {
+        let (meeting, is_on) = match feature {
+            Feature::Corner { of, corner, on } => self.at_corner(usize::from(of), corner, on),
+            Feature::Edges(a, b) => {
+                let (meeting, within) = self.at_edges([a, b], towards);
+                (meeting, within >= 0.0)
+            }
+        };
+        let distance = meeting.gap + self.roundings();
+        let is_nearest =
+            is_on && distance > TOUCHING * self.size && distance <= self.apart(meeting.normal) + SLACK * self.size;
+        is_nearest.then_some(meeting)
+    }
+
+    fn searched(&self) -> Meeting {
+        let size = self.size;
+        let face = self.best_face();
+        let edges = self.best_edges(face.map_or(f64::NEG_INFINITY, |f| f.0 + SLACK * size));
+        let best = edges.map(|e| e.0).or(face.map(|f| f.0)).unwrap_or(f64::INFINITY);
+        if best <= TOUCHING * size {
+            if let Some((_, pair, towards)) = edges {
+                return self.at_edges(pair, towards).0;
+            }
+            if let Some((_, of, face)) = face {
+                return self.support_corner(of, face).0;
+            }
+        }
+        if let Some((_, pair, towards)) = edges {
+            let (meeting, within) = self.at_edges(pair, towards);
+            if within >= 0.0 {
+                return meeting;
+            }
+        } else if let Some((_, of, face)) = face
+            && let (meeting, true) = self.support_corner(of, face)
+        {
+            return meeting;
+        }
+        let meeting = self.nearest_corner();
+        if meeting.gap + self.roundings() <= self.apart(meeting.normal) + TIE * size {
+            return meeting;
+        }
+        let Some((_, of, face)) = face else { return meeting };
+        // Faces so parallel that edges cross without a perpendicular of their own, or corners just beside them: the face's normal keeps cores as far apart as they are.
+        let (meeting, _) = self.support_corner(of, face);
+        self.crossing(&meeting, TIE * size).unwrap_or(meeting)
+    }
+
+    /// The face that keeps the cores farthest apart: how far, of which polyhedron, and which.
+    fn best_face(&self) -> Option<(f64, usize, u8)> {
+        let mut best: Option<(f64, usize, u8)> = None;
+        for of in 0..2 {
+            let other = self.hulls[1 - of].core;
+            // Directions of this one in the other's axes.
+            let into = &self.across[1 - of];
+            for (k, face) in self.hulls[of].core.faces.iter().enumerate() {
+                let centre = face.normal.dot(self.other[of]) - face.offset;
+                if best.is_some_and(|b| centre <= b.0) {
+                    // The other reaches at least to its own centre of gravity.
+                    continue;
+                }
+                let apart = centre - other.support(*into * -face.normal);
+                if best.is_none_or(|b| apart > b.0) {
+                    best = Some((apart, of, k as u8));
+                }
+            }
+        }
+        best
+    }
+
+    /// The corner of the other polyhedron that is deepest below a face; of those equally deep one over the face, if there is any, and whether it is.
+    fn support_corner(&self, of: usize, face: u8) -> (Meeting, bool) {
+        let (own, other) = (self.hulls[of].core, self.hulls[1 - of].core);
+        let down = self.across[1 - of] * -own.face(face).normal;
+        let (deepest, lowest) = other.farthest(down);
+        let level = lowest - SLACK * self.size;
+        let same = (0..other.corners.len() as u8).filter(|&k| other.corner(k).dot(down) >= level);
+        let over = same.into_iter().find(|&k| own.is_over(face, self.corner_seen(1 - of, k), 0.0));
+        (self.at_corner(1 - of, over.unwrap_or(deepest), On::Face(face)).0, over.is_some())
+    }
+
+    /// The corner nearest to an edge or a corner of the other polyhedron.
+    fn nearest_corner(&self) -> Meeting {
+        let (mut least, mut best) = (f64::INFINITY, (0, 0, On::Corner(0)));
+        for of in 0..2 {
+            let (own, other) = (self.hulls[of].core, self.hulls[1 - of].core);
+            for corner in 0..own.corners.len() as u8 {
+                let (on, squared) = other.nearest_edge(self.corner_seen(of, corner));
+                if squared < least {
+                    (least, best) = (squared, (of, corner, on));
+                }
+            }
+        }
+        let (of, corner, on) = best;
+        self.at_corner(of, corner, on).0
+    }
+
+    /// Edges that cross in the plane across a meeting's normal, no farther apart than its points.
+    fn crossing(&self, meeting: &Meeting, slack: f64) -> Option<Meeting> {
+        let mut found = None;
+        self.crossings(meeting.normal, meeting.gap + slack, 0.0, |m| {
+            if found.is_none() && m.gap <= meeting.gap + slack {
+                found = Some(m);
+            }
+        });
+        found
+    }
+}
