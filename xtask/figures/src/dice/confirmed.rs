@@ -13,14 +13,14 @@ use plaus_scenes::{AccuracyPreset, Scene};
 use rayon::prelude::*;
 
 /// Iterations between two solutions that are taken.
-const APART: u64 = 100;
+const APART: u64 = 50;
 const CHAINS: usize = 10;
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
-    let wanted = work.size(400, 2);
+    let wanted = work.size(200, 2);
     let mut rows = Vec::new();
-    let presets = [AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Fine, AccuracyPreset::Reference];
-    for preset in presets.into_iter().take(work.size(4, 2)) {
+    let presets = [AccuracyPreset::Draft, AccuracyPreset::Standard, AccuracyPreset::Fine];
+    for preset in presets.into_iter().take(work.size(3, 2)) {
         work.say(format_args!("reference accuracy: {wanted} solutions sampled at {}", preset.name()));
         let thrown = Thrown::new(ONE, |config| config.accuracy = preset)?;
         let reference =

@@ -13,7 +13,7 @@ use plaus_scenes::dice::Weights;
 use plaus_scenes::scene::Role;
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
-    let length = Length { seed: 5, chains: 4, warmup: work.size(2000, 2), iterations: work.size(20_000, 12) };
+    let length = Length { seed: 5, chains: 4, warmup: work.size(2000, 2), iterations: work.size(10_000, 12) };
     work.say(format_args!("mixing: 4 chains of {} iterations, with and without recasts", length.iterations));
     let mut rows = Vec::new();
     for (name, weights) in

@@ -111,18 +111,24 @@ fn table(bumps: f64, felt: &sensitivity::Felt, fixed: &posterior::Fixed, free: &
     format!("Bumps of {bumps} mm:\n\n") + &crate::report::table(&head, cells) + "\n" + &felt.note + "\n\n"
 }
 
-fn draw(area: &Area<'_>, rows: &[(sensitivity::Felt, posterior::Fixed)]) -> Result<()> {
+/// What was measured of tables with one height of bumps.
+type Measured = (sensitivity::Felt, posterior::Fixed);
+
+/// A panel of the figure: title, label, the least that its axis reaches to, and what it shows.
+type Panel = (&'static str, &'static str, f64, fn(&Measured) -> Row);
+
+fn draw(area: &Area<'_>, rows: &[Measured]) -> Result<()> {
     write(area, "Which bumps steer a die", &bold(20.0, colour::INK), HPos::Left, (24.0, 26.0))?;
     let (_, below) = area.split_vertically(px(44.0));
     let panels = below.split_evenly((2, 2));
-    let of: [(&str, &str, f64, &dyn Fn(&(sensitivity::Felt, posterior::Fixed)) -> Row); 4] = [
-        ("one point drawn anew: the resting place moves", "mm (median)", 0.0, &|row| row.0.moved),
-        ("one point drawn anew: accepted", "share", 1.0, &|row| row.0.accepted),
-        ("posterior given the throw: shift", "prior standard deviations", 1.0, &|row| row.1.shift),
-        ("posterior given the throw: spread", "prior standard deviations", 1.2, &|row| row.1.spread),
+    let of: [Panel; 4] = [
+        ("one point drawn anew: the resting place moves", "mm (median)", 0.0, |row| row.0.moved),
+        ("one point drawn anew: accepted", "share", 1.0, |row| row.0.accepted),
+        ("posterior given the throw: shift", "prior standard deviations", 1.0, |row| row.1.shift),
+        ("posterior given the throw: spread", "prior standard deviations", 1.2, |row| row.1.spread),
     ];
     for (panel, (title, label, least, value)) in panels.iter().zip(of) {
-        let tops = rows.iter().flat_map(|row| value(row)).map(|(mean, error)| mean + error);
+        let tops = rows.iter().flat_map(value).map(|(mean, error)| mean + error);
         let top = 1.08 * tops.filter(|top| top.is_finite()).fold(least.max(1e-3), f64::max);
         let mut chart = Axes {
             title,
