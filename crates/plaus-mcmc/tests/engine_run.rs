@@ -95,7 +95,7 @@ impl Log {
     fn starts(&self, thin: u64) -> Vec<Start<Drops, Loads>> {
         let start = |chain: usize| {
             let mut distinct = Distinct::default();
-            for (iteration, state, _) in self.draws(chain, thin) {
+            for (iteration, state, _) in self.draws(chain, thin).into_iter().filter(is_sampled) {
                 if let Some(class) = balls().class(&state) {
                     distinct.note(FirstOfClass { iteration, chain: chain as u32, class });
                 }
@@ -104,6 +104,11 @@ impl Log {
         };
         (0..self.blocks.len()).map(start).collect()
     }
+}
+
+/// Solutions of the warm-up do not count.
+fn is_sampled((iteration, ..): &(u64, S, u32)) -> bool {
+    *iteration >= PLAN.warmup
 }
 
 fn balls() -> Balls {
@@ -169,7 +174,7 @@ fn a_run_resumed_at_any_block_is_the_whole_run() {
 /// What a run that stops for `wanted` solutions must leave, from a run that does not stop.
 fn first_iteration_with(wanted: u64, all: &Log, thin: u64) -> Option<u64> {
     let mut classes = Vec::new();
-    let mut recorded: Vec<_> = all.all_draws(thin).into_iter().flatten().collect();
+    let mut recorded: Vec<_> = all.all_draws(thin).into_iter().flatten().filter(is_sampled).collect();
     recorded.sort_by_key(|(iteration, ..)| *iteration);
     recorded.into_iter().find_map(|(iteration, state, _)| {
         classes.extend(balls().class(&state).filter(|class| !classes.contains(class)));

@@ -129,20 +129,23 @@ impl<D: DeserializeOwned, O: DeserializeOwned> Iterator for Blocks<D, O> {
     }
 }
 
-/// Rebuilds which classes of solutions a chain has recorded first where.
+/// Rebuilds which classes of solutions a chain has recorded first where, after its warm-up.
 pub(crate) fn distinct<D: DeserializeOwned, O: DeserializeOwned>(
     path: &Path,
     extent: Extent,
+    warmup: u64,
 ) -> Result<Distinct, RunFileError> {
     let mut distinct = Distinct::default();
+    let first_sampled = warmup.next_multiple_of(extent.thin);
     for block in Blocks::<D, O>::open(path, extent)? {
         let block = block?;
         let mut iteration = block.first_iteration.next_multiple_of(extent.thin);
         for entry in &block.entries {
-            if let Some(class) = entry.class {
-                distinct.note(FirstOfClass { iteration, chain: extent.chain, class });
+            let end = iteration + entry.draws * extent.thin;
+            if let Some(class) = entry.class.filter(|_| end > first_sampled) {
+                distinct.note(FirstOfClass { iteration: iteration.max(first_sampled), chain: extent.chain, class });
             }
-            iteration += entry.draws * extent.thin;
+            iteration = end;
         }
     }
     Ok(distinct)

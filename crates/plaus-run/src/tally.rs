@@ -40,7 +40,7 @@ pub struct ChainTally {
     pub counts: Vec<MoveCounts>,
     /// Draws of the sampling phase that satisfy the constraint.
     pub satisfying_draws: u64,
-    /// Distinct solutions recorded by this chain.
+    /// Distinct solutions recorded by this chain after its warm-up.
     pub distinct: u64,
     /// The likeliest satisfying draw of the sampling phase, with its log p.
     pub best: Option<(SampleId, f64)>,
@@ -81,7 +81,7 @@ impl TemperingTally {
 pub struct Tally {
     /// Per chain.
     pub chains: Vec<ChainTally>,
-    /// Distinct solutions recorded by all chains together, warm-up included.
+    /// Distinct solutions recorded by all chains together after the warm-up.
     pub distinct: u64,
     /// Counts of each move over all chains.
     pub counts: Vec<MoveCounts>,
@@ -142,20 +142,16 @@ fn tally<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<(ChainTally, Distin
             .map(|replicas| TemperingTally::of(replicas.climb())),
     };
     let mut distinct = Distinct::default();
-    for phase in [Phase::Warmup, Phase::Sampling] {
-        run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
-            let Some(class) = stretch.entry.class else { return Ok(()) };
-            distinct.note(FirstOfClass { iteration: run.iteration_of(phase, stretch.draw), chain, class });
-            if phase == Phase::Sampling {
-                tally.satisfying_draws += stretch.draws;
-                let log_p = stretch.entry.state.log_p().value();
-                if tally.best.is_none_or(|(_, best)| log_p > best) {
-                    tally.best = Some((SampleId { chain, draw: stretch.draw }, log_p));
-                }
-            }
-            Ok(())
-        })?;
-    }
+    run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
+        let Some(class) = stretch.entry.class else { return Ok(()) };
+        distinct.note(FirstOfClass { iteration: run.iteration_of(Phase::Sampling, stretch.draw), chain, class });
+        tally.satisfying_draws += stretch.draws;
+        let log_p = stretch.entry.state.log_p().value();
+        if tally.best.is_none_or(|(_, best)| log_p > best) {
+            tally.best = Some((SampleId { chain, draw: stretch.draw }, log_p));
+        }
+        Ok(())
+    })?;
     tally.distinct = distinct.count();
     Ok((tally, distinct))
 }

@@ -32,7 +32,7 @@ pub struct Plan {
     pub thin: u64,
     /// Iterations between two points at which the run can stop and later go on; at least 1.
     pub block: u64,
-    /// Stop at the first iteration by which the chains together have recorded this many distinct solutions.
+    /// Stop at the first iteration by which the chains together have recorded this many distinct solutions after the warm-up.
     pub solutions: Option<u64>,
     /// Rungs between the prior and the target that each chain climbs and descends, 1 for none, and iterations between two swaps. Only states of the target are
     /// recorded, and iterations are those of each rung.
@@ -155,7 +155,7 @@ pub trait Sink<D, O> {
 pub struct Progress<'a> {
     /// Iterations done by every chain.
     pub end_iteration: u64,
-    /// Distinct solutions recorded by all chains together.
+    /// Distinct solutions recorded by all chains together after the warm-up.
     pub distinct: &'a Distinct,
     /// Per chain: counts of each move, and hits.
     pub chains: Vec<(&'a [MoveCounts], Hits)>,

@@ -66,12 +66,12 @@ impl<'a, T: Goal> Worker<'a, T> {
 
     /// Advances until iterations `0 .. end` are done.
     pub(super) fn advance(&mut self, job: &Job<'a, T>, end: u64) -> Result<Made<T::Draw, T::Outcome>, ChainError> {
-        let (Self { replicas, books }, thin) = (self, job.plan.thin);
+        let (Self { replicas, books }, plan) = (self, &job.plan);
         let mut made = Made { block: Block::starting_at(books.end_iteration), firsts: Vec::new() };
         if replicas.is_none() && end > 0 {
             let started = Replicas::start(job.course(), job.plan.seed, books.index)?;
             books.class = job.target.class(started.top().state());
-            books.note::<T>(thin, 0, started.top(), &mut made);
+            books.note::<T>(plan, 0, started.top(), &mut made);
             *replicas = Some(started);
         }
         let Some(replicas) = replicas else { return Ok(made) };
@@ -85,7 +85,7 @@ impl<'a, T: Goal> Worker<'a, T> {
                     books.class = job.target.class(chain.state());
                     books.pending = (books.pending.0.saturating_add(1), Some(step.move_id));
                 }
-                books.note::<T>(thin, books.end_iteration, chain, &mut made);
+                books.note::<T>(plan, books.end_iteration, chain, &mut made);
             }
         })?;
         made.block.end_iteration = books.end_iteration;
@@ -120,20 +120,23 @@ impl Books {
     #[inline]
     fn note<T: Target>(
         &mut self,
-        thin: u64,
+        plan: &Plan,
         iteration: u64,
         chain: &Chain<'_, T>,
         made: &mut Made<T::Draw, T::Outcome>,
     ) {
         self.end_iteration = iteration + 1;
         self.hits.count(iteration, self.class.is_some());
-        if !is_recorded(iteration, thin) {
+        if !is_recorded(iteration, plan.thin) {
             return;
         }
         let (accepted, by) = std::mem::take(&mut self.pending);
-        let fresh = accepted > 0 || made.block.entries.is_empty();
+        // A solution that the warm-up leaves behind is one of the sampling phase too.
+        let is_sampled = iteration >= plan.warmup;
+        let is_first = is_sampled && iteration - plan.warmup < plan.thin;
+        let fresh = accepted > 0 || made.block.entries.is_empty() || is_first;
         made.block.push(accepted, by, self.class, chain.state());
-        if let (true, Some(class)) = (fresh, self.class) {
+        if let (true, Some(class)) = (fresh && is_sampled, self.class) {
             let first = FirstOfClass { iteration, chain: self.index, class };
             if self.distinct.note(first) {
                 made.firsts.push(first);
