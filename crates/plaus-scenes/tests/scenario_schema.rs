@@ -215,7 +215,7 @@ fn keys_are_explained_by_full_name_or_unique_end() {
     assert!(explain("downward").unwrap().description.contains("\n\"level\": The ball bounces as from a level table."));
     assert_eq!(explain("symmetric_redraws").unwrap().default, "unset");
     assert_eq!(explain("ball2d.weights").unwrap().kind, "a table");
-    assert_eq!(explain("weights.aim").unwrap().key, "world.ball2d.weights.aim");
+    assert_eq!(explain("weights.perturb").unwrap().key, "world.ball2d.weights.perturb");
     assert_eq!(explain("sigma_teta_deg"), Err(Some("world.ball2d.sigma_theta_deg".into())));
     assert_eq!(explain("sampler.sede"), Err(Some("sampler.seed".into())));
     assert_eq!(explain("gravity"), Err(None));
