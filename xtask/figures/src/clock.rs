@@ -1,16 +1,35 @@
-//! Time that is spent, whatever else the machine does.
+//! Time that this thread has spent computing, so that what a simulation costs does not depend on what else runs.
 
-/// Seconds of processor time of this thread, where Linux tells; else those since some fixed time.
-pub(crate) fn seconds() -> f64 {
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
-    nanoseconds.map_or_else(since_start, |ns| ns * 1e-9)
+use std::time::Duration;
+
+/// Seconds of processor time of this thread since an arbitrary instant.
+#[must_use]
+pub fn seconds() -> f64 {
+    now().as_secs_f64()
 }
 
-#[allow(clippy::disallowed_methods, reason = "times of the report are read from the clock")]
-fn since_start() -> f64 {
+/// What `work` gives, and the seconds of processor time that it took.
+pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let begin = now();
+    let done = work();
+    (done, now().saturating_sub(begin).as_secs_f64())
+}
+
+/// Processor time of this thread since an arbitrary instant.
+#[cfg(unix)]
+#[must_use]
+pub fn now() -> Duration {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec as u32)
+}
+
+/// Elsewhere time on the wall has to do.
+#[cfg(not(unix))]
+#[must_use]
+#[allow(clippy::disallowed_methods, reason = "times are read from the clock")]
+pub fn now() -> Duration {
     use std::sync::OnceLock;
     use std::time::Instant;
-    static START: OnceLock<Instant> = OnceLock::new();
-    START.get_or_init(Instant::now).elapsed().as_secs_f64()
+    static FIRST: OnceLock<Instant> = OnceLock::new();
+    FIRST.get_or_init(Instant::now).elapsed()
 }

@@ -2,6 +2,7 @@
 #![allow(missing_docs, reason = "for the chores of this workspace only")]
 
 pub mod canvas;
+pub mod clock;
 pub mod lines;
 pub mod plot;
 pub mod render;

@@ -7,7 +7,6 @@
 
 mod ball2d;
 mod bowling;
-mod clock;
 mod dice;
 mod plausibility;
 mod sampler;
@@ -15,7 +14,7 @@ mod spelling;
 mod stats;
 
 use plaus_figures::report::Report;
-use plaus_figures::{Result, canvas, lines, plot, render, report};
+use plaus_figures::{Result, canvas, clock, lines, plot, render, report};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

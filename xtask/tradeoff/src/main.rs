@@ -4,7 +4,6 @@
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 #![allow(clippy::disallowed_methods, reason = "it measures time")]
 
-mod clock;
 mod distance;
 mod exact;
 mod measure;

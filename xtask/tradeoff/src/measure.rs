@@ -1,8 +1,8 @@
 //! The numbers of one world: time, error before chaos, outcomes.
 
-use crate::clock;
 use crate::world::{Outcome, Places, Way, World};
 use plaus_figures::Result;
+use plaus_figures::clock;
 
 /// How much is simulated.
 pub(crate) struct Plan {

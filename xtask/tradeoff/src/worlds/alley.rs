@@ -1,11 +1,11 @@
 //! Shots at ten pins.
 
-use crate::clock::timed;
 use crate::peer::{AlleyParts, AlleyPeer};
 use crate::world::{Outcome, Places, Reading, Way, World};
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_figures::Result;
+use plaus_figures::clock::timed;
 use plaus_sim::rigid::{Phase, Rigid, RigidScratch, Start};
 use plaus_sim::worlds::Alley;
 use plaus_sim::{Accuracy, Preset, Scratch};

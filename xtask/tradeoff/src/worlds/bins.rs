@@ -1,11 +1,11 @@
 //! Ten marbles dropped one after another into 7 × 5 bins.
 
-use crate::clock::timed;
 use crate::peer::MarblePeer;
 use crate::world::{Outcome, Places, Reading, Way, World};
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_figures::Result;
+use plaus_figures::clock::timed;
 use plaus_sim::marbles::{MarbleScratch, Marbles, Start};
 use plaus_sim::worlds::{Bins, drops};
 use plaus_sim::{Accuracy, Preset, Scratch};

@@ -1,11 +1,11 @@
 //! A die thrown onto a table, flat or bumpy.
 
-use crate::clock::timed;
 use crate::peer::{DiePeer, Ground};
 use crate::world::{Outcome, Places, Reading, Way, World};
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_figures::Result;
+use plaus_figures::clock::timed;
 use plaus_sim::rigid::{RigidScratch, Start};
 use plaus_sim::worlds::DieOnTable;
 use plaus_sim::{Accuracy, Preset, Scratch};

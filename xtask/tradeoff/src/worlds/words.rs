@@ -1,11 +1,11 @@
 //! Balls that spell HI and ACM, drawn from the scene's prior.
 
-use crate::clock::timed;
 use crate::peer::MarblePeer;
 use crate::world::{Outcome, Places, Reading, Way, World};
 use glam::DVec3;
 use plaus_dist::{LogPotential, Purpose, Seed};
 use plaus_figures::Result;
+use plaus_figures::clock::timed;
 use plaus_mcmc::{Simulated, Target};
 use plaus_scenes::AccuracyPreset;
 use plaus_scenes::Scene;
