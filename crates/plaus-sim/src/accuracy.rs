@@ -16,16 +16,16 @@
 //! **Which preset to take.** `Standard` for sampling, `Draft` while looking for a scenario that works (a quarter less time), `Fine` for a trajectory that is shown (two to three times the
 //! time), `Reference` only to judge the others (six times, and far more where bodies lie in heaps). Free flight, bounces, sliding and rolling on planes are exact at every preset: a
 //! slide that turns into a roll, and a bounce from 1 m, agree with the exact answer to 2e-15. Where chaos parts the ways, the law of the outcomes stays: none of the presets could be told
-//! from the reference by what came of up to 2,000 draws, save a hundredth or two of the dice's. Medians of one thread in ms on a busy two-core machine, and in brackets the total variation from the
-//! reference's outcomes and what chance alone gives on average (`cargo xtask tradeoff`, with `--seconds 4` to `5`; the report has the errors over time, all readings and plots):
+//! from the reference by what came of up to 2,000 draws, save a hundredth of the marbles' and the dice's. Medians of one thread in ms on a two-core machine, and in brackets the total variation from the
+//! reference's outcomes and what chance alone gives on average (`cargo xtask tradeoff`; the report has the errors over time, all readings and plots):
 //!
 //! | world, outcome | draft | standard | fine | reference | rapier3d-f64, 1/240 |
 //! | --- | --- | --- | --- | --- | --- |
-//! | ten marbles over bins, 2 s: bins filled | 0.32 (0.039, 0.033) | 0.41 (0.037, 0.033) | 0.81 (0.038, 0.033) | 2.5 | 33 (0.35, 0.084) |
-//! | balls that spell HI, from the prior: k | 0.20 (0.055, 0.043) | 0.25 (0.054, 0.043) | 0.46 (0.052, 0.043) | 1.4 | 19 (0.079, 0.065) |
-//! | balls that spell ACM, likewise | 0.89 (0.24, 0.20) | 1.1 (0.24, 0.20) | 2.0 (0.27, 0.20) | 7.2 | 66 (0.33, 0.23) |
-//! | a die on a flat table: face and place | 0.077 (0.083, 0.076) | 0.11 (0.087, 0.076) | 0.26 (0.10, 0.076) | 0.74 | 0.59 (0.089, 0.076) |
-//! | a die on a bumpy table, likewise | 0.34 (0.094, 0.090) | 0.44 (0.093, 0.090) | 0.91 (0.098, 0.089) | 2.7 | 7.3 (0.17, 0.18) |
+//! | ten marbles over bins, 2 s: bins filled | 0.27 (0.037, 0.026) | 0.35 (0.036, 0.025) | 0.74 (0.037, 0.026) | 2.2 | 30 (0.34, 0.043) |
+//! | balls that spell HI, from the prior: k | 0.17 (0.016, 0.026) | 0.21 (0.014, 0.026) | 0.42 (0.013, 0.026) | 1.3 | 17 (0.050, 0.037) |
+//! | balls that spell ACM, likewise | 0.71 (0.052, 0.074) | 0.88 (0.051, 0.074) | 1.8 (0.047, 0.074) | 5.0 | 59 (0.14, 0.10) |
+//! | a die on a flat table: face and place | 0.075 (0.084, 0.076) | 0.11 (0.088, 0.076) | 0.26 (0.10, 0.076) | 0.76 | 0.57 (0.089, 0.076) |
+//! | a die on a bumpy table, likewise | 0.26 (0.082, 0.076) | 0.33 (0.079, 0.077) | 0.74 (0.087, 0.077) | 2.3 | 7.2 (0.14, 0.13) |
 //! | a ball at ten pins: which pins stand | 7.6 (0.046, 0.032) | 10 (0.043, 0.033) | 23 (0.042, 0.035) | 120 | 105 (0.063, 0.026) |
 //!
 //! ACM and pins had only 30 and 27 draws of the reference in that time: their distances say little. Marbles keep within a tenth of a radius of the reference for 0.65, 0.95 and 1.5 s in the
