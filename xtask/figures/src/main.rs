@@ -77,6 +77,21 @@ impl Work {
         Ok(std::fs::write(&path, self.report.to_markdown()).map_err(|error| format!("{}: {error}", path.display()))?)
     }
 
+    /// Makes a scene's parts, or the one that is asked for. The report can be read after each.
+    fn make_parts(&mut self, scene: &str, parts: &[(&str, Make)]) -> Result<()> {
+        let wanted = self.part.clone();
+        if let Some(wanted) = wanted.as_ref().filter(|wanted| !parts.iter().any(|(name, _)| name == wanted)) {
+            let known: Vec<&str> = parts.iter().map(|(name, _)| *name).collect();
+            return Err(format!("{scene} has no part `{wanted}`, only {}", known.join(", ")).into());
+        }
+        for (name, part) in parts.iter().filter(|(name, _)| wanted.as_deref().is_none_or(|wanted| wanted == *name)) {
+            self.say(format_args!("part {name}"));
+            part(self)?;
+            self.write_report()?;
+        }
+        Ok(())
+    }
+
     /// Says what is being done.
     fn say(&self, what: impl std::fmt::Display) {
         eprintln!("  {what}");

@@ -11,12 +11,10 @@ mod seven_ten;
 mod shots;
 mod strikes;
 
-use crate::{Result, Work};
+use crate::{Make, Result, Work};
 
-/// A part of the scene's figures, by name: `--only bowling/first`. What takes long comes last; the report can be read before.
-type Part = (&'static str, fn(&mut Work) -> Result<()>);
-
-const PARTS: &[Part] = &[
+/// Parts of the scene's figures by name, `--only bowling/first`. What takes long comes last.
+const PARTS: &[(&str, Make)] = &[
     ("lane", lane::make),
     ("pictures", pictures::make),
     ("strikes", strikes::make),
@@ -29,15 +27,5 @@ const PARTS: &[Part] = &[
 ];
 
 pub(crate) fn make(work: &mut Work) -> Result<()> {
-    let wanted = work.part.clone();
-    if let Some(wanted) = wanted.as_ref().filter(|wanted| !PARTS.iter().any(|(name, _)| name == wanted)) {
-        let known: Vec<&str> = PARTS.iter().map(|(name, _)| *name).collect();
-        return Err(format!("bowling has no part `{wanted}`, only {}", known.join(", ")).into());
-    }
-    for (name, part) in PARTS.iter().filter(|(name, _)| wanted.as_deref().is_none_or(|wanted| wanted == *name)) {
-        work.say(format_args!("part {name}"));
-        part(work)?;
-        work.write_report()?;
-    }
-    Ok(())
+    work.make_parts("bowling", PARTS)
 }

@@ -9,7 +9,7 @@ mod sensitivity;
 mod steering;
 mod surface;
 
-use crate::{Result, Work};
+use crate::{Make, Result, Work};
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Goal, Mixture, StateOf};
 use plaus_scenes::dice::{Config, Dice};
@@ -46,10 +46,8 @@ impl Thrown {
     }
 }
 
-/// A part of the scene's figures, by name: `--only dice/steering`.
-type Part = (&'static str, fn(&mut Work) -> Result<()>);
-
-const PARTS: &[Part] = &[
+/// Parts of the scene's figures by name, `--only dice/steering`. What takes long comes last.
+const PARTS: &[(&str, Make)] = &[
     ("composite", composite::make),
     ("surface", surface::make),
     ("hits", hits::make),
@@ -59,14 +57,5 @@ const PARTS: &[Part] = &[
 ];
 
 pub(crate) fn make(work: &mut Work) -> Result<()> {
-    let wanted = work.part.clone();
-    if let Some(wanted) = wanted.as_ref().filter(|wanted| !PARTS.iter().any(|(name, _)| name == wanted)) {
-        let known: Vec<&str> = PARTS.iter().map(|(name, _)| *name).collect();
-        return Err(format!("dice has no part `{wanted}`, only {}", known.join(", ")).into());
-    }
-    for (_, part) in PARTS.iter().filter(|(name, _)| wanted.as_deref().is_none_or(|wanted| wanted == *name)) {
-        part(work)?;
-        work.write_report()?;
-    }
-    Ok(())
+    work.make_parts("dice", PARTS)
 }

@@ -10,7 +10,7 @@ mod speed;
 mod traces;
 mod words;
 
-use crate::{Result, Work};
+use crate::{Make, Result, Work};
 use chains::Word;
 use plaus_scenes::spelling::{Config, Letters};
 
@@ -29,10 +29,8 @@ fn acm(change: impl FnOnce(&mut Config)) -> Result<Word> {
     })
 }
 
-/// A part of the scene's figures, by name: `--only spelling/words`. What takes long comes last; the report can be read before.
-type Part = (&'static str, fn(&mut Work) -> Result<()>);
-
-const PARTS: &[Part] = &[
+/// Parts of the scene's figures by name, `--only spelling/words`. What takes long comes last.
+const PARTS: &[(&str, Make)] = &[
     ("traces", traces::make),
     ("pictures", pictures::make),
     ("speed", speed::make),
@@ -44,15 +42,5 @@ const PARTS: &[Part] = &[
 ];
 
 pub(crate) fn make(work: &mut Work) -> Result<()> {
-    let wanted = work.part.clone();
-    if let Some(wanted) = wanted.as_ref().filter(|wanted| !PARTS.iter().any(|(name, _)| name == wanted)) {
-        let known: Vec<&str> = PARTS.iter().map(|(name, _)| *name).collect();
-        return Err(format!("spelling has no part `{wanted}`, only {}", known.join(", ")).into());
-    }
-    for (name, part) in PARTS.iter().filter(|(name, _)| wanted.as_deref().is_none_or(|wanted| wanted == *name)) {
-        work.say(format_args!("part {name}"));
-        part(work)?;
-        work.write_report()?;
-    }
-    Ok(())
+    work.make_parts("spelling", PARTS)
 }
