@@ -26,10 +26,10 @@
 //! | balls that spell ACM, likewise | 0.71 (0.052, 0.074) | 0.88 (0.051, 0.074) | 1.8 (0.047, 0.074) | 5.0 | 59 (0.14, 0.10) |
 //! | a die on a flat table: face and place | 0.075 (0.084, 0.076) | 0.11 (0.088, 0.076) | 0.26 (0.10, 0.076) | 0.76 | 0.57 (0.089, 0.076) |
 //! | a die on a bumpy table, likewise | 0.26 (0.082, 0.076) | 0.33 (0.079, 0.077) | 0.74 (0.087, 0.077) | 2.3 | 7.2 (0.14, 0.13) |
-//! | a ball at ten pins: which pins stand | 7.6 (0.046, 0.032) | 10 (0.043, 0.033) | 23 (0.042, 0.035) | 120 | 105 (0.063, 0.026) |
+//! | a ball at ten pins, 5 s: which pins stand | 4.5 (0.042, 0.026) | 5.2 (0.045, 0.025) | 12 (0.043, 0.027) | 48 | 95 (0.086, 0.020) |
 //!
-//! ACM and pins had only 30 and 27 draws of the reference in that time: their distances say little. Marbles keep within a tenth of a radius of the reference for 0.65, 0.95 and 1.5 s in the
-//! median (`Draft`, `Standard`, `Fine`), and 12, 2 and 2 in a hundred draws fill another number of bins than they would there; a die keeps within a twentieth of its edge for 0.25, 0.3 and 0.4 s, and one throw in
+//! ACM and pins had only 245 and 38 draws of the reference in that time: their distances say little. Marbles keep within a tenth of a radius of the reference for 0.65, 1.0 and 1.5 s in the
+//! median (`Draft`, `Standard`, `Fine`), and 11, 2 and 2 in a hundred draws fill another number of bins than they would there; a die keeps within a twentieth of its edge for 0.25, 0.3 and 0.4 s, and one throw in
 //! two to four ends on another face or elsewhere.
 //!
 //! **f32 or f64.** There is only f64. Events are ordered by their times across bodies, and an f32 holds a time of 2 s to 2e-7 s, in which a marble at 1 m/s moves by 4e-5 of its radius:
