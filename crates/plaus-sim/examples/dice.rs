@@ -10,8 +10,10 @@
     reason = "a measuring program: it reads the clock and prints"
 )]
 
+mod measure;
 mod overlaps;
 
+use measure::{noise, processor_time};
 use overlaps::Overlaps;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::worlds::DieOnTable;
@@ -36,12 +38,6 @@ fn main() {
     tally.print(&format!("{dice} dice, {} preset, bumps {bumps}", preset.name()));
 }
 
-/// Seconds that this thread has been on a processor (Linux; 0 elsewhere): other programs make the time on the wall longer, not this.
-fn processor_time() -> f64 {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    text.split(' ').next().and_then(|t| t.parse::<f64>().ok()).map_or(0.0, |t| 1e-9 * t)
-}
-
 #[derive(Default)]
 struct Tally {
     times: Vec<f64>,
@@ -63,12 +59,12 @@ impl Tally {
     fn throw(&mut self, die: &DieOnTable, dice: usize, k: u64) {
         let mut stream = Seed(7).chain(0).at(k, Purpose::START);
         let starts = die.throw_together(dice, || open_unit(&mut stream));
-        let (mut scratch, clock, cpu) = (Scratch::default(), Instant::now(), processor_time());
+        let (mut scratch, clock, cpu) = (Scratch::default(), Instant::now(), processor_time().unwrap_or(0.0));
         let world = die.world_of(dice, noise).unwrap();
         let mut state = world.state(&starts).unwrap();
         let outcome = world.run(&mut state, &mut scratch, 20.0, &mut ()).unwrap();
         self.times.push(clock.elapsed().as_secs_f64());
-        self.on_processor += processor_time() - cpu;
+        self.on_processor += processor_time().unwrap_or(0.0) - cpu;
         // Once more, watched.
         let mut state = world.state(&starts).unwrap();
         let mut watch = Overlaps::new(&world);
@@ -126,14 +122,4 @@ impl Tally {
             1e9 * total / self.events as f64
         );
     }
-}
-
-fn noise(i: i64, j: i64) -> f64 {
-    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-    h ^= h >> 31;
-    h = h.wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    h ^= h >> 29;
-    // Near enough to a Gaussian: a sum of four uniforms.
-    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
-    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
 }

@@ -7,7 +7,7 @@
 mod measure;
 
 use glam::DVec3;
-use measure::{Digest, Stopwatch, write_trace};
+use measure::{Digest, Stopwatch, noise, write_trace};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::trace::Trace;
 use plaus_sim::worlds::DieOnTable;
@@ -47,16 +47,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         state.time()
     );
     Ok(())
-}
-
-/// Near enough to a Gaussian: a sum of four uniforms.
-fn noise(i: i64, j: i64) -> f64 {
-    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-    h ^= h >> 31;
-    h = h.wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    h ^= h >> 29;
-    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
-    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
 }
 
 fn row(preset: Preset, bumps: f64, throws: usize) -> Result<(), WorldError> {

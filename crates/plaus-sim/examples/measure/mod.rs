@@ -1,4 +1,4 @@
-//! What the measuring examples share: a clock, quantiles, a digest of outcomes, and where a trace goes.
+//! What the measuring examples share: a clock, quantiles, a digest of outcomes, heights of bumps, and where a trace goes.
 #![allow(
     clippy::disallowed_methods,
     dead_code,
@@ -46,7 +46,7 @@ impl Stopwatch {
 }
 
 /// Seconds that this thread has been on a processor (Linux).
-fn processor_time() -> Option<f64> {
+pub fn processor_time() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     Some(1e-9 * text.split(' ').next()?.parse::<f64>().ok()?)
 }
@@ -81,4 +81,14 @@ pub fn write_trace(path: &str, trace: &impl Serialize) -> Result<(), Box<dyn Err
     }
     std::fs::write(path, serde_json::to_string(trace)?)?;
     Ok(())
+}
+
+/// Near enough to a Gaussian: a sum of four uniforms.
+pub fn noise(i: i64, j: i64) -> f64 {
+    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
+    h ^= h >> 31;
+    h = h.wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    h ^= h >> 29;
+    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
+    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
 }
