@@ -138,7 +138,8 @@ fn a_run_started_by_nohup_outlives_its_terminal() {
 #[test]
 fn a_run_out_of_time_can_be_resumed() {
     let place = Place::new();
-    let ended = place.ok("sample ball.toml --out run --max-time 1ms");
+    let ended = place.run("sample ball.toml --out run --max-time 1ms");
+    assert!(matches!(ended.code, Some(0 | 1)), "it may not have come to a solution yet: {}", ended.err);
     assert!(ended.out.contains("out of time after ") && ended.out.contains(" of 1,000 iterations"), "{}", ended.out);
     assert!(ended.out.contains("plaus resume run\n"));
     place.ok("resume run -q");

@@ -27,7 +27,7 @@ fn sample_on(disk: &dyn Disk, folder: &Folder, recipe: &Recipe, watch: &mut dyn 
 }
 
 /// Numbers of bytes, and of operations, after which a process dies, spread over a run: so many of each.
-const DEATHS: usize = 90;
+const DEATHS: usize = 50;
 
 /// A run of some forty blocks, the last ones of full size.
 fn shortened(mut recipe: Recipe) -> Recipe {

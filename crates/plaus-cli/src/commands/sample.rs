@@ -215,7 +215,12 @@ impl Watching {
                 quoted(path)
             ));
         }
-        if !diagnosis.tally.is_satisfied() {
+        if !diagnosis.tally.is_satisfied() && monitor.done() <= plan.warmup && ending == Ending::Stopped {
+            console::note_line(&format!(
+                "still in the warm-up, and no iteration has satisfied the constraint yet; go on: plaus resume {}",
+                quoted(path)
+            ));
+        } else if !diagnosis.tally.is_satisfied() {
             console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
         }
         if let Some(list) = confirmed.as_ref().filter(|_| !self.json) {
@@ -238,7 +243,7 @@ fn ending_in_words(ending: Ending) -> &'static str {
 fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) -> String {
     let path = quoted(run.folder().path());
     let plan = run.manifest().plan;
-    let iterations = diagnosis.iterations + plan.warmup;
+    let iterations = monitor.done();
     let why = match ending {
         Ending::Complete => format!("done: {} iterations of each chain", grouped(plan.end())),
         Ending::EnoughSolutions => {

@@ -16,7 +16,7 @@ class Views {
     renderer.shadowMap.enabled = true;
     renderer.shadowMap.type = software ? THREE.BasicShadowMap : THREE.PCFShadowMap;
     this.width = this.height = 0;
-    this.detail = 0;
+    this.detail = software ? 2 : 0; // the first picture soon, then as sharp as there is time for
     this.slow = 0;
     this.lost = false;
     renderer.domElement.addEventListener('webglcontextlost', (event) => { event.preventDefault(); this.lost = true; });

@@ -52,7 +52,7 @@ pub struct Sampler {
     /// Record every `thin`-th iteration.
     #[schemars(range(min = 1, max = 1_000_000_000_u64))]
     pub thin: u64,
-    /// Iterations between two checkpoints of a chain.
+    /// Most iterations between two points at which a run can be stopped and gone on with; it begins with fewer, about an eighth of those done.
     #[schemars(range(min = 1, max = 1_000_000_000_u64))]
     pub checkpoint_every: u64,
     /// Exact acceptance, or the paper's as printed.
