@@ -4,7 +4,9 @@
 
 mod common;
 
+use common::FailingDisk;
 use plaus_mcmc::{Control, Progress};
+use plaus_run::disk::Disk;
 use plaus_run::{Diagnosis, Folder, Mixing, More, Recipe, Run, RunOf, RunVisitor, Sampling, Watch, resume, sample};
 use plaus_scenes::{Role, Scene};
 
@@ -61,13 +63,16 @@ fn recipe(iterations: u64, thin: u64) -> Recipe {
 #[test]
 fn what_is_said_meanwhile_is_what_the_records_say() {
     let place = tempfile::tempdir().unwrap();
-    // Few draws, all of which are kept; and many, of which one in four is, as the diagnosis takes them too.
-    for (iterations, thin) in [(400, 1), (399, 3), (4096, 1)] {
+    // Makes nothing durable, which would take most of the time.
+    let disk = FailingDisk::new(u64::MAX, u64::MAX, false);
+    let disk: &dyn Disk = &disk;
+    // Few draws, all of which are kept; and many, of which every other is, as the diagnosis takes them too.
+    for (iterations, thin) in [(400, 1), (399, 3), (2048, 1)] {
         let recipe = recipe(iterations, thin);
         let [whole, parts] =
             ["whole", "parts"].map(|name| Folder::new(place.path().join(format!("{name}{iterations}"))));
         let mut watch = Curious::default();
-        sample(&whole, &recipe, Sampling::new(1, &mut watch)).unwrap();
+        sample(&whole, &recipe, Sampling { threads: 1, disk, watch: &mut watch }).unwrap();
         let of_records = Run::open(&whole).unwrap().visit(OfRecords(1024)).unwrap();
         let (end, last) = watch.found.last().unwrap();
         assert_eq!((*end, last), (100 + iterations, &of_records));
@@ -75,9 +80,9 @@ fn what_is_said_meanwhile_is_what_the_records_say() {
 
         // A run that goes on knows what it recorded before.
         let mut first = Curious { stop_from: Some(300), ..Curious::default() };
-        sample(&parts, &recipe, Sampling::new(2, &mut first)).unwrap();
+        sample(&parts, &recipe, Sampling { threads: 2, disk, watch: &mut first }).unwrap();
         let mut second = Curious::default();
-        resume(&parts, More::default(), Sampling::new(2, &mut second)).unwrap();
+        resume(&parts, More::default(), Sampling { threads: 2, disk, watch: &mut second }).unwrap();
         assert_eq!(second.found.last().unwrap().1, of_records);
     }
 }
