@@ -27,6 +27,17 @@ pub enum ChainError {
     },
 }
 
+impl ChainError {
+    /// The iteration that failed; 0 is the start.
+    #[must_use]
+    pub fn iteration(&self) -> u64 {
+        match self {
+            Self::NoStart => 0,
+            Self::Model { iteration, .. } => *iteration,
+        }
+    }
+}
+
 /// What became of an iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Verdict {

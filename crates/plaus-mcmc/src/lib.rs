@@ -66,7 +66,9 @@ pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
 pub use record::{Block, Entry};
 pub use redraw::Redraw;
 pub use replicas::{Climb, Course, Replicas, ReplicasSnapshot, RungStatistics, Tempering, TopStep};
-pub use run::{Control, Ending, Plan, PlanError, Progress, RunError, Sink, Snapshot, Start, run};
+pub use run::{
+    ChainPulse, Control, Ending, Plan, PlanError, Progress, Pulse, RunError, Sink, Snapshot, Start, run, run_watched,
+};
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
 pub use tempered::Tempered;

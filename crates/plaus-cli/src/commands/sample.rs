@@ -5,7 +5,7 @@ use crate::clock::{in_words, parse_duration};
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
-use crate::progress::{Monitor, Stop, Style};
+use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
 use crate::scenario_file;
 use crate::table::{grouped, rate};
@@ -124,10 +124,9 @@ impl Watching {
         sampling: impl FnOnce(Sampling<'_>) -> Result<Ending, Failure>,
     ) -> Result<Outcome, Failure> {
         interrupt::listen()?;
-        let mut monitor = Monitor::new(self.style(), self.verbose, self.max_time);
-        let mut opening = Opening { watching: self, monitor: &mut monitor, folder };
-        let ended = sampling(Sampling::new(self.threads, &mut opening));
-        monitor.finish();
+        let monitor = Monitor::new(self.style(), self.verbose, self.max_time);
+        let opening = |manifest: &Manifest, done| self.open(folder, manifest, done);
+        let ended = monitor.over(|| sampling(Sampling::new(self.threads, &mut Rounds::new(&monitor, &opening))));
         self.sum_up(folder, &monitor, ended?)
     }
 
@@ -228,29 +227,6 @@ impl Watching {
     }
 }
 
-/// Says what is sampled once that is known, then hands over to the monitor.
-struct Opening<'a> {
-    watching: &'a Watching,
-    monitor: &'a mut Monitor,
-    folder: &'a Folder,
-}
-
-impl plaus_run::Watch for Opening<'_> {
-    fn begin(&mut self, manifest: &Manifest, done: u64) {
-        self.watching.open(self.folder, manifest, done);
-        self.monitor.begin(manifest, done);
-    }
-    fn round(&mut self, progress: &plaus_mcmc::Progress<'_>) -> plaus_mcmc::Control {
-        self.monitor.round(progress)
-    }
-    fn checkpoint_due(&mut self) -> bool {
-        self.monitor.checkpoint_due()
-    }
-    fn checkpoint_done(&mut self) {
-        self.monitor.checkpoint_done();
-    }
-}
-
 fn ending_in_words(ending: Ending) -> &'static str {
     match ending {
         Ending::Complete => "complete",
@@ -294,10 +270,11 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
             text += &format!("\nnot to be trusted yet: {first}; and {} more findings of `plaus diagnose`\n", rest.len())
         }
     }
-    text += &format!("\nnext:\n  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
+    text += "\nnext:\n";
     if let Some(best) = diagnosis.tally.best() {
-        text += &format!("  plaus replay {path} --sample {best}\n");
+        text += &format!("  plaus gallery {path} --out gallery.html\n  plaus replay {path} --sample {best}\n");
     }
+    text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
     match ending {
         Ending::Stopped => text += &format!("  plaus resume {path}\n"),
         Ending::Complete if !diagnosis.is_healthy() => text += &format!("  plaus resume {path}{}\n", longer(&plan)),
