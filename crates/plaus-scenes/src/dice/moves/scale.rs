@@ -39,7 +39,7 @@ impl Scale {
     pub(super) fn sample(self, stream: &mut Stream) -> (f64, bool) {
         let whole = |stream: &mut Stream| self.low + (self.high - self.low) * open_unit(stream);
         let (log, is_wide) = match self.about {
-            Some(about) if open_unit(stream) >= tune(0) => (about + tune(1) * (2.0 * open_unit(stream) - 1.0), false),
+            Some(about) if open_unit(stream) >= WIDE_SHARE => (about + NARROW * (2.0 * open_unit(stream) - 1.0), false),
             _ => (whole(stream), true),
         };
         (math::exp(log).min(1.0), is_wide)
@@ -51,10 +51,4 @@ impl Scale {
         let (s, is_wide) = self.sample(stream);
         ((1.0 - s * s).max(0.0).sqrt() * z + s * standard_normal(stream), is_wide)
     }
-}
-
-fn tune(k: usize) -> f64 {
-    static T: std::sync::OnceLock<Vec<f64>> = std::sync::OnceLock::new();
-    let t = T.get_or_init(|| std::env::var("TUNE").map_or(vec![WIDE_SHARE, NARROW], |t| t.split(',').map(|x| x.parse().unwrap()).collect()));
-    t[k]
 }
