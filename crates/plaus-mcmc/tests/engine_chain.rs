@@ -189,6 +189,7 @@ fn a_run_reports_the_first_failing_chain() {
         solutions: None,
         rungs: 1,
         swap_every: 1,
+        adapt: false,
     };
     for threads in [1, 4] {
         let error = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere).unwrap_err();
@@ -249,6 +250,7 @@ fn the_start_counts_as_a_solution() {
             solutions,
             rungs: 1,
             swap_every: 1,
+            adapt: false,
         };
         let mut ends = Ends(Vec::new());
         run(&COUNTER, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), 1, &mut ends).unwrap();
