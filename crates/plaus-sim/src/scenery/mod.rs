@@ -211,11 +211,7 @@ impl Scenery {
                     curvature_radius: f64::INFINITY,
                 }
             }
-            Surface::Dome(k) => {
-                let dome = &self.domes[k as usize];
-                let (normal, distance) = dome.normal_and_distance(x);
-                Foot { normal, distance, curvature_radius: if dome.hollow { -dome.radius } else { dome.radius } }
-            }
+            Surface::Dome(k) => self.domes[k as usize].stands(x),
             Surface::Edge(k) => {
                 let edge = &self.mesh.edges[k as usize];
                 let offset = x - edge.origin;
