@@ -1,6 +1,6 @@
 //! One stretch of closed-form motion: a parabola of the centre, valid from its own clock on.
 
-use crate::scenery::Aabb;
+use crate::scenery::{Aabb, greater, lesser};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -44,7 +44,10 @@ impl Parabola {
     #[must_use]
     pub fn bounds(&self, from: f64, until: f64) -> Aabb {
         let (p, q) = (self.after(from), self.after(until));
-        let mut b = Aabb { min: p.min(q), max: p.max(q) };
+        let mut b = Aabb {
+            min: DVec3::new(lesser(p.x, q.x), lesser(p.y, q.y), lesser(p.z, q.z)),
+            max: DVec3::new(greater(p.x, q.x), greater(p.y, q.y), greater(p.z, q.z)),
+        };
         if self.a != DVec3::ZERO {
             self.widen(&mut b, from, until);
         }
@@ -58,8 +61,8 @@ impl Parabola {
             let turn = -self.v[k] / self.a[k];
             if turn > from && turn < until {
                 let peak = self.x[k] + 0.5 * self.v[k] * turn;
-                b.min[k] = b.min[k].min(peak);
-                b.max[k] = b.max[k].max(peak);
+                b.min[k] = lesser(b.min[k], peak);
+                b.max[k] = greater(b.max[k], peak);
             }
         }
     }

@@ -8,6 +8,7 @@ mod plane;
 mod track;
 
 pub use aabb::Aabb;
+pub(crate) use aabb::{greater, lesser};
 pub use dome::Dome;
 pub use mesh::Mesh;
 pub use plane::Plane;
@@ -74,8 +75,10 @@ pub struct Scenery {
     planes: Vec<Plane>,
     mesh: Mesh,
     domes: Vec<Dome>,
-    /// Of faces, domes, edges, vertices in this order.
+    /// Of planes, faces, domes, edges, vertices in this order: the order in which they are looked at.
     boxes: Vec<Aabb>,
+    /// What each box is around.
+    items: Vec<Surface>,
     grid: Grid,
     reach: f64,
 }
@@ -90,17 +93,24 @@ impl Scenery {
             return Err(WorldError::BadNumber { field: "largest radius", value: reach, expected: "a positive length" });
         }
         let caps = domes.iter().map(Dome::bounds);
-        let reaches: Vec<Aabb> =
-            mesh.face_reaches().chain(caps).chain(mesh.edge_reaches()).chain(mesh.vertex_reaches()).collect();
-        let faces = mesh.faces.len();
-        let grid = Grid::new(&reaches, reach, |item, centres| {
-            item as usize >= faces || mesh.face_may_touch(item as usize, centres, reach)
+        let endless = || planes.iter().map(|_| Aabb::EVERYWHERE);
+        let bounded = mesh.face_reaches().chain(caps).chain(mesh.edge_reaches()).chain(mesh.vertex_reaches());
+        let reaches: Vec<Aabb> = endless().chain(bounded).collect();
+        let kinds = [Surface::Plane, Surface::Face, Surface::Dome, Surface::Edge, Surface::Vertex];
+        let counts = [planes.len(), mesh.faces.len(), domes.len(), mesh.edges.len(), mesh.vertices.len()];
+        let items: Vec<Surface> =
+            kinds.iter().zip(counts).flat_map(|(kind, count)| (0..count as u32).map(kind)).collect();
+        let grid = Grid::new(&reaches, reach, |item, centres| match items[item as usize] {
+            Surface::Plane(k) => planes[k as usize].may_touch(centres, reach),
+            Surface::Face(k) => mesh.face_may_touch(k as usize, centres, reach),
+            _ => true,
         });
         let faces = (0..mesh.faces.len()).map(|f| mesh.face_bounds(f));
         let edges = (0..mesh.edges.len()).map(|e| mesh.edge_bounds(e));
         let vertices = (0..mesh.vertices.len()).map(|v| mesh.vertex_bounds(v));
-        let boxes = faces.chain(domes.iter().map(Dome::tight_bounds)).chain(edges).chain(vertices).collect();
-        Ok(Self { planes, mesh, domes, boxes, grid, reach })
+        let boxes =
+            endless().chain(faces).chain(domes.iter().map(Dome::tight_bounds)).chain(edges).chain(vertices).collect();
+        Ok(Self { planes, mesh, domes, boxes, items, grid, reach })
     }
 
     /// Scenery without anything in it.
@@ -117,11 +127,12 @@ impl Scenery {
     /// As [`Mesh::move_vertices`].
     pub fn move_vertices(&mut self, moved: &[(u32, DVec3)]) -> Result<(), WorldError> {
         self.mesh.move_vertices(moved)?;
-        let Self { mesh, boxes, domes, .. } = self;
-        let first_edge = mesh.faces.len() + domes.len();
+        let Self { planes, mesh, boxes, domes, .. } = self;
+        let first_face = planes.len();
+        let first_edge = first_face + mesh.faces.len() + domes.len();
         let first_vertex = first_edge + mesh.edges.len();
         let touched = mesh.touched();
-        touched.faces.iter().for_each(|&f| boxes[f as usize] = mesh.face_bounds(f as usize));
+        touched.faces.iter().for_each(|&f| boxes[first_face + f as usize] = mesh.face_bounds(f as usize));
         touched.edges.iter().for_each(|&e| boxes[first_edge + e as usize] = mesh.edge_bounds(e as usize));
         touched.vertices.iter().for_each(|&v| boxes[first_vertex + v as usize] = mesh.vertex_bounds(v as usize));
         Ok(())
@@ -163,17 +174,7 @@ impl Scenery {
     /// What an item of the broad phase is.
     #[inline]
     pub(crate) fn surface(&self, item: u32) -> Surface {
-        let (faces, domes, edges) =
-            (self.mesh.faces.len() as u32, self.domes.len() as u32, self.mesh.edges.len() as u32);
-        if item < faces {
-            Surface::Face(item)
-        } else if item < faces + domes {
-            Surface::Dome(item - faces)
-        } else if item < faces + domes + edges {
-            Surface::Edge(item - faces - domes)
-        } else {
-            Surface::Vertex(item - faces - domes - edges)
-        }
+        self.items[item as usize]
     }
 
     /// What a surface is made of; edges and vertices take the material of their first face.
