@@ -283,8 +283,9 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             return;
         }
         let mut event = self.state.events[k];
+        let around = self.state.boxes[k];
         for (j, other) in self.state.bodies.iter().enumerate() {
-            if j == k || !self.state.boxes[j].meets(&self.state.boxes[k]) || !self.mechanics.is_present(other) {
+            if !self.state.boxes[j].meets(&around) || j == k || !self.mechanics.is_present(other) {
                 continue;
             }
             let linked = self.state.links.contains(j as u32, k as u32);

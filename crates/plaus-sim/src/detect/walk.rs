@@ -1,9 +1,9 @@
 //! A ball's way through the broad phase, cell by cell, until it touches something.
 
 use super::sphere::{Stretch, sphere_surface};
-use crate::motion::Parabola;
+use crate::motion::{Course, Parabola};
 use crate::roots::fall_of_quadratic;
-use crate::scenery::{Aabb, Scenery, Surface};
+use crate::scenery::{Aabb, Probe, Scenery, Surface};
 use glam::DVec3;
 
 /// First surface that a sphere touches while approaching it, within `until` seconds of the motion's clock. Surfaces in `skip` (its lasting contacts) do not count.
@@ -18,21 +18,23 @@ pub(crate) fn next_surface(
     let grid = scenery.grid();
     // A little more than the radius, so that rounding cannot hide what touches.
     let near = radius * radius * (1.0 + 1e-9);
-    let mut cell = grid.cell_of(path.x);
+    let (course, mut cell) = (Course::new(path), grid.cell_of(path.x));
     let mut stretch = Stretch { path, from: 0.0, x: path.x, v: path.v };
     // A coordinate that moves with its acceleration never turns again. Knowing that, rounding cannot send the walk to and fro.
     let mut onward = [0.0; 3];
     loop {
         let walls = grid.walls(cell);
-        let way = path.bounds(stretch.from, limit);
+        let way = course.bounds(stretch.from, stretch.x, limit);
         let stays = way.min.cmpgt(walls.0).all() && way.max.cmplt(walls.1).all();
         let (leaves, next) = if stays { (f64::INFINITY, None) } else { exit(walls, &way, &stretch, limit, &onward) };
         let mut stop = leaves.min(limit);
         let items = grid.items(cell);
         if !items.is_empty() {
-            let swept = if stays { way } else { path.bounds(stretch.from, stop) };
+            let swept = if stays { way } else { course.bounds(stretch.from, stretch.x, stop) };
+            let probe = Probe::new(&swept.grown(radius * (1.0 + 1e-8)));
             for &item in items {
-                if scenery.bounds(item).distance_squared(&swept) <= near {
+                // Most are ruled out by the first comparison.
+                if scenery.may_meet(item, &probe) && scenery.bounds(item).distance_squared(&swept) <= near {
                     // A hit within this cell bounds the rest of the search, here and beyond; what is hit beyond it is listed there.
                     consider(scenery, scenery.surface(item), &stretch, radius, skip, &mut stop, &mut best);
                 }

@@ -54,12 +54,13 @@ impl Aabb {
     #[inline]
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
-        self.min.x <= other.max.x
-            && self.max.x >= other.min.x
-            && self.min.y <= other.max.y
-            && self.max.y >= other.min.y
-            && self.min.z <= other.max.z
-            && self.max.z >= other.min.z
+        // All six, without a branch that could be foreseen wrongly.
+        (self.min.x <= other.max.x)
+            & (self.max.x >= other.min.x)
+            & (self.min.y <= other.max.y)
+            & (self.max.y >= other.min.y)
+            & (self.min.z <= other.max.z)
+            & (self.max.z >= other.min.z)
     }
 
     /// Square of the distance between two boxes; infinite where one is empty.

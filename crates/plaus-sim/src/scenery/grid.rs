@@ -18,6 +18,8 @@ pub(crate) struct Grid {
     inverse: f64,
     size: f64,
     counts: [usize; 3],
+    /// Highest index of a cell along each axis.
+    last: [i32; 3],
     /// Walls between cells along each axis, the outermost infinite.
     walls: [Vec<f64>; 3],
     starts: Vec<u32>,
@@ -42,7 +44,8 @@ impl Grid {
             std::iter::once(f64::NEG_INFINITY).chain(inner).chain([f64::INFINITY]).collect()
         });
         let (starts, items) = (Vec::new(), Vec::new());
-        let mut grid = Self { origin, inverse: 1.0 / size, size, counts, walls, starts, items };
+        let last = counts.map(|count| count as i32 - 1);
+        let mut grid = Self { origin, inverse: 1.0 / size, size, counts, last, walls, starts, items };
         grid.fill(boxes, reach, may_touch);
         grid
     }
@@ -83,8 +86,8 @@ impl Grid {
     #[inline]
     pub(crate) fn cell_of(&self, x: DVec3) -> [usize; 3] {
         let scaled = ((x - self.origin) * self.inverse).to_array();
-        // A float-to-integer cast saturates, and sends what lies below to the first cell.
-        std::array::from_fn(|k| (scaled[k] as usize).min(self.counts[k] - 1))
+        // A float-to-integer cast saturates. What lies below goes to the first cell.
+        std::array::from_fn(|k| (scaled[k] as i32).clamp(0, self.last[k]) as usize)
     }
 
     /// What is listed in a cell, in ascending order.

@@ -5,6 +5,7 @@ mod dome;
 mod grid;
 mod mesh;
 mod plane;
+mod screen;
 mod track;
 
 pub use aabb::Aabb;
@@ -14,10 +15,12 @@ pub use mesh::Mesh;
 pub use plane::Plane;
 
 pub(crate) use grid::Grid;
+pub(crate) use screen::Probe;
 
 use crate::error::WorldError;
 use crate::material::Material;
 use glam::DVec3;
+use screen::Screen;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -77,6 +80,8 @@ pub struct Scenery {
     domes: Vec<Dome>,
     /// Of planes, faces, domes, edges, vertices in this order: the order in which they are looked at.
     boxes: Vec<Aabb>,
+    /// The same boxes, rougher and quicker.
+    screens: Vec<Screen>,
     /// What each box is around.
     items: Vec<Surface>,
     grid: Grid,
@@ -108,9 +113,10 @@ impl Scenery {
         let faces = (0..mesh.faces.len()).map(|f| mesh.face_bounds(f));
         let edges = (0..mesh.edges.len()).map(|e| mesh.edge_bounds(e));
         let vertices = (0..mesh.vertices.len()).map(|v| mesh.vertex_bounds(v));
-        let boxes =
+        let boxes: Vec<Aabb> =
             endless().chain(faces).chain(domes.iter().map(Dome::tight_bounds)).chain(edges).chain(vertices).collect();
-        Ok(Self { planes, mesh, domes, boxes, items, grid, reach })
+        let screens = boxes.iter().map(Screen::new).collect();
+        Ok(Self { planes, mesh, domes, boxes, screens, items, grid, reach })
     }
 
     /// Scenery without anything in it.
@@ -127,14 +133,15 @@ impl Scenery {
     /// As [`Mesh::move_vertices`].
     pub fn move_vertices(&mut self, moved: &[(u32, DVec3)]) -> Result<(), WorldError> {
         self.mesh.move_vertices(moved)?;
-        let Self { planes, mesh, boxes, domes, .. } = self;
+        let Self { planes, mesh, boxes, screens, domes, .. } = self;
         let first_face = planes.len();
         let first_edge = first_face + mesh.faces.len() + domes.len();
         let first_vertex = first_edge + mesh.edges.len();
         let touched = mesh.touched();
-        touched.faces.iter().for_each(|&f| boxes[first_face + f as usize] = mesh.face_bounds(f as usize));
-        touched.edges.iter().for_each(|&e| boxes[first_edge + e as usize] = mesh.edge_bounds(e as usize));
-        touched.vertices.iter().for_each(|&v| boxes[first_vertex + v as usize] = mesh.vertex_bounds(v as usize));
+        let mut place = |item: usize, bounds: Aabb| (boxes[item], screens[item]) = (bounds, Screen::new(&bounds));
+        touched.faces.iter().for_each(|&f| place(first_face + f as usize, mesh.face_bounds(f as usize)));
+        touched.edges.iter().for_each(|&e| place(first_edge + e as usize, mesh.edge_bounds(e as usize)));
+        touched.vertices.iter().for_each(|&v| place(first_vertex + v as usize, mesh.vertex_bounds(v as usize)));
         Ok(())
     }
 
@@ -169,6 +176,12 @@ impl Scenery {
     #[inline]
     pub(crate) fn bounds(&self, item: u32) -> &Aabb {
         &self.boxes[item as usize]
+    }
+
+    /// Whether an item's box may be met; see [`Screen`].
+    #[inline]
+    pub(crate) fn may_meet(&self, item: u32, probe: &Probe) -> bool {
+        self.screens[item as usize].may_meet(probe)
     }
 
     /// What an item of the broad phase is.
