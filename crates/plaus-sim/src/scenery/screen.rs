@@ -12,7 +12,7 @@ pub(crate) struct Probe([f32; 8]);
 
 impl Screen {
     pub(crate) fn new(b: &Aabb) -> Self {
-        let (low, high) = (b.min.to_array().map(not_above), b.max.to_array().map(|x| -not_below(x)));
+        let (low, high) = (b.min.to_array().map(not_above), (-b.max).to_array().map(not_above));
         Self([low[0], low[1], low[2], high[0], high[1], high[2], 0.0, 0.0])
     }
 
@@ -26,21 +26,25 @@ impl Screen {
 impl Probe {
     #[inline]
     pub(crate) fn new(b: &Aabb) -> Self {
-        let (low, high) = (b.min.to_array().map(|x| -not_above(x)), b.max.to_array().map(not_below));
+        let (low, high) = ((-b.min).to_array().map(not_below), b.max.to_array().map(not_below));
         Self([high[0], high[1], high[2], low[0], low[1], low[2], 0.0, 0.0])
     }
 }
 
-#[inline]
+/// More than two roundings to `f32` can lose, over the number.
+const OUTWARD: f32 = 2.0 * f32::EPSILON;
+
+/// A little less than `x`; never infinite above, so that what lies beyond all `f32` stays in.
+#[inline(always)]
 fn not_above(x: f64) -> f32 {
     let near = x as f32;
-    if f64::from(near) > x { near.next_down() } else { near }
+    let near = if near < f32::MAX { near } else { f32::MAX };
+    near - (near.abs() * OUTWARD + f32::MIN_POSITIVE)
 }
 
-#[inline]
+#[inline(always)]
 fn not_below(x: f64) -> f32 {
-    let near = x as f32;
-    if f64::from(near) < x { near.next_up() } else { near }
+    -not_above(-x)
 }
 
 #[cfg(test)]
