@@ -284,8 +284,12 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
         let mut event = self.state.events[k];
         let around = self.state.boxes[k];
-        for (j, other) in self.state.bodies.iter().enumerate() {
-            if !self.state.boxes[j].meets(&around) || j == k || !self.mechanics.is_present(other) {
+        for (j, near) in self.state.boxes.iter().enumerate() {
+            if !near.meets(&around) || j == k {
+                continue;
+            }
+            let other = &self.state.bodies[j];
+            if !self.mechanics.is_present(other) {
                 continue;
             }
             let linked = self.state.links.contains(j as u32, k as u32);
