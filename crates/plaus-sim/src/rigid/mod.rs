@@ -46,6 +46,7 @@ mod pair;
 mod part;
 mod pile;
 mod rest;
+mod revolved;
 mod rim;
 mod solve;
 mod spec;

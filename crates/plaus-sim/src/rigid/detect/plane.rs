@@ -4,10 +4,12 @@ use super::{LEANS, MOST_ADVANCES, Search, earliest};
 use crate::rigid::body::Phase;
 use crate::rigid::part::is_over;
 use crate::rigid::step::TOUCHING;
+use crate::rigid::tumble::{Tumble, View};
 use crate::rigid::{RIM_POINTS, rim};
 use crate::roots::fall_of_quadratic;
 use crate::scenery::Aabb;
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
+use std::cell::RefCell;
 
 /// Distance of the capsule around a body from a plane, over the body's size, from which its skin is looked at. Default 0.05; smaller values look at capsules more often.
 const NEAR: f64 = 0.05;
@@ -21,7 +23,10 @@ struct Look<'b> {
     /// A box whose side the plane is, and that side's axis.
     edges: Option<(&'b Aabb, usize)>,
     x: DVec3,
-    r: DMat3,
+    t: f64,
+    tumble: &'b RefCell<Tumble>,
+    /// How the body sees the normal.
+    view: &'b View,
     /// Of the centre of gravity over the plane, less half the gap.
     height: f64,
     /// Rate of the height.
@@ -36,7 +41,8 @@ struct Look<'b> {
 impl Look<'_> {
     /// Whether a point (in body axes) that is behind the plane is beyond the edges of the side: then the plane says nothing about when it touches the box.
     fn is_beyond(&self, centre: DVec3) -> bool {
-        self.edges.is_some_and(|(bounds, axis)| !is_over(bounds, axis, self.x + self.r * centre))
+        let there = || self.x + self.tumble.borrow_mut().at(self.t) * centre;
+        self.edges.is_some_and(|(bounds, axis)| !is_over(bounds, axis, there()))
     }
 }
 
@@ -90,20 +96,22 @@ impl Search<'_> {
             return Some((time, 0));
         }
         let pull = -n.dot(path.a);
-        let mut tumble = self.body.tumble(spec);
+        let tumble = self.body.tumble(spec);
+        let (view, tumble) = (tumble.view(n), RefCell::new(tumble));
         for _ in 0..MOST_ADVANCES {
-            let r = tumble.at(t);
-            let turned = r.transpose();
+            let (lever, swing) = tumble.borrow_mut().see(&view, t);
             let x = path.after(t);
             let look = Look {
                 part,
                 edges,
                 x,
-                r,
+                t,
+                tumble: &tumble,
+                view: &view,
                 height: n.dot(x) - offset - 0.5 * spec.gap,
                 fall: n.dot(path.velocity_after(t)),
-                lever: turned * n,
-                swing: turned * n.cross(self.spin_at(&tumble, t)),
+                lever,
+                swing,
                 pull,
             };
             let mut next = Next { step: self.until - t, first: None, is_beyond: false };
@@ -163,6 +171,8 @@ impl Search<'_> {
             if f <= 0.5 * spec.gap && rate < 0.0 {
                 next.now(k, f);
             } else {
+                let sway = look.tumble.borrow().sway(look.view, feeler.centre);
+                let m = sway.map_or(m, |sway| m.min((look.pull + sway).max(0.0)));
                 next.not_before(earliest(f, rate, m), k, f);
             }
         }
