@@ -159,20 +159,25 @@ impl Search<'_> {
     }
 
     fn balls(&self, look: &Look, next: &mut Next) {
-        let spec = self.spec;
-        for (k, feeler) in spec.feelers[..spec.hull].iter().enumerate() {
-            let f = look.height + look.lever.dot(feeler.centre) - feeler.radius;
-            let rate = look.fall + look.swing.dot(feeler.centre);
-            let m = (look.pull + self.axial * spec.arms[k]).max(0.0);
+        let (spec, half) = (self.spec, 0.5 * self.spec.gap);
+        let (height, fall, lever, swing) = (look.height, look.fall, look.lever, look.swing);
+        for (k, (feeler, arm)) in spec.feelers[..spec.hull].iter().zip(&spec.arms).enumerate() {
+            let f = height + lever.dot(feeler.centre) - feeler.radius;
+            let rate = fall + swing.dot(feeler.centre);
+            let m = (look.pull + self.axial * arm).max(0.0);
             if next.outlasts(f, rate, m) || self.lasts(look.part, k) {
                 continue;
             }
-            next.is_beyond |= f <= 0.5 * spec.gap && look.is_beyond(feeler.centre);
-            if f <= 0.5 * spec.gap && rate < 0.0 {
-                next.now(k, f);
-            } else {
-                let sway = look.tumble.borrow().sway(look.view, feeler.centre);
-                let m = sway.map_or(m, |sway| m.min((look.pull + sway).max(0.0)));
+            if f <= half {
+                next.is_beyond |= look.is_beyond(feeler.centre);
+                if rate < 0.0 {
+                    next.now(k, f);
+                    continue;
+                }
+            }
+            let sway = look.tumble.borrow().sway(look.view, feeler.centre);
+            let m = sway.map_or(m, |sway| m.min((look.pull + sway).max(0.0)));
+            if !next.outlasts(f, rate, m) {
                 next.not_before(earliest(f, rate, m), k, f);
             }
         }
