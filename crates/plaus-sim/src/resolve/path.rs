@@ -51,6 +51,22 @@ pub(super) struct Path<'k> {
     at: Place,
     /// Rates there, of a contact that slips; found when they are needed.
     rate: Option<Rate>,
+    /// The curved step on which the normal velocity has just changed its sign: it goes on.
+    leg: Option<Leg>,
+    restitution: f64,
+}
+
+/// A curved step.
+#[derive(Debug, Clone, Copy)]
+struct Leg {
+    /// Its length in normal impulse.
+    h: f64,
+    ends: [Place; 2],
+    rates: [Rate; 2],
+    /// Coefficients of the normal velocity over the part of the step, from that of the first power on.
+    cubic: [f64; 3],
+    /// The part of it that is behind.
+    from: f64,
 }
 
 /// Sideways velocity, over the speed and the square of the largest turn of a step, with which slip that is about to stop may be taken to stop. Default 1e-2: at turns of 0.3
@@ -67,11 +83,11 @@ const FARTHER: f64 = 1.1;
 const STRAIGHT: f64 = 1e-12;
 
 impl<'k> Path<'k> {
-    pub(super) fn new(k: &'k ContactMatrix, u: DVec3, friction: f64, turn: f64) -> Self {
+    pub(super) fn new(k: &'k ContactMatrix, u: DVec3, restitution: f64, friction: f64, turn: f64) -> Self {
         let holding = k.holding();
         let at = Place { slip: u.truncate(), normal: u.z, friction: DVec2::ZERO, work: 0.0, load: 0.0 };
         let holding = (holding.length() <= friction).then_some(holding);
-        Self { k, friction, turn, speed: u.length(), holding, at, rate: None }
+        Self { k, friction, turn, speed: u.length(), holding, at, rate: None, leg: None, restitution }
     }
 
     /// Normal work so far, negative while compressing.
@@ -94,6 +110,10 @@ impl<'k> Path<'k> {
 
     /// One step, until the normal velocity changes its sign or, where that is given, the work has grown to `released`. Slip of at most `tiny` is none.
     pub(super) fn step(&mut self, tiny: f64, released: Option<f64>) -> End {
+        if let Some(leg) = self.leg {
+            // Halves of an impact are alike but for what is lost.
+            return self.along(leg, leg.from * (1.0 + self.restitution), released);
+        }
         if self.friction == 0.0 {
             return self.straight(&self.rate_under(DVec2::ZERO), f64::INFINITY, released);
         }
@@ -118,7 +138,7 @@ impl<'k> Path<'k> {
             return self.straight(&rate, stop, released);
         }
         let longest = (self.turn * speed / across).min(SHRINKS * stop);
-        self.curved(&rate, longest, released)
+        self.curved(rate, longest, released)
     }
 
     /// A step under a constant force; slip is gone at `stop`.
@@ -141,17 +161,19 @@ impl<'k> Path<'k> {
     }
 
     /// A step of Kutta's rule of at most this length.
-    fn curved(&mut self, first: &Rate, longest: f64, released: Option<f64>) -> End {
+    fn curved(&mut self, first: Rate, longest: f64, released: Option<f64>) -> End {
         let at = self.at;
         let (expected, why) = at.until(first.normal, released);
         if expected == 0.0 {
             return why;
         }
-        let h = longest.min(FARTHER * expected);
+        // What was compressed comes back on the same way.
+        let on = if released.is_none() { 1.0 + self.restitution } else { 1.0 };
+        let h = longest.min(FARTHER * on * expected);
         let second = self.slipping(at.slip + first.slip * (0.5 * h));
         let third = self.slipping(at.slip + (second.slip * 2.0 - first.slip) * h);
         let sixth = h / 6.0;
-        let ahead = Place {
+        let mut ahead = Place {
             slip: at.slip + (first.slip + second.slip * 4.0 + third.slip) * sixth,
             normal: at.normal + (first.normal + 4.0 * second.normal + third.normal) * sixth,
             friction: at.friction + (first.friction + second.friction * 4.0 + third.friction) * sixth,
@@ -159,53 +181,85 @@ impl<'k> Path<'k> {
             load: at.load + h,
         };
         let last = self.slipping(ahead.slip);
-        // The normal velocity after a part x of the step: a cubic; and the work, its integral.
         let rise = ahead.normal - at.normal;
-        let c1 = h * first.normal;
-        let (c2, c3) = (3.0 * rise - h * (2.0 * first.normal + last.normal), h * (first.normal + last.normal) - 2.0 * rise);
-        let normal = |x: f64| at.normal + x * (c1 + x * (c2 + x * c3));
-        let work = |x: f64| at.work + h * x * (at.normal + x * (c1 / 2.0 + x * (c2 / 3.0 + x * c3 / 4.0)));
-        let ahead = Place { work: work(1.0), ..ahead };
-        let turned = || crossing(|x| (normal(x), c1 + x * (2.0 * c2 + x * (3.0 * c3))), expected / h, released.is_some());
+        let cubic = [
+            h * first.normal,
+            3.0 * rise - h * (2.0 * first.normal + last.normal),
+            h * (first.normal + last.normal) - 2.0 * rise,
+        ];
+        let leg = Leg { h, ends: [at, at], rates: [first, last], cubic, from: 0.0 };
+        ahead.work = leg.work(1.0);
+        self.along(Leg { ends: [at, ahead], ..leg }, expected / h, released)
+    }
+
+    /// Goes along what is left of a curved step until it is to end; it is expected to do so near a part of it.
+    fn along(&mut self, leg: Leg, near: f64, released: Option<f64>) -> End {
+        let ahead = leg.ends[1];
+        let turned = || crossing(|x| (leg.normal(x), leg.slope(x)), [leg.from, near], released.is_some());
         let (x, why) = match released {
             None if ahead.normal >= 0.0 => (turned(), End::Turned),
             Some(most) if ahead.work >= most => {
-                (crossing(|x| (work(x) - most, h * normal(x)), expected / h, false), End::Released)
+                let rest = |x: f64| (leg.work(x) - most, leg.h * leg.normal(x));
+                (crossing(rest, [leg.from, near], false), End::Released)
             }
             Some(_) if ahead.normal < 0.0 => (turned(), End::Turned),
             _ => {
-                (self.at, self.rate) = (ahead, Some(last));
+                (self.at, self.rate, self.leg) = (ahead, Some(leg.rates[1]), None);
                 return End::Open;
             }
         };
-        // Cubics through the ends: what of the way, and of the slopes there, is behind.
-        let (way, y) = (x * x * (3.0 - 2.0 * x), 1.0 - x);
-        let (from, to) = (h * x * y * y, -h * x * x * y);
-        let between = |a: DVec2, b: DVec2, p: DVec2, q: DVec2| a + (b - a) * way + p * from + q * to;
-        self.rate = None;
-        self.at = Place {
-            slip: between(at.slip, ahead.slip, first.slip, last.slip),
-            normal: if why == End::Turned { 0.0 } else { normal(x) },
-            friction: between(at.friction, ahead.friction, first.friction, last.friction),
-            work: work(x),
-            load: at.load + h * x,
-        };
+        self.at = leg.at(x, why == End::Turned);
+        (self.rate, self.leg) = (None, (why == End::Turned).then_some(Leg { from: x, ..leg }));
         why
     }
 }
 
-/// Where a function that changes its sign once between 0 and 1 does so, by Newton's rule from nearby, which mostly does.
-fn crossing(eval: impl Fn(f64) -> (f64, f64), near: f64, falls: bool) -> f64 {
+impl Leg {
+    /// Normal velocity after a part `x` of the step.
+    fn normal(&self, x: f64) -> f64 {
+        let [a, b, c] = self.cubic;
+        self.ends[0].normal + x * (a + x * (b + x * c))
+    }
+
+    fn slope(&self, x: f64) -> f64 {
+        let [a, b, c] = self.cubic;
+        a + x * (2.0 * b + x * (3.0 * c))
+    }
+
+    /// Work by then: its integral.
+    fn work(&self, x: f64) -> f64 {
+        let [a, b, c] = self.cubic;
+        let mean = self.ends[0].normal + x * (a * (1.0 / 2.0) + x * (b * (1.0 / 3.0) + x * (c * (1.0 / 4.0))));
+        self.ends[0].work + self.h * x * mean
+    }
+
+    /// The place after a part of the step, by cubics through its ends.
+    fn at(&self, x: f64, has_turned: bool) -> Place {
+        let ([a, b], [p, q], y) = (self.ends, self.rates, 1.0 - x);
+        let (way, from, to) = (x * x * (3.0 - 2.0 * x), self.h * x * y * y, -self.h * x * x * y);
+        let between = |a: DVec2, b: DVec2, p: DVec2, q: DVec2| a + (b - a) * way + p * from + q * to;
+        Place {
+            slip: between(a.slip, b.slip, p.slip, q.slip),
+            normal: if has_turned { 0.0 } else { self.normal(x) },
+            friction: between(a.friction, b.friction, p.friction, q.friction),
+            work: self.work(x),
+            load: a.load + self.h * x,
+        }
+    }
+}
+
+/// Where a function that changes its sign once between `from` and 1 does so, by Newton's rule from nearby, which mostly does.
+fn crossing(eval: impl Fn(f64) -> (f64, f64), [from, near]: [f64; 2], falls: bool) -> f64 {
     let mut x = near.min(1.0);
     for _ in 0..ROUNDS {
         let (value, slope) = eval(x);
         let next = x - value / slope;
-        if (next - x).abs() <= NEAR && next <= 1.0 {
+        if (next - x).abs() <= NEAR && next >= from && next <= 1.0 {
             return next;
         }
-        x = next.clamp(0.0, 1.0);
+        x = next.clamp(from, 1.0);
     }
-    refine(eval, 0.0, 1.0, falls)
+    refine(eval, from, 1.0, falls)
 }
 
 /// Rounds of Newton's rule before the search is bracketed.

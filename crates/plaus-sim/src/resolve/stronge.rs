@@ -78,7 +78,7 @@ pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: 
     if u.z >= 0.0 {
         return DVec3::ZERO;
     }
-    let mut path = Path::new(k, u, friction, turn);
+    let mut path = Path::new(k, u, restitution, friction, turn);
     // The normal work at which all that is to come back has come back, and the work at the begin of the compression.
     let mut released = 0.0;
     let mut begin = 0.0;

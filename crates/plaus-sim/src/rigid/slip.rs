@@ -30,6 +30,8 @@ pub(super) struct Asked {
     pub(super) stiff: f64,
     /// Angle in radians by which the slip's direction may be off.
     pub(super) turn: f64,
+    /// Most rounds of looking for it.
+    pub(super) rounds: u32,
 }
 
 /// Sliding with a load.
@@ -44,14 +46,19 @@ pub(super) struct Slide {
     pub(super) is_right: bool,
 }
 
-/// Rounds of Newton's rule per look; sweeps around it do the rest.
-const ROUNDS: usize = 4;
-
 /// Largest turn of one round, in radians.
 const FARTHEST: f64 = 0.5;
 
 /// Part of the response to a normal force that friction must leave, or it wedges the contact.
 const WEDGED: f64 = 1e-3;
+
+/// A unit vector turned towards another across it by the angle whose half has this half as its tangent.
+#[inline]
+fn turned_by(s: DVec2, t: DVec2, angle: f64) -> DVec2 {
+    let half = 0.5 * angle;
+    let square = half * half;
+    (s * (1.0 - square) + t * angle) * (1.0 / (1.0 + square))
+}
 
 impl Slip {
     /// Slip in the direction of a vector across the normal; `None` where that vanishes.
@@ -77,26 +84,27 @@ impl Slip {
     /// How it slides on from velocity `free`; `None` where friction wedges the contact.
     #[inline]
     pub(super) fn slide(&mut self, free: DVec3, asked: &Asked) -> Option<Slide> {
-        let Asked { friction, missing, along, stiff, turn } = *asked;
+        let Asked { friction, missing, along, stiff, turn, rounds } = *asked;
         let free = DVec2::new(free.dot(self.frame[0]), free.dot(self.frame[1]));
         let (mut goes_on, mut is_right) = (true, false);
-        for _ in 0..ROUNDS {
+        for _ in 0..rounds {
             let s = self.towards;
             let gain = along - friction * self.kn.dot(s);
             if gain <= WEDGED * along {
                 return None;
             }
-            let load = missing / gain;
+            let inverse = 1.0 / gain;
+            let load = missing * inverse;
             let t = s.perp();
             let pushed = self.kn - self.response(s) * friction;
             let left = free + pushed * load;
             let (on, off) = (s.dot(left), t.dot(left));
             goes_on = on > 0.0;
-            let turned = t.dot(pushed) * self.kn.dot(t) / gain - t.dot(self.response(t));
+            let turned = t.dot(pushed) * self.kn.dot(t) * inverse - t.dot(self.response(t));
             let slope = friction * load * turned - on;
             if goes_on && slope < 0.0 {
                 let angle = (-off / slope).clamp(-FARTHEST, FARTHEST);
-                self.towards = (s + t * angle).normalize();
+                self.towards = turned_by(s, t, angle);
                 is_right = angle.abs() <= turn;
                 if is_right {
                     break;

@@ -43,6 +43,19 @@ pub(crate) struct Contact {
     is_right: bool,
 }
 
+/// Rounds over the direction of slip per visit; the sweeps around it do the rest.
+const ROUNDS: u32 = 1;
+
+/// The same where there is no other contact: it is found once and for all.
+const ROUNDS_ALONE: u32 = 6;
+
+/// How well a slip's direction is looked for: the angle in radians by which it may be off, and rounds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Look {
+    turn: f64,
+    rounds: u32,
+}
+
 impl Contact {
     pub(crate) fn new(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3, friction: f64, k: DMat3) -> Self {
         let kn = k * normal;
@@ -91,9 +104,9 @@ impl Contact {
         }
     }
 
-    /// Gives this contact the impulse that it needs with all others as they are; returns the change of velocity that this meant. The direction of a slip may be off by `turn` radians.
+    /// Gives this contact the impulse that it needs with all others as they are; returns the change of velocity that this meant.
     #[inline]
-    pub(crate) fn solve(&mut self, members: &mut [Member], turn: f64) -> f64 {
+    pub(crate) fn solve(&mut self, members: &mut [Member], look: Look) -> f64 {
         let u = self.velocity(members);
         let n = self.normal;
         let wanted = n * self.target - u;
@@ -101,14 +114,14 @@ impl Contact {
             self.is_right = true;
             return 0.0;
         }
-        let next = self.still_sliding(u, turn).unwrap_or_else(|| {
+        let next = self.still_sliding(u, look).unwrap_or_else(|| {
             // No slip is left, and the impulse lies in the cone; or else it slides.
             let next = self.impulse + self.k_inverse * wanted;
             let load = next.dot(n);
             let across = (next - n * load).length_squared();
             self.slides = load <= 0.0 || across > self.friction * self.friction * load * load;
             self.is_right = true;
-            if self.slides { self.sliding(u - self.k * self.impulse, turn) } else { next }
+            if self.slides { self.sliding(u - self.k * self.impulse, look) } else { next }
         });
         let change = next - self.impulse;
         self.push(members, change);
@@ -118,7 +131,7 @@ impl Contact {
 
     /// The impulse of a contact that slid when it was looked at last and goes on sliding: Coulomb's law then holds with it.
     #[inline]
-    fn still_sliding(&mut self, u: DVec3, turn: f64) -> Option<DVec3> {
+    fn still_sliding(&mut self, u: DVec3, look: Look) -> Option<DVec3> {
         let mut slip = self.slip.filter(|_| self.slides)?;
         let free = u - self.k * self.impulse;
         let missing = self.target - free.dot(self.normal);
@@ -126,17 +139,17 @@ impl Contact {
         if missing <= 0.0 {
             return Some(DVec3::ZERO);
         }
-        let slide = slip.slide(free, &self.asked(missing, turn)).filter(|s| s.goes_on)?;
+        let slide = slip.slide(free, &self.asked(missing, look)).filter(|s| s.goes_on)?;
         (self.slip, self.is_right) = (Some(slip), slide.is_right);
         Some((self.normal - slide.slip * self.friction) * slide.load)
     }
 
-    fn asked(&self, missing: f64, turn: f64) -> Asked {
-        Asked { friction: self.friction, missing, along: self.along, stiff: self.stiff, turn }
+    fn asked(&self, missing: f64, Look { turn, rounds }: Look) -> Asked {
+        Asked { friction: self.friction, missing, along: self.along, stiff: self.stiff, turn, rounds }
     }
 
     /// The impulse after which a contact with velocity `free`, that cannot stick, obeys Coulomb's law: the friction opposes the slip that is left.
-    fn sliding(&mut self, free: DVec3, turn: f64) -> DVec3 {
+    fn sliding(&mut self, free: DVec3, look: Look) -> DVec3 {
         let n = self.normal;
         let missing = self.target - free.dot(n);
         if missing <= 0.0 {
@@ -146,7 +159,7 @@ impl Contact {
             let across = free - n * free.dot(n) + (self.kn - n * self.along) * (missing / self.along);
             self.slip = Slip::new(across, n, &self.k, self.kn);
         }
-        let asked = self.asked(missing, turn);
+        let asked = self.asked(missing, look);
         let Some(slip) = &mut self.slip else { return n * (missing / self.along) };
         let Some(slide) = slip.slide(free, &asked) else { return self.wedged(free, missing) };
         self.is_right = slide.is_right;
@@ -188,10 +201,11 @@ impl Enough {
 /// Velocities decide, not impulses: where contacts are redundant, impulses that cancel each other may go on growing for ever.
 pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: Enough, most: u32) {
     let Enough { speed: enough, turn } = enough;
+    let look = Look { turn, rounds: if contacts.len() == 1 { ROUNDS_ALONE } else { ROUNDS } };
     if let [only] = contacts {
         for _ in 0..4 {
             // With its slip's direction right, nothing is left to change.
-            if only.solve(members, turn) <= enough || only.is_right {
+            if only.solve(members, look) <= enough || only.is_right {
                 break;
             }
         }
@@ -205,14 +219,14 @@ pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: En
         let mut largest = 0.0_f64;
         // The first was the last of the pass before.
         for c in contacts.iter_mut().skip(usize::from(round > 0)) {
-            largest = largest.max(c.solve(members, turn));
+            largest = largest.max(c.solve(members, look));
         }
         if largest <= CALM * enough {
             break;
         }
         largest = 0.0;
         for c in contacts.iter_mut().rev().skip(1) {
-            largest = largest.max(c.solve(members, turn));
+            largest = largest.max(c.solve(members, look));
         }
         let quiet = |m: &Member| {
             (m.v - m.last[0]).length_squared() <= enough * enough
