@@ -4,7 +4,7 @@ use super::{LEANS, MOST_ADVANCES, Search, earliest};
 use crate::rigid::body::Phase;
 use crate::rigid::part::is_over;
 use crate::rigid::step::TOUCHING;
-use crate::rigid::tumble::{Tumble, View};
+use crate::rigid::tumble::Tumble;
 use crate::rigid::{RIM_POINTS, rim};
 use crate::roots::fall_of_quadratic;
 use crate::scenery::Aabb;
@@ -25,8 +25,6 @@ struct Look<'b> {
     x: DVec3,
     t: f64,
     tumble: &'b RefCell<Tumble>,
-    /// How the body sees the normal.
-    view: &'b View,
     /// Of the centre of gravity over the plane, less half the gap.
     height: f64,
     /// Rate of the height.
@@ -95,6 +93,9 @@ impl Search<'_> {
             let time = fall_of_quadratic([height, n.dot(path.v), 0.5 * n.dot(path.a)], self.until)?;
             return Some((time, 0));
         }
+        if let Some(found) = self.corners(part, (n, offset), edges, t) {
+            return found;
+        }
         let pull = -n.dot(path.a);
         let tumble = self.body.tumble(spec);
         let (view, tumble) = (tumble.view(n), RefCell::new(tumble));
@@ -107,7 +108,6 @@ impl Search<'_> {
                 x,
                 t,
                 tumble: &tumble,
-                view: &view,
                 height: n.dot(x) - offset - 0.5 * spec.gap,
                 fall: n.dot(path.velocity_after(t)),
                 lever,
@@ -175,11 +175,7 @@ impl Search<'_> {
                     continue;
                 }
             }
-            let sway = look.tumble.borrow().sway(look.view, feeler.centre);
-            let m = sway.map_or(m, |sway| m.min((look.pull + sway).max(0.0)));
-            if !next.outlasts(f, rate, m) {
-                next.not_before(earliest(f, rate, m), k, f);
-            }
+            next.not_before(earliest(f, rate, m), k, f);
         }
     }
 

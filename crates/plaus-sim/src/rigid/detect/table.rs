@@ -17,6 +17,8 @@ impl Search<'_> {
         let gravity = path.a.length();
         let mut tumble = self.body.tumble(spec);
         let mut window: Option<(f64, Bounds)> = None;
+        // The point that was nearest at the last look comes first: most others outlast its step.
+        let mut lead = 0;
         for _ in 0..MOST_ADVANCES {
             if t >= self.until || t.is_nan() {
                 return;
@@ -45,12 +47,14 @@ impl Search<'_> {
                 let r = tumble.at(t);
                 let w = self.spin_at(&tumble, t);
                 let mut first = None;
-                for (k, feeler) in spec.feelers.iter().enumerate() {
+                for k in std::iter::once(lead).chain((0..spec.feelers.len()).filter(|&k| k != lead)) {
+                    let feeler = &spec.feelers[k];
                     self.table_feeler((part, k), feeler, table, &bounds, &(x, v, w, r), &mut step, &mut first);
                 }
                 if step == 0.0 {
                     return self.hit(t, part, first.map_or(0, |(k, _)| k));
                 }
+                lead = first.map_or(lead, |(k, _)| k);
                 t += step;
             }
         }
@@ -113,6 +117,7 @@ impl Search<'_> {
         let time = earliest(f, rate, m);
         if time < *step {
             *step = time;
+            *first = Some((k, f));
         }
     }
 
