@@ -98,9 +98,16 @@ impl Search<'_> {
             (p.z - value, pv.z - slope[0] * pv.x - slope[1] * pv.y)
         };
         let f = f - 0.5 * spec.gap;
-        let speed = v.length() + self.fastest * spec.arms[k] + gravity.length() * *step;
+        // The way of a corner over the surface is level, that of a ball along it.
+        let (way, sideways) = if feeler.radius > 0.0 {
+            (pv.length(), gravity.length())
+        } else {
+            (pv.truncate().length(), gravity.truncate().length())
+        };
+        let speed = way + (turning + sideways) * *step;
         let across = (1.0 + bounds.slope * bounds.slope).sqrt();
-        let m = m_low.max(0.0) * across + bounds.bend * speed * speed;
+        let pull = if feeler.radius > 0.0 { gravity.length() } else { bounds.slope * sideways - gravity.z };
+        let m = (turning * across + pull).max(0.0) + bounds.bend * speed * speed;
         if f > 0.5 * spec.gap && f + (rate - 0.5 * m * *step) * *step > 0.0 {
             return;
         }
