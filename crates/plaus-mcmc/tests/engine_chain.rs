@@ -213,6 +213,7 @@ fn what_fails_beyond_the_last_demanded_solution_is_no_failure() {
             solutions: Some(wanted),
             rungs: 1,
             swap_every: 1,
+            adapt: false,
         };
         let ended = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere);
         // The counters reach a new class in every iteration, and have five before they fail.

@@ -83,8 +83,8 @@ fn a_tempered_run_killed_anywhere_loses_nothing_final() {
 
 #[test]
 fn a_run_killed_while_it_adapts_loses_nothing_final() {
-    killed_everywhere(&adapting(1), true, 997);
-    killed_everywhere(&adapting(3), true, 2_997);
+    killed_everywhere(adapting(1), true);
+    killed_everywhere(adapting(3), true);
 }
 
 /// Scales that were kept are kept by a longer run; what was adapted is in the tally.
