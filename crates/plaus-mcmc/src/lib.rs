@@ -46,6 +46,7 @@
 //!
 //! The crate knows no bodies and does no input or output.
 
+pub mod adapt;
 pub mod chain;
 pub mod check;
 pub mod diagnose;
@@ -60,6 +61,7 @@ pub mod target;
 pub mod tempered;
 pub mod view;
 
+pub use adapt::{Adapted, Scale, Scales};
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
 pub use ladder::Ladder;
 pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};

@@ -189,6 +189,7 @@ fn a_run_reports_the_first_failing_chain() {
         solutions: None,
         rungs: 1,
         swap_every: 1,
+        adapt: false,
     };
     for threads in [1, 4] {
         let error = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere).unwrap_err();
@@ -212,6 +213,7 @@ fn what_fails_beyond_the_last_demanded_solution_is_no_failure() {
             solutions: Some(wanted),
             rungs: 1,
             swap_every: 1,
+            adapt: false,
         };
         let ended = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere);
         // The counters reach a new class in every iteration, and have five before they fail.
@@ -249,6 +251,7 @@ fn the_start_counts_as_a_solution() {
             solutions,
             rungs: 1,
             swap_every: 1,
+            adapt: false,
         };
         let mut ends = Ends(Vec::new());
         run(&COUNTER, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), 1, &mut ends).unwrap();

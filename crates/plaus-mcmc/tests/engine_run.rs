@@ -29,6 +29,7 @@ const PLAN: Plan = Plan {
     solutions: None,
     rungs: 1,
     swap_every: 1,
+    adapt: false,
 };
 
 /// The same, each chain with replicas at four rungs.

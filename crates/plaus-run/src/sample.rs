@@ -217,6 +217,12 @@ fn restore_chain<S: Scene>(
         let message = format!("{} moves are counted, the scene has {}", snapshot.counts.len(), manifest.moves.len());
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
     }
+    let kernels = scene.moves(&manifest.scenario()?.sampler.rules)?;
+    let tempered = snapshot.replicas.iter().flat_map(|replicas| replicas.scales.iter().flatten());
+    if !snapshot.scales.iter().chain(tempered).all(|scales| scales.fit(&kernels)) {
+        let message = "its scales are not those of the scene's moves".to_owned();
+        return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
+    }
     let (rungs, moves) = (manifest.plan.rungs, manifest.moves.len());
     if snapshot.replicas.as_ref().map_or(rungs != 1, |replicas| !replicas.fits(rungs, moves)) {
         let message = format!("the checkpoint is not one of {rungs} rungs");

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{FailingDisk, bytes_of, recipe, tempered};
+use common::{FailingDisk, adapting, bytes_of, recipe, tempered};
 use plaus_run::disk::{Disk, RealDisk};
 use plaus_run::{Error, Folder, More, Recipe, Run, RunOf, RunVisitor, Sampling, Unwatched, Watch, resume, sample};
 use plaus_scenes::Scene;
@@ -79,6 +79,43 @@ fn a_process_killed_anywhere_loses_nothing_final() {
 #[test]
 fn a_tempered_run_killed_anywhere_loses_nothing_final() {
     killed_everywhere(tempered(None), true);
+}
+
+#[test]
+fn a_run_killed_while_it_adapts_loses_nothing_final() {
+    killed_everywhere(adapting(1), true);
+    killed_everywhere(adapting(3), true);
+}
+
+/// Scales that were kept are kept by a longer run; what was adapted is in the tally.
+#[test]
+fn a_longer_run_keeps_its_scales() {
+    use plaus_run::tally::{ScaleTally, Tally};
+    use plaus_run::{Run, RunOf, RunVisitor};
+    struct Scales;
+    impl RunVisitor for Scales {
+        type Output = Vec<Vec<ScaleTally>>;
+        fn visit<S: plaus_scenes::Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+            Tally::of(&run).unwrap().chains.into_iter().map(|chain| chain.scales).collect()
+        }
+    }
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path().join("run"));
+    let values = || {
+        let chains = Run::open(&folder).unwrap().visit(Scales).unwrap();
+        let one = |scales: &Vec<ScaleTally>| {
+            assert!(scales.len() == 1 && scales[0].frozen && scales[0].kernel == "perturb", "{scales:?}");
+            (scales[0].value.unwrap(), scales[0].tried)
+        };
+        chains.iter().map(one).collect::<Vec<_>>()
+    };
+    sample(&folder, &adapting(1), Sampling::new(1, &mut Unwatched)).unwrap();
+    let short = values();
+    resume(&folder, More { iterations: Some(900), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap();
+    for (short, long) in short.iter().zip(values()) {
+        assert!(short.0 == long.0 && long.1 > short.1 && short.0 < 5.0, "{short:?} {long:?}");
+    }
+    assert!(short[0].0 != short[1].0, "each chain has its own");
 }
 
 #[test]

@@ -9,7 +9,7 @@
 //! | `sweep_tolerance` | g·step | 1e-2 | 3e-3 | 1e-6 | 1e-8 | 1e-12–1e-2 | as `sweeps` | change at which sweeps end; each halves what is left |
 //! | `rest_speed` | √(g·size) | 5e-2 | 3e-2 | 3e-3 | 1e-3 | 1e-6–5e-2 | large: a slow body on its way to fall is stopped; static support is always tested first | energy of `rest_speed²/2` of a body height |
 //! | `rest_residual` | g·step | 2e-2 | 1e-2 | 1e-3 | 3e-4 | 1e-8–1e-1 | large: slopes steeper than friction allows hold bodies | what a static solution may leave unbalanced |
-//! | `slip_turn` | rad | 0.2 | 0.1 | 0.03 | 0.01 | 0.005–0.3 | large: direction of friction within an impact is off, error ∝ turn² | Darboux–Keller midpoint steps |
+//! | `slip_turn` | rad | 0.5 | 0.3 | 0.1 | 0.03 | 0.005–0.5 | large: direction of friction within an impact is off, error ∝ turn³ | Darboux–Keller steps of third order |
 //! | `gap` | body size | 1e-4 | 1e-5 | 1e-6 | 1e-8 | 1e-9–1e-3 | large: bodies float; small: more steps of conservative advancement | first contact of turning bodies; spheres need none |
 //! | `events` | count per body | 2e3 | 5e3 | 5e4 | 5e5 | 1e2–1e7 | small: long runs end as `OutOfEvents` | a guard; ten marbles need about 40 each |
 //!
@@ -109,7 +109,7 @@ impl Accuracy {
                 sweep_tolerance: 1e-2,
                 rest_speed: 5e-2,
                 rest_residual: 2e-2,
-                slip_turn: 0.2,
+                slip_turn: 0.5,
                 gap: 1e-4,
                 events: 2_000,
             },
@@ -121,7 +121,7 @@ impl Accuracy {
                 sweep_tolerance: 3e-3,
                 rest_speed: 3e-2,
                 rest_residual: 1e-2,
-                slip_turn: 0.1,
+                slip_turn: 0.3,
                 gap: 1e-5,
                 events: 5_000,
             },
@@ -133,7 +133,7 @@ impl Accuracy {
                 sweep_tolerance: 1e-6,
                 rest_speed: 3e-3,
                 rest_residual: 1e-3,
-                slip_turn: 0.03,
+                slip_turn: 0.1,
                 gap: 1e-6,
                 events: 50_000,
             },
@@ -145,7 +145,7 @@ impl Accuracy {
                 sweep_tolerance: 1e-8,
                 rest_speed: 1e-3,
                 rest_residual: 3e-4,
-                slip_turn: 0.01,
+                slip_turn: 0.03,
                 gap: 1e-8,
                 events: 500_000,
             },

@@ -34,12 +34,12 @@ pub struct Event {
 }
 
 impl Event {
-    /// Order of execution: time, then the lower and the higher index of those involved, so that ties never depend on bookkeeping.
+    /// The lower and the higher index of those involved: the order of events at one time, so that ties never depend on bookkeeping.
     #[inline]
-    fn key(&self, body: u32) -> (f64, u32, u32) {
+    fn pair(&self, body: u32) -> (u32, u32) {
         match self.happening {
-            Happening::Body { other, .. } => (self.time, body.min(other), body.max(other)),
-            _ => (self.time, body, body),
+            Happening::Body { other, .. } => (body.min(other), body.max(other)),
+            _ => (body, body),
         }
     }
 
@@ -47,7 +47,7 @@ impl Event {
     #[inline]
     #[must_use]
     pub fn precedes(&self, body: u32, other: &Self, rival: u32) -> bool {
-        self.key(body) < other.key(rival)
+        self.time < other.time || (self.time == other.time && self.pair(body) < other.pair(rival))
     }
 }
 

@@ -283,8 +283,13 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             return;
         }
         let mut event = self.state.events[k];
-        for (j, other) in self.state.bodies.iter().enumerate() {
-            if j == k || !self.state.boxes[j].meets(&self.state.boxes[k]) || !self.mechanics.is_present(other) {
+        let around = self.state.boxes[k];
+        for (j, near) in self.state.boxes.iter().enumerate() {
+            if !near.meets(&around) || j == k {
+                continue;
+            }
+            let other = &self.state.bodies[j];
+            if !self.mechanics.is_present(other) {
                 continue;
             }
             let linked = self.state.links.contains(j as u32, k as u32);

@@ -11,6 +11,7 @@ mod worker;
 
 pub use pulse::{ChainPulse, Pulse};
 
+use crate::adapt::Scales;
 use crate::chain::{ChainError, MoveCounts};
 use crate::moves::{Mixture, MoveId};
 use crate::record::Block;
@@ -47,6 +48,8 @@ pub struct Plan {
     pub rungs: u32,
     /// See `rungs`.
     pub swap_every: u64,
+    /// Whether moves' scales are adapted in the warm-up, see [`crate::adapt`].
+    pub adapt: bool,
 }
 
 impl Plan {
@@ -116,6 +119,8 @@ pub struct Snapshot<D, O> {
     pub state: State<D, O>,
     /// How often each move ended how.
     pub counts: Vec<MoveCounts>,
+    /// The scales of its moves; `None` where it adapts none.
+    pub scales: Option<Scales>,
     /// Satisfying iterations.
     pub hits: Hits,
     /// Proposals accepted since the last recorded draw, and the last such move.

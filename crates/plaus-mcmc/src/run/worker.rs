@@ -21,6 +21,11 @@ impl<'a, T: Target> Job<'a, T> {
     fn course(&self) -> Course<'a, T> {
         Course { target: self.target, moves: self.moves, fresh: self.fresh, tempering: self.plan.tempering() }
     }
+
+    /// Scales are adapted in the iterations before this one.
+    fn adapts_until(&self) -> u64 {
+        if self.plan.adapt { self.plan.warmup } else { 0 }
+    }
 }
 
 /// One chain at work.
@@ -57,12 +62,12 @@ impl<'a, T: Goal> Worker<'a, T> {
 
     pub(super) fn resume(job: &Job<'a, T>, index: u32, start: Start<T::Draw, T::Outcome>) -> Self {
         let Start { snapshot, distinct } = start;
-        let Snapshot { end_iteration, state, counts, hits, pending, replicas } = snapshot;
+        let Snapshot { end_iteration, state, counts, scales, hits, pending, replicas } = snapshot;
         let class = job.target.class(&state);
         let (course, seed, iteration) = (job.course(), job.plan.seed, end_iteration - 1);
         let replicas = match replicas {
             Some(snapshot) => Replicas::resume(course, seed, index, iteration, snapshot),
-            None => Replicas::resume_one(course, seed, index, iteration, state, counts),
+            None => Replicas::resume_one(course, seed, index, iteration, state, (counts, scales)),
         };
         Self { replicas: Some(replicas), books: Books { index, hits, distinct, class, pending, end_iteration } }
     }
@@ -84,7 +89,7 @@ impl<'a, T: Goal> Worker<'a, T> {
     ) -> Result<(), ChainError> {
         let (Self { replicas, books }, plan) = (self, &job.plan);
         if replicas.is_none() && end > 0 {
-            let started = Replicas::start(job.course(), job.plan.seed, books.index)?;
+            let started = Replicas::start(job.course(), job.plan.seed, books.index)?.adapting(job.adapts_until());
             books.class = job.target.class(started.top().state());
             books.note::<T>(plan, 0, started.top(), made, hunt);
             *replicas = Some(started);
@@ -133,6 +138,7 @@ impl<'a, T: Goal> Worker<'a, T> {
             end_iteration,
             state: replicas.top().state().clone(),
             counts: replicas.top().counts().to_vec(),
+            scales: replicas.top().scales().cloned(),
             hits,
             pending,
             replicas: self.climb().map(|_| replicas.snapshot()),

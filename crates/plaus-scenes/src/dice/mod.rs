@@ -237,6 +237,8 @@ const COLUMNS: [(&str, &str, Role); 13] = [
 ];
 
 impl Scene for Dice {
+    const ADAPTS: bool = true;
+
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         Mixture::new(moves::all(self, rules)).map_err(|error| ConfigError::new("world.dice.weights", error))
     }

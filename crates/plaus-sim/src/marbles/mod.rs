@@ -18,6 +18,7 @@ use crate::simulate::{Outcome, Scratch, simulate};
 use crate::state::State;
 use crate::trace::Observer;
 use glam::DVec3;
+use solve::Ball;
 
 /// An immutable world of marbles.
 #[derive(Debug, Clone)]
@@ -27,6 +28,10 @@ pub struct Marbles {
     pub(crate) scenery: Scenery,
     pub(crate) gravity: DVec3,
     pub(crate) strength: f64,
+    /// What each marble is to an impulse.
+    balls: Vec<Ball>,
+    /// Speed in m/s that a fall over one radius gives, up to √2, of each marble.
+    scales: Vec<f64>,
     /// Gap over the radius at which a lasting contact ends: the height of a bounce that settles.
     pub(crate) unseen: f64,
     pub(crate) accuracy: Accuracy,
@@ -97,12 +102,15 @@ impl Marbles {
         for face in &scenery.mesh().faces {
             laws.require(face.material)?;
         }
+        let strength = gravity.length();
         Ok(Self {
+            balls: specs.iter().map(Ball::new).collect(),
+            scales: specs.iter().map(|spec| (strength * spec.radius).sqrt()).collect(),
             specs,
             laws,
             scenery,
             gravity,
-            strength: gravity.length(),
+            strength,
             unseen: (0.5 * accuracy.settle * accuracy.settle).max(ROUNDING),
             accuracy,
             duration,
@@ -208,7 +216,7 @@ impl Marbles {
     /// Speed in m/s that a fall over one radius gives, up to √2: the scale of all speeds of a marble.
     #[inline]
     pub(crate) fn speed_scale(&self, index: usize) -> f64 {
-        (self.strength * self.specs[index].radius).sqrt()
+        self.scales[index]
     }
 }
 

@@ -17,6 +17,8 @@ impl Search<'_> {
         let gravity = path.a.length();
         let mut tumble = self.body.tumble(spec);
         let mut window: Option<(f64, Bounds)> = None;
+        // The point that was nearest at the last look comes first: most others outlast its step.
+        let mut lead = 0;
         for _ in 0..MOST_ADVANCES {
             if t >= self.until || t.is_nan() {
                 return;
@@ -45,12 +47,14 @@ impl Search<'_> {
                 let r = tumble.at(t);
                 let w = self.spin_at(&tumble, t);
                 let mut first = None;
-                for (k, feeler) in spec.feelers.iter().enumerate() {
+                for k in std::iter::once(lead).chain((0..spec.feelers.len()).filter(|&k| k != lead)) {
+                    let feeler = &spec.feelers[k];
                     self.table_feeler((part, k), feeler, table, &bounds, &(x, v, w, r), &mut step, &mut first);
                 }
                 if step == 0.0 {
                     return self.hit(t, part, first.map_or(0, |(k, _)| k));
                 }
+                lead = first.map_or(lead, |(k, _)| k);
                 t += step;
             }
         }
@@ -94,9 +98,16 @@ impl Search<'_> {
             (p.z - value, pv.z - slope[0] * pv.x - slope[1] * pv.y)
         };
         let f = f - 0.5 * spec.gap;
-        let speed = v.length() + self.fastest * spec.arms[k] + gravity.length() * *step;
+        // The way of a corner over the surface is level, that of a ball along it.
+        let (way, sideways) = if feeler.radius > 0.0 {
+            (pv.length(), gravity.length())
+        } else {
+            (pv.truncate().length(), gravity.truncate().length())
+        };
+        let speed = way + (turning + sideways) * *step;
         let across = (1.0 + bounds.slope * bounds.slope).sqrt();
-        let m = m_low.max(0.0) * across + bounds.bend * speed * speed;
+        let pull = if feeler.radius > 0.0 { gravity.length() } else { bounds.slope * sideways - gravity.z };
+        let m = (turning * across + pull).max(0.0) + bounds.bend * speed * speed;
         if f > 0.5 * spec.gap && f + (rate - 0.5 * m * *step) * *step > 0.0 {
             return;
         }
@@ -113,6 +124,7 @@ impl Search<'_> {
         let time = earliest(f, rate, m);
         if time < *step {
             *step = time;
+            *first = Some((k, f));
         }
     }
 
