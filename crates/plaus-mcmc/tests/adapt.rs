@@ -280,7 +280,8 @@ fn adapted_runs_have_the_same_bits() {
         assert!(sizes[0] != sizes[1] && sizes.iter().all(|size| *size < 1.0), "{sizes:?}");
         assert!(whole(Plan { adapt: false, ..plan }, 1).draws != one.draws);
 
-        let mut parts = Last { stop_after: Some(3), ..Last::default() };
+        // Blocks grow: the 44th round ends at iteration 192.
+        let mut parts = Last { stop_after: Some(44), ..Last::default() };
         run(&number, &moves, plan, Vec::new(), 1, &mut parts).unwrap();
         let cut = parts.snapshots[0].scales.clone().unwrap();
         assert!(parts.snapshots[0].end_iteration == 192 && !cut.are_frozen(), "stopped while it adapts");
