@@ -120,7 +120,9 @@ impl<'k> Path<'k> {
         let speed = self.at.slip.length();
         if speed <= tiny {
             return match self.holding {
-                Some(force) => self.straight(&Rate { slip: DVec2::ZERO, ..self.rate_under(force) }, f64::INFINITY, released),
+                Some(force) => {
+                    self.straight(&Rate { slip: DVec2::ZERO, ..self.rate_under(force) }, f64::INFINITY, released)
+                }
                 None => {
                     let force = -self.k.escape(self.friction) * self.friction;
                     self.straight(&self.rate_under(force), f64::INFINITY, released)
