@@ -101,6 +101,9 @@ fn add_group(links: &Links, seed: u32, marks: &mut Marks, members: &mut Vec<u32>
     if marks.mark(seed) {
         members.push(seed);
     }
+    if links.is_empty() {
+        return;
+    }
     while let Some(&at) = members.get(next) {
         next += 1;
         members.extend(links.of(at).filter(|&other| marks.mark(other)));

@@ -15,7 +15,8 @@ impl Marbles {
     #[inline]
     pub(crate) fn touch(&self, index: usize, body: &Marble) -> Touch {
         let s = &self.specs[index];
-        Touch { v: body.path.v, w: body.spin, inverse_mass: 1.0 / s.mass, radius: s.radius, gyration: s.gyration }
+        let inverse_mass = self.balls[index].inverse_mass;
+        Touch { v: body.path.v, w: body.spin, inverse_mass, radius: s.radius, gyration: s.gyration }
     }
 
     /// Rebound speed up to which a contact lasts.
@@ -25,9 +26,9 @@ impl Marbles {
     }
 
     /// Time between impacts within which a marble rattles.
+    #[inline]
     fn rattle(&self, index: usize) -> f64 {
-        // Without gravity there is no time scale, and nothing that presses.
-        if self.strength > 0.0 { self.accuracy.rattle * (self.specs[index].radius / self.strength).sqrt() } else { 0.0 }
+        self.rattles[index]
     }
 
     /// Whether an impact is the begin of lasting contact: its rebound would be unseen, or its approach is lost in rounding.

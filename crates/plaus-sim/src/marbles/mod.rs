@@ -32,6 +32,8 @@ pub struct Marbles {
     balls: Vec<Ball>,
     /// Speed in m/s that a fall over one radius gives, up to √2, of each marble.
     scales: Vec<f64>,
+    /// Time in s between impacts within which each marble rattles.
+    rattles: Vec<f64>,
     /// Gap over the radius at which a lasting contact ends: the height of a bounce that settles.
     pub(crate) unseen: f64,
     pub(crate) accuracy: Accuracy,
@@ -103,8 +105,11 @@ impl Marbles {
             laws.require(face.material)?;
         }
         let strength = gravity.length();
+        // Without gravity there is no time scale, and nothing that presses.
+        let rattle = |radius: f64| if strength > 0.0 { accuracy.rattle * (radius / strength).sqrt() } else { 0.0 };
         Ok(Self {
             balls: specs.iter().map(Ball::new).collect(),
+            rattles: specs.iter().map(|spec| rattle(spec.radius)).collect(),
             scales: specs.iter().map(|spec| (strength * spec.radius).sqrt()).collect(),
             specs,
             laws,

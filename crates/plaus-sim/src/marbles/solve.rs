@@ -15,7 +15,7 @@ pub(super) struct Ball {
     pub(super) radius: f64,
     /// Inertia over mass × radius².
     gyration: f64,
-    inverse_mass: f64,
+    pub(super) inverse_mass: f64,
     /// Radius over inertia.
     turning: f64,
     /// 1/m + r²/I.
