@@ -91,12 +91,7 @@ impl MarbleScratch {
             });
         }
         // Bottom first, then by position: loads travel up in one sweep, and the order knows nothing of labels.
-        let g = world.gravity;
-        self.members.sort_by(|a, b| {
-            let key = |m: &Member| [-g.dot(m.start), m.start.x, m.start.y, m.start.z];
-            let (p, q) = (key(a), key(b));
-            p.iter().zip(&q).map(|(s, t)| s.total_cmp(t)).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
-        });
+        self.members.sort_by(|a, b| world.bottom_first(a.start, b.start));
         self.contacts.clear();
         for a in 0..self.members.len() {
             let index = self.members[a].index;

@@ -10,6 +10,7 @@ use crate::mechanics::{Impact, Mechanics, Other};
 use crate::resolve::{Touch, sphere_impact};
 use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
+use std::cmp::Ordering;
 
 impl Marbles {
     #[inline]
@@ -35,6 +36,13 @@ impl Marbles {
     fn lasts(&self, scale: f64, law: &Law, approach: f64, speed: f64, rattles: bool) -> bool {
         rattles && law.restitution < 1.0
             || law.restitution * approach <= self.settle_speed(scale, law).max(GRAZE * speed)
+    }
+
+    /// An order of centres in which loads travel up, and that knows nothing of labels.
+    pub(super) fn bottom_first(&self, a: DVec3, b: DVec3) -> Ordering {
+        let key = |x: DVec3| [-self.gravity.dot(x), x.x, x.y, x.z];
+        let (p, q) = (key(a), key(b));
+        p.iter().zip(&q).map(|(s, t)| s.total_cmp(t)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
     }
 
     pub(crate) fn surface_law(&self, index: usize, surface: Surface) -> &Law {
@@ -103,6 +111,11 @@ impl Mechanics for Marbles {
         body.advance(time);
     }
 
+    /// Bottom first, then by position.
+    fn order(&self, [i, j]: [u32; 2], [a, b]: [&Marble; 2]) -> Ordering {
+        self.bottom_first(a.path.x, b.path.x).then(i.cmp(&j))
+    }
+
     #[inline]
     fn swept(&self, index: usize, body: &Marble, from: f64, until: f64) -> Aabb {
         // Grown a little beyond the radius, so that rounding cannot hide a touching pair.
@@ -126,7 +139,8 @@ impl Mechanics for Marbles {
 
     #[inline]
     fn first_meeting(&self, [i, j]: [usize; 2], [a, b]: [&Marble; 2], from: f64, until: f64) -> Option<f64> {
-        detect::sphere_pair(&a.path, &b.path, self.specs[i].radius + self.specs[j].radius, from, until)
+        let (reach, horizon) = (self.specs[i].radius + self.specs[j].radius, a.expiry.min(b.expiry).min(self.duration));
+        detect::sphere_pair(&a.path, &b.path, reach, [from, until, horizon])
     }
 
     fn hit_surface(&self, index: usize, body: &mut Marble, surface: Surface) -> Option<Impact> {

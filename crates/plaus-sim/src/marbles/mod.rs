@@ -13,6 +13,7 @@ pub use body::{Marble, MarbleSpec, Phase, Start};
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::Laws;
+use crate::queue::Place;
 use crate::scenery::Scenery;
 use crate::simulate::{Outcome, Scratch, simulate};
 use crate::state::State;
@@ -166,7 +167,7 @@ impl Marbles {
                 }
             }
         }
-        Ok(State::new(starts.iter().map(Marble::waiting).collect()))
+        Ok(State::with_places(starts.iter().map(Marble::waiting).collect(), starts.iter().map(place).collect()))
     }
 
     fn check_start(&self, k: usize, start: &Start) -> Result<(), WorldError> {
@@ -195,7 +196,7 @@ impl Marbles {
                 expected: "a release still to come",
             });
         }
-        state.replace_unreleased(index, Marble::waiting(start), start.time.min(self.duration));
+        state.replace_unreleased(index, Marble::waiting(start), place(start), start.time.min(self.duration));
         Ok(())
     }
 
@@ -223,6 +224,11 @@ impl Marbles {
     pub(crate) fn speed_scale(&self, index: usize) -> f64 {
         self.scales[index]
     }
+}
+
+/// Ties go by how marbles start: two can start neither at the same time and place.
+fn place(start: &Start) -> Place {
+    Place([start.time, start.position.x, start.position.y, start.position.z])
 }
 
 /// Gap over the radius that is never seen. Default 1e-9.
