@@ -22,7 +22,7 @@ pub(super) struct Ball {
     compliance: f64,
     inverse_radius: f64,
     /// 1/(1 + gyration).
-    share: f64,
+    pub(super) share: f64,
     /// 1/(gyration × radius).
     lever: f64,
 }
