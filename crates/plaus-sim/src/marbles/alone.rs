@@ -4,7 +4,7 @@
 
 use super::Marbles;
 use super::body::{Marble, Phase};
-use super::group::{APPROACH, OVERLAP, time_scale};
+use super::group::{APPROACH, OVERLAP, moving_strength, time_scale};
 use super::solve::{Ball, Push, respond};
 use crate::material::Law;
 use crate::scenery::{Foot, Surface};
@@ -54,7 +54,9 @@ impl Alone<'_> {
     }
 
     fn time_scale(&self, body: &Marble) -> f64 {
-        time_scale(self.foot.curvature_radius, self.ball.radius, body.path.v.length(), self.world.strength)
+        let (v, w) = (body.path.v, body.spin);
+        let strength = moving_strength(self.world, self.ball, self.foot.normal, v, w);
+        time_scale(self.foot.curvature_radius, self.ball.radius, v.length(), strength)
     }
 
     /// Whether it is slow and the contact can hold it.

@@ -12,7 +12,7 @@
 
 use super::Marbles;
 use super::body::{Marble, Phase};
-use super::solve::{Contact, Member, Push, With};
+use super::solve::{Ball, Contact, Member, Push, With};
 use crate::links::Links;
 use crate::scenery::Foot;
 use glam::DVec3;
@@ -48,6 +48,18 @@ const CORRECTED: f64 = 1e-6;
 /// Approach along a lasting contact that a step may start with, over the speed at which contacts settle. Default 0.02: a path then dips into the surface by less than
 /// 1e-4 radii at the standard preset.
 pub(super) const APPROACH: f64 = 0.02;
+
+/// Slip of the touching points over the centre's speed up to which a ball counts as rolling where the length of a step is chosen. Default 0.01; danger: where it still slips, steps are
+/// longer by up to `√(1 + gyration)` than its sliding asks for.
+const ROLLS: f64 = 0.01;
+
+/// Gravity as it moves the centre of a ball over a surface with this normal: one that rolls turns a part of it into spin.
+#[inline]
+pub(super) fn moving_strength(world: &Marbles, ball: &Ball, normal: DVec3, v: DVec3, w: DVec3) -> f64 {
+    let slip = v - w.cross(normal) * ball.radius;
+    let rolls = slip.length_squared() <= ROLLS * ROLLS * v.length_squared();
+    if rolls { world.strength * ball.share } else { world.strength }
+}
 
 /// Time in which gravity, or the motion, covers the curvature of what a ball touches.
 #[inline]
@@ -91,12 +103,7 @@ impl MarbleScratch {
             });
         }
         // Bottom first, then by position: loads travel up in one sweep, and the order knows nothing of labels.
-        let g = world.gravity;
-        self.members.sort_by(|a, b| {
-            let key = |m: &Member| [-g.dot(m.start), m.start.x, m.start.y, m.start.z];
-            let (p, q) = (key(a), key(b));
-            p.iter().zip(&q).map(|(s, t)| s.total_cmp(t)).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
-        });
+        self.members.sort_by(|a, b| world.bottom_first(a.start, b.start));
         self.contacts.clear();
         for a in 0..self.members.len() {
             let index = self.members[a].index;
@@ -157,7 +164,8 @@ impl MarbleScratch {
             let m = &self.members[c.a];
             let time = match c.with {
                 With::Surface(_) => {
-                    time_scale(c.foot.curvature_radius, m.ball.radius, m.start_v.length(), world.strength)
+                    let strength = moving_strength(world, &m.ball, c.foot.normal, m.start_v, m.start_w);
+                    time_scale(c.foot.curvature_radius, m.ball.radius, m.start_v.length(), strength)
                 }
                 With::Member(b) => {
                     let other = &self.members[b];

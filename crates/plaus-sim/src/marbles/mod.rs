@@ -13,6 +13,7 @@ pub use body::{Marble, MarbleSpec, Phase, Start};
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::Laws;
+use crate::queue::Place;
 use crate::scenery::Scenery;
 use crate::simulate::{Outcome, Scratch, simulate};
 use crate::state::State;
@@ -32,6 +33,8 @@ pub struct Marbles {
     balls: Vec<Ball>,
     /// Speed in m/s that a fall over one radius gives, up to √2, of each marble.
     scales: Vec<f64>,
+    /// Time in s between impacts within which each marble rattles.
+    rattles: Vec<f64>,
     /// Gap over the radius at which a lasting contact ends: the height of a bounce that settles.
     pub(crate) unseen: f64,
     pub(crate) accuracy: Accuracy,
@@ -103,8 +106,11 @@ impl Marbles {
             laws.require(face.material)?;
         }
         let strength = gravity.length();
+        // Without gravity there is no time scale, and nothing that presses.
+        let rattle = |radius: f64| if strength > 0.0 { accuracy.rattle * (radius / strength).sqrt() } else { 0.0 };
         Ok(Self {
             balls: specs.iter().map(Ball::new).collect(),
+            rattles: specs.iter().map(|spec| rattle(spec.radius)).collect(),
             scales: specs.iter().map(|spec| (strength * spec.radius).sqrt()).collect(),
             specs,
             laws,
@@ -161,7 +167,7 @@ impl Marbles {
                 }
             }
         }
-        Ok(State::new(starts.iter().map(Marble::waiting).collect()))
+        Ok(State::with_places(starts.iter().map(Marble::waiting).collect(), starts.iter().map(place).collect()))
     }
 
     fn check_start(&self, k: usize, start: &Start) -> Result<(), WorldError> {
@@ -190,7 +196,7 @@ impl Marbles {
                 expected: "a release still to come",
             });
         }
-        state.replace_unreleased(index, Marble::waiting(start), start.time.min(self.duration));
+        state.replace_unreleased(index, Marble::waiting(start), place(start), start.time.min(self.duration));
         Ok(())
     }
 
@@ -218,6 +224,11 @@ impl Marbles {
     pub(crate) fn speed_scale(&self, index: usize) -> f64 {
         self.scales[index]
     }
+}
+
+/// Ties go by how marbles start: two can start neither at the same time and place.
+fn place(start: &Start) -> Place {
+    Place([start.time, start.position.x, start.position.y, start.position.z])
 }
 
 /// Gap over the radius that is never seen. Default 1e-9.

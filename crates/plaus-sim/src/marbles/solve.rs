@@ -15,14 +15,14 @@ pub(super) struct Ball {
     pub(super) radius: f64,
     /// Inertia over mass × radius².
     gyration: f64,
-    inverse_mass: f64,
+    pub(super) inverse_mass: f64,
     /// Radius over inertia.
     turning: f64,
     /// 1/m + r²/I.
     compliance: f64,
     inverse_radius: f64,
     /// 1/(1 + gyration).
-    share: f64,
+    pub(super) share: f64,
     /// 1/(gyration × radius).
     lever: f64,
 }

@@ -75,6 +75,18 @@ pub fn fall_of_quartic(c: &[f64; 5], from: f64, until: f64) -> Option<f64> {
     falls_of_quartic(c, from, until, |_| true)
 }
 
+/// The fall of a quartic in `[0, until]`, sought as the first in `[0, horizon]`, so that its last bits do not depend on `until`.
+#[inline]
+pub(crate) fn first_fall_of_quartic(c: &[f64; 5], until: f64, horizon: f64) -> Option<f64> {
+    if c[3] == 0.0 && c[4] == 0.0 {
+        return fall_of_quadratic([c[0], c[1], c[2]], until);
+    }
+    if surely_positive(c, 0.0, until) {
+        return None;
+    }
+    falls_of_quartic(c, 0.0, horizon, |_| true)
+}
+
 /// The first fall of the quartic that `accept` agrees to; the others pass.
 #[inline]
 #[must_use]
