@@ -304,11 +304,7 @@ impl<'a, T: Target> Chain<'a, T> {
 }
 
 /// A move, at its scale where that is adapted.
-fn kernel<'k, T: Target>(
-    moves: &'k Mixture<T>,
-    adaptation: Option<&'k Adaptation<T>>,
-    id: MoveId,
-) -> &'k dyn Move<T> {
+fn kernel<'k, T: Target>(moves: &'k Mixture<T>, adaptation: Option<&'k Adaptation<T>>, id: MoveId) -> &'k dyn Move<T> {
     adaptation.and_then(|adaptation| adaptation.kernel(id)).unwrap_or_else(|| moves.get(id).1)
 }
 

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Purpose, Sample, Seed, Stream, math, open_unit};
+use plaus_dist::{
+    Density, Gaussian, LogDensity, LogPotential, LogRatio, Purpose, Sample, Seed, Stream, math, open_unit,
+};
 use plaus_mcmc::check::{OneStep, Statistic, one_step};
 use plaus_mcmc::diagnose::integrated_autocorrelation_time;
 use plaus_mcmc::{
@@ -75,7 +77,13 @@ impl Move<Number> for Walk {
     fn name(&self) -> &str {
         "walk"
     }
-    fn propose(&self, _: &Number, _: &StateOf<Number>, x: &mut f64, stream: &mut Stream) -> Result<Proposal, ModelError> {
+    fn propose(
+        &self,
+        _: &Number,
+        _: &StateOf<Number>,
+        x: &mut f64,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
         *x += self.size * Gaussian::new(0.0, 1.0).unwrap().sample(stream);
         Ok(Proposal::SYMMETRIC)
     }
@@ -165,7 +173,8 @@ fn frozen_scales_leave_the_target_invariant() {
             chain.step().unwrap();
         }
         let kernel = moves.at(chain.scales().unwrap());
-        let mut twin = Chain::resume(&number, &kernel, Seed(3).chain(0), 1999, chain.state().clone(), vec![<_>::default()]);
+        let mut twin =
+            Chain::resume(&number, &kernel, Seed(3).chain(0), 1999, chain.state().clone(), vec![<_>::default()]);
         (0..100).for_each(|_| assert_eq!(twin.step().unwrap(), chain.step().unwrap()));
         assert_eq!(twin.state(), chain.state());
         let sd = (1.0 / (1.0 + 1.0 / math::square(number.narrow))).sqrt();

@@ -118,8 +118,7 @@ impl Visitor for Measure {
                 made.distinct
             );
             let shares = moves.names().into_iter().zip(&made.counts);
-            let shares: Vec<String> =
-                shares.map(|(name, count)| format!("{name} {:.3}", count.acceptance())).collect();
+            let shares: Vec<String> = shares.map(|(name, count)| format!("{name} {:.3}", count.acceptance())).collect();
             println!("  accepted: {}", shares.join(", "));
         }
         Ok(())

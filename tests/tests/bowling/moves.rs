@@ -139,6 +139,9 @@ fn wrong_twins_are_caught() {
 fn a_shift_of_the_radius_keeps_the_height_s_law() {
     let scene = super::straight::scene(|config| config.ln_lambda = 0.0);
     let steps = Steps::default();
-    let report = step(&scene, Box::new(ChangeBall { name: "change_radius", quantities: &[Quantity::Radius], steps, factor: 1.0 }));
+    let report = step(
+        &scene,
+        Box::new(ChangeBall { name: "change_radius", quantities: &[Quantity::Radius], steps, factor: 1.0 }),
+    );
     assert!(report.passed() && report.accepted() > 10_000, "{report}");
 }
