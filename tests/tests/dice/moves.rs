@@ -75,7 +75,8 @@ fn every_move_leaves_prior_and_target_invariant() {
 
 #[test]
 fn ratios_agree_with_their_reverse() {
-    for dice in [small(|_| ()), small(|config| config.together = true)] {
+    // Picking takes long, and is tried elsewhere.
+    for dice in [small(|_| ()), small(|config| (config.together, config.weights.pick) = (true, 0.0))] {
         let toy = Plain { dice: &dice, flat: false };
         let mixture = lend::<Plain<'_>>(dice.moves(&Rules::exact()).unwrap()).unwrap();
         let states = visited(&toy, &mixture, Seed(5), 5, 500).unwrap();
@@ -194,7 +195,7 @@ fn recasts_of_several_dice_leave_the_constrained_target_invariant() {
     let pick = || Pick { sd: 0.1, near: 0.1 };
     let right = report(Box::new(pick()), 1);
     assert!(right.passed() && right.accepted() > 100, "{right}");
-    let wrong = report(Box::new(Faulty(Box::new(pick()), Fault::Forgets)), 3);
+    let wrong = report(Box::new(Faulty(Box::new(pick()), Fault::Forgets)), 2);
     assert!(!wrong.passed(), "not caught: {wrong}");
     // On a random table as well, proposals have the densities that they are said to have.
     let dice = scene(|config| (config.dice, config.together) = (3, true));
