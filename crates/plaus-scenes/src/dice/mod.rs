@@ -28,7 +28,7 @@ pub use config::{Config, Die, MOST_DICE, Moves, Spilt, Steps, Table, Throwing, W
 pub use constraint::{Constraint, FaceUp, FirstImpact, Mark, Passes, PoseAt, RestAt};
 pub use draw::{Draw, Field, LARGEST_SCORE, Realisation, Site, Throw};
 pub use flight::{End, Frame, Trip};
-pub use moves::{Component, Everything, Near, Point, Recast, Rethrow, Scale, Shift, Turn};
+pub use moves::{Component, Everything, Near, Pick, Point, Recast, Rethrow, Scale, Shift, Turn};
 pub use prior::{NUMBERS, Prior};
 pub use symmetry::Rotation;
 pub use throwing::Work;

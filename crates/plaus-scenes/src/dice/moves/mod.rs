@@ -5,6 +5,7 @@
 mod component;
 mod everything;
 mod near;
+mod pick;
 mod point;
 mod recast;
 mod rethrow;
@@ -15,6 +16,7 @@ mod turn;
 pub use component::Component;
 pub use everything::Everything;
 pub use near::Near;
+pub use pick::Pick;
 pub use point::Point;
 pub use recast::Recast;
 pub use rethrow::Rethrow;
@@ -38,6 +40,7 @@ pub(super) fn all(scene: &Dice, rules: &Rules) -> Vec<(f64, Box<dyn Move<Dice>>)
     let if_fields = |weight: f64| if has_fields { weight } else { 0.0 };
     let if_places = |weight: f64| if scene.plan.places.iter().any(Option::is_some) { weight } else { 0.0 };
     let scale = Scale::new(steps.point_least, steps.point_most);
+    let pick = Pick { sd: steps.recast_sd_mm * 1e-3, near: steps.pick_sd_mm * 1e-3 };
     vec![
         (weights.everything, Box::new(Everything { symmetric: rules.symmetric_redraws() })),
         (weights.component, Box::new(Component::new(Scale::new(steps.component_least, steps.component_most)))),
@@ -45,6 +48,7 @@ pub(super) fn all(scene: &Dice, rules: &Rules) -> Vec<(f64, Box<dyn Move<Dice>>)
         (if_fields(weights.near), Box::new(Near::new(scale))),
         (weights.rethrow, Box::new(Rethrow)),
         (if_places(weights.recast), Box::new(Recast { sd: steps.recast_sd_mm * 1e-3 })),
+        (if_places(if config.together { weights.pick } else { 0.0 }), Box::new(pick)),
         (weights.turn, Box::new(Turn)),
         (if_places(weights.shift), Box::new(Shift { sd: steps.shift_sd_mm * 1e-3 })),
     ]
