@@ -53,7 +53,8 @@ struct Made {
     points: Vec<([i64; 2], f64)>,
     cell_places: Lookup,
     cells: Vec<Cell>,
-    last: Option<([i64; 2], u32)>,
+    /// Cells that were looked into last, by the low bits of their indices.
+    recent: [Option<([i64; 2], u32)>; RECENT],
     /// The last rectangle of cells that bounds were asked for.
     window: Option<([[i64; 2]; 2], Bounds)>,
     fault: Option<([i64; 2], f64)>,
@@ -234,7 +235,7 @@ impl Spline {
         let made = &mut *self.made.borrow_mut();
         let value = checked(self.range, made, key, value);
         made.window = None;
-        made.last = None;
+        made.recent = [None; RECENT];
         match made.point_places.get(key) {
             Some(place) => made.points[place as usize].1 = value,
             None => made.push_point(key, value),
@@ -249,12 +250,13 @@ impl Spline {
 
     #[inline]
     fn cell(&self, made: &mut Made, key: [i64; 2]) -> u32 {
-        match made.last {
+        let slot = (key[0] & 3) as usize * 4 + (key[1] & 3) as usize;
+        match made.recent[slot] {
             Some((last, place)) if last == key => place,
             _ => {
                 let place = made.cell_places.get(key).unwrap_or_else(|| self.add(made, key, &mut None));
                 made.cells[place as usize].prepare();
-                made.last = Some((key, place));
+                made.recent[slot] = Some((key, place));
                 place
             }
         }
@@ -301,6 +303,9 @@ impl Spline {
         value
     }
 }
+
+/// Cells kept at hand: four by four, as many as a die covers whose edge is two of them.
+const RECENT: usize = 16;
 
 /// The largest whole number not above `x`, by a cast: a call of the library's is slower on processors without an instruction for it.
 #[inline]
