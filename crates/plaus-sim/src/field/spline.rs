@@ -179,9 +179,8 @@ impl Spline {
         {
             return Some(bounds);
         }
-        let mut all = Bounds::NONE;
+        let (mut all, mut near) = (Bounds::NONE, None);
         for i in low[0]..=high[0] {
-            let mut near = None;
             for j in low[1]..=high[1] {
                 let place = match made.cell_places.get([i, j]) {
                     Some(place) => place,
@@ -262,7 +261,7 @@ impl Spline {
         }
     }
 
-    /// Makes a cell. `near` holds the control values of the last cell that was made here: its neighbour along y has three rows of them.
+    /// Makes a cell. `near` holds the control values of the last cell that was made here: its neighbours have three rows of them.
     #[cold]
     fn add(&self, made: &mut Made, key: [i64; 2], near: &mut Option<([i64; 2], Values)>) -> u32 {
         let points = self.points(made, key, near.take());
@@ -277,17 +276,22 @@ impl Spline {
     /// The control values over a cell.
     fn points(&self, made: &mut Made, [i, j]: [i64; 2], near: Option<([i64; 2], Values)>) -> Values {
         let mut points = [[0.0; 4]; 4];
+        // How many of the first along x and along y are known.
         let known = match near {
-            Some((key, last)) if key == [i, j - 1] => {
+            Some((key, last)) if key == [i, j.wrapping_sub(1)] => {
                 for (row, last) in points.iter_mut().zip(&last) {
                     row[..3].copy_from_slice(&last[1..]);
                 }
-                3
+                [0, 3]
             }
-            _ => 0,
+            Some((key, last)) if key == [i.wrapping_sub(1), j] => {
+                points[..3].copy_from_slice(&last[1..]);
+                [3, 0]
+            }
+            _ => [0, 0],
         };
-        for (a, row) in points.iter_mut().enumerate() {
-            for (b, p) in row.iter_mut().enumerate().skip(known) {
+        for (a, row) in points.iter_mut().enumerate().skip(known[0]) {
+            for (b, p) in row.iter_mut().enumerate().skip(known[1]) {
                 *p = self.point(made, [i.saturating_add(a as i64 - 1), j.saturating_add(b as i64 - 1)]);
             }
         }
