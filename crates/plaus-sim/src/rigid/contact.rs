@@ -1,8 +1,8 @@
 //! Which points touch, and one point's impact.
 
 use super::body::{MOST_TOUCHES, Motion, Phase, Pose, Turning};
-use super::step::TOUCHING;
 use super::part::{Part, farthest_side};
+use super::step::TOUCHING;
 use super::{Rigid, Spec};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
