@@ -79,6 +79,9 @@ const SHRINKS: f64 = 0.5;
 /// How much farther than it is expected to be needed a step goes. Default 1.1; one that falls short costs another.
 const FARTHER: f64 = 1.1;
 
+/// Tangent of the angle by which a step may have turned the slip, over the angle by which it was to. Default 1.5; one that turned it farther is halved.
+const WIDEST: f64 = 1.5;
+
 /// Turn over change of the slip's rate below which it keeps its direction: rounding.
 const STRAIGHT: f64 = 1e-12;
 
@@ -171,17 +174,13 @@ impl<'k> Path<'k> {
         }
         // What was compressed comes back on the same way.
         let on = if released.is_none() { 1.0 + self.restitution } else { 1.0 };
-        let h = longest.min(FARTHER * on * expected);
-        let second = self.slipping(at.slip + first.slip * (0.5 * h));
-        let third = self.slipping(at.slip + (second.slip * 2.0 - first.slip) * h);
-        let sixth = h / 6.0;
-        let mut ahead = Place {
-            slip: at.slip + (first.slip + second.slip * 4.0 + third.slip) * sixth,
-            normal: at.normal + (first.normal + 4.0 * second.normal + third.normal) * sixth,
-            friction: at.friction + (first.friction + second.friction * 4.0 + third.friction) * sixth,
-            work: at.work,
-            load: at.load + h,
-        };
+        let mut h = longest.min(FARTHER * on * expected);
+        let mut ahead = self.kutta(&first, h);
+        // The rate at which it turns may grow on the way.
+        while self.at.slip.perp_dot(ahead.slip).abs() > WIDEST * self.turn * self.at.slip.dot(ahead.slip) {
+            h *= 0.5;
+            ahead = self.kutta(&first, h);
+        }
         let last = self.slipping(ahead.slip);
         let rise = ahead.normal - at.normal;
         let cubic = [
@@ -192,6 +191,21 @@ impl<'k> Path<'k> {
         let leg = Leg { h, ends: [at, at], rates: [first, last], cubic, from: 0.0 };
         ahead.work = leg.work(1.0);
         self.along(Leg { ends: [at, ahead], ..leg }, expected / h, released)
+    }
+
+    /// Where a step of this length leads, but for the work.
+    fn kutta(&self, first: &Rate, h: f64) -> Place {
+        let at = self.at;
+        let second = self.slipping(at.slip + first.slip * (0.5 * h));
+        let third = self.slipping(at.slip + (second.slip * 2.0 - first.slip) * h);
+        let sixth = h / 6.0;
+        Place {
+            slip: at.slip + (first.slip + second.slip * 4.0 + third.slip) * sixth,
+            normal: at.normal + (first.normal + 4.0 * second.normal + third.normal) * sixth,
+            friction: at.friction + (first.friction + second.friction * 4.0 + third.friction) * sixth,
+            work: at.work,
+            load: at.load + h,
+        }
     }
 
     /// Goes along what is left of a curved step until it is to end; it is expected to do so near a part of it.
@@ -210,7 +224,7 @@ impl<'k> Path<'k> {
                 return End::Open;
             }
         };
-        self.at = leg.at(x, why == End::Turned);
+        self.at = leg.at(x, why == End::Turned, self.friction);
         (self.rate, self.leg) = (None, (why == End::Turned).then_some(Leg { from: x, ..leg }));
         why
     }
@@ -236,16 +250,18 @@ impl Leg {
     }
 
     /// The place after a part of the step, by cubics through its ends.
-    fn at(&self, x: f64, has_turned: bool) -> Place {
+    fn at(&self, x: f64, has_turned: bool, coefficient: f64) -> Place {
         let ([a, b], [p, q], y) = (self.ends, self.rates, 1.0 - x);
         let (way, from, to) = (x * x * (3.0 - 2.0 * x), self.h * x * y * y, -self.h * x * x * y);
         let between = |a: DVec2, b: DVec2, p: DVec2, q: DVec2| a + (b - a) * way + p * from + q * to;
+        let (load, friction) = (a.load + self.h * x, between(a.friction, b.friction, p.friction, q.friction));
         Place {
             slip: between(a.slip, b.slip, p.slip, q.slip),
             normal: if has_turned { 0.0 } else { self.normal(x) },
-            friction: between(a.friction, b.friction, p.friction, q.friction),
+            // Between its ends a cubic may leave the cone by as much as it is off.
+            friction: friction.clamp_length_max(coefficient * load),
             work: self.work(x),
-            load: a.load + self.h * x,
+            load,
         }
     }
 }

@@ -172,31 +172,38 @@ mod tests {
         assert!((slip - DVec3::new(0.6 * left, 0.8 * left, 1.0)).length() < 1e-14);
     }
 
-    #[test]
-    fn finer_turns_converge() {
-        let k = ContactMatrix(DMat3::from_cols(
-            DVec3::new(4.0, 1.0, -1.0),
-            DVec3::new(1.0, 2.0, 0.7),
-            DVec3::new(-1.0, 0.7, 1.5),
-        ));
-        let u = DVec3::new(1.0, -0.8, -1.0);
-        let exact = stronge_impulse(&k, u, 0.7, 0.3, 1e-3);
-        let errors: Vec<f64> =
-            [0.4, 0.2, 0.1].iter().map(|&turn| (stronge_impulse(&k, u, 0.7, 0.3, turn) - exact).length()).collect();
-        // Third order: an eighth each time, but that ends of steps and of the impact do not fall together.
-        assert!(errors[0] < 2e-3 && errors[1] < 0.3 * errors[0] && errors[2] < 0.3 * errors[1], "{errors:?}");
+    /// Response and approach of the corner of a cube of unit mass, from a sequence that fills the box of their numbers evenly.
+    fn corner(n: u32) -> (ContactMatrix, DVec3) {
+        let part = |step: f64| (f64::from(n) * step) % 1.0;
+        let down = -0.2 - 0.8 * part(0.324_717_957_244);
+        let r = DVec3::new(part(0.618_033_988_749) - 0.5, part(0.754_877_666_246) - 0.5, down).normalize() * 0.866;
+        let along = DVec2::new(part(0.569_840_290_998), part(0.220_744_084_605)) * 2.0 - 1.0;
+        (matrix(DVec3::splat(6.0), r), along.extend(-0.01 - part(0.819_172_513_396)))
     }
 
-    /// Corners of cubes against Darboux and Keller's equations in 20,000 steps of Euler's rule, whose error is of the order of a step over the impulse.
+    #[test]
+    fn finer_turns_converge() {
+        let mean = |turn: f64| {
+            let error = |n: u32| {
+                let (k, u) = corner(n);
+                let exact = stronge_impulse(&k, u, 0.5, 0.35, 2e-3);
+                (stronge_impulse(&k, u, 0.5, 0.35, turn) - exact).length() / exact.length()
+            };
+            (1..=500).map(error).sum::<f64>() / 500.0
+        };
+        let errors = [0.4, 0.2, 0.1, 0.05].map(mean);
+        // Third order would be an eighth each time; slip that nearly stops and goes on is slower to come, and has most of the mean.
+        assert!(errors[0] < 5e-3, "{errors:?}");
+        assert!(errors.windows(2).all(|e| e[1] < 0.45 * e[0]), "{errors:?}");
+    }
+
+    /// Against Darboux and Keller's equations in 20,000 steps of Euler's rule.
     #[test]
     fn corners_agree_with_tiny_steps() {
-        let part = |k: u32, step: f64| (f64::from(k) * step) % 1.0;
         for n in 1..60 {
-            let r = DVec3::new(part(n, 0.618) - 0.5, part(n, 0.755) - 0.5, -0.3 - part(n, 0.325)).normalize() * 0.866;
-            let k = matrix(DVec3::splat(6.0), r);
-            let u = DVec3::new(2.0 * part(n, 0.57) - 1.0, 2.0 * part(n, 0.221) - 1.0, -0.1 - part(n, 0.819));
+            let (k, u) = corner(n);
             let (e, mu) = (0.5, 0.35);
-            let impulse = stronge_impulse(&k, u, e, mu, 0.3);
+            let impulse = stronge_impulse(&k, u, e, mu, 0.01);
             let (mut v, mut stored, mut sum) = (u, 0.0, DVec3::ZERO);
             let step = impulse.z / 20_000.0;
             loop {
@@ -212,8 +219,11 @@ mod tests {
                     break;
                 }
             }
-            // Of 2,000 corners at random nine in ten were within 1e-3 of the exact impulse, the mean within 6e-4; slip that nearly stops and goes on is worst.
-            assert!((impulse - sum).length() < 1e-2 * sum.length(), "{n}: {impulse} {sum}");
+            // Euler's rule is off by some steps' impulse, and by the slip below which it holds.
+            assert!(
+                (impulse - sum).length() < 2e-3 * sum.length().max(u.length() / k.0.z_axis.z),
+                "{n}: {impulse} {sum}"
+            );
         }
     }
 

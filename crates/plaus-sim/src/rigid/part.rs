@@ -245,13 +245,13 @@ fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
     let mut seen = [false; 6];
     for from in [x, middle] {
         let (above, below) = (from - bounds.max, bounds.min - from);
-        for end in 0..6 {
+        for (end, seen) in seen.iter_mut().enumerate() {
             let (axis, is_upper) = (end / 2, end % 2 == 0);
             let is_beyond = if is_upper { above[axis] } else { below[axis] } > 0.0;
-            if seen[end] || !is_beyond {
+            if *seen || !is_beyond {
                 continue;
             }
-            seen[end] = true;
+            *seen = true;
             let point = lowest(Side::of(bounds, (axis, is_upper), 0.0).normal);
             let distance = block_foot(bounds, point).distance;
             if distance < best.0 {

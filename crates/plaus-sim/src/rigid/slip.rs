@@ -119,3 +119,49 @@ impl Slip {
         (gain > WEDGED * along).then_some(Slide { load: missing / gain, slip, goes_on, is_right })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A contact of a body of unit mass, from a sequence that fills the box of its numbers evenly: response, its inverse, and a velocity that comes down.
+    fn contact(n: u32) -> (DMat3, DVec3) {
+        let part = |step: f64| (f64::from(n) * step) % 1.0;
+        let r =
+            DVec3::new(part(0.618_033_988_749) - 0.5, part(0.754_877_666_246) - 0.5, -0.3 - part(0.324_717_957_244));
+        let cross =
+            DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0));
+        let inertia = DMat3::from_diagonal(DVec3::new(1.0, 2.0 + 3.0 * part(0.472), 6.0));
+        let u = DVec3::new(2.0 * part(0.569_840_290_998) - 1.0, 2.0 * part(0.220_744_084_605) - 1.0, -0.5);
+        (DMat3::IDENTITY - cross * inertia * cross, u)
+    }
+
+    /// Where no force within the cone can hold a contact, what is left after one look slips against the friction, and its normal part is what was asked for.
+    #[test]
+    fn what_is_left_obeys_coulomb() {
+        let (n, friction) = (DVec3::Z, 0.3);
+        let (mut slid, mut right) = (0, 0);
+        for case in 1..2000 {
+            let (k, u) = contact(case);
+            let stick = k.inverse() * -u;
+            let held = stick.z > 0.0 && stick.truncate().length() <= friction * stick.z;
+            let kn = k * n;
+            let across = u + kn * (-u.z / kn.z);
+            let Some(mut slip) = Slip::new(across - n * across.z, n, &k, kn).filter(|_| !held) else { continue };
+            let asked =
+                Asked { friction, missing: -u.z, along: kn.z, stiff: k.x_axis.x + k.y_axis.y, turn: 1e-6, rounds: 20 };
+            let Some(slide) = slip.slide(u, &asked) else { continue };
+            let left = u + k * (n - slide.slip * friction) * slide.load;
+            slid += 1;
+            assert!(left.z.abs() < 1e-12 && slide.load > 0.0 && (slide.slip.length() - 1.0).abs() < 1e-12, "{case}");
+            if slide.is_right && slide.goes_on {
+                right += 1;
+                let tangent = left - n * left.z;
+                // The last round turned it by at most 1e-6 and left the square of that; where little slip is left, rounding has its share.
+                assert!(tangent.cross(slide.slip).length() <= 1e-9 * tangent.length() + 1e-14, "{case}: {left}");
+                assert!(tangent.dot(slide.slip) > 0.0, "{case}");
+            }
+        }
+        assert!(slid > 500 && right == slid, "{right} of {slid}");
+    }
+}

@@ -215,28 +215,19 @@ pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: En
         for m in members.iter_mut() {
             m.last = [m.v, m.w];
         }
-        // A pass in which no contact changes anything finds all of them as they should be.
-        let mut largest = 0.0_f64;
         // The first was the last of the pass before.
         for c in contacts.iter_mut().skip(usize::from(round > 0)) {
-            largest = largest.max(c.solve(members, look));
+            c.solve(members, look);
         }
-        if largest <= CALM * enough {
-            break;
-        }
-        largest = 0.0;
         for c in contacts.iter_mut().rev().skip(1) {
-            largest = largest.max(c.solve(members, look));
+            c.solve(members, look);
         }
         let quiet = |m: &Member| {
             (m.v - m.last[0]).length_squared() <= enough * enough
                 && (m.w - m.last[1]).length_squared() * m.reach * m.reach <= enough * enough
         };
-        if largest <= CALM * enough || members.iter().all(quiet) {
+        if members.iter().all(quiet) {
             break;
         }
     }
 }
-
-/// Largest change of one visit, over what a whole round may change, at which a pass in one direction is the last. Default 0.5: a round is two passes.
-const CALM: f64 = 0.5;

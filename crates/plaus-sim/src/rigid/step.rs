@@ -172,7 +172,7 @@ impl RigidScratch {
             }
             let (spec, pose, hurried) = (&world.specs[index], bodies[index].pose(), bodies[index].is_hurried());
             let (at, before) = (self.places.len(), self.touches.len());
-            world.for_touches(index, &pose, TOUCHING * spec.gap, |t| {
+            world.for_known_touches(index, &bodies[index], &pose, |t| {
                 let law = world.law_at(index, t.part, pose.x + t.arm);
                 if hurried || pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law) {
                     self.touches.push((at, t));

@@ -22,6 +22,8 @@ struct Height {
     sin: f64,
     /// Largest acceleration towards the plane, gravity's included.
     m: f64,
+    /// Number of the ball.
+    ball: usize,
 }
 
 impl Search<'_> {
@@ -42,53 +44,51 @@ impl Search<'_> {
         let Sines { rate: turning, fixed, cos, sin } = tumble.sines(n)?;
         let pull = -n.dot(path.a);
         let mut heights = [Height::default(); MOST];
-        for (height, ball) in heights.iter_mut().zip(balls) {
+        for (k, (height, ball)) in heights.iter_mut().zip(balls).enumerate() {
             let (c, s) = (cos.dot(ball.centre), sin.dot(ball.centre));
             let m = (pull + turning * turning * (c * c + s * s).sqrt()).max(0.0);
-            *height = Height { fixed: fixed.dot(ball.centre) - ball.radius, cos: c, sin: s, m };
+            *height = Height { fixed: fixed.dot(ball.centre) - ball.radius, cos: c, sin: s, m, ball: k };
         }
-        let heights = &heights[..balls.len()];
+        let heights = &mut heights[..balls.len()];
         let (half, above) = (0.5 * spec.gap, n.dot(path.x) - offset - 0.5 * spec.gap);
         let along = n.dot(path.v);
-        // The one that was nearest at the last look comes first: most others outlast its step.
-        let mut lead = 0;
         for _ in 0..MOST_ADVANCES {
             let (s, c) = math::sin_cos(turning * t);
             let middle = above + (along - 0.5 * pull * t) * t;
             let fall = along - pull * t;
             let mut step = self.until - t;
             let (mut first, mut is_now) = (None, false);
-            for k in std::iter::once(lead).chain((0..heights.len()).filter(|&k| k != lead)) {
-                let h = &heights[k];
+            for (place, h) in heights.iter().enumerate() {
                 let f = middle + h.fixed + h.cos * c + h.sin * s;
                 let rate = fall + (h.sin * c - h.cos * s) * turning;
-                if (f > 0.0 && f + (rate - 0.5 * h.m * step) * step > 0.0) || self.lasts(part, k) {
+                if (f > 0.0 && f + (rate - 0.5 * h.m * step) * step > 0.0) || self.lasts(part, h.ball) {
                     continue;
                 }
                 if f <= half
                     && let Some((bounds, axis)) = edges
-                    && !is_over(bounds, axis, path.after(t) + tumble.at(t) * balls[k].centre)
+                    && !is_over(bounds, axis, path.after(t) + tumble.at(t) * balls[h.ball].centre)
                 {
                     return Some(Some((t, BEYOND)));
                 }
                 if f <= half && rate < 0.0 {
                     // The deepest counts.
                     if !is_now || first.is_none_or(|(_, deepest)| f < deepest) {
-                        first = Some((k, f));
+                        first = Some((place, f));
                     }
                     (step, is_now) = (0.0, true);
                 } else {
                     let time = earliest(f, rate, h.m);
                     if time < step {
-                        (step, first) = (time, Some((k, f)));
+                        (step, first) = (time, Some((place, f)));
                     }
                 }
             }
             let Some((nearest, _)) = first else { return Some(None) };
             if step == 0.0 {
-                return Some(Some((t, nearest)));
+                return Some(Some((t, heights[nearest].ball)));
             }
-            lead = nearest;
+            // It comes first at the next look: most others outlast its step.
+            heights.swap(0, nearest);
             t += step;
             if t >= self.until || t.is_nan() {
                 return Some(None);

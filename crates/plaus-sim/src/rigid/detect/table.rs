@@ -47,9 +47,19 @@ impl Search<'_> {
                 let r = tumble.at(t);
                 let w = self.spin_at(&tumble, t);
                 let mut first = None;
-                for k in std::iter::once(lead).chain((0..spec.feelers.len()).filter(|&k| k != lead)) {
-                    let feeler = &spec.feelers[k];
-                    self.table_feeler((part, k), feeler, table, &bounds, &(x, v, w, r), &mut step, &mut first);
+                let at = (x, v, w, r);
+                self.table_feeler((part, lead), &spec.feelers[lead], table, &bounds, &at, &mut step, &mut first);
+                let up = DVec3::new(r.x_axis.z, r.y_axis.z, r.z_axis.z);
+                let mut level = self.level(&at, bounds.high, step);
+                for (k, feeler) in spec.feelers.iter().enumerate() {
+                    if up.dot(feeler.centre) - feeler.radius > level || k == lead {
+                        continue;
+                    }
+                    let before = step;
+                    self.table_feeler((part, k), feeler, table, &bounds, &at, &mut step, &mut first);
+                    if step < before {
+                        level = self.level(&at, bounds.high, step);
+                    }
                 }
                 if step == 0.0 {
                     return self.hit(t, part, first.map_or(0, |(k, _)| k));
@@ -59,6 +69,13 @@ impl Search<'_> {
             }
         }
         self.hit(t, part, 0);
+    }
+
+    /// Height over the centre of gravity from which no point of the body can come down to `high` within a step, at the speed that it can have at most.
+    fn level(&self, (x, v, ..): &(DVec3, DVec3, DVec3, DMat3), high: f64, step: f64) -> f64 {
+        let reach = self.spec.reach;
+        let pull = (self.turning * reach - self.body.path.a.z).max(0.0);
+        high - x.z + ((self.fastest * reach - v.z + 0.5 * pull * step) * step).max(0.0)
     }
 
     #[allow(clippy::too_many_arguments)]
@@ -77,12 +94,6 @@ impl Search<'_> {
         let turning = self.turning * spec.arms[k];
         let gravity = self.body.path.a;
         let m_low = (turning - gravity.z).max(0.0);
-        // Against the highest point around first, at the speed that it can have at most.
-        let rise = r.x_axis.z * feeler.centre.x + r.y_axis.z * feeler.centre.y + r.z_axis.z * feeler.centre.z;
-        let low = x.z + rise - feeler.radius - bounds.high;
-        if low > 0.0 && low + (v.z - self.fastest * spec.arms[k] - 0.5 * m_low * *step) * *step > 0.0 {
-            return;
-        }
         let arm = *r * feeler.centre;
         let p = *x + arm;
         let pv = *v + w.cross(arm);
