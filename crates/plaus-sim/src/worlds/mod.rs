@@ -2,6 +2,7 @@
 
 mod alley;
 mod bins;
+mod pool;
 mod table;
 mod verdict;
 mod watch;
