@@ -12,7 +12,7 @@ use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::rigid::{Rigid, RigidScratch, Start, Turning};
 use plaus_sim::shape::Revolution;
 use plaus_sim::trace::{Observer, Trace};
-use plaus_sim::worlds::{Alley, Verdict};
+use plaus_sim::worlds::{Alley, Still, Verdict};
 use plaus_sim::{Outcome, Scratch, State, WorldError};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -200,6 +200,7 @@ impl Lane {
             verdict: self.verdict.with_ball(&self.alley(draw)),
             starts: &starts,
             far: &self.far,
+            still: Still::default(),
             hopeless,
             gave_up: false,
             down: Pins::default(),
@@ -256,6 +257,7 @@ struct Umpire<'a, H> {
     verdict: Verdict,
     starts: &'a [Start],
     far: &'a [Option<f64>],
+    still: Still,
     hopeless: H,
     gave_up: bool,
     /// Pins that have fallen, at whatever time: one that rises again is down all the same.
@@ -270,9 +272,8 @@ struct Umpire<'a, H> {
 impl<H> Umpire<'_, H> {
     /// Whether no pin's fate can change any more, nor whether it has moved far where that counts.
     fn is_decided(&self, state: &State<Turning>) -> bool {
-        let Some(slack) = self.verdict.settled(self.world, state, |body| self.down.contains(body - 1)) else {
-            return false;
-        };
+        let is_down = |body: usize| self.down.contains(body - 1);
+        let Some(slack) = self.verdict.settled(self.world, state, &self.still, is_down) else { return false };
         let mut pins = state.bodies().iter().zip(self.starts).skip(1).zip(self.far).enumerate();
         pins.all(|(place, ((pin, start), far))| match far {
             Some(far) if !self.down.contains(place) => (way(pin, start, state.time()) - far).abs() > slack,
@@ -305,6 +306,7 @@ impl<H: FnMut(Pins) -> bool> Observer<Rigid> for Umpire<'_, H> {
         if self.struck.is_empty() && is_in_gutter(&state.bodies()[0]) {
             return false;
         }
+        self.still.look(state);
         let before = self.down;
         for (place, pin) in state.bodies()[1..].iter().enumerate() {
             if Verdict::has_fallen(pin) {

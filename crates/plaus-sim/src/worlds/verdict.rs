@@ -1,8 +1,8 @@
 //! When a shot is over: which pins stand can no longer change.
 
-use super::Alley;
 use super::alley::{END, GRAVITY};
 use super::pool::Pool;
+use super::{Alley, Still};
 use crate::error::WorldError;
 use crate::rigid::{Phase, Rigid, Turning};
 use crate::shape::Revolution;
@@ -19,8 +19,8 @@ const SUNK: f64 = 0.01;
 /// Height in m of a pin's centre of gravity over its foot, of [`Profile::pin`](crate::shape::Profile::pin); to a millimetre, as `SUNK` needs it.
 const BALANCE: f64 = 0.147;
 
-/// Energy that all that can still meet a standing pin may have together, over that which tips one. Default 0.5: the other half is for what lasting contact may add by pushing bodies out of
-/// overlaps, a tenth of it at most at a time. Danger: at 1 and more nothing is certain.
+/// Energy that all that can still meet a standing pin may have together, over that which tips one. Default 0.75: the rest, 9 mJ, is for what lasting contact may add by pushing bodies out of overlaps, 4 mJ at
+/// most at a time. Danger: at 1 and more nothing is certain.
 const HARMLESS: f64 = 0.75;
 
 /// Angles at which a lying pin's lowest height is looked for: less than 0.1 mm, or 2 mJ, apart. Default 8000.
@@ -37,8 +37,8 @@ const BELLY: f64 = 0.04;
 
 /// Says when a shot on an [`Alley`] is decided.
 ///
-/// A pin is down from the moment at which it leans by more than 60°, its foot is below the deck, or it is gone, whatever it does later. A shot is decided when all pins are down; or when the ball and all that
-/// is past the deck have come to rest or are gone, every pin that is not down stands on the deck with its whole foot, and what moves is too weak to tip any of them. Asked after each event, it ends a shot early:
+/// A pin is down from the moment at which it leans by more than 60°, its foot is below the deck, or it is gone, whatever it does later; one that leans less, held by something, stands. A shot is decided when all pins
+/// are down; or when the ball is gone or at rest, every other pin stands on the deck with its whole foot, and what moves is too weak to tip any of them. Asked after each event, it ends a shot early:
 ///
 /// ```
 /// use glam::DVec3;
@@ -55,10 +55,12 @@ const BELLY: f64 = 0.04;
 /// # Ok::<(), plaus_sim::WorldError>(())
 /// ```
 ///
-/// Too weak means: energy only falls, so what all bodies that move, and those at rest which they may reach, can set free together bounds what one of them can ever have. Each is counted down to the
-/// lowest place where it can get: lying on the deck, or on the gutter's floor where it is in a gutter or may roll into one. How far they get is bounded by what the resistance to rolling and spinning
-/// takes on the way. The energy bound is exact but for the simulator's own gains (see [`rigid`](crate::rigid)), for which half of what tips a pin is kept; the way is not: in short hops a pin may go a
-/// little farther than where it touches all the time.
+/// Too weak means: what all bodies that move, and those at rest to which they may get, can set free together is less than what tips a pin. On the deck each is counted down to where its middle would be
+/// lowest, and so is what it may push over an edge or what may come up again from gutters and pit, with all that these would set free on their floors; unless it can't get there, or can't reach a body on the deck from there.
+///
+/// Proved, since energy only falls (but for the little that [`rigid`](crate::rigid) tells of): what a body on the deck can have at most, and that nothing in gutter or pit comes up with more than that. Bounded: how far something rolls or slides, from what
+/// resistance to rolling takes on the way while it touches (hops are not reckoned with), and how far a pin in a gutter reaches over the lane, by a search over its poses. Assumed: that a pin which falls off the gutter's end does not throw
+/// up another one, and that a body which has kept to its place for a while, see [`Still`], stays there if nothing comes.
 #[derive(Debug, Clone, Copy)]
 pub struct Verdict {
     /// Energy in J that tips a standing pin, and what of it bodies may have that it need not fear.
@@ -133,12 +135,18 @@ impl Verdict {
     /// Whether which pins stand can no longer change, where no pin has risen again. Body 0 is the ball, the others are pins.
     #[must_use]
     pub fn is_final(&self, world: &Rigid, state: &State<Turning>) -> bool {
-        self.settled(world, state, |k| Self::has_fallen(&state.bodies()[k])).is_some()
+        self.settled(world, state, &Still::default(), |k| Self::has_fallen(&state.bodies()[k])).is_some()
     }
 
     /// Once no other pin than those that are down can fall any more: how far in m the middles of the others may still go. `is_down` is asked of bodies from 1 on.
     #[must_use]
-    pub fn settled(&self, world: &Rigid, state: &State<Turning>, is_down: impl Fn(usize) -> bool) -> Option<f64> {
+    pub fn settled(
+        &self,
+        world: &Rigid,
+        state: &State<Turning>,
+        still: &Still,
+        is_down: impl Fn(usize) -> bool,
+    ) -> Option<f64> {
         let bodies = state.bodies();
         let mut standing = 0;
         for k in (1..bodies.len()).filter(|k| !is_down(*k)) {
@@ -150,7 +158,7 @@ impl Verdict {
         if standing == 0 {
             return Some(0.0);
         }
-        let left = Pool { verdict: self, world, state, standing }.left()?;
+        let left = Pool { verdict: self, world, state, still, standing }.left()?;
         // What slides it, and how far its middle leans: tipping takes a concave barrier, so that the angle is at most in proportion to the energy.
         Some(left / self.slide + left / self.tipping * self.foot)
     }
@@ -166,7 +174,7 @@ impl Verdict {
 }
 
 /// The least height of the middle of a pin that lies on the deck, at whatever angle, where only what is so near to its middle along its axis has ground below it.
-fn lying(pin: &Revolution, near: f64) -> f64 {
+pub(super) fn lying(pin: &Revolution, near: f64) -> f64 {
     let step = std::f64::consts::PI / f64::from(ANGLES);
     let height = |angle: f64| {
         let (sin, cos) = math::sin_cos(angle);
