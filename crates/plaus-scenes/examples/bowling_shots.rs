@@ -11,7 +11,7 @@ mod shared;
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{StateOf, Target};
-use plaus_scenes::bowling::{Bowling, Fate, Quantity, Shot, Work};
+use plaus_scenes::bowling::{Bowling, Fate, Quantity, Rest, Shot, Work};
 use plaus_scenes::registry::World;
 use plaus_scenes::scenario::Scenario;
 use plaus_sim::rigid::{Phase, Rigid, Turning};
@@ -74,10 +74,16 @@ struct Whole {
     outside: f64,
     unfinished: u64,
     other: u64,
+    /// Pins that fell but stand upright at the end, and pins that lean without having fallen.
+    risen: u64,
+    leaning: u64,
 }
 
+/// Cosine of the angle beyond which a pin does not stand by itself: 10.2°.
+const TIPPED: f64 = 0.984;
+
 impl Whole {
-    fn add(&mut self, scene: &Bowling, draw: &Shot, early: &[Fate]) -> Result<(), Box<dyn Error>> {
+    fn add(&mut self, scene: &Bowling, draw: &Shot, early: &Rest) -> Result<(), Box<dyn Error>> {
         let (world, starts) = scene.world(draw)?;
         let mut state = world.state(&starts)?;
         let count = starts.len();
@@ -94,8 +100,16 @@ impl Whole {
         }
         (self.deepest, self.outside) = (self.deepest.max(watch.deepest), self.outside.max(watch.outside));
         self.unfinished += u64::from(!matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached));
-        let told = early.iter().map(|fate| !fate.stands());
-        self.other += u64::from(!watch.fell[1..].iter().copied().eq(told));
+        let mut whole = Rest { pins: Vec::new(), ..early.clone() };
+        for ((body, start), fell) in state.bodies().iter().zip(&starts).zip(watch.fell).skip(1) {
+            let up = (body.turn * DVec3::Z).z;
+            self.risen += u64::from(fell && up > TIPPED && !Verdict::has_fallen(body));
+            self.leaning += u64::from(!fell && up < TIPPED);
+            let way = (body.path.at(state.time()) - start.position).truncate().length();
+            whole.pins.push(if fell { Fate::Down } else { Fate::Standing(way) });
+        }
+        let stand = |rest: &Rest| rest.pins.iter().map(|fate| fate.stands()).collect::<Vec<_>>();
+        self.other += u64::from(stand(&whole) != stand(early) || scene.counts(&whole) != scene.counts(early));
         Ok(())
     }
 }
@@ -124,7 +138,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         // A ball in the gutter is dead, whatever it does there.
         if let Some(whole) = whole.as_mut().filter(|_| !state.outcome.struck.is_empty()) {
             let before = whole.other;
-            whole.add(&scene, &state.draw, &state.outcome.pins)?;
+            whole.add(&scene, &state.draw, &state.outcome)?;
             if whole.other > before {
                 println!(
                     "shot {shot} ends with other pins than it was told early ({:.3} m across)",
@@ -147,11 +161,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("satisfied: {satisfied}; pins that fell, 0 to 10: {falls:?}");
     if let Some(whole) = whole {
         println!(
-            "whole shots: overlaps deeper than 0.1, 1, 10 mm in {:?}, deepest {:.3} mm; middles where none can be: by {:.3} mm at most; out of events: {}; other pins than told early: {}",
+            "whole shots: overlaps deeper than 0.1, 1, 10 mm in {:?}, deepest {:.3} mm; middles where none can be: by {:.3} mm at most; out of events: {}; fallen pins that stand again: {}; pins that lean and have not fallen: {}; other pins, or other k and m, than told early: {}",
             whole.deeper,
             whole.deepest * 1e3,
             whole.outside.max(0.0) * 1e3,
             whole.unfinished,
+            whole.risen,
+            whole.leaning,
             whole.other
         );
     }

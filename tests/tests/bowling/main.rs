@@ -8,3 +8,4 @@ mod physics;
 mod prior;
 mod shots;
 mod straight;
+mod verdict;

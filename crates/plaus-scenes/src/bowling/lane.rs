@@ -1,6 +1,6 @@
 //! One shot: from a draw to the pins that are left.
 
-use super::config::{Config, Delivery};
+use super::config::{Config, Delivery, Rewarded};
 use super::draw::Shot;
 use super::rack::Rack;
 use super::release::Quantity;
@@ -12,7 +12,7 @@ use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::rigid::{Rigid, RigidScratch, Start, Turning};
 use plaus_sim::shape::Revolution;
 use plaus_sim::trace::{Observer, Trace};
-use plaus_sim::worlds::{Alley, Verdict};
+use plaus_sim::worlds::{Alley, Still, Verdict};
 use plaus_sim::{Outcome, Scratch, State, WorldError};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -30,6 +30,8 @@ pub(super) struct Lane {
     pin: Arc<Revolution>,
     verdict: Verdict,
     pins: Vec<usize>,
+    /// How far in m a pin may be moved, for each that is rewarded for not having moved far.
+    far: Vec<Option<f64>>,
 }
 
 /// What a shot left.
@@ -74,6 +76,11 @@ impl Fate {
 /// Where a pin with this offset in mm stands.
 fn place(number: usize, offset: &[f64; 2]) -> DVec3 {
     Alley::spot(number) + DVec3::new(offset[0] / 1000.0, offset[1] / 1000.0, 0.0)
+}
+
+/// How far in m a pin's middle is from where it was set.
+fn way(pin: &Turning, start: &Start, time: f64) -> f64 {
+    (pin.path.at(time) - start.position).truncate().length()
 }
 
 /// Whether the ball has left the lane before its end. By the rules of the game it is dead then, whatever it may still do.
@@ -126,7 +133,9 @@ impl Lane {
             alley.standing[pin - 1] = true;
         }
         let pin = Arc::new(alley.pin()?);
-        let lane = Self { verdict: Verdict::of(&alley, &pin), pin, alley, pins: rack.pins().to_vec() };
+        let counts = |leave: &bool| *leave || config.rewarded == Rewarded::AnyStanding;
+        let far = rack.leave().iter().map(|leave| counts(leave).then_some(config.moved_far_mm / 1000.0)).collect();
+        let lane = Self { verdict: Verdict::of(&alley, &pin), pin, alley, pins: rack.pins().to_vec(), far };
         // What the configuration got wrong is said now, not in the middle of a run.
         lane.alley.world_of(&lane.pin)?;
         Ok(lane)
@@ -186,7 +195,19 @@ impl Lane {
     ) -> Result<Option<Rest>, ModelError> {
         let (world, starts) = self.world(draw, distance).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let mut umpire = Umpire::new(&world, self.verdict.with_ball(&self.alley(draw)), hopeless);
+        let mut umpire = Umpire {
+            world: &world,
+            verdict: self.verdict.with_ball(&self.alley(draw)),
+            starts: &starts,
+            far: &self.far,
+            still: Still::default(),
+            hopeless,
+            gave_up: false,
+            down: Pins::default(),
+            path: None,
+            entry: None,
+            struck: Vec::new(),
+        };
         let duration = self.alley.duration;
         let outcome = world
             .run(&mut state, &mut work.scratch, duration, &mut (&mut umpire, observer))
@@ -201,8 +222,7 @@ impl Lane {
             if umpire.down.contains(place) {
                 return Fate::Down;
             }
-            let way = (body.path.at(state.time()) - start.position).truncate();
-            Fate::Standing(way.length())
+            Fate::Standing(way(body, start, state.time()))
         };
         let pins = state.bodies().iter().zip(&starts).skip(1).enumerate().map(fate).collect();
         let struck = umpire.struck.iter().map(|&body| self.pins[body - 1] as u8).collect();
@@ -235,6 +255,9 @@ impl Lane {
 struct Umpire<'a, H> {
     world: &'a Rigid,
     verdict: Verdict,
+    starts: &'a [Start],
+    far: &'a [Option<f64>],
+    still: Still,
     hopeless: H,
     gave_up: bool,
     /// Pins that have fallen, at whatever time: one that rises again is down all the same.
@@ -246,18 +269,16 @@ struct Umpire<'a, H> {
     struck: Vec<usize>,
 }
 
-impl<'a, H> Umpire<'a, H> {
-    fn new(world: &'a Rigid, verdict: Verdict, hopeless: H) -> Self {
-        Self {
-            world,
-            verdict,
-            hopeless,
-            gave_up: false,
-            down: Pins::default(),
-            path: None,
-            entry: None,
-            struck: Vec::new(),
-        }
+impl<H> Umpire<'_, H> {
+    /// Whether no pin's fate can change any more, nor whether it has moved far where that counts.
+    fn is_decided(&self, state: &State<Turning>) -> bool {
+        let is_down = |body: usize| self.down.contains(body - 1);
+        let Some(slack) = self.verdict.settled(self.world, state, &self.still, is_down) else { return false };
+        let mut pins = state.bodies().iter().zip(self.starts).skip(1).zip(self.far).enumerate();
+        pins.all(|(place, ((pin, start), far))| match far {
+            Some(far) if !self.down.contains(place) => (way(pin, start, state.time()) - far).abs() > slack,
+            _ => true,
+        })
     }
 }
 
@@ -285,6 +306,7 @@ impl<H: FnMut(Pins) -> bool> Observer<Rigid> for Umpire<'_, H> {
         if self.struck.is_empty() && is_in_gutter(&state.bodies()[0]) {
             return false;
         }
+        self.still.look(state);
         let before = self.down;
         for (place, pin) in state.bodies()[1..].iter().enumerate() {
             if Verdict::has_fallen(pin) {
@@ -292,6 +314,6 @@ impl<H: FnMut(Pins) -> bool> Observer<Rigid> for Umpire<'_, H> {
             }
         }
         self.gave_up = self.down != before && (self.hopeless)(self.down);
-        !self.gave_up && !self.verdict.is_final(self.world, state)
+        !self.gave_up && !self.is_decided(state)
     }
 }

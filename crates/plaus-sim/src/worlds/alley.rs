@@ -17,6 +17,10 @@ pub(super) const GRAVITY: f64 = 9.81;
 /// Where the deck ends and the pit begins: y in m.
 pub(super) const END: f64 = 34.1875 * INCH;
 
+/// Height of the gutters' floor beside the deck, and of the pit's, in m.
+pub(super) const GUTTER: f64 = -3.5 * INCH;
+pub(super) const PIT: f64 = -10.0 * INCH;
+
 /// Where the lane begins, behind the foul line: y in inches.
 const START: f64 = -740.0;
 
@@ -193,17 +197,18 @@ impl Alley {
         let plane =
             |point: [f64; 3], normal: DVec3| Ok(Part::Plane(Plane::new(DVec3::from(point) * INCH, normal, WOOD)?));
         let wall = half + gutter + 0.0625;
+        let (floor, pit) = (GUTTER / INCH, PIT / INCH);
         Ok(vec![
             // Lane and deck, then the gutters' floors: deeper at the deck.
             self.lane(half * INCH, end * INCH),
             block([-wall, start, -12.0], [-half, -24.0, -1.875]),
             block([half, start, -12.0], [wall, -24.0, -1.875]),
-            block([-wall, -24.0, -12.0], [-half, end, -3.5]),
-            block([half, -24.0, -12.0], [wall, end, -3.5]),
+            block([-wall, -24.0, -12.0], [-half, end, floor]),
+            block([half, -24.0, -12.0], [wall, end, floor]),
             // Kickbacks, pit, and the cushion behind it.
             plane([-wall, 0.0, 0.0], DVec3::X)?,
             plane([wall, 0.0, 0.0], -DVec3::X)?,
-            plane([0.0, 0.0, -10.0], DVec3::Z)?,
+            plane([0.0, 0.0, pit], DVec3::Z)?,
             plane([0.0, 66.0, 0.0], -DVec3::Y)?,
         ])
     }
