@@ -1,0 +1,38 @@
+//! Scales adapted in the warm-up: what `plaus diagnose` says of them, and that `adapt` is a key like others.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use common::Place;
+use serde_json::Value;
+
+#[test]
+fn scales_are_shown_and_kept() {
+    let place = Place::new();
+    let said = |run: &str| place.run(&format!("diagnose {run}")).out;
+    let scales = |run: &str| {
+        let json: Value = serde_json::from_str(&place.run(&format!("diagnose {run} --json")).out).unwrap();
+        json["chains"].as_array().unwrap().iter().map(|chain| chain["scales"].clone()).collect::<Vec<_>>()
+    };
+    place.run("sample ball.toml --out adapted -q --warmup 800 --set adapt=true");
+    let table = said("adapted");
+    assert!(table.contains("scales, kept since the warm-up") && table.contains("perturb step"), "{table}");
+    let kept = scales("adapted");
+    for chain in &kept {
+        let one = &chain[0];
+        assert_eq!((one["move"].as_str(), one["scale"].as_str()), (Some("perturb"), Some("step")));
+        assert!(one["frozen"].as_bool().unwrap() && one["value"].as_f64().unwrap() > 0.0, "{one}");
+        assert!(one["tried"].as_u64().unwrap() >= one["accepted"].as_u64().unwrap());
+    }
+    place.run("resume adapted -q --iterations 1500");
+    let values = |all: &[Value]| all.iter().map(|chain| chain[0]["value"].clone()).collect::<Vec<_>>();
+    assert_eq!(values(&scales("adapted")), values(&kept), "a longer run keeps them");
+
+    // Too short a warm-up leaves moves as they are configured; balls adapt nothing unless told to.
+    place.run("sample ball.toml --out short -q --warmup 5 --set adapt=true");
+    assert!(said("short").contains("as configured"));
+    place.run("sample ball.toml --out plain -q --warmup 800");
+    assert!(!said("plain").contains("scales") && scales("plain").iter().all(|one| one.as_array().unwrap().is_empty()));
+    place.ends("sample ball.toml --out bad --set adapt=often", 2).says(&["sampler.adapt", "true or false"]);
+}
