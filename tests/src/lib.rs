@@ -1,1 +1,3 @@
-//! Holds no code: the tests are in `tests/`.
+//! What several of the tests in `tests/` share.
+
+pub mod law;

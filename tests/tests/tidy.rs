@@ -17,7 +17,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("plaus-cli", &["plaus-dist", "plaus-export", "plaus-gallery", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
     ("plaus-figures", &["plaus-dist", "plaus-export", "plaus-mcmc", "plaus-scenes"]),
     ("plaus-tradeoff", &["plaus-dist", "plaus-figures", "plaus-mcmc", "plaus-scenes", "plaus-sim"]),
-    ("plaus-tests", &[]),
+    ("plaus-tests", &["plaus-dist"]),
     ("xtask", &[]),
 ];
 

@@ -8,7 +8,7 @@ import validator from 'gltf-validator';
 const [shots, ...pages] = process.argv.slice(2);
 mkdirSync(shots, { recursive: true });
 // Chromium comes inside a package of the registry; no other download is needed. WebGL is drawn by the processor.
-const args = ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage'];
+const args = ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage'];
 const executablePath = process.env.PLAUS_CHROMIUM ?? (await chromium.executablePath());
 const browser = await playwright.launch({ executablePath, headless: true, args });
 const wrong = [];

@@ -6,6 +6,8 @@ from pathlib import Path
 
 # Exit code of a check that could not install what it needs.
 NO_REGISTRY = 77
+# A registry that is out of reach is known to be so within about a minute, also where it does not even refuse; pip's own patience is for several.
+PATIENCE = ["--retries", "2", "--timeout", "10"]
 
 
 def environment(folder: Path, requirements: list[str]) -> Path:
@@ -20,7 +22,7 @@ def environment(folder: Path, requirements: list[str]) -> Path:
     if made.returncode != 0:
         print("python3 -m venv failed", flush=True)
         sys.exit(NO_REGISTRY)
-    pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *requirements]
+    pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *PATIENCE, *requirements]
     if subprocess.run(pip).returncode != 0:
         print("pip could not install them: is the package registry out of reach?", flush=True)
         sys.exit(NO_REGISTRY)

@@ -102,6 +102,28 @@ pub(crate) fn move_table(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
     lay_out(&rows)
 }
 
+/// What scales were adapted to, with the share accepted at each, per chain where there are few; nothing for chains that adapt none.
+pub(crate) fn scale_table(diagnosis: &Diagnosis) -> String {
+    let chains = &diagnosis.tally.chains;
+    let Some(first) = chains.first().filter(|chain| !chain.scales.is_empty()) else { return String::new() };
+    let shown = if chains.len() <= 8 { chains.as_slice() } else { &[] };
+    let title = if first.scales[0].frozen { "scales, kept since the warm-up" } else { "scales, being adapted" };
+    let mut rows = vec![vec![title.to_owned(), "goal".to_owned(), "accepted".to_owned()]];
+    rows[0].extend((0..shown.len()).map(|chain| format!("chain {chain}")));
+    for (index, scale) in first.scales.iter().enumerate() {
+        let all = || chains.iter().filter_map(|chain| chain.scales.get(index));
+        let (tried, accepted) = (all().map(|one| one.tried).sum::<u64>(), all().map(|one| one.accepted).sum::<u64>());
+        let share = if tried == 0 { "-".to_owned() } else { percent(accepted as f64 / tried as f64) };
+        let mut row = vec![format!("  {} {}", scale.kernel, scale.scale), percent(scale.target), share];
+        let value = |chain: &plaus_run::tally::ChainTally| {
+            chain.scales.get(index).and_then(|one| one.value).map_or("as configured".to_owned(), short)
+        };
+        row.extend(shown.iter().map(value));
+        rows.push(row);
+    }
+    lay_out(&rows) + "\n"
+}
+
 /// First hit, share of satisfying draws, distinct solutions.
 pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let tally = &diagnosis.tally;
@@ -159,6 +181,7 @@ pub(crate) fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
             "distinct": tally.distinct,
             "acceptance": acceptance(&manifest.moves, &tally.counts),
             "tempering": tally.tempering,
+            "scales": tally.scales,
         })
     };
     json!({

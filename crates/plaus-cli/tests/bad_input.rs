@@ -143,13 +143,13 @@ fn a_damaged_run_says_what_can_be_recovered() {
     let last = bytes.len() - 40;
     bytes[last] ^= 1;
     std::fs::write(&path, &bytes).unwrap();
-    let says = ["run/chain-00001.records: at byte ", "checksum", "The 800 recorded draws", "plaus export --salvage"];
+    let says = ["run/chain-00001.records: at byte ", "checksum", "The 960 recorded draws", "plaus export --salvage"];
     for command in ["diagnose run", "export run --format csv --out d.csv", "resume run"] {
         place.ends(command, 2).says(&says);
     }
     place.ok("export run --format csv --out d.csv --salvage");
     let rows = std::fs::read_to_string(place.path("d.csv")).unwrap().lines().count();
-    assert_eq!(rows, 1 + 4 * 700, "a header, then what all four chains have after 100 iterations of warm-up");
+    assert_eq!(rows, 1 + 4 * 860, "a header, then what all four chains have after 100 iterations of warm-up");
     std::fs::write(place.path("run/manifest.json"), "{").unwrap();
     place.ends("diagnose run", 2).says(&["run/manifest.json: the manifest cannot be read"]);
 }

@@ -90,7 +90,9 @@ fn what_is_no_run_is_refused() {
 fn a_run_without_draws_is_refused() {
     let place = Place::new();
     // Stopped in the warm-up, whose draws have no numbers.
-    place.ok("sample ball.toml --out run -q --warmup 1000000 --max-time 0s");
+    let stopped = place.ends("sample ball.toml --out run --warmup 1000000 --max-time 0s", 1);
+    stopped.says(&["still in the warm-up, and no iteration has satisfied the constraint yet; go on: plaus resume run"]);
+    assert!(stopped.out.starts_with("out of time after 1 of 1,000,900 iterations"), "{}", stopped.out);
     all_are_refused(&place, &["error: run: ", "holds no draws yet", "warm-up", "`plaus resume`"]);
 }
 

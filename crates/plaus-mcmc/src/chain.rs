@@ -1,6 +1,7 @@
 //! One Markov chain: the accept step that leaves the target invariant.
 
-use crate::moves::{Mixture, MoveId, Proposal};
+use crate::adapt::{Adaptation, Scales};
+use crate::moves::{Mixture, Move, MoveId, Proposal};
 use crate::target::{ModelError, Simulated, State, StateOf, Target};
 use crate::tempered::floor_seen;
 use plaus_dist::{ChainStreams, LogDensity, LogPotential, LogRatio, Purpose, math, open_unit};
@@ -25,6 +26,17 @@ pub enum ChainError {
         /// What the model said.
         source: ModelError,
     },
+}
+
+impl ChainError {
+    /// The iteration that failed; 0 is the start.
+    #[must_use]
+    pub fn iteration(&self) -> u64 {
+        match self {
+            Self::NoStart => 0,
+            Self::Model { iteration, .. } => *iteration,
+        }
+    }
 }
 
 /// What became of an iteration.
@@ -79,6 +91,18 @@ impl MoveCounts {
         self.accepted += other.accepted;
     }
 
+    /// What was counted since `earlier`, which was counted on the way.
+    #[must_use]
+    pub fn since(&self, earlier: &Self) -> Self {
+        Self {
+            stayed: self.stayed - earlier.stayed,
+            rejected_by_prior: self.rejected_by_prior - earlier.rejected_by_prior,
+            rejected_early: self.rejected_early - earlier.rejected_early,
+            rejected: self.rejected - earlier.rejected,
+            accepted: self.accepted - earlier.accepted,
+        }
+    }
+
     fn count(&mut self, verdict: Verdict) {
         *match verdict {
             Verdict::Stayed => &mut self.stayed,
@@ -99,7 +123,8 @@ pub struct Step {
     pub verdict: Verdict,
 }
 
-/// A chain at one iteration. With the same streams, target, moves and inverse temperature, its future follows from `iteration` and `state` alone.
+/// A chain at one iteration. With the same streams, target, moves and inverse temperature, its future follows from `iteration` and `state` alone, and
+/// from its scales where it adapts any.
 pub struct Chain<'a, T: Target> {
     target: &'a T,
     moves: &'a Mixture<T>,
@@ -109,6 +134,7 @@ pub struct Chain<'a, T: Target> {
     iteration: u64,
     state: StateOf<T>,
     counts: Vec<MoveCounts>,
+    adaptation: Option<Adaptation<T>>,
     candidate: T::Draw,
     scratch: T::Scratch,
 }
@@ -158,7 +184,26 @@ impl<'a, T: Target> Chain<'a, T> {
     ) -> Self {
         let candidate = state.draw.clone();
         let scratch = T::Scratch::default();
-        Self { target, moves, streams, beta: 1.0, iteration, state, counts, candidate, scratch }
+        Self { target, moves, streams, beta: 1.0, iteration, state, counts, adaptation: None, candidate, scratch }
+    }
+
+    /// The same chain, which adapts the scales of its moves in the iterations before `until`, and keeps them from then on. With `until` below 2 there is no such
+    /// iteration, and moves are as configured. To be said of a chain that has just started.
+    #[must_use]
+    pub fn adapting(self, until: u64) -> Self {
+        Self { adaptation: Adaptation::start(self.moves, until), ..self }
+    }
+
+    /// The same chain, which goes on from the scales it had; they [fit](Scales::fit) its moves.
+    #[must_use]
+    pub fn with_scales(self, scales: Scales) -> Self {
+        Self { adaptation: Some(Adaptation::resume(self.moves, scales)), ..self }
+    }
+
+    /// What its scales have come to; `None` where it adapts none.
+    #[must_use]
+    pub fn scales(&self) -> Option<&Scales> {
+        self.adaptation.as_ref().map(Adaptation::scales)
     }
 
     /// The same chain at an inverse temperature from 0 on.
@@ -195,16 +240,19 @@ impl<'a, T: Target> Chain<'a, T> {
     /// # Errors
     /// [`ChainError::Model`] where the model fails; the state is then still the one before.
     pub fn step(&mut self) -> Result<Step, ChainError> {
-        let next = self.iteration + 1;
+        let (next, moves) = (self.iteration + 1, self.moves);
         let mut stream = self.streams.at(next, Purpose::PROPOSE);
-        let (move_id, kernel) = self.moves.choose(&mut stream);
+        let (move_id, configured) = moves.choose(&mut stream);
+        let fail = |source| ChainError::Model { iteration: next, step: Some(configured.name().to_owned()), source };
         self.candidate.clone_from(&self.state.draw);
-        let proposal = kernel.propose(self.target, &self.state, &mut self.candidate, &mut stream);
-        let verdict = proposal
-            .and_then(|proposal| self.judge(next, move_id, proposal))
-            .map_err(|source| ChainError::Model { iteration: next, step: Some(kernel.name().to_owned()), source })?;
+        let kernel = kernel(moves, self.adaptation.as_ref(), move_id);
+        let proposal = kernel.propose(self.target, &self.state, &mut self.candidate, &mut stream).map_err(fail)?;
+        let verdict = self.judge(next, move_id, proposal).map_err(fail)?;
         self.iteration = next;
         self.counts[usize::from(move_id.0)].count(verdict);
+        if let Some(adaptation) = &mut self.adaptation {
+            adaptation.learn(moves, next, (move_id, proposal.path()), verdict == Verdict::Accepted);
+        }
         Ok(Step { move_id, verdict })
     }
 
@@ -229,7 +277,7 @@ impl<'a, T: Target> Chain<'a, T> {
             self.accept_above(floor, outcome, log_prior, log_constraint)?
         } else {
             let candidate = State { draw: self.candidate.clone(), outcome, log_prior, log_constraint };
-            let (_, kernel) = self.moves.get(move_id);
+            let kernel = kernel(self.moves, self.adaptation.as_ref(), move_id);
             let after = kernel.log_ratio_after(self.target, &self.state, &candidate, path)?;
             match self::floor(ln_u, log_ratio.times(after)?, log_p, log_prior)? {
                 Some(floor) => self.accept_above(floor, candidate.outcome, log_prior, log_constraint)?,
@@ -240,11 +288,12 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
     }
 
-    /// Exchanges what two chains aim at, that is inverse temperatures, moves and their counts, while each keeps its state, memory and streams.
+    /// Exchanges what two chains aim at, that is inverse temperatures, moves, their scales and counts, while each keeps its state, memory and streams.
     pub(crate) fn exchange_rungs(a: &mut Self, b: &mut Self) {
         std::mem::swap(&mut a.beta, &mut b.beta);
         std::mem::swap(&mut a.moves, &mut b.moves);
         std::mem::swap(&mut a.counts, &mut b.counts);
+        std::mem::swap(&mut a.adaptation, &mut b.adaptation);
     }
 
     fn accept_above(
@@ -263,6 +312,11 @@ impl<'a, T: Target> Chain<'a, T> {
         }
         Ok(accepted)
     }
+}
+
+/// A move, at its scale where that is adapted.
+fn kernel<'k, T: Target>(moves: &'k Mixture<T>, adaptation: Option<&'k Adaptation<T>>, id: MoveId) -> &'k dyn Move<T> {
+    adaptation.and_then(|adaptation| adaptation.kernel(id)).unwrap_or_else(|| moves.get(id).1)
 }
 
 /// What the candidate's log constraint must exceed: `ln u − log ratio + log p(current) − log p_w(candidate)`. `None`: no constraint is enough, the

@@ -46,6 +46,7 @@
 //!
 //! The crate knows no bodies and does no input or output.
 
+pub mod adapt;
 pub mod chain;
 pub mod check;
 pub mod diagnose;
@@ -60,13 +61,16 @@ pub mod target;
 pub mod tempered;
 pub mod view;
 
+pub use adapt::{Adapted, Scale, Scales};
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
 pub use ladder::Ladder;
 pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
 pub use record::{Block, Entry};
 pub use redraw::Redraw;
 pub use replicas::{Climb, Course, Replicas, ReplicasSnapshot, RungStatistics, Tempering, TopStep};
-pub use run::{Control, Ending, Plan, PlanError, Progress, RunError, Sink, Snapshot, Start, run};
+pub use run::{
+    ChainPulse, Control, Ending, Plan, PlanError, Progress, Pulse, RunError, Sink, Snapshot, Start, run, run_watched,
+};
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
 pub use tempered::Tempered;

@@ -1,8 +1,10 @@
 //! Moves propose candidates and answer for their own Hastings ratio; a mixture chooses among them.
 
+use crate::adapt::Scale;
 use crate::target::{ModelError, StateOf, Target};
 use plaus_dist::{LogRatio, Stream, open_unit};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Which of a move's ways led to a candidate (which coordinate, which pair, …), where that matters for the ratio.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -32,6 +34,15 @@ impl Proposal {
     #[must_use]
     pub fn with_ratio(log_ratio: LogRatio) -> Self {
         Self::Candidate { log_ratio, path: Path(0), later: None }
+    }
+
+    /// The way a candidate was made; `None` where there is no candidate.
+    #[must_use]
+    pub fn path(self) -> Option<Path> {
+        match self {
+            Self::Stay => None,
+            Self::Candidate { path, .. } => Some(path),
+        }
     }
 }
 
@@ -78,6 +89,21 @@ pub trait Move<T: Target>: Send + Sync {
     ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
+
+    /// The scales that a chain may adapt in its warm-up, see [`crate::adapt`]; none unless a move says so.
+    fn scales(&self) -> Vec<Scale> {
+        Vec::new()
+    }
+
+    /// The same move at other values of its [`Move::scales`], one each; `None` leaves one as it is configured. A move that has scales gives one.
+    fn at_scales(&self, _values: &[Option<f64>]) -> Option<Box<dyn Move<T>>> {
+        None
+    }
+
+    /// Which of its scales the size of a proposal came from; `None` where from none, so that nothing is learned from it.
+    fn scale_of(&self, _path: Path) -> Option<usize> {
+        Some(0)
+    }
 }
 
 /// Index of a move in its mixture.
@@ -87,7 +113,7 @@ pub struct MoveId(pub u16);
 
 /// Moves chosen at random with fixed weights, whatever the state.
 pub struct Mixture<T: Target> {
-    moves: Vec<Box<dyn Move<T>>>,
+    moves: Vec<Arc<dyn Move<T>>>,
     /// Probability that the move is this one or one before it; ends with 1.
     cumulative: Vec<f64>,
 }
@@ -142,13 +168,13 @@ impl<T: Target> Mixture<T> {
         if let Some(last) = cumulative.last_mut() {
             *last = 1.0;
         }
-        Ok(Self { moves: moves.into_iter().map(|(_, kernel)| kernel).collect(), cumulative })
+        Ok(Self { moves: moves.into_iter().map(|(_, kernel)| Arc::from(kernel)).collect(), cumulative })
     }
 
     /// A mixture of one move.
     #[must_use]
     pub fn of(only: Box<dyn Move<T>>) -> Self {
-        Self { moves: vec![only], cumulative: vec![1.0] }
+        Self { moves: vec![Arc::from(only)], cumulative: vec![1.0] }
     }
 
     /// Chooses a move. A mixture of one spends no random number.
@@ -176,6 +202,19 @@ impl<T: Target> Mixture<T> {
     /// The moves with their probabilities, in order of their [`MoveId`].
     pub fn iter(&self) -> impl Iterator<Item = (f64, &dyn Move<T>)> {
         (0..self.moves.len()).map(|index| self.get(MoveId(index as u16)))
+    }
+
+    /// The same probabilities for moves of which some are replaced.
+    pub(crate) fn map(&self, replace: impl Fn(MoveId, &dyn Move<T>) -> Option<Box<dyn Move<T>>>) -> Self {
+        let kernel = |(id, kernel): (u16, &Arc<dyn Move<T>>)| {
+            replace(MoveId(id), kernel.as_ref()).map_or_else(|| Arc::clone(kernel), Arc::from)
+        };
+        Self { moves: (0..).zip(&self.moves).map(kernel).collect(), cumulative: self.cumulative.clone() }
+    }
+
+    /// The moves, to be shared.
+    pub(crate) fn shared(&self) -> impl Iterator<Item = (f64, Arc<dyn Move<T>>)> {
+        (0..).zip(&self.moves).map(|(id, kernel)| (self.get(MoveId(id)).0, Arc::clone(kernel)))
     }
 
     /// The moves' names, in order of their [`MoveId`].

@@ -1,4 +1,4 @@
-//! What a chain leaves behind: recorded draws, run-length encoded, in blocks of fixed iterations.
+//! What a chain leaves behind: recorded draws, run-length encoded, in blocks whose bounds follow from the plan.
 
 use crate::moves::MoveId;
 use crate::target::{SolutionClass, State};

@@ -57,6 +57,11 @@ impl Distinct {
         new
     }
 
+    /// Whether a class was noted.
+    pub(crate) fn contains(&self, class: SolutionClass) -> bool {
+        self.seen.contains(&class)
+    }
+
     /// Forgets classes first noted after `iteration`.
     pub(crate) fn truncate(&mut self, iteration: u64) {
         for gone in self.firsts.iter().filter(|first| first.iteration > iteration) {

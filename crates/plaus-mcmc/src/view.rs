@@ -1,6 +1,7 @@
 //! Targets seen differently: same draws, same outcomes, another weight or another way to simulate.
 
-use crate::moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
+use crate::adapt::Scale;
+use crate::moves::{Mixture, MixtureError, Move, Path, Proposal};
 use crate::target::{ModelError, StateOf, Target};
 use plaus_dist::{LogRatio, Stream};
 use std::sync::Arc;
@@ -23,21 +24,16 @@ pub trait View: Target {
 /// [`MixtureError`] is not expected: the weights are those of a mixture already.
 pub fn lend<V: View>(moves: impl Into<Arc<Mixture<V::Seen>>>) -> Result<Mixture<V>, MixtureError> {
     let moves = moves.into();
-    let lent = (0..).zip(moves.iter()).map(|(id, (weight, _))| -> (f64, Box<dyn Move<V>>) {
-        (weight, Box::new(Lent { moves: Arc::clone(&moves), id: MoveId(id) }))
-    });
+    let lent = moves.shared().map(|(weight, kernel)| -> (f64, Box<dyn Move<V>>) { (weight, Box::new(Lent(kernel))) });
     Mixture::new(lent.collect())
 }
 
 /// One move of a shared mixture.
-struct Lent<T: Target> {
-    moves: Arc<Mixture<T>>,
-    id: MoveId,
-}
+struct Lent<T: Target>(Arc<dyn Move<T>>);
 
 impl<T: Target> Lent<T> {
     fn kernel(&self) -> &dyn Move<T> {
-        self.moves.get(self.id).1
+        self.0.as_ref()
     }
 }
 
@@ -72,5 +68,17 @@ impl<V: View> Move<V> for Lent<V::Seen> {
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         self.kernel().log_ratio_after(target.seen(), current, candidate, path)
+    }
+
+    fn scales(&self) -> Vec<Scale> {
+        self.kernel().scales()
+    }
+
+    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<V>>> {
+        Some(Box::new(Lent(Arc::from(self.kernel().at_scales(values)?))))
+    }
+
+    fn scale_of(&self, path: Path) -> Option<usize> {
+        self.kernel().scale_of(path)
     }
 }

@@ -7,8 +7,8 @@ mod toys;
 
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
 use plaus_mcmc::{
-    Block, Chain, ChainError, Control, Goal, Mixture, MixtureError, ModelError, Move, MoveId, Path, Plan, Progress,
-    Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, State, StateOf, Target, Verdict, run,
+    Block, Chain, ChainError, Control, Ending, Goal, Mixture, MixtureError, ModelError, Move, MoveId, Path, Plan,
+    Progress, Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, State, StateOf, Target, Verdict, run,
 };
 use toys::ring::{Redraw, Ring, Walk};
 
@@ -189,11 +189,38 @@ fn a_run_reports_the_first_failing_chain() {
         solutions: None,
         rungs: 1,
         swap_every: 1,
+        adapt: false,
     };
     for threads in [1, 4] {
         let error = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere).unwrap_err();
         assert!(matches!(error, RunError::Chain { chain: 0, .. }));
         assert_eq!(error.to_string(), "chain 0: iteration 5, move `increment`: the ball left the world");
+    }
+}
+
+/// A chain that is ahead of the others may fail where the run never comes to.
+#[test]
+fn what_fails_beyond_the_last_demanded_solution_is_no_failure() {
+    let lost = Counter { simulation_fails_at: 5, ..COUNTER };
+    for (wanted, threads, block) in [(3, 1, 10), (3, 4, 10), (5, 2, 100), (5, 4, 1), (6, 1, 100), (6, 4, 10)] {
+        let plan = Plan {
+            seed: Seed(1),
+            chains: 4,
+            warmup: 0,
+            iterations: 100,
+            thin: 1,
+            block,
+            solutions: Some(wanted),
+            rungs: 1,
+            swap_every: 1,
+            adapt: false,
+        };
+        let ended = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere);
+        // The counters reach a new class in every iteration, and have five before they fail.
+        match ended {
+            Ok(ending) => assert_eq!((ending, wanted < 6), (Ending::EnoughSolutions, true)),
+            Err(error) => assert!(wanted == 6 && error.to_string().starts_with("chain 0: iteration 5"), "{error}"),
+        }
     }
 }
 
@@ -224,6 +251,7 @@ fn the_start_counts_as_a_solution() {
             solutions,
             rungs: 1,
             swap_every: 1,
+            adapt: false,
         };
         let mut ends = Ends(Vec::new());
         run(&COUNTER, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), 1, &mut ends).unwrap();

@@ -5,11 +5,14 @@
 
 mod toys;
 
-use plaus_dist::Seed;
+use plaus_dist::{LogRatio, Seed, Stream};
 use plaus_mcmc::{
-    Block, Chain, Control, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture, Move, Plan, PlanError, Progress,
-    RunError, Sink, Snapshot, Start, StateOf, Verdict, run,
+    Block, Chain, ChainPulse, Control, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture, ModelError, Move,
+    Path, Plan, PlanError, Progress, Proposal, Pulse, RunError, Sink, Snapshot, Start, StateOf, Verdict, run,
+    run_watched,
 };
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use toys::balls::{Balls, Drops};
 use toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
 
@@ -26,6 +29,7 @@ const PLAN: Plan = Plan {
     solutions: None,
     rungs: 1,
     swap_every: 1,
+    adapt: false,
 };
 
 /// The same, each chain with replicas at four rungs.
@@ -167,6 +171,61 @@ fn a_run_resumed_at_any_block_is_the_whole_run() {
             let starts = part.starts(plan.thin);
             let (again, both) = go(plan, starts, 2, part);
             assert!((again, &both) == (ending, &all), "stopped after {rounds} rounds of {plan:?}");
+        }
+    }
+}
+
+/// A move that stops the run when it is made for the n-th time, in the middle of a block.
+struct Interrupt {
+    left: AtomicU64,
+    pulse: Arc<Pulse>,
+}
+
+impl Move<Balls> for Interrupt {
+    fn name(&self) -> &str {
+        Toggle::RIGHT.name()
+    }
+    fn propose(&self, world: &Balls, now: &S, drops: &mut Drops, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        if self.left.fetch_sub(1, Relaxed) == 1 {
+            self.pulse.stop();
+        }
+        Toggle::RIGHT.propose(world, now, drops, stream)
+    }
+    fn log_ratio(&self, world: &Balls, from: &S, to: &S, path: Path) -> Result<LogRatio, ModelError> {
+        Toggle::RIGHT.log_ratio(world, from, to, path)
+    }
+}
+
+#[test]
+fn a_run_stopped_in_the_middle_of_a_block_leaves_the_beginning_of_the_whole_run() {
+    let moves =
+        |pulse: &Arc<Pulse>, left: u64| Mixture::of(Box::new(Interrupt { left: left.into(), pulse: pulse.clone() }));
+    for plan in [PLAN, Plan { thin: 7, ..TEMPERED }, Plan { solutions: Some(40), ..PLAN }, TEMPERED] {
+        let go = |starts: Vec<Start<Drops, Loads>>, threads: usize, left: u64, mut log: Log| {
+            let pulse = Arc::<Pulse>::default();
+            let ended = run_watched(&balls(), &moves(&pulse, left), plan, starts, threads, &mut log, &pulse);
+            (ended.unwrap(), log, pulse)
+        };
+        let (ending, all, pulse) = go(Vec::new(), 2, u64::MAX, Log::default());
+        // What the counters show in the end is what was recorded.
+        let last = all.snapshots.iter().map(|of| of.last().unwrap());
+        let shown = last.map(|of| ChainPulse { iterations: of.end_iteration, hits: of.hits.count });
+        assert_eq!(pulse.chains(), shown.collect::<Vec<_>>());
+        assert_eq!(pulse.distinct(), all.firsts.len() as u64);
+        for (left, threads) in [(1, 1), (30, 1), (200, 2), (1_100, 1), (1_101, 4), (1_500, 3)] {
+            let (stopped, part, _) = go(Vec::new(), threads, left, Log::default());
+            if stopped != Ending::Stopped {
+                assert!(plan.solutions.is_some() && (stopped, &part) == (ending, &all), "{left} moves were enough");
+                continue;
+            }
+            let rounds = part.ends.len();
+            assert!(
+                rounds > 0 && part.ends == all.ends[..rounds] && rounds < all.ends.len(),
+                "{left}: {:?}",
+                part.ends
+            );
+            let (again, both, _) = go(part.starts(plan.thin), 2, u64::MAX, part);
+            assert!((again, &both) == (ending, &all), "stopped after {left} moves of {plan:?}");
         }
     }
 }

@@ -15,7 +15,7 @@ use std::fs::File;
 use std::io::ErrorKind;
 use std::path::Path;
 
-const KIND: Kind = Kind::new(*b"chkp", 2, "a checkpoint of a chain");
+const KIND: Kind = Kind::new(*b"chkp", 3, "a checkpoint of a chain");
 
 /// Where a chain can go on from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

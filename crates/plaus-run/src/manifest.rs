@@ -11,7 +11,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 
 /// Version of the folder's format.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 /// Version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Longest manifest that is read, in bytes.
@@ -149,6 +149,7 @@ fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
         solutions,
         rungs: sampler.tempering.rungs,
         swap_every: sampler.tempering.swap_every,
+        adapt: scenario.adapts(),
     }
 }
 

@@ -4,14 +4,16 @@ use crate::checkpoint::{self, Checkpoint};
 use crate::disk::{Disk, RealDisk};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
+use crate::gauge::{Gauge, Mixing};
 use crate::manifest::{Manifest, Recipe, VERSION, stored_scalars};
 use crate::records::{self, Extent};
 use crate::replay::evaluate_again;
 use crate::sink::{FolderSink, Place};
-use plaus_mcmc::{Control, Distinct, Ending, Progress, RunError, Start, Target};
+use plaus_mcmc::{Control, Distinct, Ending, Progress, Pulse, RunError, Start, Target};
 use plaus_scenes::{Scenario, Scene, Visitor};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::sync::Arc;
 
 /// Where the chains of a scene go on from.
 type Starts<S> = Vec<Start<<S as Target>::Draw, <S as Target>::Outcome>>;
@@ -32,6 +34,24 @@ pub trait Watch {
 
     /// Called after a checkpoint was written.
     fn checkpoint_done(&mut self) {}
+
+    /// What the chains report to while they are at work, and are stopped by.
+    fn pulse(&self) -> Arc<Pulse> {
+        Arc::default()
+    }
+
+    /// Whether to keep, in memory, what [`Watch::mixing`] takes.
+    fn looks_at_mixing(&self) -> bool {
+        false
+    }
+
+    /// Whether to find out now how well the outcomes mix; asked after each round where [`Watch::looks_at_mixing`] says so.
+    fn mixing_due(&mut self) -> bool {
+        false
+    }
+
+    /// Called with what was found; `None` where there is too little to tell.
+    fn mixing(&mut self, _mixing: Option<Mixing>) {}
 }
 
 /// Watches nothing: runs to the end, with a checkpoint after every round.
@@ -197,6 +217,12 @@ fn restore_chain<S: Scene>(
         let message = format!("{} moves are counted, the scene has {}", snapshot.counts.len(), manifest.moves.len());
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
     }
+    let kernels = scene.moves(&manifest.scenario()?.sampler.rules)?;
+    let tempered = snapshot.replicas.iter().flat_map(|replicas| replicas.scales.iter().flatten());
+    if !snapshot.scales.iter().chain(tempered).all(|scales| scales.fit(&kernels)) {
+        let message = "its scales are not those of the scene's moves".to_owned();
+        return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
+    }
     let (rungs, moves) = (manifest.plan.rungs, manifest.moves.len());
     if snapshot.replicas.as_ref().map_or(rungs != 1, |replicas| !replicas.fits(rungs, moves)) {
         let message = format!("the checkpoint is not one of {rungs} rungs");
@@ -223,17 +249,35 @@ fn go_on<S: Scene>(
 ) -> Result<Ending, Error> {
     let moves = scene.moves(&manifest.scenario()?.sampler.rules)?;
     let done = starts.first().map_or(0, |start| start.snapshot.end_iteration);
-    let lengths =
-        (0..manifest.plan.chains).map(|chain| records::length(&folder.records(chain))).collect::<Result<_, _>>()?;
+    let lengths = (0..manifest.plan.chains)
+        .map(|chain| records::length(&folder.records(chain)))
+        .collect::<Result<Vec<_>, _>>()?;
     let pool = sampling.pool()?;
     let Sampling { threads, disk, watch } = sampling;
     watch.begin(manifest, done);
-    let place = Place { folder, disk, run: manifest.run_id(), pool };
-    let mut sink = FolderSink::new(place, watch, lengths, done);
-    let ended = plaus_mcmc::run(scene, &moves, manifest.plan, starts, threads, &mut sink);
+    let (plan, pulse, run) = (manifest.plan, watch.pulse(), manifest.run_id());
+    let gauge = if watch.looks_at_mixing() { Some(gauge(folder, scene, manifest, &lengths, done)?) } else { None };
+    let mut sink = FolderSink::new(Place { folder, disk, run, pool }, watch, gauge, lengths, done);
+    let ended = plaus_mcmc::run_watched(scene, &moves, plan, starts, threads, &mut sink, &pulse);
     let finished = if matches!(ended, Err(RunError::Sink(_))) { Ok(()) } else { sink.checkpoint() };
     let safe = sink.safe();
     let ending = ended.map_err(|error| Error::of_run(error, safe))?;
     finished.map_err(|error| Error::of_run(RunError::Sink(error), safe))?;
     Ok(ending)
+}
+
+/// A gauge that has seen what is recorded already.
+fn gauge<'a, S: Scene>(
+    folder: &Folder,
+    scene: &'a S,
+    manifest: &Manifest,
+    lengths: &[u64],
+    end_iteration: u64,
+) -> Result<Gauge<'a, S>, RunFileError> {
+    let mut gauge = Gauge::new(scene, &manifest.plan);
+    for (chain, &bytes) in (0..).zip(lengths).filter(|_| end_iteration > manifest.plan.warmup) {
+        let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes, end_iteration };
+        gauge.read(&folder.records(chain), extent)?;
+    }
+    Ok(gauge)
 }

@@ -4,12 +4,13 @@ use crate::checkpoint::{self, Checkpoint};
 use crate::disk::Disk;
 use crate::error::RunFileError;
 use crate::folder::Folder;
+use crate::gauge::Gauge;
 use crate::records;
 use crate::sample::Watch;
-use plaus_mcmc::{Block, Control, Progress, Sink, Snapshot};
+use plaus_mcmc::{Block, Control, Progress, Sink, Snapshot, Target};
+use plaus_scenes::Scene;
 use rayon::ThreadPool;
 use rayon::prelude::*;
-use serde::Serialize;
 
 /// Where a run is written, and by whom.
 pub(crate) struct Place<'a> {
@@ -21,28 +22,35 @@ pub(crate) struct Place<'a> {
     pub(crate) pool: ThreadPool,
 }
 
+type BlockOf<S> = Block<<S as Target>::Draw, <S as Target>::Outcome>;
+type SnapshotOf<S> = Snapshot<<S as Target>::Draw, <S as Target>::Outcome>;
+
 /// The sink that writes a run folder.
-pub(crate) struct FolderSink<'a, D, O> {
+pub(crate) struct FolderSink<'a, S: Scene> {
     place: Place<'a>,
     watch: &'a mut dyn Watch,
+    /// Where somebody looks at it.
+    gauge: Option<Gauge<'a, S>>,
     /// Bytes in each chain's records.
     lengths: Vec<u64>,
     /// Blocks of this round, to be written at its end.
-    blocks: Vec<(u32, Block<D, O>)>,
+    blocks: Vec<(u32, BlockOf<S>)>,
     /// Each chain as of the last round.
-    snapshots: Vec<Snapshot<D, O>>,
+    snapshots: Vec<SnapshotOf<S>>,
     /// Iterations the last checkpoint covers.
     safe: u64,
 }
 
-impl<'a, D, O> FolderSink<'a, D, O>
-where
-    D: Serialize + Clone + Send + Sync,
-    O: Serialize + Clone + Send + Sync,
-{
+impl<'a, S: Scene> FolderSink<'a, S> {
     /// A sink for chains that have `lengths` bytes of records each, of `safe` iterations.
-    pub(crate) fn new(place: Place<'a>, watch: &'a mut dyn Watch, lengths: Vec<u64>, safe: u64) -> Self {
-        Self { place, watch, lengths, blocks: Vec::new(), snapshots: Vec::new(), safe }
+    pub(crate) fn new(
+        place: Place<'a>,
+        watch: &'a mut dyn Watch,
+        gauge: Option<Gauge<'a, S>>,
+        lengths: Vec<u64>,
+        safe: u64,
+    ) -> Self {
+        Self { place, watch, gauge, lengths, blocks: Vec::new(), snapshots: Vec::new(), safe }
     }
 
     /// Iterations that a resumed run would keep.
@@ -75,7 +83,7 @@ where
 
     fn write_blocks(&mut self) -> Result<(), RunFileError> {
         let Place { folder, disk, run, ref pool } = self.place;
-        let encode = |(chain, block): (u32, Block<D, O>)| {
+        let encode = |(chain, block): (u32, BlockOf<S>)| {
             let bytes = records::encode(run, chain, &block);
             bytes.map(|bytes| (chain, bytes)).map_err(|error| RunFileError::new(folder.records(chain), error.into()))
         };
@@ -90,17 +98,16 @@ where
     }
 }
 
-impl<D, O> Sink<D, O> for FolderSink<'_, D, O>
-where
-    D: Serialize + Clone + Send + Sync,
-    O: Serialize + Clone + Send + Sync,
-{
+impl<S: Scene> Sink<S::Draw, S::Outcome> for FolderSink<'_, S> {
     type Error = RunFileError;
 
-    fn block(&mut self, chain: u32, block: Block<D, O>, snapshot: &Snapshot<D, O>) -> Result<(), RunFileError> {
+    fn block(&mut self, chain: u32, block: BlockOf<S>, snapshot: &SnapshotOf<S>) -> Result<(), RunFileError> {
         match self.snapshots.get_mut(chain as usize) {
             Some(last) => last.clone_from(snapshot),
             None => self.snapshots.push(snapshot.clone()),
+        }
+        if let Some(gauge) = &mut self.gauge {
+            gauge.note(chain, &block);
         }
         self.blocks.push((chain, block));
         Ok(())
@@ -110,6 +117,13 @@ where
         self.write_blocks()?;
         if self.watch.checkpoint_due() {
             self.checkpoint()?;
+        }
+        if let Some(gauge) = &mut self.gauge {
+            gauge.thin_out();
+            if self.watch.mixing_due() {
+                let mixing = self.place.pool.install(|| gauge.mixing());
+                self.watch.mixing(mixing);
+            }
         }
         Ok(self.watch.round(progress))
     }

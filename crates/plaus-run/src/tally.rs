@@ -2,7 +2,7 @@
 
 use crate::error::RunFileError;
 use crate::read::{Phase, RunOf};
-use plaus_mcmc::{Climb, Distinct, FirstOfClass, Hits, Ladder, MoveCounts};
+use plaus_mcmc::{Climb, Distinct, FirstOfClass, Hits, Ladder, MoveCounts, MoveId, Scales};
 use plaus_scenes::Scene;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -46,6 +46,48 @@ pub struct ChainTally {
     pub best: Option<(SampleId, f64)>,
     /// How its replicas fared, if there are more than one.
     pub tempering: Option<TemperingTally>,
+    /// The scales of its moves, if it adapts any.
+    pub scales: Vec<ScaleTally>,
+}
+
+/// What a scale was adapted to.
+#[derive(Debug, Clone, Serialize)]
+pub struct ScaleTally {
+    /// The move.
+    #[serde(rename = "move")]
+    pub kernel: String,
+    /// Its scale.
+    pub scale: &'static str,
+    /// Whether the warm-up is over, so that it stays.
+    pub frozen: bool,
+    /// Its value; `None` where it was tried too seldom in the warm-up, so that the move is as configured.
+    pub value: Option<f64>,
+    /// The share of proposals that should be accepted.
+    pub target: f64,
+    /// Proposals made at it, since the warm-up or in it while it lasts.
+    pub tried: u64,
+    /// Those that were accepted.
+    pub accepted: u64,
+}
+
+fn scales<S: Scene>(run: &RunOf<'_, S>, scales: &Scales) -> Vec<ScaleTally> {
+    // A run that was opened has a scenario that makes a scene, and moves.
+    let rules = run.run().scenario().sampler.rules;
+    let Ok(moves) = run.scene().moves(&rules) else { return Vec::new() };
+    let mut all = Vec::new();
+    for (id, (_, kernel)) in (0..).map(MoveId).zip(moves.iter()) {
+        let adapted = scales.values(id).into_iter().zip(scales.adapted(id));
+        all.extend(kernel.scales().iter().zip(adapted).map(|(scale, (value, adapted))| ScaleTally {
+            kernel: kernel.name().to_owned(),
+            scale: scale.name,
+            frozen: scales.are_frozen(),
+            value,
+            target: scale.target,
+            tried: adapted.tried(),
+            accepted: adapted.accepted(),
+        }));
+    }
+    all
 }
 
 /// How the replicas of one chain fared.
@@ -140,6 +182,9 @@ fn tally<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<(ChainTally, Distin
         tempering: snapshot
             .and_then(|snapshot| snapshot.replicas.as_ref())
             .map(|replicas| TemperingTally::of(replicas.climb())),
+        scales: snapshot
+            .and_then(|snapshot| snapshot.scales.as_ref())
+            .map_or_else(Vec::new, |adapted| scales(run, adapted)),
     };
     let mut distinct = Distinct::default();
     run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {

@@ -4,9 +4,10 @@
 
 mod common;
 
-use common::{FailingDisk, bytes_of, recipe, tempered};
+use common::{FailingDisk, adapting, bytes_of, recipe, tempered};
 use plaus_run::disk::{Disk, RealDisk};
-use plaus_run::{Error, Folder, More, Recipe, Sampling, Unwatched, Watch, resume, sample};
+use plaus_run::{Error, Folder, More, Recipe, Run, RunOf, RunVisitor, Sampling, Unwatched, Watch, resume, sample};
+use plaus_scenes::Scene;
 
 /// Asks for checkpoints only now and then, as the clock would.
 struct Seldom(u32);
@@ -25,17 +26,31 @@ fn sample_on(disk: &dyn Disk, folder: &Folder, recipe: &Recipe, watch: &mut dyn 
     sample(folder, recipe, Sampling { threads: 1, disk, watch }).map(|_| ())
 }
 
-/// Every number of bytes after which a process can die, in steps; and every operation.
-fn killed_everywhere(recipe: &Recipe, crash: bool, every: usize) {
+/// Numbers of bytes, and of operations, after which a process dies, spread over a run: so many of each.
+const DEATHS: usize = 50;
+
+/// A run of some forty blocks, the last ones of full size.
+fn shortened(mut recipe: Recipe) -> Recipe {
+    let sampler = &mut recipe.scenario.sampler;
+    (sampler.warmup, sampler.iterations, sampler.checkpoint_every) = (40, 172, 20);
+    recipe
+}
+
+fn killed_everywhere(recipe: Recipe, crash: bool) {
+    let recipe = &shortened(recipe);
+    // Makes nothing durable, which would take most of the time and shows only where the power fails.
+    let peaceful = FailingDisk::new(u64::MAX, u64::MAX, crash);
     let place = tempfile::tempdir().unwrap();
     let whole = Folder::new(place.path().join("whole"));
     let disk = FailingDisk::new(u64::MAX, u64::MAX, crash);
     sample_on(&disk, &whole, recipe, &mut Unwatched).unwrap();
     let expected = bytes_of(&whole);
     let (bytes, operations) = disk.used();
-    assert!(bytes > 2_000 && operations > 30, "{bytes} bytes in {operations} operations prove little");
-    let limits = (0..bytes).step_by(every).map(|bytes| (bytes, u64::MAX));
-    let stops = (0..operations).map(|operations| (u64::MAX, operations));
+    assert!(bytes > 2_000 && operations > 300, "{bytes} bytes in {operations} operations prove little");
+    // Odd steps come to every kind of operation, however regularly these follow each other.
+    let step = |all: u64| (all as usize / DEATHS) | 1;
+    let limits = (0..bytes).step_by(step(bytes)).map(|bytes| (bytes, u64::MAX));
+    let stops = (0..operations).step_by(step(operations)).map(|operations| (u64::MAX, operations));
     for (index, (bytes, operations)) in limits.chain(stops).enumerate() {
         let folder = Folder::new(place.path().join(format!("run{index}")));
         let failing = FailingDisk::new(bytes, operations, crash);
@@ -47,9 +62,9 @@ fn killed_everywhere(recipe: &Recipe, crash: bool, every: usize) {
         if folder.path().exists() {
             let again = FailingDisk::new(bytes / 3 + 50, operations / 2, crash);
             let _ = resume(&folder, More::default(), Sampling { threads: 2, disk: &again, watch: &mut Seldom(0) });
-            resume(&folder, More::default(), Sampling { threads: 1, disk: &RealDisk, watch: &mut Unwatched }).unwrap();
+            resume(&folder, More::default(), Sampling { threads: 1, disk: &peaceful, watch: &mut Unwatched }).unwrap();
         } else {
-            sample_on(&RealDisk, &folder, recipe, &mut Unwatched).unwrap();
+            sample_on(&peaceful, &folder, recipe, &mut Unwatched).unwrap();
         }
         assert_eq!(bytes_of(&folder), expected, "after {bytes} bytes or {operations} operations");
         std::fs::remove_dir_all(folder.path()).unwrap();
@@ -58,22 +73,59 @@ fn killed_everywhere(recipe: &Recipe, crash: bool, every: usize) {
 
 #[test]
 fn a_process_killed_anywhere_loses_nothing_final() {
-    killed_everywhere(&recipe(None), true, 197);
+    killed_everywhere(recipe(None), true);
 }
 
 #[test]
 fn a_tempered_run_killed_anywhere_loses_nothing_final() {
-    killed_everywhere(&tempered(None), true, 997);
+    killed_everywhere(tempered(None), true);
+}
+
+#[test]
+fn a_run_killed_while_it_adapts_loses_nothing_final() {
+    killed_everywhere(adapting(1), true);
+    killed_everywhere(adapting(3), true);
+}
+
+/// Scales that were kept are kept by a longer run; what was adapted is in the tally.
+#[test]
+fn a_longer_run_keeps_its_scales() {
+    use plaus_run::tally::{ScaleTally, Tally};
+    use plaus_run::{Run, RunOf, RunVisitor};
+    struct Scales;
+    impl RunVisitor for Scales {
+        type Output = Vec<Vec<ScaleTally>>;
+        fn visit<S: plaus_scenes::Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+            Tally::of(&run).unwrap().chains.into_iter().map(|chain| chain.scales).collect()
+        }
+    }
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path().join("run"));
+    let values = || {
+        let chains = Run::open(&folder).unwrap().visit(Scales).unwrap();
+        let one = |scales: &Vec<ScaleTally>| {
+            assert!(scales.len() == 1 && scales[0].frozen && scales[0].kernel == "perturb", "{scales:?}");
+            (scales[0].value.unwrap(), scales[0].tried)
+        };
+        chains.iter().map(one).collect::<Vec<_>>()
+    };
+    sample(&folder, &adapting(1), Sampling::new(1, &mut Unwatched)).unwrap();
+    let short = values();
+    resume(&folder, More { iterations: Some(900), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap();
+    for (short, long) in short.iter().zip(values()) {
+        assert!(short.0 == long.0 && long.1 > short.1 && short.0 < 5.0, "{short:?} {long:?}");
+    }
+    assert!(short[0].0 != short[1].0, "each chain has its own");
 }
 
 #[test]
 fn a_process_killed_anywhere_finds_the_same_solutions() {
-    killed_everywhere(&recipe(Some(60)), true, 197);
+    killed_everywhere(recipe(Some(30)), true);
 }
 
 #[test]
 fn a_full_disk_leaves_the_run_resumable() {
-    killed_everywhere(&recipe(None), false, 197);
+    killed_everywhere(recipe(None), false);
 }
 
 #[test]
@@ -83,7 +135,14 @@ fn a_full_disk_is_named_with_what_is_safe() {
     let disk = FailingDisk::new(20_000, u64::MAX, false);
     let error = sample_on(&disk, &folder, &recipe(None), &mut Unwatched).unwrap_err();
     let Error::DiskFull { safe, .. } = &error else { panic!("{error}") };
-    assert!(*safe >= 100 && safe.is_multiple_of(100), "{safe}");
+    struct Iterations;
+    impl RunVisitor for Iterations {
+        type Output = u64;
+        fn visit<S: Scene>(self, run: RunOf<'_, S>) -> u64 {
+            run.iterations()
+        }
+    }
+    assert!(*safe > 0 && Run::open(&folder).unwrap().visit(Iterations).unwrap() == *safe, "{safe}");
     assert!(error.to_string().contains("free some space, then `plaus resume`"), "{error}");
 }
 
@@ -104,7 +163,7 @@ fn threads_and_checkpoints_leave_no_trace() {
 
 #[test]
 fn a_longer_run_begins_like_the_shorter() {
-    use plaus_run::{Manifest, Phase, Run};
+    use plaus_run::{Manifest, Phase};
     let place = tempfile::tempdir().unwrap();
     let (short, long) = (Folder::new(place.path().join("short")), Folder::new(place.path().join("long")));
     sample(&short, &recipe(None), Sampling::new(1, &mut Unwatched)).unwrap();

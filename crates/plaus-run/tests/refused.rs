@@ -139,9 +139,9 @@ fn any_refusal_of_the_disk_says_what_is_safe() {
     let disk = Revoked(AtomicU32::new(7)); // three chains: the second append of the third round
     let error =
         sample(&folder, &recipe(None), Sampling { threads: 1, disk: &disk, watch: &mut Unwatched }).unwrap_err();
-    assert!(matches!(error, Error::BrokenOff { safe: 200, .. }), "{error}");
+    assert!(matches!(error, Error::BrokenOff { safe: 2, .. }), "{error}");
     let text = error.to_string();
-    assert!(text.contains("chain-00001.records: cannot write") && text.contains("safe up to iteration 200"), "{text}");
+    assert!(text.contains("chain-00001.records: cannot write") && text.contains("safe up to iteration 2:"), "{text}");
     resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap();
     assert_eq!(bytes_of(&folder), bytes_of(&sampled().1));
 }

@@ -46,6 +46,7 @@ fn sample(scene: &Ball2d, moves: &Mixture<Ball2d>) {
         solutions: None,
         rungs: 1,
         swap_every: 1,
+        adapt: false,
     };
     run(scene, moves, plan, Vec::new(), 1, &mut Drop).unwrap();
 }

@@ -36,6 +36,12 @@ macro_rules! scenes {
                 match name { $($name => Some(Self::$variant(Box::default())),)+ _ => None }
             }
 
+            /// Whether its moves' scales are adapted where a scenario does not say.
+            #[must_use]
+            pub fn adapts(&self) -> bool {
+                match self { $(Self::$variant(_) => <crate::$module::$variant as Scene>::ADAPTS),+ }
+            }
+
             /// Builds the scene and hands it to `visitor`.
             ///
             /// # Errors

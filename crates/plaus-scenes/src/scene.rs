@@ -13,6 +13,9 @@ use serde::de::DeserializeOwned;
 pub trait Scene:
     Goal<Draw: Serialize + DeserializeOwned, Outcome: Serialize + DeserializeOwned + PartialEq> + Sized + Send
 {
+    /// Whether the scales of its moves are adapted in the warm-up where a scenario does not say: where that was measured to be better.
+    const ADAPTS: bool = false;
+
     /// The moves this scene is sampled with, under `rules`.
     ///
     /// # Errors

@@ -7,7 +7,7 @@
 mod measure;
 
 use glam::DVec3;
-use measure::{Digest, Stopwatch, noise, write_trace};
+use measure::{Digest, Stopwatch, arguments, noise, write_trace};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::trace::Trace;
 use plaus_sim::worlds::DieOnTable;
@@ -15,12 +15,7 @@ use plaus_sim::{Accuracy, Outcome, Preset, Scratch, WorldError};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut args: Vec<String> = std::env::args().skip(1).collect();
-    let path = match args.iter().position(|a| a == "--trace") {
-        Some(at) => args.drain(at..).nth(1),
-        None => None,
-    };
-    let path = path.unwrap_or("target/die.json".into());
+    let (args, path) = arguments("target/die.json")?;
     let throws: usize = args.first().map_or(Ok(500), |a| a.parse())?;
     let only: Option<f64> = args.get(1).map(|a| a.parse()).transpose()?;
     let is_asked = |p: &Preset| args.get(2).map_or(*p != Preset::Reference, |name| name == p.name());

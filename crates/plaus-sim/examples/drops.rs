@@ -8,6 +8,9 @@
     reason = "a measuring program: it reads the clock and prints"
 )]
 
+mod measure;
+
+use measure::Digest;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::marbles::{Marble, Marbles, Phase, Start};
 use plaus_sim::worlds::{Bins, Watch, drops};
@@ -79,7 +82,7 @@ fn main() {
         .world(count, Accuracy { events: 1000, ..Accuracy::preset(preset) }, interval * count as f64 + 1.0)
         .unwrap();
     let mut scratch = Scratch::default();
-    let mut tally = Tally::default();
+    let (mut tally, mut digest) = (Tally::default(), Digest::new());
     for run in 0..runs {
         let mut stream = Seed(7).chain(0).at(run as u64, Purpose::START);
         let mut uniform = || open_unit(&mut stream);
@@ -97,6 +100,9 @@ fn main() {
             fastest = fastest.min(begin.elapsed().as_secs_f64() * 1e6);
         }
         tally.micros.push(fastest);
+        for b in state.bodies() {
+            digest.add_all(b.path.x.to_array().into_iter().chain(b.path.v.to_array()).chain([b.path.t]));
+        }
         let counts = state.counts();
         tally.events += counts.events;
         tally.impacts += counts.impacts;
@@ -139,4 +145,5 @@ fn main() {
         tally.events as f64 / runs as f64,
         total * 1000.0 / tally.events as f64
     );
+    println!("digest of the outcomes {:016x}", digest.get());
 }

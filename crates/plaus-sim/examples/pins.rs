@@ -7,7 +7,7 @@
 mod measure;
 
 use glam::DVec3;
-use measure::{Digest, Stopwatch, write_trace};
+use measure::{Digest, Stopwatch, arguments, write_trace};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::rigid::Start;
 use plaus_sim::trace::{Trace, While};
@@ -16,12 +16,7 @@ use plaus_sim::{Accuracy, Outcome, Preset, Scratch, WorldError};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut args: Vec<String> = std::env::args().skip(1).collect();
-    let path = match args.iter().position(|a| a == "--trace") {
-        Some(at) => args.drain(at..).nth(1),
-        None => None,
-    };
-    let path = path.unwrap_or("target/pins.json".into());
+    let (args, path) = arguments("target/pins.json")?;
     let shots: usize = args.first().map_or(Ok(50), |a| a.parse())?;
     let is_asked = |p: &Preset| args.get(1).map_or(*p <= Preset::Standard, |name| name == p.name());
     println!(

@@ -7,7 +7,7 @@
 mod measure;
 
 use glam::{DQuat, DVec3};
-use measure::{Digest, Stopwatch, noise, write_trace};
+use measure::{Digest, Stopwatch, arguments, noise, write_trace};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Table, Turning};
@@ -26,12 +26,7 @@ const MATERIAL: Material = Material(0);
 const EDGE: f64 = 0.016;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut args: Vec<String> = std::env::args().skip(1).collect();
-    let path = match args.iter().position(|a| a == "--trace") {
-        Some(at) => args.drain(at..).nth(1),
-        None => None,
-    };
-    let path = path.unwrap_or("target/polyhedra.json".into());
+    let (args, path) = arguments("target/polyhedra.json")?;
     let throws: u64 = args.first().map_or(Ok(300), |a| a.parse())?;
     let bumps: f64 = args.get(1).map_or(Ok(0.1), |a| a.parse())?;
     let bodies = [

@@ -5,6 +5,7 @@
 use crate::links::Links;
 use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
+use std::cmp::Ordering;
 
 /// What one impact did, for traces and observers.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -67,6 +68,10 @@ pub trait Mechanics {
     fn is_resting(&self, body: &Self::Body) -> bool;
     /// Whether all numbers are finite.
     fn is_finite(&self, body: &Self::Body) -> bool;
+    /// Which of two bodies, with these indices, comes first where an impact goes on through both at once. By index, unless a kind knows an order that labels have no part in.
+    fn order(&self, [i, j]: [u32; 2], _bodies: [&Self::Body; 2]) -> Ordering {
+        i.cmp(&j)
+    }
     /// Moves a body along its closed form to `time`, its new clock.
     fn advance(&self, index: usize, body: &mut Self::Body, time: f64);
 

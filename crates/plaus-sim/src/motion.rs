@@ -1,6 +1,6 @@
 //! One stretch of closed-form motion: a parabola of the centre, valid from its own clock on.
 
-use crate::scenery::Aabb;
+use crate::scenery::{Aabb, greater, lesser};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -43,25 +43,41 @@ impl Parabola {
     #[inline]
     #[must_use]
     pub fn bounds(&self, from: f64, until: f64) -> Aabb {
-        let (p, q) = (self.after(from), self.after(until));
-        let mut b = Aabb { min: p.min(q), max: p.max(q) };
-        if self.a != DVec3::ZERO {
-            self.widen(&mut b, from, until);
-        }
-        b
+        Course::new(self).bounds(from, self.after(from), until)
+    }
+}
+
+/// A motion and when its coordinates turn, in seconds after its clock, and where: for boxes around many stretches of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Course<'p> {
+    path: &'p Parabola,
+    turns: DVec3,
+    peaks: DVec3,
+}
+
+impl<'p> Course<'p> {
+    #[inline]
+    pub(crate) fn new(path: &'p Parabola) -> Self {
+        // The coordinate turns where v + a τ = 0; where it never does, this is no number or infinite.
+        let turns = -path.v / path.a;
+        Self { path, turns, peaks: path.x + 0.5 * path.v * turns }
     }
 
+    /// The smallest box around the centre between `from`, when it is at `x`, and `until` seconds after the clock.
     #[inline]
-    fn widen(&self, b: &mut Aabb, from: f64, until: f64) {
+    pub(crate) fn bounds(&self, from: f64, x: DVec3, until: f64) -> Aabb {
+        let end = self.path.after(until);
+        let mut b = Aabb {
+            min: DVec3::new(lesser(x.x, end.x), lesser(x.y, end.y), lesser(x.z, end.z)),
+            max: DVec3::new(greater(x.x, end.x), greater(x.y, end.y), greater(x.z, end.z)),
+        };
         for k in 0..3 {
-            // The coordinate turns where v + a τ = 0.
-            let turn = -self.v[k] / self.a[k];
-            if turn > from && turn < until {
-                let peak = self.x[k] + 0.5 * self.v[k] * turn;
-                b.min[k] = b.min[k].min(peak);
-                b.max[k] = b.max[k].max(peak);
+            if self.turns[k] > from && self.turns[k] < until {
+                b.min[k] = lesser(b.min[k], self.peaks[k]);
+                b.max[k] = greater(b.max[k], self.peaks[k]);
             }
         }
+        b
     }
 }
 

@@ -5,6 +5,7 @@
 
 use crate::scenery::Surface;
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 
 /// What happens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -33,21 +34,39 @@ pub struct Event {
     pub happening: Happening,
 }
 
+/// What orders bodies whose events are due at the same time: the numbers in turn, then the index. A kind of bodies that gives each its own numbers, from how it starts, makes ties
+/// independent of labels.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Place(pub [f64; 4]);
+
+/// Which of two bodies comes first where times do not tell.
+fn order(a: u32, b: u32, places: &[Place]) -> Ordering {
+    let (p, q) = (places[a as usize].0, places[b as usize].0);
+    let by_place = p.iter().zip(&q).map(|(s, t)| s.total_cmp(t)).find(|o| o.is_ne());
+    by_place.unwrap_or(Ordering::Equal).then(a.cmp(&b))
+}
+
 impl Event {
-    /// Order of execution: time, then the lower and the higher index of those involved, so that ties never depend on bookkeeping.
-    #[inline]
-    fn key(&self, body: u32) -> (f64, u32, u32) {
+    /// Those involved, in their order.
+    fn pair(&self, body: u32, places: &[Place]) -> [u32; 2] {
         match self.happening {
-            Happening::Body { other, .. } => (self.time, body.min(other), body.max(other)),
-            _ => (self.time, body, body),
+            Happening::Body { other, .. } if order(other, body, places).is_lt() => [other, body],
+            Happening::Body { other, .. } => [body, other],
+            _ => [body, body],
         }
     }
 
-    /// Whether this event of `body` comes before `other` of `rival`.
+    /// Whether this event of `body` comes before `other` of `rival`: by time, then by those involved, so that ties never depend on bookkeeping.
     #[inline]
     #[must_use]
-    pub fn precedes(&self, body: u32, other: &Self, rival: u32) -> bool {
-        self.key(body) < other.key(rival)
+    pub fn precedes(&self, body: u32, other: &Self, rival: u32, places: &[Place]) -> bool {
+        self.time < other.time || (self.time == other.time && self.wins_tie(body, other, rival, places))
+    }
+
+    #[cold]
+    fn wins_tie(&self, body: u32, other: &Self, rival: u32, places: &[Place]) -> bool {
+        let ([a, b], [c, d]) = (self.pair(body, places), other.pair(rival, places));
+        order(a, c, places).then(order(b, d, places)).is_lt()
     }
 }
 
@@ -60,7 +79,7 @@ pub(crate) struct Tournament {
 
 impl Tournament {
     /// Plays all matches anew.
-    pub(crate) fn rebuild(&mut self, events: &[Event]) {
+    pub(crate) fn rebuild(&mut self, events: &[Event], places: &[Place]) {
         self.leaves = events.len().next_power_of_two().max(1);
         self.winners.clear();
         self.winners.resize(2 * self.leaves, NOBODY);
@@ -68,24 +87,24 @@ impl Tournament {
             self.winners[self.leaves + k] = k as u32;
         }
         for node in (1..self.leaves).rev() {
-            self.play(node, events);
+            self.play(node, events, places);
         }
     }
 
     /// Plays the matches of one body anew.
     #[inline]
-    pub(crate) fn update(&mut self, body: usize, events: &[Event]) {
+    pub(crate) fn update(&mut self, body: usize, events: &[Event], places: &[Place]) {
         let mut node = (self.leaves + body) / 2;
         while node >= 1 {
-            self.play(node, events);
+            self.play(node, events, places);
             node /= 2;
         }
     }
 
     #[inline]
-    fn play(&mut self, node: usize, events: &[Event]) {
+    fn play(&mut self, node: usize, events: &[Event], places: &[Place]) {
         let (a, b) = (self.winners[2 * node], self.winners[2 * node + 1]);
-        let a_wins = b == NOBODY || (a != NOBODY && !events[b as usize].precedes(b, &events[a as usize], a));
+        let a_wins = b == NOBODY || (a != NOBODY && !events[b as usize].precedes(b, &events[a as usize], a, places));
         self.winners[node] = if a_wins { a } else { b };
     }
 
@@ -111,11 +130,12 @@ mod tests {
             let event = |t: u8| Event { time: f64::from(t), happening: Happening::Expiry };
             let mut events: Vec<Event> = times.iter().map(|&t| event(t)).collect();
             let mut tree = Tournament::default();
-            tree.rebuild(&events);
+            let places = vec![Place::default(); events.len()];
+            tree.rebuild(&events, &places);
             for (k, t) in updates {
                 let k = k % events.len();
                 events[k] = event(t);
-                tree.update(k, &events);
+                tree.update(k, &events, &places);
                 let scanned = (0..events.len()).min_by(|&a, &b| events[a].time.total_cmp(&events[b].time).then(a.cmp(&b)));
                 prop_assert_eq!(tree.first(), scanned);
             }
@@ -125,7 +145,7 @@ mod tests {
     #[test]
     fn nobody_comes_first_in_an_empty_world() {
         let mut tree = Tournament::default();
-        tree.rebuild(&[]);
+        tree.rebuild(&[], &[]);
         assert_eq!(tree.first(), None);
     }
 }

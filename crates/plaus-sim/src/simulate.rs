@@ -101,6 +101,9 @@ fn add_group(links: &Links, seed: u32, marks: &mut Marks, members: &mut Vec<u32>
     if marks.mark(seed) {
         members.push(seed);
     }
+    if links.is_empty() {
+        return;
+    }
     while let Some(&at) = members.get(next) {
         next += 1;
         members.extend(links.of(at).filter(|&other| marks.mark(other)));
@@ -122,7 +125,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     /// Looks at every body for the first time, or restores the queue of a state that was paused.
     fn start(&mut self) -> Option<Outcome> {
         if self.state.started {
-            self.scratch.queue.rebuild(&self.state.events);
+            self.scratch.queue.rebuild(&self.state.events, &self.state.places);
             return None;
         }
         self.state.started = true;
@@ -132,7 +135,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         for k in 0..n as usize {
             self.observer.motion(k, &self.state.bodies[k]);
         }
-        self.scratch.queue.rebuild(&self.state.events);
+        self.scratch.queue.rebuild(&self.state.events, &self.state.places);
         self.look_ahead()
     }
 
@@ -201,21 +204,33 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
 
     /// After an impact, the lasting contacts of those involved may have become approaching: they are next.
     fn add_neighbours(&mut self, meeting: Meeting) {
+        let Self { mechanics, state, scratch, .. } = self;
+        let order = |i: u32, j: u32| mechanics.order([i, j], [&state.bodies[i as usize], &state.bodies[j as usize]]);
         let (a, b) = match meeting {
             Meeting::Surface(k, _) => (k, None),
-            Meeting::Bodies(i, j) => (i, Some(j)),
+            Meeting::Bodies(i, j) if order(i, j).is_le() => (i, Some(j)),
+            Meeting::Bodies(i, j) => (j, Some(i)),
         };
+        let worklist = &mut scratch.worklist;
         for k in std::iter::once(a).chain(b) {
-            for &s in self.mechanics.contacts(&self.state.bodies[k as usize]) {
+            for &s in mechanics.contacts(&state.bodies[k as usize]) {
                 if !matches!(meeting, Meeting::Surface(m, t) if m == k && t == s) {
-                    self.scratch.worklist.push(Meeting::Surface(k, s));
+                    worklist.push(Meeting::Surface(k, s));
                 }
             }
-            for other in self.state.links.of(k) {
+            let first = worklist.len();
+            for other in state.links.of(k) {
                 let (i, j) = (k.min(other), k.max(other));
                 if !matches!(meeting, Meeting::Bodies(p, q) if p == i && q == j) {
-                    self.scratch.worklist.push(Meeting::Bodies(i, j));
+                    worklist.push(Meeting::Bodies(i, j));
                 }
+            }
+            let partner = |m: &Meeting| match *m {
+                Meeting::Bodies(i, j) if i == k => j,
+                Meeting::Bodies(i, _) | Meeting::Surface(i, _) => i,
+            };
+            if worklist.len() > first + 1 {
+                worklist[first..].sort_by(|p, q| order(partner(p), partner(q)));
             }
         }
     }
@@ -252,7 +267,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         for k in 0..self.scratch.concerned.len() {
             let body = self.scratch.concerned[k] as usize;
             self.meetings(body);
-            self.scratch.queue.update(body, &self.state.events);
+            self.scratch.queue.update(body, &self.state.events, &self.state.places);
         }
         None
     }
@@ -283,8 +298,13 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             return;
         }
         let mut event = self.state.events[k];
-        for (j, other) in self.state.bodies.iter().enumerate() {
-            if j == k || !self.state.boxes[j].meets(&self.state.boxes[k]) || !self.mechanics.is_present(other) {
+        let around = self.state.boxes[k];
+        for (j, near) in self.state.boxes.iter().enumerate() {
+            if !near.meets(&around) || j == k {
+                continue;
+            }
+            let other = &self.state.bodies[j];
+            if !self.mechanics.is_present(other) {
                 continue;
             }
             let linked = self.state.links.contains(j as u32, k as u32);
@@ -304,7 +324,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
                     time,
                     happening: Happening::Body { other: j as u32, generation: self.state.generations[j] },
                 };
-                if found.precedes(k as u32, &event, k as u32) {
+                if found.precedes(k as u32, &event, k as u32, &self.state.places) {
                     event = found;
                 }
             }
@@ -315,9 +335,9 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
                 time: event.time,
                 happening: Happening::Body { other: k as u32, generation: self.state.generations[k] },
             };
-            if back.precedes(other, &self.state.events[other as usize], other) {
+            if back.precedes(other, &self.state.events[other as usize], other, &self.state.places) {
                 self.state.events[other as usize] = back;
-                self.scratch.queue.update(other as usize, &self.state.events);
+                self.scratch.queue.update(other as usize, &self.state.events, &self.state.places);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::links::Links;
 use crate::mechanics::Mechanics;
-use crate::queue::{Event, Happening};
+use crate::queue::{Event, Happening, Place};
 use crate::scenery::Aabb;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +29,8 @@ pub struct State<B> {
     pub(crate) events: Vec<Event>,
     pub(crate) generations: Vec<u32>,
     pub(crate) boxes: Vec<Aabb>,
+    /// What orders bodies whose events are due at the same time.
+    pub(crate) places: Vec<Place>,
     pub(crate) counts: Counts,
     /// Whether the first predictions have been made.
     pub(crate) started: bool,
@@ -43,6 +45,7 @@ impl<B: Clone> Clone for State<B> {
             events: self.events.clone(),
             generations: self.generations.clone(),
             boxes: self.boxes.clone(),
+            places: self.places.clone(),
             counts: self.counts,
             started: self.started,
         }
@@ -56,6 +59,7 @@ impl<B: Clone> Clone for State<B> {
         self.events.clone_from(&source.events);
         self.generations.clone_from(&source.generations);
         self.boxes.clone_from(&source.boxes);
+        self.places.clone_from(&source.places);
         self.counts = source.counts;
         self.started = source.started;
     }
@@ -64,6 +68,12 @@ impl<B: Clone> Clone for State<B> {
 impl<B> State<B> {
     /// A state of bodies that have not been looked at yet.
     pub(crate) fn new(bodies: Vec<B>) -> Self {
+        let places = vec![Place::default(); bodies.len()];
+        Self::with_places(bodies, places)
+    }
+
+    /// The same with an order for ties.
+    pub(crate) fn with_places(bodies: Vec<B>, places: Vec<Place>) -> Self {
         let n = bodies.len();
         Self {
             time: 0.0,
@@ -72,6 +82,7 @@ impl<B> State<B> {
             events: vec![Event { time: 0.0, happening: Happening::End }; n],
             generations: vec![0; n],
             boxes: vec![Aabb::around([glam::DVec3::ZERO]); n],
+            places,
             counts: Counts::default(),
             started: false,
         }
@@ -102,8 +113,8 @@ impl<B> State<B> {
     }
 
     /// Replaces a body that nothing has looked at yet, so that no other body's events change.
-    pub(crate) fn replace_unreleased(&mut self, index: usize, body: B, release: f64) {
-        self.bodies[index] = body;
+    pub(crate) fn replace_unreleased(&mut self, index: usize, body: B, place: Place, release: f64) {
+        (self.bodies[index], self.places[index]) = (body, place);
         self.events[index] = Event { time: release, happening: Happening::Expiry };
     }
 

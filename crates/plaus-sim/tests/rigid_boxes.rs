@@ -1,12 +1,15 @@
 //! Cuboids against cuboids: when they touch, what an impact keeps, stacks, piles, and nothing inside anything.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod common;
+
+use common::turning::Overlaps;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, math, open_unit};
 use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start, Turning};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Shape};
-use plaus_sim::trace::{Observer, Trace};
+use plaus_sim::trace::Trace;
 use plaus_sim::worlds::{Alley, DieOnTable};
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State, WorldError};
 
@@ -163,35 +166,6 @@ fn a_die_pushes_another() {
     assert!((moved / way - 1.0).abs() < 0.1, "{moved} for {way}");
 }
 
-/// Looks at every new motion, and half way before it, whether dice are in each other.
-struct Overlaps<'w> {
-    world: &'w Rigid,
-    last: Vec<Turning>,
-    worst: f64,
-}
-
-impl Overlaps<'_> {
-    fn look(&mut self, index: usize, body: &Turning) {
-        for (other, there) in self.last.iter().enumerate() {
-            let present = [there, body].iter().all(|b| b.phase != Phase::Gone);
-            if other != index && present && there.path.t <= body.path.t {
-                let there = self.world.at(other, there, body.path.t);
-                self.worst = self.worst.max(-self.world.gap([index, other], [body, &there]));
-            }
-        }
-    }
-}
-
-impl Observer<Rigid> for Overlaps<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
-        let before = &self.last[index];
-        let half = self.world.at(index, before, 0.5 * (before.path.t + body.path.t));
-        self.look(index, &half);
-        self.look(index, body);
-        self.last[index] = body.clone();
-    }
-}
-
 /// The example counts many more. 5e-3: five times the sag that a step of lasting contact may have half way (`SAG` of the steps).
 #[test]
 fn thrown_together_dice_end_at_rest_and_are_never_in_each_other() {
@@ -201,7 +175,7 @@ fn thrown_together_dice_end_at_rest_and_are_never_in_each_other() {
             let world = die.world_of(6, |i, j| ((i * 7 + j * 13) % 11) as f64 / 6.0 - 0.8).unwrap();
             let mut stream = Seed(9).chain(0).at(k, Purpose::START);
             let mut state = world.state(&die.throw_together(6, || open_unit(&mut stream))).unwrap();
-            let mut overlaps = Overlaps { world: &world, last: state.bodies().to_vec(), worst: 0.0 };
+            let mut overlaps = Overlaps::new(&world, &state);
             let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut overlaps).unwrap();
             assert_eq!(outcome, Outcome::AllAtRest, "throw {k} on bumps {bumps}");
             assert!(overlaps.worst < 5e-3 * 0.008, "{} m in throw {k} on bumps {bumps}", overlaps.worst);
@@ -238,7 +212,7 @@ fn pins_are_seen_whose_far_ends_meet() {
         let spin = DVec3::new(-velocity.y, velocity.x, 0.0) * (between(0.0, 1.0) / alley.ball_radius);
         let starts = alley.starts(0.5, between(-0.4, 0.4), velocity, spin).unwrap();
         let mut state = world.state(&starts).unwrap();
-        let mut overlaps = Overlaps { world: &world, last: state.bodies().to_vec(), worst: 0.0 };
+        let mut overlaps = Overlaps::new(&world, &state);
         world.run(&mut state, &mut Scratch::default(), 1.0, &mut overlaps).unwrap();
         assert!(overlaps.worst < 2e-3, "{} m in shot {shot}", overlaps.worst);
     }

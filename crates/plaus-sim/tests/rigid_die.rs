@@ -1,6 +1,9 @@
 //! Dice on tables: rest, fairness, energy, scale, restart, extremes, faults.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
+use common::turning::noise;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};
@@ -10,16 +13,6 @@ use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::trace::Observer;
 use plaus_sim::worlds::DieOnTable;
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State, WorldError};
-
-/// A Gaussian's stand-in, within ±3.5.
-fn noise(i: i64, j: i64) -> f64 {
-    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-    h ^= h >> 31;
-    h = h.wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    h ^= h >> 29;
-    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
-    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
-}
 
 fn throws(count: u64) -> impl Iterator<Item = Start> {
     let die = DieOnTable::default();

@@ -1,6 +1,9 @@
 //! Convex polyhedra: as cuboids where they are cuboids; rest, energy, outcomes, scale; against balls, cuboids and each other.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod common;
+
+use common::turning::{Overlaps, noise, same_when_relabelled};
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};
@@ -34,16 +37,6 @@ fn rock(seed: u64, scale: f64) -> Shape {
 
 fn flat() -> Part {
     Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())
-}
-
-/// A Gaussian's stand-in, within ±3.5.
-fn noise(i: i64, j: i64) -> f64 {
-    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-    h ^= h >> 31;
-    h = h.wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    h ^= h >> 29;
-    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
-    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
 }
 
 fn bumpy(bumps: f64, scale: f64) -> Part {
@@ -256,33 +249,6 @@ fn energy_never_grows() {
     }
 }
 
-/// Looks at every new motion, and half way before it, whether bodies are in each other.
-struct Overlaps<'w> {
-    world: &'w Rigid,
-    last: Vec<Turning>,
-    worst: f64,
-}
-
-impl Overlaps<'_> {
-    fn look(&mut self, index: usize, body: &Turning) {
-        for (other, there) in self.last.iter().enumerate() {
-            if other != index && there.path.t <= body.path.t {
-                let there = self.world.at(other, there, body.path.t);
-                self.worst = self.worst.max(-self.world.gap([index, other], [body, &there]));
-            }
-        }
-    }
-}
-
-impl Observer<Rigid> for Overlaps<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
-        let half = self.world.at(index, &self.last[index], 0.5 * (self.last[index].path.t + body.path.t));
-        self.look(index, &half);
-        self.look(index, body);
-        self.last[index] = body.clone();
-    }
-}
-
 fn mixed() -> Vec<Shape> {
     let cuboid = Cuboid::new(DVec3::splat(EDGE), 0.0).unwrap();
     let die = Shape::Cuboid(cuboid);
@@ -298,7 +264,7 @@ fn thrown_together_they_come_to_rest_and_are_never_in_each_other() {
             let law = Law::new(0.4, 0.4).with_resistance(0.02, 0.02);
             let world = world(mixed(), vec![table], law);
             let mut state = world.state(&together(k, 6)).unwrap();
-            let mut overlaps = Overlaps { world: &world, last: state.bodies().to_vec(), worst: 0.0 };
+            let mut overlaps = Overlaps::new(&world, &state);
             let outcome = world.run(&mut state, &mut Scratch::default(), 20.0, &mut overlaps).unwrap();
             assert!(
                 matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached),
@@ -350,23 +316,14 @@ fn relabelling_permutes_flights_and_impacts() {
     for k in 0..60 {
         let all = [rock(k, 1.0), solid(Solid::Octahedron), Shape::Ball(0.5 * EDGE), rock(k + 100, 0.9)];
         let other = 1 + (k as usize) % 3;
-        let run = |order: [usize; 2]| {
+        let world = |order: [usize; 2]| {
             let shapes = order.map(|b| all[b * other].clone()).to_vec();
-            let open = RigidWorld { gravity: DVec3::ZERO, ..plain(shapes, Vec::new(), Law::new(0.3, 0.8)) };
-            let world = Rigid::new(open).unwrap();
-            let starts = together(k, 2).into_iter().map(|s| Start { velocity: s.velocity - s.position * 20.0, ..s });
-            let starts: Vec<Start> = starts.collect();
-            let mut state = world.state(&order.map(|b| starts[b])).unwrap();
-            world.run(&mut state, &mut Scratch::default(), 0.12, &mut ()).unwrap();
-            (state, world)
+            let world = plain(shapes, Vec::new(), Law::new(0.3, 0.8));
+            Rigid::new(RigidWorld { gravity: DVec3::ZERO, ..world }).unwrap()
         };
-        let ((plain, a), (shuffled, b)) = (run([0, 1]), run([1, 0]));
-        impacts += plain.counts().impacts;
-        for label in 0..2 {
-            let p = a.at(label, &plain.bodies()[label], 0.12);
-            let q = b.at(1 - label, &shuffled.bodies()[1 - label], 0.12);
-            assert_eq!((p.path.x, p.path.v, p.turn, p.spin), (q.path.x, q.path.v, q.turn, q.spin), "throw {k}");
-        }
+        let thrown = together(k, 2);
+        let starts = [0, 1].map(|b| Start { velocity: thrown[b].velocity - thrown[b].position * 20.0, ..thrown[b] });
+        impacts += same_when_relabelled(world, starts, 0.12, &format!("throw {k}"));
     }
     assert!(impacts > 20, "{impacts}");
 }

@@ -114,7 +114,7 @@ impl Move<Bowling> for Faulty {
 #[test]
 fn wrong_twins_are_caught() {
     let steps = Steps::default();
-    let ball = |quantities| -> AnyMove { Box::new(ChangeBall { name: "change", quantities, steps }) };
+    let ball = |quantities| -> AnyMove { Box::new(ChangeBall { name: "change", quantities, steps, factor: 1.0 }) };
     let twins: Vec<AnyMove> = vec![
         // The paper's errata.
         Box::new(ChangeAll { symmetric: true, radial_offsets: false }),
@@ -139,6 +139,9 @@ fn wrong_twins_are_caught() {
 fn a_shift_of_the_radius_keeps_the_height_s_law() {
     let scene = super::straight::scene(|config| config.ln_lambda = 0.0);
     let steps = Steps::default();
-    let report = step(&scene, Box::new(ChangeBall { name: "change_radius", quantities: &[Quantity::Radius], steps }));
+    let report = step(
+        &scene,
+        Box::new(ChangeBall { name: "change_radius", quantities: &[Quantity::Radius], steps, factor: 1.0 }),
+    );
     assert!(report.passed() && report.accepted() > 10_000, "{report}");
 }

@@ -1,31 +1,16 @@
 //! Draws without the constraint have the laws of the paper's appendix A.1, with the errata of MODEL.md applied.
 
 use super::straight::scene;
-use plaus_dist::{Purpose, Seed, math};
+use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::Target;
 use plaus_scenes::bowling::{Quantity, Shot};
-use std::f64::consts::FRAC_1_SQRT_2;
+use plaus_tests::law::{bound, distance, normal};
 
 const DRAWS: usize = 100_000;
 
-/// The largest distance between an empirical and a given distribution function exceeds this with probability 1e-7 at most (Dvoretzky, Kiefer, Wolfowitz, Massart), whatever the
-/// law. Nine such tests below: 1e-6 for all.
+/// At most so far apart, at a false-alarm rate of 1e-7; nine such tests below: 1e-6 for all.
 fn most() -> f64 {
-    (math::ln(2.0 / 1e-7) / (2.0 * DRAWS as f64)).sqrt()
-}
-
-fn distance(mut values: Vec<f64>, cdf: impl Fn(f64) -> f64) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    let count = values.len() as f64;
-    let gap = |(index, x): (usize, &f64)| {
-        let at = cdf(*x);
-        (at - index as f64 / count).abs().max((at - (index + 1) as f64 / count).abs())
-    };
-    values.iter().enumerate().map(gap).fold(0.0, f64::max)
-}
-
-fn normal(z: f64) -> f64 {
-    0.5 * math::erfc(-z * FRAC_1_SQRT_2)
+    bound(1e-7, DRAWS)
 }
 
 #[test]

@@ -97,7 +97,7 @@ pub(crate) fn small(ln_lambda: f64, delivery: Delivery) -> Bowling {
 pub(crate) fn all_moves() -> Vec<AnyMove> {
     use Quantity::{Across, Density, Drift, Gyration, Height, Hook, Radius, Roll, Speed, Twist};
     let steps = Steps::default();
-    let ball = |quantities| -> AnyMove { Box::new(ChangeBall { name: "change", quantities, steps }) };
+    let ball = |quantities| -> AnyMove { Box::new(ChangeBall { name: "change", quantities, steps, factor: 1.0 }) };
     vec![
         Box::new(ChangeAll::default()),
         ball(&[Radius]),
@@ -109,7 +109,7 @@ pub(crate) fn all_moves() -> Vec<AnyMove> {
         Box::new(Redraw::default()),
         Box::new(RedrawPins { chance: 0.3 }),
         Box::new(Aim { anew: 0.5 }),
-        Box::new(Refine { steps }),
+        Box::new(Refine { steps, about: None }),
         Box::new(Mirror),
     ]
 }

@@ -9,7 +9,9 @@ use plaus_mcmc::check::{
 };
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Chain, Mixture, State, Verdict};
-use plaus_scenes::dice::{Constraint, Dice, FaceUp, Recast, RestAt, Shift, Turn, Work};
+use plaus_scenes::dice::{
+    Component, Constraint, Dice, FaceUp, Near, Pick, Point, Recast, RestAt, Scale, Shift, Turn, Work,
+};
 use plaus_scenes::{Rules, Scene};
 
 const SAMPLES: u64 = 6_000;
@@ -73,7 +75,8 @@ fn every_move_leaves_prior_and_target_invariant() {
 
 #[test]
 fn ratios_agree_with_their_reverse() {
-    for dice in [small(|_| ()), small(|config| config.together = true)] {
+    // Picking takes long, and is tried elsewhere.
+    for dice in [small(|_| ()), small(|config| (config.together, config.weights.pick) = (true, 0.0))] {
         let toy = Plain { dice: &dice, flat: false };
         let mixture = lend::<Plain<'_>>(dice.moves(&Rules::exact()).unwrap()).unwrap();
         let states = visited(&toy, &mixture, Seed(5), 5, 500).unwrap();
@@ -188,12 +191,39 @@ fn recasts_of_several_dice_leave_the_constrained_target_invariant() {
     assert!(right.passed() && right.accepted() > 100, "{right}");
     let wrong = report(Box::new(Faulty(Box::new(recast()), Fault::Forgets)), 3);
     assert!(!wrong.passed(), "not caught: {wrong}");
+    // The same for throws that are picked among many.
+    let pick = || Pick { sd: 0.1, near: 0.1 };
+    let right = report(Box::new(pick()), 1);
+    assert!(right.passed() && right.accepted() > 100, "{right}");
+    let wrong = report(Box::new(Faulty(Box::new(pick()), Fault::Forgets)), 2);
+    assert!(!wrong.passed(), "not caught: {wrong}");
     // On a random table as well, proposals have the densities that they are said to have.
     let dice = scene(|config| (config.dice, config.together) = (3, true));
-    let mixture = Mixture::of(Box::new(recast()) as AnyMove);
-    let (_, kernel) = mixture.iter().next().unwrap();
-    let report = ratios(&dice, kernel, prior(&dice), Ratios { pairs: 30, ..Ratios::default() }).unwrap();
-    assert!(report.passed(), "{report}");
+    for kernel in [Box::new(recast()) as AnyMove, Box::new(Pick { sd: 0.06, near: 0.03 })] {
+        let mixture = Mixture::of(kernel);
+        let (_, kernel) = mixture.iter().next().unwrap();
+        let report = ratios(&dice, kernel, prior(&dice), Ratios { pairs: 30, ..Ratios::default() }).unwrap();
+        assert!(report.passed(), "{report}");
+    }
+}
+
+/// Steps about an adapted scale leave the law as it is, too.
+#[test]
+fn adapted_moves_leave_prior_and_target_invariant() {
+    let dice = small(|_| ());
+    let scale = Scale::new(0.01, 1.0);
+    let adapted = |kernel: AnyMove| {
+        let count = kernel.scales().len();
+        assert!(count > 0 && kernel.scales().iter().all(|scale| scale.least < scale.start && scale.start < scale.most));
+        kernel.at_scales(&vec![Some(0.4); count]).unwrap()
+    };
+    for kernel in [Box::new(Component::new(scale)) as AnyMove, Box::new(Point::new(scale)), Box::new(Near::new(scale))]
+    {
+        let report = constrained(&dice, false, adapted(kernel));
+        assert!(report.passed() && report.accepted() > 150, "{report}");
+    }
+    let wrong = free(&dice, false, Box::new(Faulty(adapted(Box::new(Component::new(scale))), Fault::Symmetric)));
+    assert!(!wrong.passed(), "not caught: {wrong}");
 }
 
 /// Turning the pips changes which face comes up, a shift with the table where the die lies, and neither any bit of the motion; a state is what its draw alone

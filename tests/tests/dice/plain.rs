@@ -111,9 +111,9 @@ pub(crate) fn all_moves() -> Vec<AnyMove> {
     let scale = Scale::new(0.3, 1.0);
     vec![
         Box::new(Everything::default()),
-        Box::new(Component { scale }),
-        Box::new(Point { scale }),
-        Box::new(Near { scale }),
+        Box::new(Component::new(scale)),
+        Box::new(Point::new(scale)),
+        Box::new(Near::new(scale)),
         Box::new(Rethrow),
         Box::new(Turn),
         Box::new(Shift { sd: 0.02 }),

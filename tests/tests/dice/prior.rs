@@ -4,23 +4,13 @@ use super::plain::scene;
 use plaus_dist::{Density, Purpose, Seed, TruncatedGaussian, math};
 use plaus_mcmc::Target;
 use plaus_scenes::dice::{Draw, Throw};
+use plaus_tests::law::{bound, distance, normal};
 
 const DRAWS: usize = 40_000;
 
-/// The largest distance between an empirical and a given distribution function exceeds this with probability 1e-8 at most (Dvoretzky, Kiefer, Wolfowitz,
-/// Massart), whatever the law. Twenty such tests below: 1e-6 for all.
+/// At most so far apart, at a false-alarm rate of 1e-8; twenty such tests below: 1e-6 for all.
 fn most() -> f64 {
-    (math::ln(2.0 / 1e-8) / (2.0 * DRAWS as f64)).sqrt()
-}
-
-fn distance(mut values: Vec<f64>, cdf: impl Fn(f64) -> f64) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    let count = values.len() as f64;
-    let gap = |(index, x): (usize, &f64)| {
-        let at = cdf(*x);
-        (at - index as f64 / count).abs().max((at - (index + 1) as f64 / count).abs())
-    };
-    values.iter().enumerate().map(gap).fold(0.0, f64::max)
+    bound(1e-8, DRAWS)
 }
 
 #[test]
@@ -29,7 +19,6 @@ fn throws_have_the_stated_laws() {
     let mut stream = Seed(3).chain(0).at(0, Purpose::START);
     let draws: Vec<Draw> = (0..DRAWS).map(|_| scene.start(&mut stream)).collect();
     let throws: Vec<Throw> = draws.iter().map(|draw| draw.throws[1]).collect();
-    let normal = |z: f64| 0.5 * math::erfc(-z * std::f64::consts::FRAC_1_SQRT_2);
     // Place and velocity of the second of two dice, 40 mm apart.
     let laws = [(0, -0.15, 0.03), (1, 0.02, 0.03), (3, 0.9, 0.2), (4, 0.0, 0.2), (5, -0.2, 0.2), (6, 0.0, 15.0)];
     for (k, mean, sd) in laws.into_iter().chain([(7, 0.0, 15.0), (8, 0.0, 15.0)]) {

@@ -78,7 +78,7 @@ fn faults_change_the_law() {
         // The paper's: everything anew, counted as symmetric.
         (Box::new(Everything::default()), Fault::Symmetric),
         (Box::new(Rethrow), Fault::Symmetric),
-        (Box::new(Component { scale }), Fault::Symmetric),
+        (Box::new(Component::new(scale)), Fault::Symmetric),
         (Box::new(Shift { sd: 0.02 }), Fault::Forgets),
     ];
     for (kernel, fault) in twins {
@@ -92,12 +92,12 @@ fn faults_change_the_law() {
         config.constraints.remove(1);
     });
     for fault in [Fault::Forgets, Fault::Leans] {
-        let report = free(&bumpy, false, Box::new(Faulty(Box::new(Near { scale }), fault)));
+        let report = free(&bumpy, false, Box::new(Faulty(Box::new(Near::new(scale)), fault)));
         assert!(!report.passed(), "{fault:?} not caught: {report}");
     }
-    let report = free(&bumpy, false, Box::new(Faulty(Box::new(Point { scale }), Fault::Leans)));
+    let report = free(&bumpy, false, Box::new(Faulty(Box::new(Point::new(scale)), Fault::Leans)));
     assert!(!report.passed(), "not caught: {report}");
-    for right in [Box::new(Near { scale }) as AnyMove, Box::new(Point { scale })] {
+    for right in [Box::new(Near::new(scale)) as AnyMove, Box::new(Point::new(scale))] {
         let report = free(&bumpy, false, right);
         assert!(report.passed(), "{report}");
     }

@@ -1,9 +1,10 @@
 //! Draws without the constraint have the laws of MODEL.md's section 4.
 
 use super::straight::scene;
-use plaus_dist::{Purpose, Seed, math};
+use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::Target;
 use plaus_scenes::spelling::{Drops, Spelling};
+use plaus_tests::law::{bound, distance, normal};
 
 const DRAWS: usize = 100_000;
 
@@ -12,20 +13,9 @@ fn draws(scene: &Spelling) -> Vec<Drops> {
     (0..DRAWS).map(|_| scene.start(&mut stream)).collect()
 }
 
-/// The largest distance between an empirical and a given distribution function exceeds this with probability 1e-8 at most (Dvoretzky, Kiefer, Wolfowitz,
-/// Massart), whatever the law. About 60 such tests below: 1e-6 for all.
+/// At most so far apart, at a false-alarm rate of 1e-8; about 60 such tests below: 1e-6 for all.
 fn most(samples: usize) -> f64 {
-    (math::ln(2.0 / 1e-8) / (2.0 * samples as f64)).sqrt()
-}
-
-fn distance(mut values: Vec<f64>, cdf: impl Fn(f64) -> f64) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    let count = values.len() as f64;
-    let gap = |(index, x): (usize, &f64)| {
-        let at = cdf(*x);
-        (at - index as f64 / count).abs().max((at - (index + 1) as f64 / count).abs())
-    };
-    values.iter().enumerate().map(gap).fold(0.0, f64::max)
+    bound(1e-8, samples)
 }
 
 #[test]
@@ -46,10 +36,9 @@ fn each_coordinate_of_an_offset_is_gaussian() {
     let scene = scene(|_| ());
     let draws = draws(&scene);
     assert_eq!(draws[0].offsets.len(), 48);
-    let normal = |x: f64| 0.5 * math::erfc(-x / 0.1 * std::f64::consts::FRAC_1_SQRT_2);
     for (vertex, axis) in (0..48).step_by(3).map(|vertex| (vertex, vertex % 3)) {
         let values = draws.iter().map(|draw| draw.offsets[vertex][axis]).collect();
-        let gap = distance(values, normal);
+        let gap = distance(values, |x| normal(x / 0.1));
         assert!(gap < most(DRAWS), "vertex {vertex}, axis {axis}: {gap}");
     }
 }

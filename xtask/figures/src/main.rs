@@ -108,6 +108,10 @@ fn main() -> ExitCode {
             ("--quick", _) => quick = true,
             ("--only", Some(_)) => only = arguments.next(),
             ("--out", Some(_)) => out = arguments.next().unwrap_or_default().into(),
+            ("--help" | "-h", _) => {
+                eprintln!("{}", chore.usage());
+                return ExitCode::SUCCESS;
+            }
             _ => {
                 eprintln!("{}", chore.usage());
                 return ExitCode::from(2);

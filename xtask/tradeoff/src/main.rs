@@ -19,6 +19,7 @@ use plaus_figures::report::table;
 use plaus_sim::Preset;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::process::ExitCode;
 use world::Way;
 
 const USAGE: &str = "usage: cargo xtask tradeoff [--worlds A,B] [--draws N] [--seconds S] [--rates A,B] [--out FOLDER] [--quick]
@@ -36,7 +37,8 @@ struct Options {
     plan: Plan,
 }
 
-fn options() -> Result<Options> {
+/// What was asked for; none where only the usage was.
+fn options() -> Result<Option<Options>> {
     let mut out = PathBuf::from("out/tradeoff");
     let mut chosen: Vec<String> = worlds::NAMES.map(str::to_owned).to_vec();
     let (mut draws, mut seconds, mut rates) = (2000, 12.0_f64, vec![60.0, 240.0, 1000.0]);
@@ -44,6 +46,7 @@ fn options() -> Result<Options> {
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or_else(|| format!("{argument} needs a value\n\n{USAGE}"));
         match argument.as_str() {
+            "--help" | "-h" => return Ok(None),
             "--quick" => (draws, seconds) = (60, 1.0),
             "--out" => out = value()?.into(),
             "--draws" => draws = value()?.parse().map_err(|e| format!("--draws: {e}"))?,
@@ -69,11 +72,27 @@ fn options() -> Result<Options> {
     }
     let presets = Preset::ALL.into_iter().rev().map(Way::Preset);
     let ways = presets.chain(rates.into_iter().map(Way::Peer)).collect();
-    Ok(Options { out, worlds: chosen, plan: Plan { draws, seconds, ways } })
+    Ok(Some(Options { out, worlds: chosen, plan: Plan { draws, seconds, ways } }))
 }
 
-fn main() -> Result<()> {
-    let Options { out, worlds, plan } = options()?;
+fn main() -> ExitCode {
+    let done = match options() {
+        Ok(None) => {
+            eprintln!("{USAGE}");
+            Ok(())
+        }
+        Ok(Some(options)) => trade(options),
+        Err(error) => Err(error),
+    };
+    if let Err(error) = done {
+        eprintln!("cargo xtask tradeoff: {error}");
+        return ExitCode::FAILURE;
+    }
+    ExitCode::SUCCESS
+}
+
+/// Measures every world and writes the report.
+fn trade(Options { out, worlds, plan }: Options) -> Result<()> {
     std::fs::create_dir_all(&out)?;
     let exact = exact::report()?;
     let mut sections = String::new();

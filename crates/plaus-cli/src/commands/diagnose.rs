@@ -68,10 +68,11 @@ impl Args {
             let findings: String = diagnosis.findings.iter().map(|finding| format!("  {finding}\n")).collect();
             let verdict = if diagnosis.is_healthy() { "nothing speaks against these chains\n" } else { "findings:\n" };
             console::print(&format!(
-                "{}\n{solutions}\n{}\n{}\n{verdict}{findings}",
+                "{}\n{solutions}\n{}\n{}\n{}{verdict}{findings}",
                 report::headline(manifest),
                 report::scalar_table(&diagnosis),
                 report::move_table(manifest, &diagnosis),
+                report::scale_table(&diagnosis),
             ))?;
         }
         Ok(if diagnosis.is_healthy() { Outcome::Done } else { Outcome::Unsatisfied })

@@ -5,7 +5,7 @@ use crate::clock::{in_words, parse_duration};
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
-use crate::progress::{Monitor, Stop, Style};
+use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
 use crate::scenario_file;
 use crate::table::{grouped, rate};
@@ -124,10 +124,9 @@ impl Watching {
         sampling: impl FnOnce(Sampling<'_>) -> Result<Ending, Failure>,
     ) -> Result<Outcome, Failure> {
         interrupt::listen()?;
-        let mut monitor = Monitor::new(self.style(), self.verbose, self.max_time);
-        let mut opening = Opening { watching: self, monitor: &mut monitor, folder };
-        let ended = sampling(Sampling::new(self.threads, &mut opening));
-        monitor.finish();
+        let monitor = Monitor::new(self.style(), self.verbose, self.max_time);
+        let opening = |manifest: &Manifest, done| self.open(folder, manifest, done);
+        let ended = monitor.over(|| sampling(Sampling::new(self.threads, &mut Rounds::new(&monitor, &opening))));
         self.sum_up(folder, &monitor, ended?)
     }
 
@@ -216,7 +215,12 @@ impl Watching {
                 quoted(path)
             ));
         }
-        if !diagnosis.tally.is_satisfied() {
+        if !diagnosis.tally.is_satisfied() && monitor.done() <= plan.warmup && ending == Ending::Stopped {
+            console::note_line(&format!(
+                "still in the warm-up, and no iteration has satisfied the constraint yet; go on: plaus resume {}",
+                quoted(path)
+            ));
+        } else if !diagnosis.tally.is_satisfied() {
             console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
         }
         if let Some(list) = confirmed.as_ref().filter(|_| !self.json) {
@@ -225,29 +229,6 @@ impl Watching {
         let holds = confirmed.is_none_or(|list| list.held > 0);
         let satisfied = diagnosis.tally.is_satisfied() && missing.is_none() && holds;
         Ok(if satisfied { Outcome::Done } else { Outcome::Unsatisfied })
-    }
-}
-
-/// Says what is sampled once that is known, then hands over to the monitor.
-struct Opening<'a> {
-    watching: &'a Watching,
-    monitor: &'a mut Monitor,
-    folder: &'a Folder,
-}
-
-impl plaus_run::Watch for Opening<'_> {
-    fn begin(&mut self, manifest: &Manifest, done: u64) {
-        self.watching.open(self.folder, manifest, done);
-        self.monitor.begin(manifest, done);
-    }
-    fn round(&mut self, progress: &plaus_mcmc::Progress<'_>) -> plaus_mcmc::Control {
-        self.monitor.round(progress)
-    }
-    fn checkpoint_due(&mut self) -> bool {
-        self.monitor.checkpoint_due()
-    }
-    fn checkpoint_done(&mut self) {
-        self.monitor.checkpoint_done();
     }
 }
 
@@ -262,7 +243,7 @@ fn ending_in_words(ending: Ending) -> &'static str {
 fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) -> String {
     let path = quoted(run.folder().path());
     let plan = run.manifest().plan;
-    let iterations = diagnosis.iterations + plan.warmup;
+    let iterations = monitor.done();
     let why = match ending {
         Ending::Complete => format!("done: {} iterations of each chain", grouped(plan.end())),
         Ending::EnoughSolutions => {
@@ -294,10 +275,11 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
             text += &format!("\nnot to be trusted yet: {first}; and {} more findings of `plaus diagnose`\n", rest.len())
         }
     }
-    text += &format!("\nnext:\n  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
+    text += "\nnext:\n";
     if let Some(best) = diagnosis.tally.best() {
-        text += &format!("  plaus replay {path} --sample {best}\n");
+        text += &format!("  plaus gallery {path} --out gallery.html\n  plaus replay {path} --sample {best}\n");
     }
+    text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
     match ending {
         Ending::Stopped => text += &format!("  plaus resume {path}\n"),
         Ending::Complete if !diagnosis.is_healthy() => text += &format!("  plaus resume {path}{}\n", longer(&plan)),

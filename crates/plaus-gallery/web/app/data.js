@@ -2,7 +2,7 @@
 
 async function unpack(element) {
   const text = element.textContent.trim();
-  const packed = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const packed = bytesOf(text);
   element.remove();
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
   const whole = await new Response(stream).arrayBuffer();
@@ -10,6 +10,14 @@ async function unpack(element) {
   const meta = JSON.parse(new TextDecoder().decode(new Uint8Array(whole, 4, length)));
   const bytes = whole.slice(4 + length);
   return { meta, bytes };
+}
+
+// Bytes of base64. A plain loop: a callback for each of millions of characters takes several times as long.
+function bytesOf(text) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+  const letters = atob(text), bytes = new Uint8Array(letters.length);
+  for (let k = 0; k < bytes.length; k++) bytes[k] = letters.charCodeAt(k);
+  return bytes;
 }
 
 // Reads columns of numbers one after the other.

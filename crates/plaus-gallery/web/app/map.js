@@ -93,7 +93,7 @@ class SolutionMap {
   drawScale(pen, colour) {
     const wanted = 60 / this.scale, power = 10 ** Math.floor(Math.log10(wanted)), step = [1, 2, 5, 10].map((n) => n * power).reduce((a, b) => (Math.abs(b - wanted) < Math.abs(a - wanted) ? b : a));
     const length = step * this.scale, y = this.canvas.clientHeight - 6;
-    document.getElementById('map-unit').textContent = Number.isFinite(length) && length < 250 ? `bar: ${metres(step)} apart (RMS);` : '';
+    document.getElementById('map-unit').textContent = Number.isFinite(length) && length < 250 ? `bar: ${metres(step)} apart (RMS)` : '';
     if (!(length < 250)) return;
     pen.strokeStyle = colour;
     pen.lineWidth = 1.5;

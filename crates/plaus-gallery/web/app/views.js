@@ -16,7 +16,7 @@ class Views {
     renderer.shadowMap.enabled = true;
     renderer.shadowMap.type = software ? THREE.BasicShadowMap : THREE.PCFShadowMap;
     this.width = this.height = 0;
-    this.detail = 0;
+    this.detail = software ? 2 : 0; // the first picture soon, then as sharp as there is time for
     this.slow = 0;
     this.lost = false;
     renderer.domElement.addEventListener('webglcontextlost', (event) => { event.preventDefault(); this.lost = true; });
@@ -63,9 +63,9 @@ class Views {
     const gl = this.renderer.getContext(), fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
     const look = () => {
-      if (!fence || this.lost || gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED) { gl.deleteSync(fence); then(); } else requestAnimationFrame(look);
+      if (!fence || this.lost || gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.SIGNALED) { gl.deleteSync(fence); then(); } else setTimeout(look, 5);
     };
-    requestAnimationFrame(look);
+    setTimeout(look, 0); // between frames: each waits for its own pictures
   }
 
   // Copying out of the canvas costs as much as all of it: it shrinks when for a while only small pictures were drawn.

@@ -1,6 +1,5 @@
 //! Are two laws equal? Tests whose p-values are bounds, not approximations, so that a false-alarm rate of 1e-6 is one.
 
-use crate::check::one_step::Column;
 use plaus_dist::math;
 use std::cmp::Ordering;
 use std::f64::consts::LN_2;
@@ -102,6 +101,13 @@ pub(super) fn multinomial(cells: &[(u64, f64)]) -> LogP {
     } else {
         LogP::of(-t + free * (1.0 + math::ln(t / free)))
     }
+}
+
+/// The values of one statistic before the step, after it, and of draws that were never stepped from.
+pub(super) struct Column {
+    pub(super) before: Vec<f64>,
+    pub(super) after: Vec<f64>,
+    pub(super) fresh: Vec<f64>,
 }
 
 /// The strongest evidence of several tests that the law of a statistic after a step is the one before, and which test found it. The second

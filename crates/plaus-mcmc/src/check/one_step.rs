@@ -1,6 +1,6 @@
 //! Does a step leave the law of exact draws as it is?
 
-use super::laws::{LogP, compare};
+use super::laws::{Column, LogP, compare};
 use super::{CheckError, EXACT, FRESH};
 use crate::chain::{Chain, MoveCounts};
 use crate::moves::Mixture;
@@ -116,13 +116,6 @@ impl fmt::Display for OneStepReport {
         }
         Ok(())
     }
-}
-
-/// The values of one statistic before the step, after it, and of draws that were never stepped from.
-pub(super) struct Column {
-    pub(super) before: Vec<f64>,
-    pub(super) after: Vec<f64>,
-    pub(super) fresh: Vec<f64>,
 }
 
 /// Makes real accept steps from exact draws x of `target` to y, and tests that y has the law of x in every statistic, and in log prior and log

@@ -1,5 +1,7 @@
 //! The draws, checked once, and how they are cut in halves.
 
+use std::cmp::Ordering;
+
 /// Fewest draws per chain any diagnostic accepts: two in each half.
 pub const MIN_DRAWS: usize = 4;
 
@@ -38,13 +40,16 @@ pub enum DiagnoseError {
 }
 
 /// One row per chain, all finite, equally long, at least [`MIN_DRAWS`] draws each.
+///
+/// Rows are in an order of their own, by what they hold: sums over chains then are the same to the last bit whatever the order in which the chains came, and where
+/// such a sum is compared with 0 no rounding decides by that order.
 pub(super) struct Chains<'a> {
     rows: Vec<&'a [f64]>,
 }
 
 impl<'a> Chains<'a> {
     pub(super) fn new<C: AsRef<[f64]>>(chains: &'a [C]) -> Result<Self, DiagnoseError> {
-        let rows: Vec<&[f64]> = chains.iter().map(AsRef::as_ref).collect();
+        let mut rows: Vec<&[f64]> = chains.iter().map(AsRef::as_ref).collect();
         let expected = rows.first().ok_or(DiagnoseError::NoChains)?.len();
         if let Some((chain, row)) = rows.iter().enumerate().find(|(_, row)| row.len() != expected) {
             return Err(DiagnoseError::UnequalLengths { chain, expected, found: row.len() });
@@ -57,6 +62,7 @@ impl<'a> Chains<'a> {
                 return Err(DiagnoseError::NotFinite { chain, draw, value: row[draw] });
             }
         }
+        rows.sort_by(|a, b| in_order(a, b));
         Ok(Self { rows })
     }
 
@@ -77,6 +83,12 @@ impl<'a> Chains<'a> {
     pub(super) fn draws_per_chain(&self) -> usize {
         self.rows[0].len()
     }
+}
+
+/// By the first draw that differs.
+fn in_order(a: &[f64], b: &[f64]) -> Ordering {
+    let mut pairs = a.iter().zip(b).map(|(x, y)| x.total_cmp(y));
+    pairs.find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
 }
 
 /// First halves of all rows, then their second halves; the middle draw of an odd number belongs to neither.

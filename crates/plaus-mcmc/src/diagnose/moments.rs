@@ -9,6 +9,23 @@ pub(super) fn sum(values: &[f64]) -> f64 {
     sum(left) + sum(right)
 }
 
+/// Mean, and variance over n − 1, of at least two values: the same to the last bit in whatever order they come, and the variance also of the negated values.
+pub(super) fn unordered_mean_and_variance(values: &[f64]) -> (f64, f64) {
+    let centre = if is_constant(values) { values[0] } else { unordered_sum(values) / values.len() as f64 };
+    let squares: Vec<f64> = values.iter().map(|x| (x - centre) * (x - centre)).collect();
+    (centre, unordered_sum(&squares) / (values.len() as f64 - 1.0))
+}
+
+/// Those above 0 and those below, each from the least on.
+fn unordered_sum(values: &[f64]) -> f64 {
+    let side = |sign: f64| {
+        let mut side: Vec<f64> = values.iter().map(|x| sign * x).filter(|x| *x > 0.0).collect();
+        side.sort_unstable_by(f64::total_cmp);
+        sum(&side)
+    };
+    side(1.0) - side(-1.0)
+}
+
 /// Whether all values are equal.
 pub(super) fn is_constant(values: &[f64]) -> bool {
     values.iter().all(|&x| x == values[0])
@@ -96,6 +113,21 @@ mod tests {
     fn equal_values_have_no_variance_at_all() {
         // 0.1 summed a thousand times and divided by a thousand is not 0.1.
         assert_eq!(mean_and_variance(&[0.1; 1000]), (0.1, 0.0));
+    }
+
+    #[test]
+    fn no_order_and_no_sign_shows() {
+        let values: Vec<f64> = (0..9).map(|i| f64::from((i * 7) % 9) * 0.37 - 1.1).collect();
+        let (mean, variance) = unordered_mean_and_variance(&values);
+        for turn in 0..9 {
+            let mut turned = values.clone();
+            turned.rotate_left(turn);
+            assert_eq!(unordered_mean_and_variance(&turned), (mean, variance));
+            turned.iter_mut().for_each(|x| *x = -*x);
+            assert_eq!(unordered_mean_and_variance(&turned), (-mean, variance));
+        }
+        let plain = mean_and_variance(&values);
+        assert!((plain.0 - mean).abs() < 1e-15 && (plain.1 / variance - 1.0).abs() < 1e-14);
     }
 
     #[test]

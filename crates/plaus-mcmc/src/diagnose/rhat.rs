@@ -1,7 +1,7 @@
 //! R̂: do the chains agree?
 
 use super::chains::{Chains, DiagnoseError, as_rows};
-use super::moments::mean_and_variance;
+use super::moments::{mean_and_variance, unordered_mean_and_variance};
 use super::rank::{folded_scores, normal_scores};
 
 /// Rank-normalised split R̂, the larger of the plain and the folded one (Vehtari et al. 2021, equations 3 to 5 and section 4).
@@ -36,8 +36,8 @@ pub(super) fn rank_rhat(chains: &Chains<'_>, halves: &[&[f64]], scores: &[f64]) 
 fn scale_reduction(rows: &[&[f64]]) -> Option<f64> {
     let length = rows[0].len() as f64;
     let (means, variances): (Vec<f64>, Vec<f64>) = rows.iter().map(|row| mean_and_variance(row)).unzip();
-    let (within, _) = mean_and_variance(&variances);
-    let (_, between) = mean_and_variance(&means);
+    let (within, _) = unordered_mean_and_variance(&variances);
+    let (_, between) = unordered_mean_and_variance(&means);
     let ratio = length * between / within;
     (!ratio.is_nan()).then(|| ((ratio + length - 1.0) / length).sqrt())
 }

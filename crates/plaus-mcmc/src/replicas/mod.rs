@@ -11,6 +11,7 @@ mod climb;
 
 pub use climb::{Climb, RungStatistics, Tempering};
 
+use crate::adapt::Scales;
 use crate::chain::{Chain, ChainError, MoveCounts, Step};
 use crate::moves::Mixture;
 use crate::target::{State, StateOf, Target};
@@ -25,6 +26,8 @@ pub struct ReplicasSnapshot<D, O> {
     pub states: Vec<State<D, O>>,
     /// How often each move ended how, by rung: of the redraw at the first, of the target's moves at the others.
     pub counts: Vec<Vec<MoveCounts>>,
+    /// The scales of each rung's moves, where it adapts any.
+    pub scales: Vec<Option<Scales>>,
     climb: Climb,
 }
 
@@ -41,7 +44,8 @@ impl<D, O> ReplicasSnapshot<D, O> {
         let (count, climb) = (rungs as usize, &self.climb);
         let mut at = climb.at.clone();
         at.sort_unstable();
-        let lengths = [self.states.len(), self.counts.len(), climb.ladder.betas().len(), climb.last.len()];
+        let (counted, scaled) = (self.counts.len(), self.scales.len());
+        let lengths = [self.states.len(), counted, scaled, climb.ladder.betas().len(), climb.last.len()];
         let moves_of = |rung: usize| if rung == 0 { 1 } else { moves };
         lengths.iter().all(|&length| length == count)
             && at.into_iter().eq(0..rungs)
@@ -114,6 +118,14 @@ impl<'a, T: Target> Replicas<'a, T> {
         Ok(Self { course, chains, climb, swaps: streams(seed, chain, 0) })
     }
 
+    /// The same replicas, which adapt the scales of each rung's moves in the iterations before `until` and keep them from then on: see [`Chain::adapting`]. To be said of
+    /// replicas that have just started.
+    #[must_use]
+    pub fn adapting(self, until: u64) -> Self {
+        let chains = self.chains.into_iter().map(|chain| chain.adapting(until)).collect();
+        Self { chains, ..self }
+    }
+
     /// Replicas that go on from a snapshot, which must [fit](ReplicasSnapshot::fits), made after iteration `iteration`.
     #[must_use]
     pub fn resume(
@@ -123,7 +135,7 @@ impl<'a, T: Target> Replicas<'a, T> {
         iteration: u64,
         snapshot: ReplicasSnapshot<T::Draw, T::Outcome>,
     ) -> Self {
-        let ReplicasSnapshot { states, counts, climb } = snapshot;
+        let ReplicasSnapshot { states, counts, scales, climb } = snapshot;
         let mut rung_of = vec![0; states.len()];
         for (rung, &replica) in climb.at.iter().enumerate() {
             rung_of[replica as usize] = rung;
@@ -132,7 +144,11 @@ impl<'a, T: Target> Replicas<'a, T> {
             let rung = rung_of[replica];
             let (moves, own) = (course.moves_of(rung), streams(seed, chain, replica));
             let resumed = Chain::resume(course.target, moves, own, iteration, state, counts[rung].clone());
-            resumed.at(climb.ladder.betas()[rung])
+            let resumed = resumed.at(climb.ladder.betas()[rung]);
+            match &scales[rung] {
+                Some(scales) => resumed.with_scales(scales.clone()),
+                None => resumed,
+            }
         };
         let chains = states.into_iter().enumerate().map(resume).collect();
         Self { course, chains, climb, swaps: streams(seed, chain, 0) }
@@ -146,18 +162,21 @@ impl<'a, T: Target> Replicas<'a, T> {
         chain: u32,
         iteration: u64,
         state: StateOf<T>,
-        counts: Vec<MoveCounts>,
+        (counts, scales): (Vec<MoveCounts>, Option<Scales>),
     ) -> Self {
-        let one = ReplicasSnapshot { states: vec![state], counts: vec![counts], climb: Climb::new(1) };
+        let (counts, scales) = (vec![counts], vec![scales]);
+        let one = ReplicasSnapshot { states: vec![state], counts, scales, climb: Climb::new(1) };
         Self::resume(course, seed, chain, iteration, one)
     }
 
     /// All that the replicas' future follows from, with [`Replicas::iteration`].
     #[must_use]
     pub fn snapshot(&self) -> ReplicasSnapshot<T::Draw, T::Outcome> {
+        let rungs = || self.climb.at.iter().map(|&replica| &self.chains[replica as usize]);
         ReplicasSnapshot {
             states: self.chains.iter().map(|chain| chain.state().clone()).collect(),
-            counts: self.climb.at.iter().map(|&replica| self.chains[replica as usize].counts().to_vec()).collect(),
+            counts: rungs().map(|chain| chain.counts().to_vec()).collect(),
+            scales: rungs().map(|chain| chain.scales().cloned()).collect(),
             climb: self.climb.clone(),
         }
     }

@@ -1,10 +1,17 @@
 //! Several chains in parallel, in rounds, with the same bits whatever the number of threads.
 //!
-//! Every chain advances to the next multiple of [`Plan::block`] iterations, then all wait: rounds are where the caller receives records and
+//! Every chain advances to the end of a block of iterations, then all wait: rounds are where the caller receives records and
 //! snapshots, in order of chain, and says whether to go on. A run that goes on from its last snapshots gives the bits of one that was never interrupted.
+//! Between rounds a [`Pulse`] shows how far the chains are, and stops them.
 
+mod bounds;
+mod hunt;
+mod pulse;
 mod worker;
 
+pub use pulse::{ChainPulse, Pulse};
+
+use crate::adapt::Scales;
 use crate::chain::{ChainError, MoveCounts};
 use crate::moves::{Mixture, MoveId};
 use crate::record::Block;
@@ -12,6 +19,8 @@ use crate::redraw::Redraw;
 use crate::replicas::{Climb, ReplicasSnapshot, Tempering};
 use crate::solutions::{Distinct, FirstOfClass, Hits};
 use crate::target::{Goal, State, Target};
+use bounds::end_of_block;
+use hunt::Hunt;
 use plaus_dist::Seed;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -30,7 +39,7 @@ pub struct Plan {
     pub iterations: u64,
     /// Every `thin`-th iteration is recorded; at least 1.
     pub thin: u64,
-    /// Iterations between two points at which the run can stop and later go on; at least 1.
+    /// Most iterations between two points at which the run can stop and later go on; at least 1. A run begins with shorter blocks, of about an eighth of what is done.
     pub block: u64,
     /// Stop at the first iteration by which the chains together have recorded this many distinct solutions after the warm-up.
     pub solutions: Option<u64>,
@@ -39,6 +48,8 @@ pub struct Plan {
     pub rungs: u32,
     /// See `rungs`.
     pub swap_every: u64,
+    /// Whether moves' scales are adapted in the warm-up, see [`crate::adapt`].
+    pub adapt: bool,
 }
 
 impl Plan {
@@ -108,6 +119,8 @@ pub struct Snapshot<D, O> {
     pub state: State<D, O>,
     /// How often each move ended how.
     pub counts: Vec<MoveCounts>,
+    /// The scales of its moves; `None` where it adapts none.
+    pub scales: Option<Scales>,
     /// Satisfying iterations.
     pub hits: Hits,
     /// Proposals accepted since the last recorded draw, and the last such move.
@@ -170,7 +183,7 @@ pub enum Ending {
     Complete,
     /// The demanded number of distinct solutions is recorded.
     EnoughSolutions,
-    /// The sink said stop.
+    /// The sink, or who watches the pulse, said stop.
     Stopped,
 }
 
@@ -209,19 +222,36 @@ pub fn run<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     threads: usize,
     sink: &mut S,
 ) -> Result<Ending, RunError<S::Error>> {
+    run_watched(target, moves, plan, starts, threads, sink, &Pulse::default())
+}
+
+/// As [`run()`], with counters that other threads can read meanwhile, and through which they can stop it. The first round of a new run, which is the start, is always made.
+///
+/// # Errors
+/// As [`run()`].
+pub fn run_watched<T: Goal, S: Sink<T::Draw, T::Outcome>>(
+    target: &T,
+    moves: &Mixture<T>,
+    plan: Plan,
+    starts: Vec<Start<T::Draw, T::Outcome>>,
+    threads: usize,
+    sink: &mut S,
+    pulse: &Pulse,
+) -> Result<Ending, RunError<S::Error>> {
     plan.check(&starts)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let fresh = Mixture::of(Box::new(Redraw));
-    let mut fleet = Fleet::new(Job { target, moves, fresh: &fresh, plan }, starts);
+    let mut fleet = Fleet::new(Job { target, moves, fresh: &fresh, plan }, starts, pulse);
     while fleet.done < plan.end() && !fleet.has_enough() {
-        let made =
-            pool.install(|| fleet.round()).map_err(|Failed { chain, source }| RunError::Chain { chain, source })?;
+        let round = pool.install(|| fleet.round());
+        let made = round.map_err(|Failed { chain, source }| RunError::Chain { chain, source })?;
+        let Some(made) = made else { return Ok(Ending::Stopped) };
         for (worker, made) in fleet.workers.iter().zip(made) {
             if let Some(snapshot) = worker.snapshot() {
                 sink.block(worker.books.index, made.block, &snapshot).map_err(RunError::Sink)?;
             }
         }
-        let stop = sink.round(&fleet.progress()).map_err(RunError::Sink)? == Control::Stop;
+        let stop = sink.round(&fleet.progress()).map_err(RunError::Sink)? == Control::Stop || pulse.is_stopped();
         if stop && fleet.done < plan.end() && !fleet.has_enough() {
             return Ok(Ending::Stopped);
         }
@@ -239,6 +269,7 @@ struct Failed {
 struct Fleet<'a, T: Target> {
     job: Job<'a, T>,
     workers: Vec<Worker<'a, T>>,
+    pulse: &'a Pulse,
     /// Of all chains together, in the order of iteration, then chain.
     distinct: Distinct,
     /// Iterations 0 up to here, exclusive, are done.
@@ -248,7 +279,7 @@ struct Fleet<'a, T: Target> {
 type MadeOf<T> = Made<<T as Target>::Draw, <T as Target>::Outcome>;
 
 impl<'a, T: Goal> Fleet<'a, T> {
-    fn new(job: Job<'a, T>, starts: Vec<Start<T::Draw, T::Outcome>>) -> Self {
+    fn new(job: Job<'a, T>, starts: Vec<Start<T::Draw, T::Outcome>>, pulse: &'a Pulse) -> Self {
         let workers: Vec<_> = if starts.is_empty() {
             (0..job.plan.chains).map(Worker::new).collect()
         } else {
@@ -256,35 +287,50 @@ impl<'a, T: Goal> Fleet<'a, T> {
         };
         let firsts = workers.iter().flat_map(|worker| worker.books.distinct.firsts().iter().copied()).collect();
         let done = workers.first().map_or(0, |worker| worker.books.end_iteration);
-        let mut fleet = Self { job, workers, distinct: Distinct::default(), done };
+        let mut fleet = Self { job, workers, pulse, distinct: Distinct::default(), done };
         fleet.merge(firsts);
+        pulse.begin(fleet.workers.len());
+        fleet.workers.iter().for_each(|worker| worker.show(pulse));
         fleet
     }
 
-    /// Advances to the next multiple of the block, or to the iteration that completes the demanded solutions.
-    fn round(&mut self) -> Result<Vec<MadeOf<T>>, Failed> {
+    /// Advances to the end of the block, or to the iteration that completes the demanded solutions; `None` where the pulse was stopped before all chains were there:
+    /// they are then in no common state.
+    fn round(&mut self) -> Result<Option<Vec<MadeOf<T>>>, Failed> {
         let plan = self.job.plan;
-        let before = if plan.solutions.is_some() { self.keep() } else { Vec::new() };
-        let mut made = self.advance(((self.done / plan.block + 1) * plan.block).min(plan.end()))?;
+        let mut end = end_of_block(self.done, plan.block).min(plan.end());
+        let wanted = plan.solutions.and_then(|wanted| usize::try_from(wanted).ok());
+        let before = if wanted.is_some() { self.keep() } else { Vec::new() };
+        let (job, pulse) = (&self.job, self.pulse);
+        let missing = wanted.map(|wanted| wanted.saturating_sub(self.distinct.firsts().len()).max(1));
+        let hunt = Hunt::new(pulse, &self.distinct, missing);
+        let mut made: Vec<_> = self.workers.par_iter_mut().map(|worker| worker.advance(job, end, &hunt)).collect();
         self.merge(made.iter().flat_map(|made| made.firsts.iter().copied()).collect());
         if let Some(last) = self.completed() {
-            // The chains ran past the iteration that completed the demanded number: redo the round up to there, so that the result does not
-            // depend on the block.
-            self.workers = before;
-            made = self.advance(last + 1)?;
+            // Some chains ran past the iteration that completed the demanded number: they redo the round up to there, so that the result does not depend on the
+            // block, nor on who was faster.
+            end = last + 1;
             self.distinct.truncate(last);
+            let (job, hunt) = (&self.job, Hunt::new(pulse, &self.distinct, None));
+            let redo = |((worker, before), made): ((&mut Worker<'a, T>, _), &mut MadeOf<T>)| {
+                let failed = made.failure.as_ref().is_some_and(|failure| failure.iteration() > last);
+                if worker.books.end_iteration > end || failed {
+                    *worker = before;
+                    *made = worker.advance(job, end, &hunt);
+                }
+            };
+            self.workers.par_iter_mut().zip(before).zip(&mut made).for_each(redo);
         }
-        Ok(made)
-    }
-
-    /// Advances all chains in parallel until iterations `0 .. end` are done; the first failing chain, by index, is the one reported.
-    fn advance(&mut self, end: u64) -> Result<Vec<MadeOf<T>>, Failed> {
-        let job = &self.job;
-        let results: Vec<_> = self.workers.par_iter_mut().map(|worker| worker.advance(job, end)).collect();
-        let fail = |(chain, result): (u32, Result<_, _>)| result.map_err(|source| Failed { chain, source });
-        let made = (0..).zip(results).map(fail).collect();
+        pulse.set_distinct(self.distinct.count());
+        let failures = (0..).zip(&mut made).filter_map(|(chain, made)| Some((chain, made.failure.take()?)));
+        if let Some((chain, source)) = failures.min_by_key(|(chain, failure)| (failure.iteration(), *chain)) {
+            return Err(Failed { chain, source });
+        }
+        if self.workers.iter().any(|worker| worker.books.end_iteration < end) {
+            return Ok(None);
+        }
         self.done = end;
-        made
+        Ok(Some(made))
     }
 
     /// Workers in the state of these, to redo a round.

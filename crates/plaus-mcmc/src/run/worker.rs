@@ -1,6 +1,7 @@
 //! One chain of a run, with its records and tallies.
 
-use super::{Plan, Snapshot, Start};
+use super::hunt::Hunt;
+use super::{Plan, Pulse, Snapshot, Start};
 use crate::chain::{Chain, ChainError, MoveCounts, Verdict};
 use crate::moves::{Mixture, MoveId};
 use crate::record::{Block, is_recorded};
@@ -19,6 +20,11 @@ pub(super) struct Job<'a, T: Target> {
 impl<'a, T: Target> Job<'a, T> {
     fn course(&self) -> Course<'a, T> {
         Course { target: self.target, moves: self.moves, fresh: self.fresh, tempering: self.plan.tempering() }
+    }
+
+    /// Scales are adapted in the iterations before this one.
+    fn adapts_until(&self) -> u64 {
+        if self.plan.adapt { self.plan.warmup } else { 0 }
     }
 }
 
@@ -43,6 +49,8 @@ pub(super) struct Books {
 pub(super) struct Made<D, O> {
     pub(super) block: Block<D, O>,
     pub(super) firsts: Vec<FirstOfClass>,
+    /// What ended it early.
+    pub(super) failure: Option<ChainError>,
 }
 
 impl<'a, T: Goal> Worker<'a, T> {
@@ -54,42 +62,64 @@ impl<'a, T: Goal> Worker<'a, T> {
 
     pub(super) fn resume(job: &Job<'a, T>, index: u32, start: Start<T::Draw, T::Outcome>) -> Self {
         let Start { snapshot, distinct } = start;
-        let Snapshot { end_iteration, state, counts, hits, pending, replicas } = snapshot;
+        let Snapshot { end_iteration, state, counts, scales, hits, pending, replicas } = snapshot;
         let class = job.target.class(&state);
         let (course, seed, iteration) = (job.course(), job.plan.seed, end_iteration - 1);
         let replicas = match replicas {
             Some(snapshot) => Replicas::resume(course, seed, index, iteration, snapshot),
-            None => Replicas::resume_one(course, seed, index, iteration, state, counts),
+            None => Replicas::resume_one(course, seed, index, iteration, state, (counts, scales)),
         };
         Self { replicas: Some(replicas), books: Books { index, hits, distinct, class, pending, end_iteration } }
     }
 
-    /// Advances until iterations `0 .. end` are done.
-    pub(super) fn advance(&mut self, job: &Job<'a, T>, end: u64) -> Result<Made<T::Draw, T::Outcome>, ChainError> {
+    /// Advances until iterations `0 .. end` are done, or the hunt ends, or an iteration fails.
+    pub(super) fn advance(&mut self, job: &Job<'a, T>, end: u64, hunt: &Hunt<'_>) -> Made<T::Draw, T::Outcome> {
+        let mut made = Made { block: Block::starting_at(self.books.end_iteration), firsts: Vec::new(), failure: None };
+        made.failure = self.try_advance(job, end, hunt, &mut made).err();
+        made.block.end_iteration = self.books.end_iteration;
+        made
+    }
+
+    fn try_advance(
+        &mut self,
+        job: &Job<'a, T>,
+        end: u64,
+        hunt: &Hunt<'_>,
+        made: &mut Made<T::Draw, T::Outcome>,
+    ) -> Result<(), ChainError> {
         let (Self { replicas, books }, plan) = (self, &job.plan);
-        let mut made = Made { block: Block::starting_at(books.end_iteration), firsts: Vec::new() };
         if replicas.is_none() && end > 0 {
-            let started = Replicas::start(job.course(), job.plan.seed, books.index)?;
+            let started = Replicas::start(job.course(), job.plan.seed, books.index)?.adapting(job.adapts_until());
             books.class = job.target.class(started.top().state());
-            books.note::<T>(plan, 0, started.top(), &mut made);
+            books.note::<T>(plan, 0, started.top(), made, hunt);
             *replicas = Some(started);
         }
-        let Some(replicas) = replicas else { return Ok(made) };
-        replicas.advance(end.saturating_sub(1), |chain, step| match step {
-            TopStep::Swapped => {
-                books.class = job.target.class(chain.state());
-                books.pending = (books.pending.0.saturating_add(1), None);
-            }
-            TopStep::Step(step) => {
-                if step.verdict == Verdict::Accepted {
+        let Some(replicas) = replicas else { return Ok(()) };
+        // Replicas wait for each other only where they swap.
+        let stride = if plan.rungs > 1 { plan.swap_every } else { 1 };
+        while books.end_iteration < end && hunt.goes_on(books.end_iteration) {
+            let now = replicas.iteration();
+            let next = (now / stride + 1).saturating_mul(stride).min(end - 1);
+            replicas.advance(next, |chain, step| match step {
+                TopStep::Swapped => {
                     books.class = job.target.class(chain.state());
-                    books.pending = (books.pending.0.saturating_add(1), Some(step.move_id));
+                    books.pending = (books.pending.0.saturating_add(1), None);
                 }
-                books.note::<T>(plan, books.end_iteration, chain, &mut made);
-            }
-        })?;
-        made.block.end_iteration = books.end_iteration;
-        Ok(made)
+                TopStep::Step(step) => {
+                    if step.verdict == Verdict::Accepted {
+                        books.class = job.target.class(chain.state());
+                        books.pending = (books.pending.0.saturating_add(1), Some(step.move_id));
+                    }
+                    books.note::<T>(plan, books.end_iteration, chain, made, hunt);
+                }
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Shows how far it is.
+    pub(super) fn show(&self, pulse: &Pulse) {
+        pulse.set_chain(self.books.index, self.books.end_iteration, self.books.hits.count);
     }
 
     pub(super) fn counts(&self) -> &[MoveCounts] {
@@ -108,6 +138,7 @@ impl<'a, T: Goal> Worker<'a, T> {
             end_iteration,
             state: replicas.top().state().clone(),
             counts: replicas.top().counts().to_vec(),
+            scales: replicas.top().scales().cloned(),
             hits,
             pending,
             replicas: self.climb().map(|_| replicas.snapshot()),
@@ -124,9 +155,11 @@ impl Books {
         iteration: u64,
         chain: &Chain<'_, T>,
         made: &mut Made<T::Draw, T::Outcome>,
+        hunt: &Hunt<'_>,
     ) {
         self.end_iteration = iteration + 1;
         self.hits.count(iteration, self.class.is_some());
+        hunt.pulse.set_chain(self.index, self.end_iteration, self.hits.count);
         if !is_recorded(iteration, plan.thin) {
             return;
         }
@@ -140,6 +173,7 @@ impl Books {
             let first = FirstOfClass { iteration, chain: self.index, class };
             if self.distinct.note(first) {
                 made.firsts.push(first);
+                hunt.note(first);
             }
         }
     }

@@ -25,6 +25,14 @@ pub(crate) fn tempered(solutions: Option<u64>) -> Recipe {
     Recipe { scenario, overrides: overrides.to_vec(), ..recipe(solutions) }
 }
 
+/// The same whose step sizes are adapted in a warm-up of several blocks.
+pub(crate) fn adapting(rungs: u32) -> Recipe {
+    let overrides = ["adapt=true", "warmup=330", "iterations=200", "swap_every=7"].map(str::to_owned);
+    let overrides = [overrides.as_slice(), &[format!("rungs={rungs}")]].concat();
+    let scenario = Scenario::read("ball.toml", TEXT, &overrides).unwrap();
+    Recipe { scenario, overrides, ..recipe(None) }
+}
+
 /// Every file of a run.
 pub(crate) fn bytes_of(folder: &Folder) -> BTreeMap<String, Vec<u8>> {
     let entries = std::fs::read_dir(folder.path()).unwrap().map(Result::unwrap);

@@ -28,7 +28,7 @@ pub use config::{Config, Die, MOST_DICE, Moves, Spilt, Steps, Table, Throwing, W
 pub use constraint::{Constraint, FaceUp, FirstImpact, Mark, Passes, PoseAt, RestAt};
 pub use draw::{Draw, Field, LARGEST_SCORE, Realisation, Site, Throw};
 pub use flight::{End, Frame, Trip};
-pub use moves::{Component, Everything, Near, Point, Recast, Rethrow, Scale, Shift, Turn};
+pub use moves::{Component, Everything, Near, Pick, Point, Recast, Rethrow, Scale, Shift, Turn};
 pub use prior::{NUMBERS, Prior};
 pub use symmetry::Rotation;
 pub use throwing::Work;
@@ -237,6 +237,8 @@ const COLUMNS: [(&str, &str, Role); 13] = [
 ];
 
 impl Scene for Dice {
+    const ADAPTS: bool = true;
+
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         Mixture::new(moves::all(self, rules)).map_err(|error| ConfigError::new("world.dice.weights", error))
     }

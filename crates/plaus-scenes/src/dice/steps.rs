@@ -37,6 +37,9 @@ pub struct Weights {
     /// face up.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub recast: f64,
+    /// Like recast, with throws that are tried until one is likely under the prior and comes to rest near its target; for dice thrown onto one table.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub pick: f64,
     /// A die's throw begins in another of the orientations that its symmetry makes equal: another face comes up, and nothing else changes.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub turn: f64,
@@ -49,7 +52,7 @@ impl Weights {
     /// What is left of them where only the paper's moves are made.
     #[must_use]
     pub fn paper(self) -> Self {
-        Self { near: 0.0, rethrow: 0.0, recast: 0.0, turn: 0.0, shift: 0.0, ..self }
+        Self { near: 0.0, rethrow: 0.0, recast: 0.0, pick: 0.0, turn: 0.0, shift: 0.0, ..self }
     }
 }
 
@@ -62,6 +65,7 @@ impl Default for Weights {
             near: 0.2,
             rethrow: 0.05,
             recast: 0.2,
+            pick: 0.1,
             turn: 0.15,
             shift: 0.15,
         }
@@ -91,6 +95,9 @@ pub struct Steps {
     /// The same for a recast. Where dice meet, or bumps are large, it should be about as large as what these make of where a die comes to rest.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub recast_sd_mm: f64,
+    /// How near its target a die must come to rest, alone on its table, for a throw to be picked: the standard deviation of the chance that it is.
+    #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
+    pub pick_sd_mm: f64,
 }
 
 impl Default for Steps {
@@ -102,6 +109,7 @@ impl Default for Steps {
             point_most: 1.0,
             shift_sd_mm: 5.0,
             recast_sd_mm: 5.0,
+            pick_sd_mm: 5.0,
         }
     }
 }

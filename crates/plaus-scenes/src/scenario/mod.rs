@@ -52,9 +52,12 @@ pub struct Sampler {
     /// Record every `thin`-th iteration.
     #[schemars(range(min = 1, max = 1_000_000_000_u64))]
     pub thin: u64,
-    /// Iterations between two checkpoints of a chain.
+    /// Most iterations between two points at which a run can be stopped and gone on with; it begins with fewer, about an eighth of those done.
     #[schemars(range(min = 1, max = 1_000_000_000_u64))]
     pub checkpoint_every: u64,
+    /// Whether the sizes of moves' steps are adapted in the warm-up, each until a good share of its proposals is accepted, and kept from then on. Unset: as
+    /// measurement says is better for the scene (dice: yes; others: no). Without a warm-up, and where steps are hardly tried in it, they are as configured.
+    pub adapt: Option<bool>,
     /// Exact acceptance, or the paper's as printed.
     pub rules: Rules,
     /// Restarts from fresh draws that keep the chain exact.
@@ -90,6 +93,7 @@ impl Default for Sampler {
             iterations: 20_000,
             thin: 1,
             checkpoint_every: 20_000,
+            adapt: None,
             rules: Rules::default(),
             tempering: Tempering::default(),
         }
@@ -130,6 +134,12 @@ impl Scenario {
             Ok(()) => Ok(scenario),
             Err(error) => fail(vec![problem::located(&tree, &error)]),
         }
+    }
+
+    /// Whether moves' scales are adapted in the warm-up.
+    #[must_use]
+    pub fn adapts(&self) -> bool {
+        self.sampler.adapt.unwrap_or_else(|| self.world.adapts())
     }
 
     /// Whether the scene can be built and sampled.

@@ -74,6 +74,14 @@ impl Digest {
     }
 }
 
+/// The arguments, and the path after `--trace` taken out of them, or `default`.
+pub fn arguments(default: &str) -> Result<(Vec<String>, String), Box<dyn Error>> {
+    let mut args: Vec<String> = std::env::args().skip(1).collect();
+    let Some(at) = args.iter().position(|a| a == "--trace") else { return Ok((args, default.to_owned())) };
+    let path = args.drain(at..args.len().min(at + 2)).nth(1).ok_or("--trace needs a path")?;
+    Ok((args, path))
+}
+
 /// Writes a trace as JSON.
 pub fn write_trace(path: &str, trace: &impl Serialize) -> Result<(), Box<dyn Error>> {
     if let Some(folder) = std::path::Path::new(path).parent() {

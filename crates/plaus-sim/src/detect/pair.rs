@@ -1,14 +1,22 @@
 //! Two spheres on parabolas.
 
 use crate::motion::Parabola;
-use crate::roots::{fall_of_quartic, squared_distance};
+use crate::roots::{first_fall_of_quartic, squared_distance};
 
-/// First time in `[from, until]` (absolute; both motions valid there) at which two spheres touch while approaching; `reach` is the sum of their radii.
+/// First time in `[from, until]` (absolute; both motions valid there, and until `horizon`) at which two spheres touch while approaching; `reach` is the sum of their radii.
+///
+/// The time depends on nothing but the two motions: it is sought from the later of their clocks, and over all of the time in which both are valid. So a pair that is looked at
+/// again, because something else that was expected did not happen, is found to meet at the same time to the last bit.
 #[inline]
-pub(crate) fn sphere_pair(a: &Parabola, b: &Parabola, reach: f64, from: f64, until: f64) -> Option<f64> {
-    let (da, db) = (from - a.t, from - b.t);
+pub(crate) fn sphere_pair(a: &Parabola, b: &Parabola, reach: f64, [from, until, horizon]: [f64; 3]) -> Option<f64> {
+    let start = a.t.max(b.t);
+    let (da, db) = (start - a.t, start - b.t);
     let p = a.after(da) - b.after(db);
     let v = a.velocity_after(da) - b.velocity_after(db);
     let c = squared_distance(p, v, a.a - b.a, reach);
-    fall_of_quartic(&c, 0.0, until - from).map(|dt| from + dt)
+    // A little more than until: what is due at that very time counts, however it is rounded.
+    let limit = until - start + 4.0 * f64::EPSILON * until;
+    // What was before `from` has been dealt with; what rounding puts there is due now.
+    let time = (start + first_fall_of_quartic(&c, limit, horizon - start)?).max(from);
+    (time <= until).then_some(time)
 }

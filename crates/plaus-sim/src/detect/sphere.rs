@@ -3,29 +3,48 @@
 use crate::motion::Parabola;
 use crate::roots::{fall_of_quadratic, falls_of_quartic, squared_distance};
 use crate::scenery::{Scenery, Surface};
+use glam::DVec3;
 
 /// How far a contact point may lie outside a feature of the mesh and still count as on it, in radii. Closes the cracks that rounding leaves between neighbours. Default 1e-9; danger: much larger values catch balls on the invisible continuation of a face.
 const SEAM: f64 = 1e-9;
 
-/// First time in `[from, until]` seconds after the motion's clock at which a sphere touches a surface while approaching it.
+/// A stretch of a motion of which the begin is looked at again and again.
+pub(crate) struct Stretch<'p> {
+    pub(crate) path: &'p Parabola,
+    /// Seconds after the motion's clock at which it begins, and centre and velocity then.
+    pub(crate) from: f64,
+    pub(crate) x: DVec3,
+    pub(crate) v: DVec3,
+}
+
+impl<'p> Stretch<'p> {
+    #[inline]
+    pub(crate) fn new(path: &'p Parabola, from: f64) -> Self {
+        Self { path, from, x: path.after(from), v: path.velocity_after(from) }
+    }
+}
+
+/// First time in a stretch until `until` seconds after the motion's clock at which a sphere touches a surface while approaching it.
 #[inline]
 pub(crate) fn sphere_surface(
     scenery: &Scenery,
     surface: Surface,
-    path: &Parabola,
+    stretch: &Stretch<'_>,
     radius: f64,
-    from: f64,
     until: f64,
 ) -> Option<f64> {
+    let (path, from) = (stretch.path, stretch.from);
     match surface {
         Surface::Plane(k) => {
             let plane = &scenery.planes()[k as usize];
-            flat(plane.normal, plane.offset + radius, path, from, until)
+            // Of the whole motion, so that the time does not depend on where the broad phase came upon the plane.
+            let whole = Stretch { path, from: 0.0, x: path.x, v: path.v };
+            flat(plane.normal, plane.offset + radius, &whole, until)
         }
         Surface::Face(k) => {
             let face = &scenery.mesh().faces[k as usize];
             // Behind the face's plane all along: it cannot be touched from there.
-            let time = flat(face.normal, face.offset + radius, path, from, until)?;
+            let time = flat(face.normal, face.offset + radius, stretch, until)?;
             let x = path.after(time);
             let height = face.normal.dot(x) - face.offset;
             (height > 0.0 && face.inside(x - face.normal * height) >= -SEAM * radius).then_some(time)
@@ -44,10 +63,9 @@ pub(crate) fn sphere_surface(
 }
 
 #[inline]
-fn flat(normal: glam::DVec3, offset: f64, path: &Parabola, from: f64, until: f64) -> Option<f64> {
-    let (x, v) = (path.after(from), path.velocity_after(from));
-    let c = [normal.dot(x) - offset, normal.dot(v), 0.5 * normal.dot(path.a)];
-    fall_of_quadratic(c, until - from).map(|dt| from + dt)
+fn flat(normal: DVec3, offset: f64, stretch: &Stretch<'_>, until: f64) -> Option<f64> {
+    let c = [normal.dot(stretch.x) - offset, normal.dot(stretch.v), 0.5 * normal.dot(stretch.path.a)];
+    fall_of_quadratic(c, until - stretch.from).map(|dt| stretch.from + dt)
 }
 
 fn dome(scenery: &Scenery, k: u32, path: &Parabola, radius: f64, from: f64, until: f64) -> Option<f64> {
@@ -66,7 +84,7 @@ fn edge(scenery: &Scenery, k: u32, path: &Parabola, radius: f64, from: f64, unti
         return None;
     }
     let d = edge.direction;
-    let across = |u: glam::DVec3| u - d * d.dot(u);
+    let across = |u: DVec3| u - d * d.dot(u);
     let offset = path.x - edge.origin;
     let c = squared_distance(across(offset), across(path.v), across(path.a), radius);
     falls_of_quartic(&c, from, until, |t| scenery.is_over_edge(k, path.after(t), SEAM * radius))

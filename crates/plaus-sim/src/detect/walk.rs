@@ -1,9 +1,9 @@
 //! A ball's way through the broad phase, cell by cell, until it touches something.
 
-use super::sphere::sphere_surface;
-use crate::motion::Parabola;
+use super::sphere::{Stretch, sphere_surface};
+use crate::motion::{Course, Parabola};
 use crate::roots::fall_of_quadratic;
-use crate::scenery::{Aabb, Scenery, Surface};
+use crate::scenery::{Aabb, Probe, Scenery, Surface, lesser};
 use glam::DVec3;
 
 /// First surface that a sphere touches while approaching it, within `until` seconds of the motion's clock. Surfaces in `skip` (its lasting contacts) do not count.
@@ -14,84 +14,84 @@ pub(crate) fn next_surface(
     skip: &[Surface],
     until: f64,
 ) -> Option<(f64, Surface)> {
-    let mut best = None;
-    let mut limit = until;
-    for k in 0..scenery.planes().len() as u32 {
-        consider(scenery, Surface::Plane(k), path, radius, skip, 0.0, &mut limit, &mut best);
-    }
     let grid = scenery.grid();
     // A little more than the radius, so that rounding cannot hide what touches.
     let near = radius * radius * (1.0 + 1e-9);
-    let mut cell = grid.cell_of(path.x);
-    let mut from = 0.0;
+    let (course, mut cell) = (Course::new(path), grid.cell_of(path.x));
+    let stretch = Stretch { path, from: 0.0, x: path.x, v: path.v };
+    let mut search = Search { scenery, radius, skip, stretch, limit: until, best: None };
+    // The time from which nothing matters any more: the first touch that is known.
+    let mut limit = until;
     // A coordinate that moves with its acceleration never turns again. Knowing that, rounding cannot send the walk to and fro.
     let mut onward = [0.0; 3];
     loop {
-        let (low, high) = grid.walls(cell);
-        let way = path.bounds(from, limit);
-        let stays = way.min.cmpgt(low).all() && way.max.cmplt(high).all();
+        let (walls, from, x) = (grid.walls(cell), search.stretch.from, search.stretch.x);
+        let way = course.bounds(from, x, limit);
+        let stays = way.min.cmpgt(walls.0).all() && way.max.cmplt(walls.1).all();
         let (leaves, next) =
-            if stays { (f64::INFINITY, None) } else { exit((low, high), &way, path, from, limit, &onward) };
-        let mut stop = leaves.min(limit);
+            if stays { (f64::INFINITY, None) } else { exit(walls, &way, &search.stretch, limit, &onward) };
         let items = grid.items(cell);
         if !items.is_empty() {
-            let swept = if stays { way } else { path.bounds(from, stop) };
-            let around = swept.grown(radius * (1.0 + 1e-8));
+            search.limit = lesser(leaves, limit);
+            let swept = if stays { way } else { course.bounds(from, x, search.limit) };
+            let probe = Probe::new(&swept.grown(radius * (1.0 + 1e-8)));
             for &item in items {
-                let bounds = scenery.bounds(item);
-                // Most are ruled out by the first comparison or two.
-                if around.meets(bounds) && bounds.distance_squared(&swept) <= near {
+                // Most are ruled out by the first comparison.
+                if scenery.may_meet(item, &probe) && scenery.bounds(item).distance_squared(&swept) <= near {
                     // A hit within this cell bounds the rest of the search, here and beyond; what is hit beyond it is listed there.
-                    consider(scenery, scenery.surface(item), path, radius, skip, from, &mut stop, &mut best);
+                    search.consider(scenery.surface(item));
                 }
             }
+            limit = search.best.map_or(limit, |(time, _)| limit.min(time));
         }
-        limit = best.map_or(limit, |(time, _)| limit.min(time));
         match next {
             Some((axis, way)) if leaves < limit => {
                 cell[axis] = if way > 0.0 { cell[axis] + 1 } else { cell[axis] - 1 };
                 onward[axis] = if path.a[axis] * way >= 0.0 { way } else { 0.0 };
-                from = leaves;
+                search.stretch = Stretch::new(path, leaves);
             }
-            _ => return best,
+            _ => return search.best,
         }
     }
 }
 
-#[allow(clippy::too_many_arguments)]
-#[inline]
-fn consider(
-    scenery: &Scenery,
-    surface: Surface,
-    path: &Parabola,
+/// A search for the first surface of a stretch.
+struct Search<'s> {
+    scenery: &'s Scenery,
     radius: f64,
-    skip: &[Surface],
-    from: f64,
-    limit: &mut f64,
-    best: &mut Option<(f64, Surface)>,
-) {
-    if skip.contains(&surface) {
-        return;
-    }
-    if let Some(t) = sphere_surface(scenery, surface, path, radius, from, *limit)
-        && (t < *limit || best.is_none_or(|(b, s)| t < b || (t == b && surface < s)))
-    {
-        *limit = t;
-        *best = Some((t, surface));
+    skip: &'s [Surface],
+    stretch: Stretch<'s>,
+    /// Seconds after the motion's clock after which a touch does not count.
+    limit: f64,
+    best: Option<(f64, Surface)>,
+}
+
+impl Search<'_> {
+    /// Takes note of a surface if it is touched first. Not inlined: the scan over what is near keeps its numbers in registers.
+    #[inline(never)]
+    fn consider(&mut self, surface: Surface) {
+        if self.skip.contains(&surface) {
+            return;
+        }
+        if let Some(t) = sphere_surface(self.scenery, surface, &self.stretch, self.radius, self.limit)
+            && (t < self.limit || self.best.is_none_or(|(b, s)| t < b || (t == b && surface < s)))
+        {
+            self.limit = t;
+            self.best = Some((t, surface));
+        }
     }
 }
 
-/// When a centre leaves a cell after `from`, along which axis and which way; infinite and none where it stays until `limit`. `way` holds the centre until then.
+/// When a centre leaves a cell in a stretch, along which axis and which way; infinite and none where it stays until `limit`. `way` holds the centre until then.
 #[inline]
 fn exit(
     (low, high): (DVec3, DVec3),
     way: &Aabb,
-    path: &Parabola,
-    from: f64,
+    stretch: &Stretch<'_>,
     limit: f64,
     onward: &[f64; 3],
 ) -> (f64, Option<(usize, f64)>) {
-    let (x, v) = (path.after(from), path.velocity_after(from));
+    let &Stretch { path, from, x, v } = stretch;
     let mut best = (f64::INFINITY, None);
     for k in 0..3 {
         for (wall, way, crosses) in [(low[k], -1.0, way.min[k] <= low[k]), (high[k], 1.0, way.max[k] >= high[k])] {

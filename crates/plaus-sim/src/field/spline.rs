@@ -53,7 +53,8 @@ struct Made {
     points: Vec<([i64; 2], f64)>,
     cell_places: Lookup,
     cells: Vec<Cell>,
-    last: Option<([i64; 2], u32)>,
+    /// Cells that were looked into last, by the low bits of their indices.
+    recent: [Option<([i64; 2], u32)>; RECENT],
     /// The last rectangle of cells that bounds were asked for.
     window: Option<([[i64; 2]; 2], Bounds)>,
     fault: Option<([i64; 2], f64)>,
@@ -178,9 +179,8 @@ impl Spline {
         {
             return Some(bounds);
         }
-        let mut all = Bounds::NONE;
+        let (mut all, mut near) = (Bounds::NONE, None);
         for i in low[0]..=high[0] {
-            let mut near = None;
             for j in low[1]..=high[1] {
                 let place = match made.cell_places.get([i, j]) {
                     Some(place) => place,
@@ -234,7 +234,7 @@ impl Spline {
         let made = &mut *self.made.borrow_mut();
         let value = checked(self.range, made, key, value);
         made.window = None;
-        made.last = None;
+        made.recent = [None; RECENT];
         match made.point_places.get(key) {
             Some(place) => made.points[place as usize].1 = value,
             None => made.push_point(key, value),
@@ -249,18 +249,19 @@ impl Spline {
 
     #[inline]
     fn cell(&self, made: &mut Made, key: [i64; 2]) -> u32 {
-        match made.last {
+        let slot = (key[0] & 3) as usize * 4 + (key[1] & 3) as usize;
+        match made.recent[slot] {
             Some((last, place)) if last == key => place,
             _ => {
                 let place = made.cell_places.get(key).unwrap_or_else(|| self.add(made, key, &mut None));
                 made.cells[place as usize].prepare();
-                made.last = Some((key, place));
+                made.recent[slot] = Some((key, place));
                 place
             }
         }
     }
 
-    /// Makes a cell. `near` holds the control values of the last cell that was made here: its neighbour along y has three rows of them.
+    /// Makes a cell. `near` holds the control values of the last cell that was made here: its neighbours have three rows of them.
     #[cold]
     fn add(&self, made: &mut Made, key: [i64; 2], near: &mut Option<([i64; 2], Values)>) -> u32 {
         let points = self.points(made, key, near.take());
@@ -275,17 +276,22 @@ impl Spline {
     /// The control values over a cell.
     fn points(&self, made: &mut Made, [i, j]: [i64; 2], near: Option<([i64; 2], Values)>) -> Values {
         let mut points = [[0.0; 4]; 4];
+        // How many of the first along x and along y are known.
         let known = match near {
-            Some((key, last)) if key == [i, j - 1] => {
+            Some((key, last)) if key == [i, j.wrapping_sub(1)] => {
                 for (row, last) in points.iter_mut().zip(&last) {
                     row[..3].copy_from_slice(&last[1..]);
                 }
-                3
+                [0, 3]
             }
-            _ => 0,
+            Some((key, last)) if key == [i.wrapping_sub(1), j] => {
+                points[..3].copy_from_slice(&last[1..]);
+                [3, 0]
+            }
+            _ => [0, 0],
         };
-        for (a, row) in points.iter_mut().enumerate() {
-            for (b, p) in row.iter_mut().enumerate().skip(known) {
+        for (a, row) in points.iter_mut().enumerate().skip(known[0]) {
+            for (b, p) in row.iter_mut().enumerate().skip(known[1]) {
                 *p = self.point(made, [i.saturating_add(a as i64 - 1), j.saturating_add(b as i64 - 1)]);
             }
         }
@@ -301,6 +307,9 @@ impl Spline {
         value
     }
 }
+
+/// Cells kept at hand: four by four, as many as a die covers whose edge is two of them.
+const RECENT: usize = 16;
 
 /// The largest whole number not above `x`, by a cast: a call of the library's is slower on processors without an instruction for it.
 #[inline]

@@ -4,17 +4,16 @@
 
 use super::Marbles;
 use super::body::{Marble, Phase};
-use super::group::{APPROACH, OVERLAP, time_scale};
+use super::group::{APPROACH, OVERLAP, moving_strength, time_scale};
 use super::solve::{Ball, Push, respond};
 use crate::material::Law;
 use crate::scenery::{Foot, Surface};
 use glam::DVec3;
 
-/// Gives the marble its next step, or rest. Its only contact must be `surface`.
-pub(super) fn settle(world: &Marbles, index: usize, body: &mut Marble, surface: Surface) {
-    let (ball, foot) = (Ball::new(&world.specs[index]), world.scenery.foot(surface, body.path.x));
-    let alone =
-        Alone { world, ball, law: *world.surface_law(index, surface), scale: world.speed_scale(index), surface, foot };
+/// Gives the marble its next step, or rest. Its only contact must be `surface`, which stands to it as `foot` says.
+pub(super) fn settle(world: &Marbles, index: usize, body: &mut Marble, surface: Surface, foot: Foot) {
+    let (ball, law, scale) = (&world.balls[index], world.surface_law(index, surface), world.speed_scale(index));
+    let alone = Alone { world, ball, law, scale, surface, foot };
     alone.stop_approach(body);
     let h = world.accuracy.step * alone.time_scale(body);
     if !h.is_finite() {
@@ -30,8 +29,8 @@ pub(super) fn settle(world: &Marbles, index: usize, body: &mut Marble, surface: 
 
 struct Alone<'w> {
     world: &'w Marbles,
-    ball: Ball,
-    law: Law,
+    ball: &'w Ball,
+    law: &'w Law,
     /// Speed that a fall over one radius gives, up to √2.
     scale: f64,
     surface: Surface,
@@ -43,19 +42,21 @@ impl Alone<'_> {
     /// Approach stopped, velocity and spin after the contact's impulse.
     #[inline]
     fn respond(&self, push: &Push, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
-        respond(&self.ball, &self.law, push, v, w)
+        respond(self.ball, self.law, push, v, w)
     }
 
     /// Takes away what slow approach is left, so that no step starts into the surface.
     fn stop_approach(&self, body: &mut Marble) {
         let n = self.foot.normal;
         if -body.path.v.dot(n) > APPROACH * self.world.accuracy.settle * self.scale {
-            (_, body.path.v, body.spin) = self.respond(&Push { first: n, last: n }, body.path.v, body.spin);
+            (_, body.path.v, body.spin) = self.respond(&Push::along(n), body.path.v, body.spin);
         }
     }
 
     fn time_scale(&self, body: &Marble) -> f64 {
-        time_scale(self.foot.curvature_radius, self.ball.radius, body.path.v.length(), self.world.strength)
+        let (v, w) = (body.path.v, body.spin);
+        let strength = moving_strength(self.world, self.ball, self.foot.normal, v, w);
+        time_scale(self.foot.curvature_radius, self.ball.radius, v.length(), strength)
     }
 
     /// Whether it is slow and the contact can hold it.
@@ -69,7 +70,7 @@ impl Alone<'_> {
             return false;
         }
         let n = self.foot.normal;
-        let (_, v, w) = self.respond(&Push { first: n, last: n }, world.gravity * h, DVec3::ZERO);
+        let (_, v, w) = self.respond(&Push::along(n), world.gravity * h, DVec3::ZERO);
         v.length().max(w.length() * radius) <= world.accuracy.rest_residual * world.strength * h
     }
 
@@ -81,7 +82,7 @@ impl Alone<'_> {
         let (mut load, mut v, mut w) = (0.0, start_v, start_w);
         // The first pass predicts where the step ends.
         for _ in 0..2 {
-            let push = Push { first: self.foot.normal, last: scenery.foot_near(self.surface, x).normal };
+            let push = Push::new(self.foot.normal, scenery.foot_near(self.surface, x).normal);
             (load, v, w) = self.respond(&push, start_v + world.gravity * h, start_w);
             x = start + (start_v + v) * (0.5 * h);
         }

@@ -12,8 +12,9 @@
 
 use super::Marbles;
 use super::body::{Marble, Phase};
-use super::solve::{Ball, Contact, Member, With};
+use super::solve::{Ball, Contact, Member, Push, With};
 use crate::links::Links;
+use crate::scenery::Foot;
 use glam::DVec3;
 
 /// Work space for groups of marbles in lasting contact.
@@ -48,6 +49,18 @@ const CORRECTED: f64 = 1e-6;
 /// 1e-4 radii at the standard preset.
 pub(super) const APPROACH: f64 = 0.02;
 
+/// Slip of the touching points over the centre's speed up to which a ball counts as rolling where the length of a step is chosen. Default 0.01; danger: where it still slips, steps are
+/// longer by up to `√(1 + gyration)` than its sliding asks for.
+const ROLLS: f64 = 0.01;
+
+/// Gravity as it moves the centre of a ball over a surface with this normal: one that rolls turns a part of it into spin.
+#[inline]
+pub(super) fn moving_strength(world: &Marbles, ball: &Ball, normal: DVec3, v: DVec3, w: DVec3) -> f64 {
+    let slip = v - w.cross(normal) * ball.radius;
+    let rolls = slip.length_squared() <= ROLLS * ROLLS * v.length_squared();
+    if rolls { world.strength * ball.share } else { world.strength }
+}
+
 /// Time in which gravity, or the motion, covers the curvature of what a ball touches.
 #[inline]
 pub(super) fn time_scale(curvature: f64, radius: f64, speed: f64, strength: f64) -> f64 {
@@ -66,19 +79,20 @@ impl MarbleScratch {
     pub(super) fn go_on(&mut self, world: &Marbles, members: &[u32], bodies: &mut [Marble], links: &Links) {
         self.gather(world, members, bodies, links);
         self.stop_approach(world, bodies);
-        if !self.try_rest(world, bodies) {
-            self.step(world, bodies);
+        let h = self.step_length(world);
+        if !self.try_rest(world, bodies, h) {
+            self.step(world, bodies, h);
         }
     }
 
     fn gather(&mut self, world: &Marbles, indices: &[u32], bodies: &[Marble], links: &Links) {
         self.members.clear();
         for &k in indices {
-            let (s, b) = (&world.specs[k as usize], &bodies[k as usize]);
+            let b = &bodies[k as usize];
             let (start, start_v, start_w) = (b.path.x, b.path.v, b.spin);
             self.members.push(Member {
                 index: k,
-                ball: Ball::new(s),
+                ball: world.balls[k as usize],
                 start,
                 start_v,
                 start_w,
@@ -89,24 +103,15 @@ impl MarbleScratch {
             });
         }
         // Bottom first, then by position: loads travel up in one sweep, and the order knows nothing of labels.
-        let g = world.gravity;
-        self.members.sort_by(|a, b| {
-            let key = |m: &Member| [-g.dot(m.start), m.start.x, m.start.y, m.start.z];
-            let (p, q) = (key(a), key(b));
-            p.iter().zip(&q).map(|(s, t)| s.total_cmp(t)).find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
-        });
+        self.members.sort_by(|a, b| world.bottom_first(a.start, b.start));
         self.contacts.clear();
         for a in 0..self.members.len() {
             let index = self.members[a].index;
             for &surface in bodies[index as usize].contacts() {
-                let normal = world.scenery.foot(surface, self.members[a].start).normal;
+                let (foot, law) =
+                    (world.scenery.foot(surface, self.members[a].start), *world.surface_law(index as usize, surface));
                 self.members[a].is_held = true;
-                self.contacts.push(Contact::new(
-                    a,
-                    With::Surface(surface),
-                    *world.surface_law(index as usize, surface),
-                    normal,
-                ));
+                self.contacts.push(Contact::new(&self.members, a, With::Surface(surface), law, foot));
             }
             if links.is_empty() {
                 continue;
@@ -115,9 +120,14 @@ impl MarbleScratch {
                 let other = self.members[b].index;
                 if links.contains(index, other) {
                     let law = *world.pair_law(index as usize, other as usize);
-                    let normal = (self.members[a].start - self.members[b].start).normalize_or(DVec3::Z);
+                    let offset = self.members[a].start - self.members[b].start;
+                    let foot = Foot {
+                        normal: offset.normalize_or(DVec3::Z),
+                        distance: offset.length(),
+                        curvature_radius: f64::INFINITY,
+                    };
                     (self.members[a].is_held, self.members[b].is_held) = (true, true);
-                    self.contacts.push(Contact::new(a, With::Member(b), law, normal));
+                    self.contacts.push(Contact::new(&self.members, a, With::Member(b), law, foot));
                 }
             }
         }
@@ -131,8 +141,8 @@ impl MarbleScratch {
                 With::Surface(_) => DVec3::ZERO,
                 With::Member(b) => self.members[b].start_v,
             };
-            -(a.start_v - other).dot(c.push.first)
-                > APPROACH * world.accuracy.settle * (world.strength * a.ball.radius).sqrt()
+            -(a.start_v - other).dot(c.foot.normal)
+                > APPROACH * world.accuracy.settle * world.speed_scale(a.index as usize)
         };
         if !self.contacts.iter().any(approaches) {
             return;
@@ -153,9 +163,9 @@ impl MarbleScratch {
         for c in &self.contacts {
             let m = &self.members[c.a];
             let time = match c.with {
-                With::Surface(s) => {
-                    let curvature = world.scenery.foot(s, m.start).curvature_radius;
-                    time_scale(curvature, m.ball.radius, m.start_v.length(), world.strength)
+                With::Surface(_) => {
+                    let strength = moving_strength(world, &m.ball, c.foot.normal, m.start_v, m.start_w);
+                    time_scale(c.foot.curvature_radius, m.ball.radius, m.start_v.length(), strength)
                 }
                 With::Member(b) => {
                     let other = &self.members[b];
@@ -170,30 +180,24 @@ impl MarbleScratch {
     }
 
     /// Whether anything overlaps by more than rest may keep: then a step comes first, which puts it back.
-    fn overlaps(&self, world: &Marbles) -> bool {
+    fn overlaps(&self) -> bool {
         self.contacts.iter().any(|c| {
-            let m = &self.members[c.a];
-            let (distance, reach) = match c.with {
-                With::Surface(s) => (world.scenery.foot(s, m.start).distance, m.ball.radius),
-                With::Member(b) => {
-                    ((m.start - self.members[b].start).length(), m.ball.radius + self.members[b].ball.radius)
-                }
+            let radius = |k: usize| self.members[k].ball.radius;
+            let reach = match c.with {
+                With::Surface(_) => radius(c.a),
+                With::Member(b) => radius(c.a) + radius(b),
             };
-            reach - distance > OVERLAP * reach
+            reach - c.foot.distance > OVERLAP * reach
         })
     }
 
     /// Rest, where everything is slow and the contacts can hold everything still.
-    fn try_rest(&mut self, world: &Marbles, bodies: &mut [Marble]) -> bool {
+    fn try_rest(&mut self, world: &Marbles, bodies: &mut [Marble], h: f64) -> bool {
         let slow = self.members.iter().all(|m| {
-            let limit = world.accuracy.rest_speed * (world.strength * m.ball.radius).sqrt();
+            let limit = world.accuracy.rest_speed * world.speed_scale(m.index as usize);
             m.start_v.length() <= limit && m.start_w.length() * m.ball.radius <= limit
         });
-        if !slow || self.contacts.is_empty() || self.overlaps(world) {
-            return false;
-        }
-        let h = self.step_length(world);
-        if !h.is_finite() {
+        if !slow || self.contacts.is_empty() || !h.is_finite() || self.overlaps() {
             return false;
         }
         for m in &mut self.members {
@@ -265,8 +269,7 @@ impl MarbleScratch {
         }
     }
 
-    fn step(&mut self, world: &Marbles, bodies: &mut [Marble]) {
-        let h = self.step_length(world);
+    fn step(&mut self, world: &Marbles, bodies: &mut [Marble], h: f64) {
         if !h.is_finite() {
             // Weightless and without relative motion: it goes on as it is.
             for m in &self.members {
@@ -299,10 +302,12 @@ impl MarbleScratch {
         for most in [PREDICT, world.accuracy.sweeps] {
             for c in &mut self.contacts {
                 let x = self.members[c.a].x;
-                c.push.last = match c.with {
+                let first = c.foot.normal;
+                let last = match c.with {
                     With::Surface(s) => world.scenery.foot_near(s, x).normal,
-                    With::Member(b) => (x - self.members[b].x).normalize_or(c.push.first),
+                    With::Member(b) => (x - self.members[b].x).normalize_or(first),
                 };
+                c.push = Push::new(first, last);
             }
             for m in &mut self.members {
                 (m.v, m.w) = (m.start_v + world.gravity * h, m.start_w);

@@ -10,12 +10,14 @@ use crate::mechanics::{Impact, Mechanics, Other};
 use crate::resolve::{Touch, sphere_impact};
 use crate::scenery::{Aabb, Surface};
 use glam::DVec3;
+use std::cmp::Ordering;
 
 impl Marbles {
     #[inline]
     pub(crate) fn touch(&self, index: usize, body: &Marble) -> Touch {
         let s = &self.specs[index];
-        Touch { v: body.path.v, w: body.spin, inverse_mass: 1.0 / s.mass, radius: s.radius, gyration: s.gyration }
+        let inverse_mass = self.balls[index].inverse_mass;
+        Touch { v: body.path.v, w: body.spin, inverse_mass, radius: s.radius, gyration: s.gyration }
     }
 
     /// Rebound speed up to which a contact lasts.
@@ -25,15 +27,22 @@ impl Marbles {
     }
 
     /// Time between impacts within which a marble rattles.
+    #[inline]
     fn rattle(&self, index: usize) -> f64 {
-        // Without gravity there is no time scale, and nothing that presses.
-        if self.strength > 0.0 { self.accuracy.rattle * (self.specs[index].radius / self.strength).sqrt() } else { 0.0 }
+        self.rattles[index]
     }
 
     /// Whether an impact is the begin of lasting contact: its rebound would be unseen, or its approach is lost in rounding.
     fn lasts(&self, scale: f64, law: &Law, approach: f64, speed: f64, rattles: bool) -> bool {
         rattles && law.restitution < 1.0
             || law.restitution * approach <= self.settle_speed(scale, law).max(GRAZE * speed)
+    }
+
+    /// An order of centres in which loads travel up, and that knows nothing of labels.
+    pub(super) fn bottom_first(&self, a: DVec3, b: DVec3) -> Ordering {
+        let key = |x: DVec3| [-self.gravity.dot(x), x.x, x.y, x.z];
+        let (p, q) = (key(a), key(b));
+        p.iter().zip(&q).map(|(s, t)| s.total_cmp(t)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
     }
 
     pub(crate) fn surface_law(&self, index: usize, surface: Surface) -> &Law {
@@ -102,6 +111,11 @@ impl Mechanics for Marbles {
         body.advance(time);
     }
 
+    /// Bottom first, then by position.
+    fn order(&self, [i, j]: [u32; 2], [a, b]: [&Marble; 2]) -> Ordering {
+        self.bottom_first(a.path.x, b.path.x).then(i.cmp(&j))
+    }
+
     #[inline]
     fn swept(&self, index: usize, body: &Marble, from: f64, until: f64) -> Aabb {
         // Grown a little beyond the radius, so that rounding cannot hide a touching pair.
@@ -125,7 +139,8 @@ impl Mechanics for Marbles {
 
     #[inline]
     fn first_meeting(&self, [i, j]: [usize; 2], [a, b]: [&Marble; 2], from: f64, until: f64) -> Option<f64> {
-        detect::sphere_pair(&a.path, &b.path, self.specs[i].radius + self.specs[j].radius, from, until)
+        let (reach, horizon) = (self.specs[i].radius + self.specs[j].radius, a.expiry.min(b.expiry).min(self.duration));
+        detect::sphere_pair(&a.path, &b.path, reach, [from, until, horizon])
     }
 
     fn hit_surface(&self, index: usize, body: &mut Marble, surface: Surface) -> Option<Impact> {

@@ -13,11 +13,13 @@ pub use body::{Marble, MarbleSpec, Phase, Start};
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::Laws;
+use crate::queue::Place;
 use crate::scenery::Scenery;
 use crate::simulate::{Outcome, Scratch, simulate};
 use crate::state::State;
 use crate::trace::Observer;
 use glam::DVec3;
+use solve::Ball;
 
 /// An immutable world of marbles.
 #[derive(Debug, Clone)]
@@ -27,6 +29,12 @@ pub struct Marbles {
     pub(crate) scenery: Scenery,
     pub(crate) gravity: DVec3,
     pub(crate) strength: f64,
+    /// What each marble is to an impulse.
+    balls: Vec<Ball>,
+    /// Speed in m/s that a fall over one radius gives, up to √2, of each marble.
+    scales: Vec<f64>,
+    /// Time in s between impacts within which each marble rattles.
+    rattles: Vec<f64>,
     /// Gap over the radius at which a lasting contact ends: the height of a bounce that settles.
     pub(crate) unseen: f64,
     pub(crate) accuracy: Accuracy,
@@ -97,12 +105,18 @@ impl Marbles {
         for face in &scenery.mesh().faces {
             laws.require(face.material)?;
         }
+        let strength = gravity.length();
+        // Without gravity there is no time scale, and nothing that presses.
+        let rattle = |radius: f64| if strength > 0.0 { accuracy.rattle * (radius / strength).sqrt() } else { 0.0 };
         Ok(Self {
+            balls: specs.iter().map(Ball::new).collect(),
+            rattles: specs.iter().map(|spec| rattle(spec.radius)).collect(),
+            scales: specs.iter().map(|spec| (strength * spec.radius).sqrt()).collect(),
             specs,
             laws,
             scenery,
             gravity,
-            strength: gravity.length(),
+            strength,
             unseen: (0.5 * accuracy.settle * accuracy.settle).max(ROUNDING),
             accuracy,
             duration,
@@ -153,7 +167,7 @@ impl Marbles {
                 }
             }
         }
-        Ok(State::new(starts.iter().map(Marble::waiting).collect()))
+        Ok(State::with_places(starts.iter().map(Marble::waiting).collect(), starts.iter().map(place).collect()))
     }
 
     fn check_start(&self, k: usize, start: &Start) -> Result<(), WorldError> {
@@ -182,7 +196,7 @@ impl Marbles {
                 expected: "a release still to come",
             });
         }
-        state.replace_unreleased(index, Marble::waiting(start), start.time.min(self.duration));
+        state.replace_unreleased(index, Marble::waiting(start), place(start), start.time.min(self.duration));
         Ok(())
     }
 
@@ -208,8 +222,13 @@ impl Marbles {
     /// Speed in m/s that a fall over one radius gives, up to √2: the scale of all speeds of a marble.
     #[inline]
     pub(crate) fn speed_scale(&self, index: usize) -> f64 {
-        (self.strength * self.specs[index].radius).sqrt()
+        self.scales[index]
     }
+}
+
+/// Ties go by how marbles start: two can start neither at the same time and place.
+fn place(start: &Start) -> Place {
+    Place([start.time, start.position.x, start.position.y, start.position.z])
 }
 
 /// Gap over the radius that is never seen. Default 1e-9.

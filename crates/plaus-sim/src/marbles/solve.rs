@@ -5,6 +5,7 @@
 
 use super::MarbleSpec;
 use crate::material::Law;
+use crate::scenery::Foot;
 use glam::DVec3;
 
 /// What a ball is to an impulse, with the quotients that every impulse needs.
@@ -14,11 +15,14 @@ pub(super) struct Ball {
     pub(super) radius: f64,
     /// Inertia over mass × radius².
     gyration: f64,
-    inverse_mass: f64,
-    inverse_inertia: f64,
+    pub(super) inverse_mass: f64,
+    /// Radius over inertia.
+    turning: f64,
+    /// 1/m + r²/I.
+    compliance: f64,
     inverse_radius: f64,
     /// 1/(1 + gyration).
-    share: f64,
+    pub(super) share: f64,
     /// 1/(gyration × radius).
     lever: f64,
 }
@@ -34,7 +38,8 @@ impl Ball {
             radius,
             gyration,
             inverse_mass,
-            inverse_inertia: inverse_mass * lever * inverse_radius,
+            turning: radius * (inverse_mass * lever * inverse_radius),
+            compliance: (1.0 + 1.0 / gyration) * inverse_mass,
             inverse_radius,
             share: 1.0 / (1.0 + gyration),
             lever,
@@ -76,13 +81,17 @@ pub(super) struct Contact {
     pub(super) a: usize,
     pub(super) with: With,
     pub(super) law: Law,
-    /// Normals towards `a`.
+    /// Where `a` stands to the other at the start of the step; of a pair the distance is that of the centres.
+    pub(super) foot: Foot,
     pub(super) push: Push,
     /// Approach that the contact stopped, in m/s: its load over the mass.
     pub(super) load: f64,
     /// What the contact has given so far: changes of velocity and spin of `a` and of `b`.
     given_a: (DVec3, DVec3),
     given_b: (DVec3, DVec3),
+    /// Of a pair: 1/m and 1/m + r²/I, summed over both. 0 for a surface.
+    inverse: f64,
+    compliance: f64,
 }
 
 /// The partner of a contact.
@@ -95,9 +104,17 @@ pub(super) enum With {
 const NOTHING: (DVec3, DVec3) = (DVec3::ZERO, DVec3::ZERO);
 
 impl Contact {
-    pub(super) fn new(a: usize, with: With, law: Law, normal: DVec3) -> Self {
-        let push = Push { first: normal, last: normal };
-        Self { a, with, law, push, load: 0.0, given_a: NOTHING, given_b: NOTHING }
+    /// A contact of `members[a]`, which stands to the other as `foot` says.
+    pub(super) fn new(members: &[Member], a: usize, with: With, law: Law, foot: Foot) -> Self {
+        let (inverse, compliance) = match with {
+            With::Surface(_) => (0.0, 0.0),
+            With::Member(b) => {
+                let (p, q) = (&members[a].ball, &members[b].ball);
+                (p.inverse_mass + q.inverse_mass, p.compliance + q.compliance)
+            }
+        };
+        let push = Push::along(foot.normal);
+        Self { a, with, law, foot, push, load: 0.0, given_a: NOTHING, given_b: NOTHING, inverse, compliance }
     }
 
     /// Forgets what the contact has given.
@@ -141,24 +158,22 @@ impl Contact {
         let before = (a.v, b.v);
         let (mut v_a, mut w_a) = (a.v - self.given_a.0, a.w - self.given_a.1);
         let (mut v_b, mut w_b) = (b.v - self.given_b.0, b.w - self.given_b.1);
-        let (p, q) = (a.ball, b.ball);
+        let (p, q) = (&a.ball, &b.ball);
         let n = self.push.last;
         let approach = -(v_a - v_b).dot(n);
         self.load = approach.max(0.0);
         (self.given_a, self.given_b) = (NOTHING, NOTHING);
         if approach > 0.0 {
-            let inverse = p.inverse_mass + q.inverse_mass;
-            let load = approach / inverse;
-            let push = self.push.direction() * load;
-            let relative = v_a - v_b + push * inverse;
+            let load = approach / self.inverse;
+            let push = self.push.direction * load;
+            let relative = v_a - v_b + push * self.inverse;
             let slip = relative - (w_a * p.radius + w_b * q.radius).cross(n);
             let slip = slip - n * slip.dot(n);
-            let compliance = (1.0 + 1.0 / p.gyration) * p.inverse_mass + (1.0 + 1.0 / q.gyration) * q.inverse_mass;
             let (speed, limit) = (slip.length(), self.law.friction * load);
-            let drag = if speed <= limit * compliance { slip / -compliance } else { slip * (-limit / speed) };
+            let drag = if speed <= limit * self.compliance { slip / -self.compliance } else { slip * (-limit / speed) };
             let (impulse, turn) = (push + drag, drag.cross(n));
-            self.given_a = (impulse * p.inverse_mass, turn * (p.radius * p.inverse_inertia));
-            self.given_b = (impulse * -q.inverse_mass, turn * (q.radius * q.inverse_inertia));
+            self.given_a = (impulse * p.inverse_mass, turn * p.turning);
+            self.given_b = (impulse * -q.inverse_mass, turn * q.turning);
             (v_a, w_a) = (v_a + self.given_a.0, w_a + self.given_a.1);
             (v_b, w_b) = (v_b + self.given_b.0, w_b + self.given_b.1);
         }
@@ -168,21 +183,29 @@ impl Contact {
     }
 }
 
-/// Normals of a contact at the start and at the end of a step.
+/// Along which a contact pushes during a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Push {
-    pub(super) first: DVec3,
+    /// Normal at the end of the step.
     pub(super) last: DVec3,
+    /// Direction of the normal impulse, scaled so that a unit changes the final normal velocity by one unit per mass.
+    direction: DVec3,
 }
 
 impl Push {
-    /// Direction of the normal impulse, scaled so that a unit changes the final normal velocity by one unit per mass.
+    /// A push for normals at the start and at the end of the step.
     #[inline]
-    fn direction(&self) -> DVec3 {
-        let sum = self.first + self.last;
-        let along = sum.dot(self.last);
+    pub(super) fn new(first: DVec3, last: DVec3) -> Self {
+        let sum = first + last;
+        let along = sum.dot(last);
         // Normals that turn by more than a right angle within a step: the step was too long for this edge; use the last.
-        if along > 0.5 { sum / along } else { self.last }
+        Self { last, direction: if along > 0.5 { sum / along } else { last } }
+    }
+
+    /// A push along a normal that does not turn.
+    #[inline]
+    pub(super) fn along(normal: DVec3) -> Self {
+        Self::new(normal, normal)
     }
 }
 
@@ -191,7 +214,7 @@ impl Push {
 pub(super) fn respond(ball: &Ball, law: &Law, push: &Push, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
     let approach = -v.dot(push.last);
     if approach > 0.0 {
-        let (v, w) = rub(ball, law, (push.last, approach), v + push.direction() * approach, w);
+        let (v, w) = rub(ball, law, (push.last, approach), v + push.direction * approach, w);
         (approach, v, w)
     } else {
         (0.0, v, w)

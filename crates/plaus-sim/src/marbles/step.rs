@@ -5,7 +5,7 @@ use super::body::{Ending, Marble, Phase};
 use super::group::MarbleScratch;
 use super::{alone, closed};
 use crate::links::{Link, Links};
-use crate::scenery::Surface;
+use crate::scenery::{Foot, Surface};
 
 /// Separating speed over `√(g r)` plus the body's own that never ends a contact. Default 1e-9: far above rounding, far below any motion.
 const KEEP: f64 = 1e-9;
@@ -18,8 +18,9 @@ pub(super) fn settle(
     links: &mut Links,
     scratch: &mut MarbleScratch,
 ) {
+    let mut foot = None;
     for &k in members {
-        follow_contacts(world, k as usize, &mut bodies[k as usize]);
+        foot = follow_contacts(world, k as usize, &mut bodies[k as usize]);
     }
     if !links.is_empty() {
         links.retain(|link| members.binary_search(&link[0]).is_err() || link_lasts(world, link, bodies));
@@ -29,9 +30,9 @@ pub(super) fn settle(
         if body.contacts().is_empty() {
             return body.begin(Phase::Flight, world.gravity);
         }
-        if let &[surface] = body.contacts() {
+        if let (&[surface], Some(foot)) = (body.contacts(), foot) {
             if !closed::begin(world, index, body, surface) {
-                alone::settle(world, index, body, surface);
+                alone::settle(world, index, body, surface, foot);
             }
             return;
         }
@@ -39,8 +40,8 @@ pub(super) fn settle(
     scratch.go_on(world, members, bodies, links);
 }
 
-/// Lets contacts follow the surface, and ends those that separate.
-fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) {
+/// Lets contacts follow the surface, and ends those that separate. Where the marble stands to the last that it keeps.
+fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) -> Option<Foot> {
     let at_end = body.path.t >= body.expiry;
     let leaves = match body.ending {
         Ending::Leaves(side) if at_end => Some(side),
@@ -49,22 +50,30 @@ fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) {
     let was_waiting = body.phase == Phase::Waiting;
     body.ending = Ending::Plain;
     if was_waiting || body.contacts().is_empty() {
-        return;
+        return None;
     }
     let (x, v, radius) = (body.path.x, body.path.v, world.specs[index].radius);
     let scale = world.speed_scale(index);
     let (before, count) = (*body.contacts_in_full(), body.contacts().len());
+    let (unnoticed, mut last) = (KEEP * (scale + v.length()), None);
     body.revise_contacts(|old| {
-        let surface = match (leaves, old) {
-            (Some(side), Surface::Face(f)) => across(world, f, usize::from(side)),
-            _ => world.scenery.track(old, x)?,
+        let (mut surface, mut foot) = match (leaves, old) {
+            (Some(side), Surface::Face(f)) => {
+                let beyond = across(world, f, usize::from(side));
+                (beyond, world.scenery.foot(beyond, x))
+            }
+            _ => world.scenery.follow(old, x)?,
         };
         // Two contacts never merge: what one of them then lacks would be found again at once.
-        let surface = if surface != old && before[..count].contains(&surface) { old } else { surface };
-        let foot = world.scenery.foot(surface, x);
-        let most = world.settle_speed(scale, world.surface_law(index, surface)).max(KEEP * (scale + v.length()));
-        (v.dot(foot.normal) <= most && foot.distance - radius <= world.unseen * radius).then_some(surface)
+        if surface != old && before[..count].contains(&surface) {
+            (surface, foot) = (old, world.scenery.foot(old, x));
+        }
+        let most = world.settle_speed(scale, world.surface_law(index, surface)).max(unnoticed);
+        let keeps = v.dot(foot.normal) <= most && foot.distance - radius <= world.unseen * radius;
+        last = if keeps { Some(foot) } else { last };
+        keeps.then_some(surface)
     });
+    last
 }
 
 fn link_lasts(world: &Marbles, [i, j]: Link, bodies: &[Marble]) -> bool {

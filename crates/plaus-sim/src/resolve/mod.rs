@@ -1,5 +1,6 @@
 //! Impact laws: velocities before to velocities after, and nothing else. They know no time, no shape and no queue.
 
+mod path;
 mod sphere;
 mod stronge;
 

@@ -7,9 +7,10 @@
 //! take up is added to what has not come back yet.
 //!
 //! Sources: Keller, "Impact with friction", J. Appl. Mech. 53 (1986); Stronge, *Impact Mechanics* (2000), ch. 4; Darboux (1880).
-//! Deviation: where the slip turns while it shrinks (three dimensions), the path is followed by midpoint steps that turn it by at most
+//! Deviation: where the slip turns while it shrinks (three dimensions), the path is followed by steps of third order that turn it by at most
 //! `turn` radians each; slip that keeps its direction (every planar impact) is followed exactly.
 
+use super::path::{End, Path};
 use glam::{DMat3, DVec2, DVec3};
 use plaus_dist::math;
 
@@ -28,19 +29,19 @@ impl ContactMatrix {
     }
 
     /// `du/dp` under the friction force `f` per unit normal force.
-    fn rate(&self, f: DVec2) -> (DVec2, f64) {
+    pub(super) fn rate(&self, f: DVec2) -> (DVec2, f64) {
         (self.tangential(f) + self.coupling(), self.0.z_axis.z + self.coupling().dot(f))
     }
 
     /// The friction per unit normal force that keeps a stuck contact stuck.
-    fn holding(&self) -> DVec2 {
+    pub(super) fn holding(&self) -> DVec2 {
         let (m, c) = (&self.0, self.coupling());
         let det = m.x_axis.x * m.y_axis.y - m.y_axis.x * m.x_axis.y;
         -DVec2::new(m.y_axis.y * c.x - m.y_axis.x * c.y, m.x_axis.x * c.y - m.x_axis.y * c.x) / det
     }
 
     /// The direction in which a contact that cannot stick starts to slip: where the slip's change points along the slip.
-    fn escape(&self, friction: f64) -> DVec2 {
+    pub(super) fn escape(&self, friction: f64) -> DVec2 {
         const SECTORS: usize = 32;
         let rate_in = |angle: f64| {
             let (s, c) = math::sin_cos(angle);
@@ -74,10 +75,10 @@ impl ContactMatrix {
 /// `turn` is the largest angle in radians by which the slip may turn within one integration step.
 #[must_use]
 pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: f64, turn: f64) -> DVec3 {
-    let mut path = Path { slip: DVec2::new(u.x, u.y), normal: u.z, work: 0.0, impulse: DVec3::ZERO };
     if u.z >= 0.0 {
-        return path.impulse;
+        return DVec3::ZERO;
     }
+    let mut path = Path::new(k, u, restitution, friction, turn);
     // The normal work at which all that is to come back has come back, and the work at the begin of the compression.
     let mut released = 0.0;
     let mut begin = 0.0;
@@ -90,35 +91,20 @@ pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: 
             wound += wound * WIDENS / many as f64;
         }
         let tiny = if count < many { f64::EPSILON } else { wound } * u.length();
-        let stuck = path.slip.length() <= tiny;
-        let (force, longest) = path.friction(k, friction, turn, stuck);
-        let (slip_rate, normal_rate) = k.rate(force);
-        let (end, last) =
-            if compresses { (path.until_turn(normal_rate), false) } else { path.until_released(normal_rate, released) };
-        let step = if end <= longest { end } else { longest };
-        if !step.is_finite() {
+        match path.step(tiny, (!compresses).then_some(released)) {
+            End::Open => continue,
+            End::Never => break,
+            End::Turned if compresses => released += (path.work() - begin) * (1.0 - restitution * restitution),
+            End::Turned => {}
+            End::Released => break,
+        }
+        if restitution == 0.0 {
             break;
         }
-        path.take(
-            step,
-            force,
-            slip_rate,
-            normal_rate,
-            stuck || (step == longest && longest.is_finite() && path.stops(slip_rate, step)),
-        );
-        if step < end {
-            continue;
-        }
-        if compresses {
-            released += (path.work - begin) * (1.0 - restitution * restitution);
-        }
-        if last || restitution == 0.0 {
-            break;
-        }
-        begin = path.work;
+        begin = path.work();
         compresses = !compresses;
     }
-    path.impulse
+    path.impulse()
 }
 
 /// A slip that winds round and round while it dies would take steps without end. When it has turned by so many radians (eight rounds), it counts as stuck below this part of the
@@ -130,81 +116,6 @@ const WIDENS: f64 = 10.0;
 
 /// The bound on turns only guards against our own mistakes.
 const MOST_TURNS: f64 = 4.0 * MANY_TURNS;
-
-struct Path {
-    slip: DVec2,
-    normal: f64,
-    work: f64,
-    impulse: DVec3,
-}
-
-impl Path {
-    /// Friction force per unit normal force, and the longest step over which it may be taken as constant.
-    fn friction(&self, k: &ContactMatrix, friction: f64, turn: f64, stuck: bool) -> (DVec2, f64) {
-        if friction == 0.0 {
-            return (DVec2::ZERO, f64::INFINITY);
-        }
-        if stuck {
-            let holding = k.holding();
-            if holding.length() <= friction {
-                return (holding, f64::INFINITY);
-            }
-            return (-k.escape(friction) * friction, f64::INFINITY);
-        }
-        let speed = self.slip.length();
-        let u = self.slip / speed;
-        let (rate, _) = k.rate(-u * friction);
-        let (along, across) = (u.dot(rate), u.perp_dot(rate).abs());
-        let stop = if along < 0.0 { -speed / along } else { f64::INFINITY };
-        if across <= 1e-12 * rate.length() {
-            return (-u * friction, stop);
-        }
-        let step = (turn * speed / across).min(0.5 * stop);
-        // Midpoint: the direction half a step ahead stands for the whole step.
-        let middle = self.slip + rate * (0.5 * step);
-        let u = middle / middle.length();
-        let (rate, _) = k.rate(-u * friction);
-        let along = u.dot(rate);
-        let closing =
-            along < 0.0 && u.perp_dot(rate).abs() * self.slip.length() <= turn * 1e-3 * self.slip.length() * -along;
-        let stop = -self.slip.dot(rate) / rate.length_squared();
-        (-u * friction, if closing && stop > 0.0 { stop } else { step })
-    }
-
-    /// Whether a step ends with the slip gone up to what the integration can resolve.
-    fn stops(&self, rate: DVec2, step: f64) -> bool {
-        (self.slip + rate * step).length() <= 1e-3 * self.slip.length()
-    }
-
-    /// Normal impulse until compression ends.
-    fn until_turn(&self, rate: f64) -> f64 {
-        if rate > 0.0 { (-self.normal / rate).max(0.0) } else { f64::INFINITY }
-    }
-
-    /// Normal impulse until the work reaches `released`, and true; or, where the bodies approach again before that, until they begin to, and false.
-    fn until_released(&self, rate: f64, released: f64) -> (f64, bool) {
-        // W + u p + r p²/2 = released, with u ≥ 0: the positive root in the form that does not cancel.
-        let missing = released - self.work;
-        let discriminant = self.normal * self.normal + 2.0 * rate * missing;
-        if missing <= 0.0 {
-            (0.0, true)
-        } else if discriminant >= 0.0 {
-            (2.0 * missing / (self.normal + discriminant.sqrt()), true)
-        } else {
-            ((self.normal / -rate).max(0.0), false)
-        }
-    }
-
-    fn take(&mut self, step: f64, force: DVec2, slip_rate: DVec2, normal_rate: f64, stuck: bool) {
-        self.work += step * (self.normal + 0.5 * normal_rate * step);
-        self.normal += normal_rate * step;
-        let holds = stuck
-            && (slip_rate.length_squared() <= 1e-24 * (1.0 + force.length_squared()) * normal_rate * normal_rate
-                || self.stops(slip_rate, step));
-        self.slip = if holds { DVec2::ZERO } else { self.slip + slip_rate * step };
-        self.impulse += DVec3::new(force.x, force.y, 1.0) * step;
-    }
-}
 
 #[cfg(test)]
 mod tests {
@@ -261,18 +172,59 @@ mod tests {
         assert!((slip - DVec3::new(0.6 * left, 0.8 * left, 1.0)).length() < 1e-14);
     }
 
+    /// Response and approach of the corner of a cube of unit mass, from a sequence that fills the box of their numbers evenly.
+    fn corner(n: u32) -> (ContactMatrix, DVec3) {
+        let part = |step: f64| (f64::from(n) * step) % 1.0;
+        let down = -0.2 - 0.8 * part(0.324_717_957_244);
+        let r = DVec3::new(part(0.618_033_988_749) - 0.5, part(0.754_877_666_246) - 0.5, down).normalize() * 0.866;
+        let along = DVec2::new(part(0.569_840_290_998), part(0.220_744_084_605)) * 2.0 - 1.0;
+        (matrix(DVec3::splat(6.0), r), along.extend(-0.01 - part(0.819_172_513_396)))
+    }
+
     #[test]
     fn finer_turns_converge() {
-        let k = ContactMatrix(DMat3::from_cols(
-            DVec3::new(4.0, 1.0, -1.0),
-            DVec3::new(1.0, 2.0, 0.7),
-            DVec3::new(-1.0, 0.7, 1.5),
-        ));
-        let u = DVec3::new(1.0, -0.8, -1.0);
-        let exact = stronge_impulse(&k, u, 0.7, 0.3, 1e-3);
-        let errors: Vec<f64> =
-            [0.2, 0.1, 0.05].iter().map(|&turn| (stronge_impulse(&k, u, 0.7, 0.3, turn) - exact).length()).collect();
-        assert!(errors[2] < 1e-3 && errors[2] < errors[0], "{errors:?}");
+        let mean = |turn: f64| {
+            let error = |n: u32| {
+                let (k, u) = corner(n);
+                let exact = stronge_impulse(&k, u, 0.5, 0.35, 2e-3);
+                (stronge_impulse(&k, u, 0.5, 0.35, turn) - exact).length() / exact.length()
+            };
+            (1..=500).map(error).sum::<f64>() / 500.0
+        };
+        let errors = [0.4, 0.2, 0.1, 0.05].map(mean);
+        // Third order would be an eighth each time; slip that nearly stops and goes on is slower to come, and has most of the mean.
+        assert!(errors[0] < 5e-3, "{errors:?}");
+        assert!(errors.windows(2).all(|e| e[1] < 0.45 * e[0]), "{errors:?}");
+    }
+
+    /// Against Darboux and Keller's equations in 20,000 steps of Euler's rule.
+    #[test]
+    fn corners_agree_with_tiny_steps() {
+        for n in 1..60 {
+            let (k, u) = corner(n);
+            let (e, mu) = (0.5, 0.35);
+            let impulse = stronge_impulse(&k, u, e, mu, 0.01);
+            let (mut v, mut stored, mut sum) = (u, 0.0, DVec3::ZERO);
+            let step = impulse.z / 20_000.0;
+            loop {
+                let slip = v.truncate();
+                let resting = slip.length() < 1e-3 && k.holding().length() <= mu;
+                let force = if resting { k.holding() } else { -slip / slip.length() * mu };
+                let next = v + k.0 * force.extend(1.0) * step;
+                let work = step * 0.5 * (v.z + next.z);
+                stored -= if work < 0.0 { work } else { work / (e * e) };
+                v = next;
+                sum += force.extend(1.0) * step;
+                if stored <= 0.0 {
+                    break;
+                }
+            }
+            // Euler's rule is off by some steps' impulse, and by the slip below which it holds.
+            assert!(
+                (impulse - sum).length() < 2e-3 * sum.length().max(u.length() / k.0.z_axis.z),
+                "{n}: {impulse} {sum}"
+            );
+        }
     }
 
     /// The slip spirals inwards: it shrinks by a hundredth per step. The impact must come to its end all the same.
@@ -321,11 +273,11 @@ mod tests {
         #[test]
         fn energy_never_grows(
             inertia in prop::array::uniform3(0.05..20.0_f64), r in prop::array::uniform3(-1.0..1.0_f64), u in prop::array::uniform3(-3.0..3.0_f64),
-            e in 0.0..=1.0_f64, mu in 0.0..3.0_f64,
+            e in 0.0..=1.0_f64, mu in 0.0..3.0_f64, turn in 0.03..0.5_f64,
         ) {
             let k = matrix(DVec3::from(inertia), DVec3::from(r));
             let u = DVec3::new(u[0], u[1], -u[2].abs() - 1e-3);
-            let impulse = stronge_impulse(&k, u, e, mu, TURN);
+            let impulse = stronge_impulse(&k, u, e, mu, turn);
             let next = u + k.0 * impulse;
             let energy = impulse.dot(u + next) * 0.5;
             let scale = impulse.length() * u.length();

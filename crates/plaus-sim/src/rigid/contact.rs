@@ -1,7 +1,8 @@
 //! Which points touch, and one point's impact.
 
-use super::body::{Motion, Phase, Pose, Turning};
+use super::body::{MOST_TOUCHES, Motion, Phase, Pose, Turning};
 use super::part::{Part, farthest_side};
+use super::step::TOUCHING;
 use super::{Rigid, Spec};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
@@ -141,6 +142,21 @@ impl Rigid {
         }
     }
 
+    /// Calls `each` for the points of a body that touch: those noted at its clock, where all were, or else those found now.
+    pub(super) fn for_known_touches(&self, index: usize, body: &Turning, pose: &Pose, mut each: impl FnMut(Touch)) {
+        let spec = &self.specs[index];
+        let noted = body.touching();
+        // Which point of a ring is the lowest goes with the velocities, and those an impact has changed.
+        if body.listed != body.path.t || noted.len() == MOST_TOUCHES || !spec.rings.is_empty() {
+            return self.for_touches(index, pose, TOUCHING * spec.gap, each);
+        }
+        for surface in noted {
+            if let Surface::Part { part, point } = *surface {
+                each(self.touch(index, pose, part, point));
+            }
+        }
+    }
+
     /// The deepest overlap of a body with a part.
     pub(super) fn deepest(&self, index: usize, body: &Turning) -> Option<(u16, f64)> {
         let mut deepest: Option<(u16, f64)> = None;
@@ -179,9 +195,9 @@ impl Rigid {
             return;
         }
         let spec = &self.specs[index];
-        let mut found = [const { Surface::Part { part: 0, point: 0 } }; super::body::MOST_TOUCHES];
+        let mut found = [const { Surface::Part { part: 0, point: 0 } }; MOST_TOUCHES];
         let mut count = 0;
-        self.for_touches(index, &body.pose(), super::step::TOUCHING * spec.gap, |t| {
+        self.for_touches(index, &body.pose(), TOUCHING * spec.gap, |t| {
             if count < found.len() {
                 found[count] = t.surface();
                 count += 1;
@@ -212,7 +228,7 @@ impl Rigid {
         let law = self.law_at(index, part, pose.x + touch.arm);
         let settles = self.settle_speed(spec, &law);
         let lasting = law.restitution * approach <= settles || body.is_hurried();
-        let far = touch.gap > super::step::TOUCHING * spec.gap;
+        let far = touch.gap > TOUCHING * spec.gap;
         if approach <= 0.0 || far || (lasting && approach <= LEFT * settles) {
             // No impact: the drift's velocities, if taken, would bring energy.
             body.set_motion(before);

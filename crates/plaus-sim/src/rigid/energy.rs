@@ -8,27 +8,33 @@ use super::contact::Touch;
 use super::solve::{Contact, Member};
 use super::step::{Place, RigidScratch};
 use super::{Rigid, Spec};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 impl RigidScratch {
     /// Whether a step was so long that keeping its points out of the ground lifted bodies higher than their energy can: a pin that rocks over its foot's rim, say. Then
     /// a shorter one must see where it touches.
-    pub(super) fn climbs(&self) -> Option<f64> {
-        self.climbed.then_some(0.5)
+    pub(super) fn climbs(&self, world: &Rigid) -> Option<f64> {
+        (self.energy_to_keep(world) < 0.0).then_some(0.5)
+    }
+
+    /// Kinetic energy that the drift of a step leaves of what was there, negative where it lifted bodies higher than that.
+    fn energy_to_keep(&self, world: &Rigid) -> f64 {
+        let left = |p: &Place| {
+            let spec = &world.specs[p.body];
+            kinetic(spec, p.turn, p.start.v, p.start.w) + spec.mass * world.gravity.dot(p.end.x - p.start.x)
+        };
+        self.places.iter().map(left).sum()
     }
 
     /// A group's energy never grows, whatever the step's error.
     pub(super) fn guard_energy(&mut self, world: &Rigid) {
-        let kinetic = |spec: &Spec, turn, v: DVec3, w: DVec3| {
-            0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)))
-        };
-        let (mut before, mut after) = (0.0, 0.0);
-        for (p, m) in self.places.iter().zip(&self.members) {
-            let spec = &world.specs[p.body];
-            before += kinetic(spec, p.turn, p.start.v, p.start.w) + spec.mass * world.gravity.dot(p.end.x - p.start.x);
-            after += kinetic(spec, p.end_turn, m.v, m.w);
-        }
-        self.climbed = before < 0.0;
+        let before = self.energy_to_keep(world);
+        let after: f64 = self
+            .places
+            .iter()
+            .zip(&self.members)
+            .map(|(p, m)| kinetic(&world.specs[p.body], p.end_turn, m.v, m.w))
+            .sum();
         if after > before {
             let part = (before.max(0.0) / after).sqrt();
             for m in &mut self.members {
@@ -37,6 +43,10 @@ impl RigidScratch {
             }
         }
     }
+}
+
+fn kinetic(spec: &Spec, turn: DQuat, v: DVec3, w: DVec3) -> f64 {
+    0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)))
 }
 
 /// Takes from the members' angular velocities what the contacts' resistance takes over a step whose halves have the contacts' impulses. Energy only falls, and no rotation is

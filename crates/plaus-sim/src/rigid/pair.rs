@@ -7,10 +7,11 @@ use super::body::{Motion, Phase, Pose, Turning};
 use super::capsule::capsules;
 use super::contact::{impulse, response};
 use super::detect::earliest;
+use super::revolved::{revolved_and_ball, two_revolved};
 use super::{Rigid, Skin, Spec, step};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
-use crate::shape::{Feeler, Ring, cuboid_pair, hull_pair};
+use crate::shape::{cuboid_pair, hull_pair};
 use glam::DVec3;
 
 /// What meets at a point of two bodies with flat faces.
@@ -65,14 +66,8 @@ const NEAR: f64 = 0.02;
 /// Distance over the size that two skins may move between two looks beyond what parts them. Default 0.05; larger values miss grazes that deep by half of it.
 const SKIP: f64 = 0.05;
 
-/// Stride over the balls of two rows in the first look; the best local minima are then followed ball by ball.
-const STRIDE: usize = 4;
-
-/// Most local minima followed.
-const FOLLOWED: usize = 4;
-
 /// Two balls, in world axes about the two centres of gravity.
-fn balls(offset: DVec3, [p, q]: [DVec3; 2], [r, s]: [f64; 2]) -> PairTouch {
+pub(super) fn balls(offset: DVec3, [p, q]: [DVec3; 2], [r, s]: [f64; 2]) -> PairTouch {
     // offset: from the second centre of gravity to the first.
     let between = offset + p - q;
     let distance = between.length();
@@ -80,14 +75,7 @@ fn balls(offset: DVec3, [p, q]: [DVec3; 2], [r, s]: [f64; 2]) -> PairTouch {
     PairTouch { normal, arms: [p - normal * r, q + normal * s], gap: distance - r - s, feature: None }
 }
 
-/// The point of a ring's circle nearest to `d` (both about the ring's body), in body axes.
-fn nearest_on_ring(ring: &Ring, d: DVec3) -> DVec3 {
-    let flat = DVec3::new(d.x, d.y, 0.0);
-    let along = if flat == DVec3::ZERO { DVec3::X } else { flat.normalize() };
-    along * ring.circle + DVec3::new(0.0, 0.0, ring.height)
-}
-
-fn nearer(best: &mut Option<PairTouch>, other: PairTouch) {
+pub(super) fn nearer(best: &mut Option<PairTouch>, other: PairTouch) {
     if best.is_none_or(|b| other.gap < b.gap) {
         *best = Some(other);
     }
@@ -316,109 +304,6 @@ impl Rigid {
             lasting,
         })
     }
-}
-
-/// A body of revolution and a ball; `offset` from the ball's centre to the body's.
-fn revolved_and_ball(s: &Spec, a: &Pose, offset: DVec3, radius: f64) -> PairTouch {
-    let d = a.r.transpose() * -offset;
-    let mut best: Option<(f64, DVec3, f64)> = None;
-    let mut consider = |centre: DVec3, r: f64| {
-        let gap = (d - centre).length() - r;
-        if best.is_none_or(|b| gap < b.0) {
-            best = Some((gap, centre, r));
-        }
-    };
-    for f in s.row() {
-        consider(f.centre, f.radius);
-    }
-    for ring in &s.rings {
-        consider(nearest_on_ring(ring, d), ring.radius);
-    }
-    let (_, centre, r) = best.unwrap_or((0.0, DVec3::ZERO, s.reach));
-    balls(offset, [a.r * centre, DVec3::ZERO], [r, radius])
-}
-
-fn two_revolved([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], offset: DVec3) -> PairTouch {
-    let (e, g) = (a.r.z_axis, b.r.z_axis);
-    let (row, col) = (s.row(), t.row());
-    let gap = |k: usize, l: usize| {
-        let (p, q): (&Feeler, &Feeler) = (&row[k], &col[l]);
-        (offset + e * p.centre.z - g * q.centre.z).length() - p.radius - q.radius
-    };
-    let mut best: Option<PairTouch> = None;
-    let mut starts = [(f64::INFINITY, 0, 0); FOLLOWED];
-    for k in (0..row.len()).step_by(STRIDE) {
-        let mut along = (f64::INFINITY, 0);
-        for l in (0..col.len()).step_by(STRIDE) {
-            let f = gap(k, l);
-            if f < along.0 {
-                along = (f, l);
-            }
-        }
-        // The best of this row of the table, kept if among the best few.
-        let worst = starts.iter_mut().max_by(|x, y| x.0.total_cmp(&y.0));
-        if let Some(worst) = worst
-            && along.0 < worst.0
-        {
-            *worst = (along.0, k, along.1);
-        }
-    }
-    starts.sort_by(|x, y| x.0.total_cmp(&y.0));
-    for &(f, k, l) in &starts {
-        // Balls between the looked-at ones stand out by a few millimetres at most: far starts cannot win.
-        if !f.is_finite() || f > starts[0].0 + 0.2 * (s.size + t.size) {
-            continue;
-        }
-        let (mut k, mut l, mut f) = (k, l, f);
-        for _ in 0..row.len() + col.len() {
-            let (before, now) = ((k, l), f);
-            for (i, j) in [
-                (k.wrapping_sub(1), l),
-                (k + 1, l),
-                (k, l.wrapping_sub(1)),
-                (k, l + 1),
-                (k.wrapping_sub(1), l + 1),
-                (k + 1, l.wrapping_sub(1)),
-                (k + 1, l + 1),
-                (k.wrapping_sub(1), l.wrapping_sub(1)),
-            ] {
-                if i < row.len() && j < col.len() {
-                    let other = gap(i, j);
-                    if other < f {
-                        (k, l, f) = (i, j, other);
-                    }
-                }
-            }
-            if (k, l) == before || f >= now {
-                break;
-            }
-        }
-        nearer(&mut best, balls(offset, [e * row[k].centre.z, g * col[l].centre.z], [row[k].radius, col[l].radius]));
-    }
-    // Rings of each against the balls of the other.
-    let mut best = best.unwrap_or(balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]));
-    for (first, spec, pose, other, axis, to) in [(true, s, a, t, g, -offset), (false, t, b, s, e, offset)] {
-        // `to`: from this body to the other.
-        for f in other.row().iter().step_by(2) {
-            let centre = axis * f.centre.z;
-            let d = pose.r.transpose() * (to + centre);
-            for ring in &spec.rings {
-                // The ball around the whole ring first.
-                let near = best.gap + f.radius + ring.radius + ring.circle;
-                let up = d.z - ring.height;
-                if near <= 0.0 || d.x * d.x + d.y * d.y + up * up > near * near {
-                    continue;
-                }
-                let on = nearest_on_ring(ring, d);
-                if (d - on).length() - ring.radius - f.radius < best.gap {
-                    let arms = if first { [pose.r * on, centre] } else { [centre, pose.r * on] };
-                    let radii = if first { [ring.radius, f.radius] } else { [f.radius, ring.radius] };
-                    best = balls(offset, arms, radii);
-                }
-            }
-        }
-    }
-    best
 }
 
 /// A cuboid and the balls of another body; `offset` from the other to the cuboid.

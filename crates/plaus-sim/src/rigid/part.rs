@@ -201,22 +201,27 @@ pub(crate) struct Side {
     pub(crate) beyond: f64,
 }
 
-/// The sides of a box that a point is beyond.
-fn sides_before(bounds: &Aabb, x: DVec3) -> impl Iterator<Item = Side> {
-    let bounds = *bounds;
-    let sides = DVec3::AXES.into_iter().enumerate().flat_map(move |(axis, e)| {
-        [(e, bounds.max[axis]), (-e, -bounds.min[axis])].map(|(normal, offset)| (axis, normal, offset))
-    });
-    sides.filter_map(move |(axis, normal, offset)| {
-        let beyond = normal.dot(x) - offset;
-        (beyond > 0.0).then_some(Side { axis, normal, offset, beyond })
-    })
+impl Side {
+    /// The side of a box at one end of an axis.
+    fn of(bounds: &Aabb, (axis, is_upper): (usize, bool), beyond: f64) -> Self {
+        let e = DVec3::AXES[axis];
+        let (normal, offset) = if is_upper { (e, bounds.max[axis]) } else { (-e, -bounds.min[axis]) };
+        Self { axis, normal, offset, beyond }
+    }
 }
 
 /// The side of a box that a point is farthest beyond; none where it is inside.
 pub(crate) fn farthest_side(bounds: &Aabb, x: DVec3) -> Option<Side> {
-    sides_before(bounds, x)
-        .fold(None, |far: Option<Side>, s| if far.is_some_and(|f| f.beyond >= s.beyond) { far } else { Some(s) })
+    let ends = [(true, x - bounds.max), (false, bounds.min - x)];
+    let (mut farthest, mut side) = (0.0, None);
+    for axis in 0..3 {
+        for (is_upper, beyond) in ends {
+            if beyond[axis] > farthest {
+                (farthest, side) = (beyond[axis], Some((axis, is_upper)));
+            }
+        }
+    }
+    side.map(|end| Side::of(bounds, end, farthest))
 }
 
 /// Whether a point is within the edges of a side of a box.
@@ -237,11 +242,21 @@ fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
         return side.normal;
     }
     let mut best = (f64::INFINITY, middle);
-    for side in sides_before(bounds, x).chain(sides_before(bounds, middle)) {
-        let point = lowest(side.normal);
-        let distance = block_foot(bounds, point).distance;
-        if distance < best.0 {
-            best = (distance, point);
+    let mut seen = [false; 6];
+    for from in [x, middle] {
+        let (above, below) = (from - bounds.max, bounds.min - from);
+        for (end, seen) in seen.iter_mut().enumerate() {
+            let (axis, is_upper) = (end / 2, end % 2 == 0);
+            let is_beyond = if is_upper { above[axis] } else { below[axis] } > 0.0;
+            if *seen || !is_beyond {
+                continue;
+            }
+            *seen = true;
+            let point = lowest(Side::of(bounds, (axis, is_upper), 0.0).normal);
+            let distance = block_foot(bounds, point).distance;
+            if distance < best.0 {
+                best = (distance, point);
+            }
         }
     }
     // From the point's foot to the ring's point nearest to that, and again: no step leads away.

@@ -1,5 +1,6 @@
 //! Impulses of lasting contacts, found together: block Gauss–Seidel whose blocks obey Coulomb's law exactly.
 
+use super::slip::{Asked, Slip};
 use glam::{DMat3, DVec3};
 
 /// A body while its contacts are solved.
@@ -35,11 +36,25 @@ pub(crate) struct Contact {
     stiff: f64,
     /// Impulse on `a` so far.
     pub(crate) impulse: DVec3,
-    slip: DVec3,
+    slip: Option<Slip>,
+    /// Whether it slid when it was looked at last.
+    slides: bool,
+    /// Whether it obeyed Coulomb's law after that, the direction of its slip included.
+    is_right: bool,
 }
 
 /// Rounds over the direction of slip per visit; the sweeps around it do the rest.
-const ROUNDS: usize = 2;
+const ROUNDS: u32 = 1;
+
+/// The same where there is no other contact: it is found once and for all.
+const ROUNDS_ALONE: u32 = 6;
+
+/// How well a slip's direction is looked for: the angle in radians by which it may be off, and rounds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Look {
+    turn: f64,
+    rounds: u32,
+}
 
 impl Contact {
     pub(crate) fn new(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3, friction: f64, k: DMat3) -> Self {
@@ -60,7 +75,9 @@ impl Contact {
             along,
             stiff,
             impulse: DVec3::ZERO,
-            slip: DVec3::ZERO,
+            slip: None,
+            slides: false,
+            is_right: false,
         }
     }
 
@@ -89,60 +106,64 @@ impl Contact {
 
     /// Gives this contact the impulse that it needs with all others as they are; returns the change of velocity that this meant.
     #[inline]
-    pub(crate) fn solve(&mut self, members: &mut [Member]) -> f64 {
+    pub(crate) fn solve(&mut self, members: &mut [Member], look: Look) -> f64 {
         let u = self.velocity(members);
         let n = self.normal;
         let wanted = n * self.target - u;
         if self.impulse == DVec3::ZERO && wanted.dot(n) <= 0.0 {
+            self.is_right = true;
             return 0.0;
         }
-        // Sticking is by far the most frequent: no slip is left, and the impulse lies in the cone.
-        let mut change = self.k_inverse * wanted;
-        let mut next = self.impulse + change;
-        let load = next.dot(n);
-        if load <= 0.0 || (next - n * load).length_squared() > self.friction * self.friction * load * load {
-            next = self.sliding(u - self.k * self.impulse);
-            change = next - self.impulse;
-        }
+        let next = self.still_sliding(u, look).unwrap_or_else(|| {
+            // No slip is left, and the impulse lies in the cone; or else it slides.
+            let next = self.impulse + self.k_inverse * wanted;
+            let load = next.dot(n);
+            let across = (next - n * load).length_squared();
+            self.slides = load <= 0.0 || across > self.friction * self.friction * load * load;
+            self.is_right = true;
+            if self.slides { self.sliding(u - self.k * self.impulse, look) } else { next }
+        });
+        let change = next - self.impulse;
         self.push(members, change);
         self.impulse = next;
         change.length() * self.along
     }
 
+    /// The impulse of a contact that slid when it was looked at last and goes on sliding: Coulomb's law then holds with it.
+    #[inline]
+    fn still_sliding(&mut self, u: DVec3, look: Look) -> Option<DVec3> {
+        let mut slip = self.slip.filter(|_| self.slides)?;
+        let free = u - self.k * self.impulse;
+        let missing = self.target - free.dot(self.normal);
+        self.is_right = true;
+        if missing <= 0.0 {
+            return Some(DVec3::ZERO);
+        }
+        let slide = slip.slide(free, &self.asked(missing, look)).filter(|s| s.goes_on)?;
+        (self.slip, self.is_right) = (Some(slip), slide.is_right);
+        Some((self.normal - slide.slip * self.friction) * slide.load)
+    }
+
+    fn asked(&self, missing: f64, Look { turn, rounds }: Look) -> Asked {
+        Asked { friction: self.friction, missing, along: self.along, stiff: self.stiff, turn, rounds }
+    }
+
     /// The impulse after which a contact with velocity `free`, that cannot stick, obeys Coulomb's law: the friction opposes the slip that is left.
-    fn sliding(&mut self, free: DVec3) -> DVec3 {
+    fn sliding(&mut self, free: DVec3, look: Look) -> DVec3 {
         let n = self.normal;
         let missing = self.target - free.dot(n);
         if missing <= 0.0 {
             return DVec3::ZERO;
         }
-        if self.friction == 0.0 {
-            return n * (missing / self.along);
+        if self.slip.is_none() && self.friction > 0.0 {
+            let across = free - n * free.dot(n) + (self.kn - n * self.along) * (missing / self.along);
+            self.slip = Slip::new(across, n, &self.k, self.kn);
         }
-        if self.slip == DVec3::ZERO {
-            let across = free - n * free.dot(n);
-            self.slip = (across + (self.kn - n * self.along) * (missing / self.along)).normalize_or_zero();
-        }
-        for _ in 0..ROUNDS {
-            let ks = self.k * self.slip;
-            let gain = self.along - self.friction * self.kn.dot(self.slip);
-            if gain <= 1e-3 * self.along {
-                // Friction wedges the contact.
-                return self.wedged(free, missing);
-            }
-            let load = missing / gain;
-            let after = free + (self.kn - ks * self.friction) * load;
-            let before = self.slip;
-            self.slip = (after - n * after.dot(n) + before * (self.friction * load * self.stiff)).normalize_or(before);
-            if before.dot(self.slip) > 1.0 - 1e-9 {
-                break;
-            }
-        }
-        let gain = self.along - self.friction * self.kn.dot(self.slip);
-        if gain <= 1e-3 * self.along {
-            return self.wedged(free, missing);
-        }
-        (n - self.slip * self.friction) * (missing / gain)
+        let asked = self.asked(missing, look);
+        let Some(slip) = &mut self.slip else { return n * (missing / self.along) };
+        let Some(slide) = slip.slide(free, &asked) else { return self.wedged(free, missing) };
+        self.is_right = slide.is_right;
+        (n - slide.slip * self.friction) * slide.load
     }
 
     /// The sticking impulse where the cone allows its normal part at all, else one without friction: neither gains energy.
@@ -155,27 +176,51 @@ impl Contact {
     }
 }
 
-/// Sweeps up and down over all contacts until a round changes no body's velocity by more than `enough`, at most `most` times.
+/// Least angle in radians that is asked for: rounding is below.
+const LEAST_TURN: f64 = 1e-9;
+
+/// When sweeps end.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Enough {
+    /// Change of velocity in m/s.
+    speed: f64,
+    /// Angle in radians by which the direction of a slip may be off.
+    turn: f64,
+}
+
+impl Enough {
+    /// Where sweeps may end at changes of `speed`, and what contacts have to take up is of the order of `push`, both in m/s: friction up to the load that is off by a third of their ratio
+    /// is off by less than `speed`.
+    pub(crate) fn new(speed: f64, push: f64) -> Self {
+        Self { speed, turn: (speed / (3.0 * push)).max(LEAST_TURN) }
+    }
+}
+
+/// Sweeps up and down over all contacts until a round changes no body's velocity by more than `enough` says, at most `most` times.
 ///
 /// Velocities decide, not impulses: where contacts are redundant, impulses that cancel each other may go on growing for ever.
-pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: f64, most: u32) {
+pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: Enough, most: u32) {
+    let Enough { speed: enough, turn } = enough;
+    let look = Look { turn, rounds: if contacts.len() == 1 { ROUNDS_ALONE } else { ROUNDS } };
     if let [only] = contacts {
         for _ in 0..4 {
-            if only.solve(members) <= enough {
+            // With its slip's direction right, nothing is left to change.
+            if only.solve(members, look) <= enough || only.is_right {
                 break;
             }
         }
         return;
     }
-    for _ in 0..most {
+    for round in 0..most {
         for m in members.iter_mut() {
             m.last = [m.v, m.w];
         }
-        for c in contacts.iter_mut() {
-            c.solve(members);
+        // The first was the last of the pass before.
+        for c in contacts.iter_mut().skip(usize::from(round > 0)) {
+            c.solve(members, look);
         }
         for c in contacts.iter_mut().rev().skip(1) {
-            c.solve(members);
+            c.solve(members, look);
         }
         let quiet = |m: &Member| {
             (m.v - m.last[0]).length_squared() <= enough * enough

@@ -33,6 +33,8 @@ pub(crate) struct Spec {
     /// Whether it can roll: a ball or a body of revolution.
     pub(crate) is_round: bool,
     pub(super) rings: Vec<Ring>,
+    /// A ball about the axis that holds all rings: height of its centre, and its radius.
+    pub(super) foot: [f64; 2],
     pub(crate) skin: Skin,
     /// What polyhedra meet: a core, and the radius of what is round it. Only in worlds with polyhedra.
     pub(super) core: Option<(Arc<Polyhedron>, f64)>,
@@ -92,7 +94,7 @@ impl Spec {
         };
         let has_hulls = world.bodies.iter().any(|b| matches!(b.shape, Shape::Hull(_)));
         let core = if has_hulls { hulls::core(&b.shape) } else { None };
-        let capsule = capsule(&b.shape, reach);
+        let (capsule, foot) = (capsule(&b.shape, reach), ball_around(&rings));
         let arms = feelers.iter().map(|f| f.centre.length()).collect();
         let ring_arms = rings.iter().map(|r| (r.circle * r.circle + r.height * r.height).sqrt()).collect();
         let is_ball = matches!(skin, Skin::Ball);
@@ -114,6 +116,7 @@ impl Spec {
             is_ball,
             is_round,
             rings,
+            foot,
             skin,
             core,
             capsule,
@@ -164,6 +167,15 @@ impl Spec {
         };
         (Feeler { centre: along * ring.circle + DVec3::new(0.0, 0.0, ring.height), radius: ring.radius }, quarter)
     }
+}
+
+/// A ball about the axis that holds these rings: height of its centre, and its radius.
+fn ball_around(rings: &[Ring]) -> [f64; 2] {
+    let (low, high) =
+        rings.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), r| (l.min(r.height), h.max(r.height)));
+    let middle = if rings.is_empty() { 0.0 } else { 0.5 * (low + high) };
+    let reach = |r: &Ring| ((r.height - middle) * (r.height - middle) + r.circle * r.circle).sqrt() + r.radius;
+    [middle, rings.iter().map(reach).fold(0.0, f64::max)]
 }
 
 fn capsule(shape: &Shape, reach: f64) -> [f64; 3] {

@@ -6,13 +6,12 @@
 
 use super::body::{Motion, NEVER, Phase, Pose, Turning};
 use super::contact::{Touch, response};
-use super::energy::resist;
 use super::glide;
 use super::pair::PairTouch;
 use super::part::Part;
 use super::rest;
-use super::solve::{Contact, Member, sweep};
-use super::tumble::{drift, rotation};
+use super::solve::{Contact, Member};
+use super::tumble::rotation;
 use super::{Rigid, Spec};
 use crate::links::Links;
 use glam::{DMat3, DQuat, DVec3};
@@ -25,7 +24,7 @@ pub struct RigidScratch {
     /// Points on fixed parts.
     pub(super) touches: Vec<(usize, Touch)>,
     /// Forces at those points in the last step.
-    loads: Vec<DVec3>,
+    pub(super) loads: Vec<DVec3>,
     /// Points that touch but separate.
     pub(super) leaving: Vec<(usize, Touch)>,
     /// Points between bodies.
@@ -34,8 +33,6 @@ pub struct RigidScratch {
     pub(super) parting: Vec<([usize; 2], PairTouch)>,
     /// Of the touches first, then of the pairs.
     pub(super) contacts: Vec<Contact>,
-    /// Whether the last step lifted bodies by more than the energy that they had.
-    pub(super) climbed: bool,
 }
 
 /// A member's pose and orientation at the start and at the end of a step.
@@ -49,14 +46,14 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The pose after a straight drift with a member's velocities.
-    fn drifted(&self, m: &Member, h: f64) -> Pose {
+    /// Pose and orientation after a straight drift with a member's velocities.
+    pub(super) fn drifted(&self, m: &Member, h: f64) -> (Pose, DQuat) {
         self.drifted_at(m.v, m.w, h)
     }
 
-    pub(super) fn drifted_at(&self, v: DVec3, w: DVec3, h: f64) -> Pose {
+    pub(super) fn drifted_at(&self, v: DVec3, w: DVec3, h: f64) -> (Pose, DQuat) {
         let turn = (rotation(w * h) * self.turn).normalize();
-        Pose { x: self.start.x + v * h, r: DMat3::from_quat(turn), v, w }
+        (Pose { x: self.start.x + v * h, r: DMat3::from_quat(turn), v, w }, turn)
     }
 }
 
@@ -67,10 +64,10 @@ const TIDY: f64 = 1e-3;
 const LIFTS: usize = 4;
 
 /// Passes over the end of a step: the first predicts where points get to, the others correct.
-const PASSES: usize = 2;
+pub(super) const PASSES: usize = 2;
 
 /// The same where cuboids touch each other: a corner of one turns against a face that turns too. Passes end where all gaps are right.
-const PASSES_OF_CUBOIDS: usize = 8;
+pub(super) const PASSES_OF_CUBOIDS: usize = 8;
 
 /// Gap that lasting contacts keep, over the gap at which bodies touch. Default 0.75; below 1, so that they go on touching.
 pub(super) const KEEP: f64 = 0.75;
@@ -127,10 +124,13 @@ pub(super) fn settle(
         return;
     }
     for _ in 0..SHORTENINGS {
-        scratch.step(world, h);
-        match scratch.returns().or_else(|| scratch.misses(world, h)).or_else(|| scratch.climbs()) {
+        let step = scratch.drift(world, h);
+        match scratch.returns().or_else(|| scratch.misses(world, h)).or_else(|| scratch.climbs(world)) {
             Some(part) => h *= part,
-            None => return scratch.write(bodies, h),
+            None => {
+                scratch.second_kick(world, &step);
+                return scratch.write(bodies, h);
+            }
         }
     }
     // Bounces too fast for any step: they count as lasting.
@@ -138,7 +138,8 @@ pub(super) fn settle(
     scratch.touches.append(&mut scratch.leaving);
     scratch.pairs.append(&mut scratch.parting);
     scratch.touches.sort_by_key(|t| t.0);
-    scratch.step(world, h);
+    let step = scratch.drift(world, h);
+    scratch.second_kick(world, &step);
     scratch.write(bodies, h);
 }
 
@@ -171,7 +172,7 @@ impl RigidScratch {
             }
             let (spec, pose, hurried) = (&world.specs[index], bodies[index].pose(), bodies[index].is_hurried());
             let (at, before) = (self.places.len(), self.touches.len());
-            world.for_touches(index, &pose, TOUCHING * spec.gap, |t| {
+            world.for_known_touches(index, &bodies[index], &pose, |t| {
                 let law = world.law_at(index, t.part, pose.x + t.arm);
                 if hurried || pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law) {
                     self.touches.push((at, t));
@@ -248,7 +249,7 @@ impl RigidScratch {
         (worst < 1.0).then_some(worst)
     }
 
-    fn member(spec: &Spec, r: &DMat3, v: DVec3, w: DVec3) -> Member {
+    pub(super) fn member(spec: &Spec, r: &DMat3, v: DVec3, w: DVec3) -> Member {
         let inverse_inertia = spec.inertia.inverse(r);
         Member { inverse_mass: 1.0 / spec.mass, inverse_inertia, v, w, reach: spec.reach, last: [DVec3::ZERO; 2] }
     }
@@ -273,115 +274,12 @@ impl RigidScratch {
         }
     }
 
-    fn pair_contact(&self, world: &Rigid, [a, b]: [usize; 2], t: &PairTouch) -> Contact {
+    pub(super) fn pair_contact(&self, world: &Rigid, [a, b]: [usize; 2], t: &PairTouch) -> Contact {
         let (m, n) = (&self.members[a], &self.members[b]);
         let k = response(m.inverse_mass, &m.inverse_inertia, t.arms[0])
             + response(n.inverse_mass, &n.inverse_inertia, t.arms[1]);
         let friction = world.pair_law([self.places[a].body, self.places[b].body]).friction;
         Contact::new(a, Some(b), t.arms, t.normal, friction, k)
-    }
-
-    /// One step of `h` seconds from the starts; the ends are left in `places` (drift) and `members` (final velocities).
-    fn step(&mut self, world: &Rigid, h: f64) {
-        let enough = (world.accuracy.sweep_tolerance * world.strength * h).min(self.fine(world) / h);
-        let half_kick = world.gravity * (0.5 * h);
-        let half_spin = |spec: &Spec, turn: DQuat, w: DVec3| {
-            if spec.wobble == 0.0 { w } else { drift(&spec.inertia, turn, w, 0.5 * h).1 }
-        };
-        self.prepare(world, |spec, p| (p.start.v + half_kick, half_spin(spec, p.turn, p.start.w)));
-        // What a point may still fall, and how far turning alone lifts it towards its own circle.
-        for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
-            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
-            let rise = if spec.is_round || world.is_at_ledge(p.body, t.part, t.point) {
-                0.0
-            } else {
-                p.start.w.cross(p.start.w.cross(t.arm)).dot(t.normal)
-            };
-            c.target = ((KEEP * spec.gap - t.gap) / h).min(PUSH * world.accuracy.settle * spec.speed) - 0.5 * h * rise;
-        }
-        let first_pair = self.touches.len();
-        for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
-            let [p, q] = ab.map(|k| self.places[k].drifted(&self.members[k], h));
-            let both = ab.map(|k| self.places[k].body);
-            // How much farther apart than a straight way says turning brings them.
-            let bend = world.pair_again(both, [&p, &q], t).gap - t.gap - h * c.velocity(&self.members).dot(t.normal);
-            c.target = (world.pair_goal(both, t.gap, h) - t.gap - bend) / h;
-        }
-        // The last step's forces are a good guess.
-        for (c, &load) in self.contacts.iter_mut().zip(&self.loads) {
-            if load != DVec3::ZERO {
-                c.impulse = load * (0.5 * h);
-                c.push(&mut self.members, c.impulse);
-            }
-        }
-        let passes = if self.has_cuboids_in_touch() || self.is_at_ledges(world) { PASSES_OF_CUBOIDS } else { PASSES };
-        for pass in 0..passes {
-            sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
-            for (p, m) in self.places.iter_mut().zip(&self.members) {
-                p.end_turn = (rotation(m.w * h) * p.turn).normalize();
-                p.end = p.drifted(m, h);
-            }
-            if pass + 1 < passes {
-                let mut off = false;
-                for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
-                    let p = &self.places[*k];
-                    let spec = &world.specs[p.body];
-                    let missing = (KEEP * spec.gap - world.touch(p.body, &p.end, t.part, t.point).gap) / h;
-                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * spec.gap;
-                    c.target += missing.min(PUSH * world.accuracy.settle * spec.speed);
-                }
-                for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
-                    let [p, q] = ab.map(|k| &self.places[k]);
-                    let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
-                    let both = [p.body, q.body];
-                    let missing = world.pair_goal(both, t.gap, h) - after.gap;
-                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() > CLOSE * world.pair_gap(both);
-                    c.target += missing / h;
-                }
-                if !off {
-                    break;
-                }
-            }
-        }
-        self.second_kick(world, half_kick, half_spin);
-        sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
-        self.guard_energy(world);
-    }
-
-    /// The second kick, over the points that still touch at the ends.
-    fn second_kick(&mut self, world: &Rigid, half_kick: DVec3, half_spin: impl Fn(&Spec, DQuat, DVec3) -> DVec3) {
-        for (m, p) in self.members.iter_mut().zip(&self.places) {
-            let spec = &world.specs[p.body];
-            *m = Self::member(spec, &p.end.r, p.end.v + half_kick, half_spin(spec, p.end_turn, p.end.w));
-        }
-        resist(world, &self.places, &self.touches, &self.contacts, &mut self.members);
-        for c in 0..self.contacts.len() {
-            let old = self.contacts[c];
-            let (mut next, gap, touching) = if let Some((a, t)) = self.touches.get(c) {
-                let (p, m) = (&self.places[*a], &self.members[*a]);
-                let after = world.touch(p.body, &p.end, t.part, t.point);
-                let k = response(m.inverse_mass, &m.inverse_inertia, after.arm);
-                (
-                    Contact::new(*a, None, [after.arm, DVec3::ZERO], after.normal, old.friction, k),
-                    after.gap,
-                    world.specs[p.body].gap,
-                )
-            } else {
-                let (ab, t) = &self.pairs[c - self.touches.len()];
-                let ab = *ab;
-                let [p, q] = ab.map(|k| &self.places[k]);
-                let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
-                (self.pair_contact(world, ab, &after), after.gap, world.pair_gap([p.body, q.body]))
-            };
-            if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
-                next.impulse = old.impulse;
-                next.push(&mut self.members, next.impulse);
-            } else {
-                // It has left: no impulse, whatever its velocity.
-                next.target = -f64::MAX;
-            }
-            self.contacts[c] = next;
-        }
     }
 
     /// Rest: without velocity, flat where the ground is, and lifted out of what overlap steps have left.

@@ -164,6 +164,42 @@ impl Tumble {
         self.series.as_ref().map(|(_, series)| series.turn * series.w)
     }
 
+    /// How the body sees a direction of the world.
+    pub(crate) fn view(&self, direction: DVec3) -> View {
+        let seen = |part: &DMat3| part.transpose() * direction;
+        View { direction, fixed: seen(&self.fixed), cos: seen(&self.cos), sin: seen(&self.sin) }
+    }
+
+    /// That direction in body axes after `dt`, and its rate there. Times as for [`at`](Self::at).
+    #[inline]
+    pub(crate) fn see(&mut self, view: &View, dt: f64) -> (DVec3, DVec3) {
+        if let Some((_, series)) = &mut self.series {
+            series.seek(dt);
+            let back = series.turn.conjugate();
+            let seen = back * view.direction;
+            return (seen, seen.cross(series.w));
+        }
+        let (s, c) = math::sin_cos(self.rate * dt);
+        let mut seen = view.fixed + view.cos * c + view.sin * s;
+        let mut swing = (view.sin * c - view.cos * s) * self.rate;
+        if let Some((axis, own)) = self.own {
+            let (s, c) = math::sin_cos(own * dt);
+            let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+            (seen[j], seen[k]) = (seen[j] * c + seen[k] * s, seen[k] * c - seen[j] * s);
+            (swing[j], swing[k]) = (swing[j] * c + swing[k] * s, swing[k] * c - swing[j] * s);
+            swing[j] += own * seen[k];
+            swing[k] -= own * seen[j];
+        }
+        (seen, swing)
+    }
+
+    /// How the body sees a direction of the world, where it turns about one axis.
+    pub(crate) fn sines(&self, direction: DVec3) -> Option<Sines> {
+        let View { fixed, cos, sin, .. } = self.view(direction);
+        let is_about_one_axis = self.own.is_none() && self.series.is_none();
+        is_about_one_axis.then_some(Sines { rate: self.rate, fixed, cos, sin })
+    }
+
     /// Orientation after `dt`. Times asked for one after the other should not fall: a series would start anew.
     #[inline]
     pub(crate) fn at(&mut self, dt: f64) -> DMat3 {
@@ -182,6 +218,24 @@ impl Tumble {
         }
         r
     }
+}
+
+/// A direction of the world as a turning body sees it: what of it stays, and what goes with cosine and sine of the turn.
+#[derive(Debug, Clone)]
+pub(crate) struct View {
+    direction: DVec3,
+    fixed: DVec3,
+    cos: DVec3,
+    sin: DVec3,
+}
+
+/// A direction of the world in the axes of a body that turns about one axis: `fixed + cos · cos(rate · t) + sin · sin(rate · t)`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sines {
+    pub(crate) rate: f64,
+    pub(crate) fixed: DVec3,
+    pub(crate) cos: DVec3,
+    pub(crate) sin: DVec3,
 }
 
 /// Free rotation of a body with three different moments, by Taylor series.
@@ -296,7 +350,18 @@ mod tests {
         let mut tumble = Tumble::free(&inertia, turn, w);
         for k in 0..=10 {
             let dt = t * f64::from(k) / 10.0;
-            assert!(worst(tumble.at(dt), DMat3::from_quat(drift(&inertia, turn, w, dt).0)) < 1e-13);
+            let (there, spin) = drift(&inertia, turn, w, dt);
+            assert!(worst(tumble.at(dt), DMat3::from_quat(there)) < 1e-13);
+            if let Some(s) = tumble.sines(DVec3::Y) {
+                let (sin, cos) = math::sin_cos(s.rate * dt);
+                let seen = s.fixed + s.cos * cos + s.sin * sin;
+                assert!((seen - there.conjugate() * DVec3::Y).length() < 1e-13);
+            }
+            // A direction's rate in body axes is that of a fixed vector in a frame that turns.
+            let direction = DVec3::new(0.6, -0.48, 0.64);
+            let (seen, swing) = tumble.see(&tumble.view(direction), dt);
+            assert!((seen - there.conjugate() * direction).length() < 1e-13);
+            assert!((swing - there.conjugate() * direction.cross(spin)).length() < 1e-13 * w.length());
         }
     }
 

@@ -14,4 +14,5 @@ mod quartic;
 
 pub use bracket::refine;
 pub use quadratic::{fall_of_quadratic, roots_of_quadratic};
+pub(crate) use quartic::first_fall_of_quartic;
 pub use quartic::{fall_of_quartic, falls_of_quartic, squared_distance};

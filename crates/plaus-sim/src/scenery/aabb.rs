@@ -3,6 +3,18 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+/// The greater of two numbers of which none is NaN: one instruction, where `f64::max` has to ask for NaN first.
+#[inline(always)]
+pub(crate) fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The lesser of two numbers of which none is NaN.
+#[inline(always)]
+pub(crate) fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
 /// A closed axis-aligned box in metres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Aabb {
@@ -15,6 +27,9 @@ pub struct Aabb {
 impl Aabb {
     /// The box that holds nothing.
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// The box that holds everything.
+    pub(crate) const EVERYWHERE: Self = Self { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
 
     /// The smallest box around some points.
     #[must_use]
@@ -39,20 +54,22 @@ impl Aabb {
     #[inline]
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
-        self.min.x <= other.max.x
-            && self.max.x >= other.min.x
-            && self.min.y <= other.max.y
-            && self.max.y >= other.min.y
-            && self.min.z <= other.max.z
-            && self.max.z >= other.min.z
+        // All six, without a branch that could be foreseen wrongly.
+        (self.min.x <= other.max.x)
+            & (self.max.x >= other.min.x)
+            & (self.min.y <= other.max.y)
+            & (self.max.y >= other.min.y)
+            & (self.min.z <= other.max.z)
+            & (self.max.z >= other.min.z)
     }
 
     /// Square of the distance between two boxes; infinite where one is empty.
     #[inline]
     #[must_use]
     pub fn distance_squared(&self, other: &Self) -> f64 {
-        let gap = (other.min - self.max).max(self.min - other.max).max(DVec3::ZERO);
-        gap.length_squared()
+        let gap = |k: usize| greater(greater(other.min[k] - self.max[k], self.min[k] - other.max[k]), 0.0);
+        let (x, y, z) = (gap(0), gap(1), gap(2));
+        x * x + y * y + z * z
     }
 
     /// Whether a point lies in the box.

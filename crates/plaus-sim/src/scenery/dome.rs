@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 use crate::material::Material;
-use crate::scenery::Aabb;
+use crate::scenery::{Aabb, Foot};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -45,6 +45,13 @@ impl Dome {
         let length = offset.length();
         let outward = if length > 0.0 { offset / length } else { DVec3::Z };
         if self.hollow { (-outward, self.radius - length) } else { (outward, length - self.radius) }
+    }
+
+    /// Where a ball's centre stands to the surface.
+    #[inline]
+    pub(crate) fn stands(&self, x: DVec3) -> Foot {
+        let (normal, distance) = self.normal_and_distance(x);
+        Foot { normal, distance, curvature_radius: if self.hollow { -self.radius } else { self.radius } }
     }
 
     /// The surface point nearest to `x`, where it counts.

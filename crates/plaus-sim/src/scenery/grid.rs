@@ -18,14 +18,19 @@ pub(crate) struct Grid {
     inverse: f64,
     size: f64,
     counts: [usize; 3],
+    /// Highest index of a cell along each axis.
+    last: [i32; 3],
+    /// Walls between cells along each axis, the outermost infinite.
+    walls: [Vec<f64>; 3],
     starts: Vec<u32>,
     items: Vec<u32>,
 }
 
 impl Grid {
     /// A grid over boxes for balls of radius up to `reach`. `may_touch` can rule out that a ball whose centre is in a box touches an item, beyond what boxes say.
+    /// Endless boxes may be listed in any cell and have no part in the choice of cells.
     pub(crate) fn new(boxes: &[Aabb], reach: f64, may_touch: impl Fn(u32, &Aabb) -> bool) -> Self {
-        let listed = || boxes.iter().filter(|b| b.min.x <= b.max.x).map(|b| b.grown(reach));
+        let listed = || boxes.iter().filter(|b| b.min.x <= b.max.x && b.min.is_finite()).map(|b| b.grown(reach));
         let all = listed().fold(Aabb::EMPTY, Aabb::union);
         let count = listed().count();
         let extent = if count == 0 { DVec3::ZERO } else { all.max - all.min };
@@ -34,7 +39,13 @@ impl Grid {
         let size = (CELL * mean).max(widest / MOST_CELLS).max(f64::MIN_POSITIVE);
         let counts = extent.to_array().map(|e| ((e / size).ceil()).clamp(1.0, MOST_CELLS) as usize);
         let origin = if count == 0 { DVec3::ZERO } else { all.min };
-        let mut grid = Self { origin, inverse: 1.0 / size, size, counts, starts: Vec::new(), items: Vec::new() };
+        let walls = std::array::from_fn(|k| {
+            let inner = (1..counts[k]).map(|i| origin[k] + i as f64 * size);
+            std::iter::once(f64::NEG_INFINITY).chain(inner).chain([f64::INFINITY]).collect()
+        });
+        let (starts, items) = (Vec::new(), Vec::new());
+        let last = counts.map(|count| count as i32 - 1);
+        let mut grid = Self { origin, inverse: 1.0 / size, size, counts, last, walls, starts, items };
         grid.fill(boxes, reach, may_touch);
         grid
     }
@@ -75,8 +86,8 @@ impl Grid {
     #[inline]
     pub(crate) fn cell_of(&self, x: DVec3) -> [usize; 3] {
         let scaled = ((x - self.origin) * self.inverse).to_array();
-        // A float-to-integer cast saturates, and sends what lies below to the first cell.
-        std::array::from_fn(|k| (scaled[k] as usize).min(self.counts[k] - 1))
+        // A float-to-integer cast saturates. What lies below goes to the first cell.
+        std::array::from_fn(|k| (scaled[k] as i32).clamp(0, self.last[k]) as usize)
     }
 
     /// What is listed in a cell, in ascending order.
@@ -89,14 +100,7 @@ impl Grid {
     /// Lower and upper walls of a cell, infinite where it is outermost.
     #[inline]
     pub(crate) fn walls(&self, cell: [usize; 3]) -> (DVec3, DVec3) {
-        let low = |k: usize| if cell[k] == 0 { f64::NEG_INFINITY } else { self.origin[k] + cell[k] as f64 * self.size };
-        let high = |k: usize| {
-            if cell[k] + 1 == self.counts[k] {
-                f64::INFINITY
-            } else {
-                self.origin[k] + (cell[k] + 1) as f64 * self.size
-            }
-        };
-        (DVec3::new(low(0), low(1), low(2)), DVec3::new(high(0), high(1), high(2)))
+        let wall = |k: usize, beyond: usize| self.walls[k][cell[k] + beyond];
+        (DVec3::new(wall(0, 0), wall(1, 0), wall(2, 0)), DVec3::new(wall(0, 1), wall(1, 1), wall(2, 1)))
     }
 }

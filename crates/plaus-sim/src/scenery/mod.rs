@@ -5,18 +5,22 @@ mod dome;
 mod grid;
 mod mesh;
 mod plane;
+mod screen;
 mod track;
 
 pub use aabb::Aabb;
+pub(crate) use aabb::{greater, lesser};
 pub use dome::Dome;
 pub use mesh::Mesh;
 pub use plane::Plane;
 
 pub(crate) use grid::Grid;
+pub(crate) use screen::Probe;
 
 use crate::error::WorldError;
 use crate::material::Material;
 use glam::DVec3;
+use screen::Screen;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -74,8 +78,12 @@ pub struct Scenery {
     planes: Vec<Plane>,
     mesh: Mesh,
     domes: Vec<Dome>,
-    /// Of faces, domes, edges, vertices in this order.
+    /// Of planes, faces, domes, edges, vertices in this order: the order in which they are looked at.
     boxes: Vec<Aabb>,
+    /// The same boxes, rougher and quicker.
+    screens: Vec<Screen>,
+    /// What each box is around.
+    items: Vec<Surface>,
     grid: Grid,
     reach: f64,
 }
@@ -90,17 +98,25 @@ impl Scenery {
             return Err(WorldError::BadNumber { field: "largest radius", value: reach, expected: "a positive length" });
         }
         let caps = domes.iter().map(Dome::bounds);
-        let reaches: Vec<Aabb> =
-            mesh.face_reaches().chain(caps).chain(mesh.edge_reaches()).chain(mesh.vertex_reaches()).collect();
-        let faces = mesh.faces.len();
-        let grid = Grid::new(&reaches, reach, |item, centres| {
-            item as usize >= faces || mesh.face_may_touch(item as usize, centres, reach)
+        let endless = || planes.iter().map(|_| Aabb::EVERYWHERE);
+        let bounded = mesh.face_reaches().chain(caps).chain(mesh.edge_reaches()).chain(mesh.vertex_reaches());
+        let reaches: Vec<Aabb> = endless().chain(bounded).collect();
+        let kinds = [Surface::Plane, Surface::Face, Surface::Dome, Surface::Edge, Surface::Vertex];
+        let counts = [planes.len(), mesh.faces.len(), domes.len(), mesh.edges.len(), mesh.vertices.len()];
+        let items: Vec<Surface> =
+            kinds.iter().zip(counts).flat_map(|(kind, count)| (0..count as u32).map(kind)).collect();
+        let grid = Grid::new(&reaches, reach, |item, centres| match items[item as usize] {
+            Surface::Plane(k) => planes[k as usize].may_touch(centres, reach),
+            Surface::Face(k) => mesh.face_may_touch(k as usize, centres, reach),
+            _ => true,
         });
         let faces = (0..mesh.faces.len()).map(|f| mesh.face_bounds(f));
         let edges = (0..mesh.edges.len()).map(|e| mesh.edge_bounds(e));
         let vertices = (0..mesh.vertices.len()).map(|v| mesh.vertex_bounds(v));
-        let boxes = faces.chain(domes.iter().map(Dome::tight_bounds)).chain(edges).chain(vertices).collect();
-        Ok(Self { planes, mesh, domes, boxes, grid, reach })
+        let boxes: Vec<Aabb> =
+            endless().chain(faces).chain(domes.iter().map(Dome::tight_bounds)).chain(edges).chain(vertices).collect();
+        let screens = boxes.iter().map(Screen::new).collect();
+        Ok(Self { planes, mesh, domes, boxes, screens, items, grid, reach })
     }
 
     /// Scenery without anything in it.
@@ -117,13 +133,15 @@ impl Scenery {
     /// As [`Mesh::move_vertices`].
     pub fn move_vertices(&mut self, moved: &[(u32, DVec3)]) -> Result<(), WorldError> {
         self.mesh.move_vertices(moved)?;
-        let Self { mesh, boxes, domes, .. } = self;
-        let first_edge = mesh.faces.len() + domes.len();
+        let Self { planes, mesh, boxes, screens, domes, .. } = self;
+        let first_face = planes.len();
+        let first_edge = first_face + mesh.faces.len() + domes.len();
         let first_vertex = first_edge + mesh.edges.len();
         let touched = mesh.touched();
-        touched.faces.iter().for_each(|&f| boxes[f as usize] = mesh.face_bounds(f as usize));
-        touched.edges.iter().for_each(|&e| boxes[first_edge + e as usize] = mesh.edge_bounds(e as usize));
-        touched.vertices.iter().for_each(|&v| boxes[first_vertex + v as usize] = mesh.vertex_bounds(v as usize));
+        let mut place = |item: usize, bounds: Aabb| (boxes[item], screens[item]) = (bounds, Screen::new(&bounds));
+        touched.faces.iter().for_each(|&f| place(first_face + f as usize, mesh.face_bounds(f as usize)));
+        touched.edges.iter().for_each(|&e| place(first_edge + e as usize, mesh.edge_bounds(e as usize)));
+        touched.vertices.iter().for_each(|&v| place(first_vertex + v as usize, mesh.vertex_bounds(v as usize)));
         Ok(())
     }
 
@@ -160,20 +178,16 @@ impl Scenery {
         &self.boxes[item as usize]
     }
 
+    /// Whether an item's box may be met; see [`Screen`].
+    #[inline]
+    pub(crate) fn may_meet(&self, item: u32, probe: &Probe) -> bool {
+        self.screens[item as usize].may_meet(probe)
+    }
+
     /// What an item of the broad phase is.
     #[inline]
     pub(crate) fn surface(&self, item: u32) -> Surface {
-        let (faces, domes, edges) =
-            (self.mesh.faces.len() as u32, self.domes.len() as u32, self.mesh.edges.len() as u32);
-        if item < faces {
-            Surface::Face(item)
-        } else if item < faces + domes {
-            Surface::Dome(item - faces)
-        } else if item < faces + domes + edges {
-            Surface::Edge(item - faces - domes)
-        } else {
-            Surface::Vertex(item - faces - domes - edges)
-        }
+        self.items[item as usize]
     }
 
     /// What a surface is made of; edges and vertices take the material of their first face.
@@ -211,11 +225,7 @@ impl Scenery {
                     curvature_radius: f64::INFINITY,
                 }
             }
-            Surface::Dome(k) => {
-                let dome = &self.domes[k as usize];
-                let (normal, distance) = dome.normal_and_distance(x);
-                Foot { normal, distance, curvature_radius: if dome.hollow { -dome.radius } else { dome.radius } }
-            }
+            Surface::Dome(k) => self.domes[k as usize].stands(x),
             Surface::Edge(k) => {
                 let edge = &self.mesh.edges[k as usize];
                 let offset = x - edge.origin;

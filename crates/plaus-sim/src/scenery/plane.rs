@@ -2,6 +2,7 @@
 
 use crate::error::WorldError;
 use crate::material::Material;
+use crate::scenery::Aabb;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -39,5 +40,17 @@ impl Plane {
     #[must_use]
     pub fn distance(&self, x: DVec3) -> f64 {
         self.normal.dot(x) - self.offset
+    }
+
+    /// Whether a ball of radius up to `reach` whose centre is in a box, endless perhaps, can touch the plane or be behind it.
+    pub(crate) fn may_touch(&self, centres: &Aabb, reach: f64) -> bool {
+        let nearest = |k: usize| match self.normal[k] {
+            n if n > 0.0 => n * centres.min[k],
+            n if n < 0.0 => n * centres.max[k],
+            _ => 0.0,
+        };
+        let nearest = nearest(0) + nearest(1) + nearest(2) - self.offset;
+        // A little more than the reach, for rounding; infinities of both signs make it NaN, and then it may.
+        nearest.is_nan() || nearest <= reach + 1e-6 * (reach + self.offset.abs())
     }
 }

@@ -1,6 +1,6 @@
 //! Following a lasting contact over a mesh: from a face to its edge, from there to the next face.
 
-use super::{Scenery, Surface};
+use super::{Foot, Scenery, Surface};
 use glam::DVec3;
 
 impl Scenery {
@@ -21,9 +21,21 @@ impl Scenery {
         }
     }
 
+    /// What [`Scenery::track`] finds, and where the centre stands to it.
+    #[inline]
+    pub(crate) fn follow(&self, surface: Surface, x: DVec3) -> Option<(Surface, Foot)> {
+        if let Surface::Dome(k) = surface {
+            let dome = &self.domes[k as usize];
+            let foot = dome.stands(x);
+            return dome.clip.contains(x - foot.normal * foot.distance).then_some((surface, foot));
+        }
+        let surface = self.track(surface, x)?;
+        Some((surface, self.foot(surface, x)))
+    }
+
     /// Where a ball's centre stands to what a contact with `surface` has become at `x`: the offset of a convex corner has no kinks, whatever feature is nearest.
     #[inline]
-    pub(crate) fn foot_near(&self, surface: Surface, x: DVec3) -> super::Foot {
+    pub(crate) fn foot_near(&self, surface: Surface, x: DVec3) -> Foot {
         if matches!(surface, Surface::Plane(_) | Surface::Dome(_)) {
             return self.foot(surface, x);
         }

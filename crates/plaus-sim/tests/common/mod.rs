@@ -1,6 +1,8 @@
 //! Small worlds shared by the tests.
 #![allow(dead_code, unreachable_pub)]
 
+pub mod turning;
+
 use glam::DVec3;
 use plaus_sim::marbles::{Marble, MarbleSpec, MarbleWorld, Marbles, Start};
 use plaus_sim::scenery::{Dome, Mesh, Plane, Scenery};

@@ -2,7 +2,7 @@
 
 use crate::ball2d::{Ball2d, Normals};
 use plaus_dist::{LogRatio, Stream, open_unit};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, Scale, StateOf};
 use rand::Rng;
 
 /// Every angle, with probability ½, gets a step uniform on (−`half_width`, `half_width`) degrees (paper, section 5.1.2). Symmetric.
@@ -43,5 +43,15 @@ impl Move<Ball2d> for Perturb {
 
     fn log_ratio(&self, _: &Ball2d, _: &StateOf<Ball2d>, _: &StateOf<Ball2d>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
+    }
+
+    /// The half-width in degrees. Half of the angles move at once.
+    fn scales(&self) -> Vec<Scale> {
+        let (start, least, most) = (self.half_width, 1e-3 * self.half_width, 1e3 * self.half_width);
+        vec![Scale { name: "step", start, least, most, target: Scale::MANY }]
+    }
+
+    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<Ball2d>>> {
+        Some(Box::new(Self::new(values.first().copied().flatten().unwrap_or(self.half_width))))
     }
 }

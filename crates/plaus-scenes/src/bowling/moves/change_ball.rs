@@ -3,7 +3,7 @@
 use super::shift;
 use crate::bowling::{Bowling, Quantity, Shot, Steps};
 use plaus_dist::{LogRatio, Stream};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, Scale, StateOf};
 
 /// Each of the quantities is shifted by a Gaussian step: by `steps.gaussian` of its law's standard deviation, or `steps.uniform` of its interval, which it leaves on one
 /// side to enter it on the other. Symmetric. Where none of them is uncertain the chain stays.
@@ -15,6 +15,8 @@ pub struct ChangeBall {
     pub quantities: &'static [Quantity],
     /// Sizes of the steps.
     pub steps: Steps,
+    /// By how much they are longer.
+    pub factor: f64,
 }
 
 impl Move<Bowling> for ChangeBall {
@@ -30,7 +32,7 @@ impl Move<Bowling> for ChangeBall {
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         for &quantity in self.quantities {
-            shift(target, quantity, &self.steps, 1.0, candidate, stream);
+            shift(target, quantity, &self.steps, self.factor, candidate, stream);
         }
         Ok(if candidate.ball == current.draw.ball { Proposal::Stay } else { Proposal::SYMMETRIC })
     }
@@ -43,5 +45,14 @@ impl Move<Bowling> for ChangeBall {
         _: Path,
     ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
+    }
+
+    fn scales(&self) -> Vec<Scale> {
+        let target = if self.quantities.len() > 1 { Scale::MANY } else { Scale::ONE };
+        vec![Scale { name: "step", start: 1.0, least: 1e-6, most: 1e3, target }]
+    }
+
+    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<Bowling>>> {
+        Some(Box::new(Self { factor: values.first().copied().flatten().unwrap_or(1.0), ..*self }))
     }
 }

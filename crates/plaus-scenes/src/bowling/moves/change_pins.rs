@@ -3,7 +3,7 @@
 use crate::bowling::{Bowling, Shot};
 use crate::walk;
 use plaus_dist::{LogRatio, Stream, open_unit};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, Scale, StateOf};
 
 /// Each pin, with probability `chance`, is shifted in a random direction by a length N(0, `sd`) mm. Symmetric.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,5 +43,14 @@ impl Move<Bowling> for ChangePins {
         _: Path,
     ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
+    }
+
+    /// The standard deviation, mm.
+    fn scales(&self) -> Vec<Scale> {
+        vec![Scale { name: "step", start: self.sd, least: 1e-6 * self.sd, most: 1e3 * self.sd, target: Scale::MANY }]
+    }
+
+    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<Bowling>>> {
+        Some(Box::new(Self { sd: values.first().copied().flatten().unwrap_or(self.sd), ..*self }))
     }
 }

@@ -30,7 +30,7 @@ use plaus_mcmc::Move;
 pub(super) fn all(config: &Config, weights: &Weights, rules: &Rules) -> Vec<(f64, Box<dyn Move<Bowling>>)> {
     use Quantity::{Across, Density, Drift, Gyration, Height, Hook, Radius, Roll, Speed, Twist};
     let steps = config.steps;
-    let ball = |name, quantities| Box::new(ChangeBall { name, quantities, steps });
+    let ball = |name, quantities| Box::new(ChangeBall { name, quantities, steps, factor: 1.0 });
     let change_all = ChangeAll { symmetric: rules.symmetric_redraws(), radial_offsets: rules.radial_offsets() };
     vec![
         (weights.change_all, Box::new(change_all)),
@@ -43,7 +43,7 @@ pub(super) fn all(config: &Config, weights: &Weights, rules: &Rules) -> Vec<(f64
         (weights.redraw, Box::new(Redraw { symmetric: rules.symmetric_redraws() })),
         (weights.redraw_pins, Box::new(RedrawPins { chance: steps.redraw_chance })),
         (weights.aim, Box::new(Aim { anew: steps.aim_anew })),
-        (weights.refine, Box::new(Refine { steps })),
+        (weights.refine, Box::new(Refine { steps, about: None })),
         (weights.mirror, Box::new(Mirror)),
     ]
 }

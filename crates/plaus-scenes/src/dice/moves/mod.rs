@@ -5,18 +5,22 @@
 mod component;
 mod everything;
 mod near;
+mod pick;
 mod point;
 mod recast;
 mod rethrow;
+mod scale;
 mod shift;
 mod turn;
 
 pub use component::Component;
 pub use everything::Everything;
 pub use near::Near;
+pub use pick::Pick;
 pub use point::Point;
 pub use recast::Recast;
 pub use rethrow::Rethrow;
+pub use scale::Scale;
 pub use shift::Shift;
 pub use turn::Turn;
 
@@ -24,7 +28,7 @@ use super::config::Moves;
 use super::draw::{Field, LARGEST_SCORE, Site};
 use super::{Dice, Draw};
 use crate::rules::Rules;
-use plaus_dist::{Stream, math, open_unit, standard_normal};
+use plaus_dist::{Stream, math};
 use plaus_mcmc::{Move, Path};
 
 /// All moves with their weights.
@@ -36,42 +40,18 @@ pub(super) fn all(scene: &Dice, rules: &Rules) -> Vec<(f64, Box<dyn Move<Dice>>)
     let if_fields = |weight: f64| if has_fields { weight } else { 0.0 };
     let if_places = |weight: f64| if scene.plan.places.iter().any(Option::is_some) { weight } else { 0.0 };
     let scale = Scale::new(steps.point_least, steps.point_most);
+    let pick = Pick { sd: steps.recast_sd_mm * 1e-3, near: steps.pick_sd_mm * 1e-3 };
     vec![
         (weights.everything, Box::new(Everything { symmetric: rules.symmetric_redraws() })),
-        (weights.component, Box::new(Component { scale: Scale::new(steps.component_least, steps.component_most) })),
-        (if_fields(weights.point), Box::new(Point { scale })),
-        (if_fields(weights.near), Box::new(Near { scale })),
+        (weights.component, Box::new(Component::new(Scale::new(steps.component_least, steps.component_most)))),
+        (if_fields(weights.point), Box::new(Point::new(scale))),
+        (if_fields(weights.near), Box::new(Near::new(scale))),
         (weights.rethrow, Box::new(Rethrow)),
         (if_places(weights.recast), Box::new(Recast { sd: steps.recast_sd_mm * 1e-3 })),
+        (if_places(if config.together { weights.pick } else { 0.0 }), Box::new(pick)),
         (weights.turn, Box::new(Turn)),
         (if_places(weights.shift), Box::new(Shift { sd: steps.shift_sd_mm * 1e-3 })),
     ]
-}
-
-/// Sizes of steps: uniform in their logarithm between two ends within (0, 1]. Steps of all sizes are tried all the time, so that none has to be tuned.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale {
-    low: f64,
-    high: f64,
-}
-
-impl Scale {
-    /// Between two ends, in either order.
-    #[must_use]
-    pub fn new(a: f64, b: f64) -> Self {
-        Self { low: math::ln(a.min(b)), high: math::ln(a.max(b)) }
-    }
-
-    fn sample(self, stream: &mut Stream) -> f64 {
-        math::exp(self.low + (self.high - self.low) * open_unit(stream)).min(1.0)
-    }
-
-    /// A step that leaves the standard normal law as it is: as likely from z to z' as back, weighed by that law (Neal, "Regression and classification using
-    /// Gaussian process priors", 1998; the autoregressive proposal).
-    fn step(self, z: f64, stream: &mut Stream) -> f64 {
-        let s = self.sample(stream);
-        (1.0 - s * s).max(0.0).sqrt() * z + s * standard_normal(stream)
-    }
 }
 
 /// `ln (Φ(b) − Φ(a))` for `a < b`, also where that is no float.
@@ -92,11 +72,35 @@ fn aimed(target: &Dice) -> impl Iterator<Item = (usize, [f64; 2])> {
     target.plan.places.iter().enumerate().filter_map(|(die, place)| Some((die, (*place)?)))
 }
 
-/// Changes a control point of a table; whether it stays where its law has a density.
-fn change(draw: &mut Draw, table: usize, site: Site, scale: Scale, stream: &mut Stream) -> bool {
-    let score = scale.step(draw.tables[table].score(site), stream);
+/// Changes a control point of a table: the way it was changed, and whether it stays where its law has a density.
+fn change(draw: &mut Draw, table: usize, site: Site, scale: Scale, stream: &mut Stream) -> (Path, bool) {
+    let (score, is_wide) = scale.step(draw.tables[table].score(site), stream);
     draw.tables[table].set(site, score);
-    score.abs() <= LARGEST_SCORE
+    (marked(path(table, site), is_wide), score.abs() <= LARGEST_SCORE)
+}
+
+/// The scales of a move of control points: one a field.
+fn declared(scales: &[Scale; 3]) -> Vec<plaus_mcmc::Scale> {
+    let names = ["height", "restitution", "friction"];
+    names.iter().zip(scales).map(|(name, scale)| scale.declared(name, plaus_mcmc::Scale::ONE)).collect()
+}
+
+/// The same at other values.
+fn about(scales: [Scale; 3], values: &[Option<f64>]) -> [Scale; 3] {
+    std::array::from_fn(|k| scales[k].about(values.get(k).copied().flatten()))
+}
+
+/// Set in the path of a step whose size did not come from the adapted scale.
+const WIDE: u64 = 1 << 63;
+
+/// A path that says where the step's size came from. No ratio depends on that.
+fn marked(path: Path, is_wide: bool) -> Path {
+    Path(path.0 | if is_wide { WIDE } else { 0 })
+}
+
+/// Whether a step's size came from the adapted scale.
+fn is_adapted(path: Path) -> bool {
+    path.0 & WIDE == 0
 }
 
 /// A control point as a path: table, field and indices.
@@ -109,7 +113,7 @@ fn path(table: usize, site: Site) -> Path {
 fn site(path: Path) -> (usize, Site) {
     let index = |bits: u64| (((bits as u32) << 8).cast_signed()) >> 8;
     let field = Field::ALL[((path.0 >> 48) & 3).min(2) as usize];
-    ((path.0 >> 50) as usize, Site { field, i: index(path.0 >> 24), j: index(path.0) })
+    ((path.0 & !WIDE) as usize >> 50, Site { field, i: index(path.0 >> 24), j: index(path.0) })
 }
 
 #[cfg(test)]
@@ -136,7 +140,10 @@ mod tests {
         for (table, i, j) in [(0, 0, 0), (23, -1, 5), (7, -400_000, 399_999)] {
             for field in Field::ALL {
                 let there = Site { field, i, j };
-                assert_eq!(site(path(table, there)), (table, there));
+                for is_wide in [false, true] {
+                    let path = marked(path(table, there), is_wide);
+                    assert_eq!((site(path), is_adapted(path)), ((table, there), !is_wide));
+                }
             }
         }
     }

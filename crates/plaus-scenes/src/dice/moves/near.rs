@@ -1,6 +1,6 @@
 //! A control point near a collision.
 
-use super::{Scale, change, path, site};
+use super::{Scale, about, change, declared, is_adapted, site};
 use crate::dice::{Dice, Draw, Rest, Site};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
@@ -12,8 +12,16 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 /// After the step the die touches elsewhere. The ratio is the point's share in the weights of the new animation's places over that in the old one's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
-    /// Sizes of the steps.
-    pub scale: Scale,
+    /// Sizes of the steps, of heights, restitutions and frictions.
+    pub scales: [Scale; 3],
+}
+
+impl Near {
+    /// The same sizes for all.
+    #[must_use]
+    pub fn new(scale: Scale) -> Self {
+        Self { scales: [scale; 3] }
+    }
 }
 
 /// Places on a table, of the dice thrown onto it.
@@ -65,11 +73,12 @@ impl Move<Dice> for Near {
         let Some(([x, y], _)) = chosen.or_else(|| all().last()) else { return Ok(Proposal::Stay) };
         let Some([i, j]) = target.plan.surface.support(x, y).nth(below(stream, 16)) else { return Ok(Proposal::Stay) };
         let site = Site { field, i, j };
-        if !change(candidate, table, site, self.scale, stream) {
-            return Ok(Proposal::with_ratio(LogRatio::ZERO));
+        let (path, is_possible) = change(candidate, table, site, self.scales[field as usize], stream);
+        if !is_possible {
+            return Ok(Proposal::Candidate { log_ratio: LogRatio::ZERO, path, later: None });
         }
         let log_ratio = LogRatio::new(-log_q(target, current, table, site))?;
-        Ok(Proposal::Candidate { log_ratio, path: path(table, site), later: Some(LogRatio::new(MOST)?) })
+        Ok(Proposal::Candidate { log_ratio, path, later: Some(LogRatio::new(MOST)?) })
     }
 
     fn log_ratio(
@@ -93,5 +102,17 @@ impl Move<Dice> for Near {
     ) -> Result<LogRatio, ModelError> {
         let (table, site) = site(path);
         Ok(LogRatio::new(log_q(target, candidate, table, site))?)
+    }
+
+    fn scales(&self) -> Vec<plaus_mcmc::Scale> {
+        declared(&self.scales)
+    }
+
+    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<Dice>>> {
+        Some(Box::new(Self { scales: about(self.scales, values) }))
+    }
+
+    fn scale_of(&self, path: Path) -> Option<usize> {
+        is_adapted(path).then(|| site(path).1.field as usize)
     }
 }

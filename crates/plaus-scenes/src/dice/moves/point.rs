@@ -1,6 +1,6 @@
 //! One control point, anywhere.
 
-use super::{Scale, change, path};
+use super::{Scale, about, change, declared, is_adapted, site};
 use crate::dice::{Dice, Draw, Site};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
@@ -9,8 +9,16 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 /// The paper's move: one control point of one table, each as likely, makes a step that leaves its law as it is. Most points are far from any die.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Sizes of the steps.
-    pub scale: Scale,
+    /// Sizes of the steps, of heights, restitutions and frictions.
+    pub scales: [Scale; 3],
+}
+
+impl Point {
+    /// The same sizes for all.
+    #[must_use]
+    pub fn new(scale: Scale) -> Self {
+        Self { scales: [scale; 3] }
+    }
 }
 
 impl Move<Dice> for Point {
@@ -29,14 +37,27 @@ impl Move<Dice> for Point {
         let table = below(stream, candidate.tables.len());
         let [i, j] = target.plan.reach().map(|far| below(stream, 2 * far as usize + 1) as i32 - far);
         let site = Site { field, i, j };
-        if !change(candidate, table, site, self.scale, stream) {
-            return Ok(Proposal::with_ratio(LogRatio::ZERO));
+        let (path, is_possible) = change(candidate, table, site, self.scales[field as usize], stream);
+        if !is_possible {
+            return Ok(Proposal::Candidate { log_ratio: LogRatio::ZERO, path, later: None });
         }
-        Ok(Proposal::Candidate { log_ratio: LogRatio::ONE, path: path(table, site), later: None })
+        Ok(Proposal::Candidate { log_ratio: LogRatio::ONE, path, later: None })
     }
 
     /// The step leaves the law of the point as it is, with respect to which densities are taken.
     fn log_ratio(&self, _: &Dice, _: &StateOf<Dice>, _: &StateOf<Dice>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
+    }
+
+    fn scales(&self) -> Vec<plaus_mcmc::Scale> {
+        declared(&self.scales)
+    }
+
+    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<Dice>>> {
+        Some(Box::new(Self { scales: about(self.scales, values) }))
+    }
+
+    fn scale_of(&self, path: Path) -> Option<usize> {
+        is_adapted(path).then(|| site(path).1.field as usize)
     }
 }

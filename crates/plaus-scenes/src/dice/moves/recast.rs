@@ -2,7 +2,7 @@
 
 use super::{aimed, log_between};
 use crate::dice::constraint::Constraint;
-use crate::dice::{Dice, Draw, End, MOST_DICE, Rest, Work};
+use crate::dice::{Dice, Draw, End, MOST_DICE, Rest, Trip, Work};
 use glam::{DQuat, DVec3};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, Gaussian, LogDensity, LogRatio, Sample, Stream, math, open_unit, standard_normal};
@@ -30,47 +30,61 @@ pub struct Recast {
 
 /// Where a throw should come to rest, and how its body lies then.
 #[derive(Debug, Clone, Copy)]
-struct Led {
-    rest: DVec3,
-    orientation: DQuat,
+pub(super) struct Led {
+    /// Where it was led.
+    pub(super) rest: DVec3,
+    /// Where it comes to rest alone on its table.
+    pub(super) own: DVec3,
+    pub(super) orientation: DQuat,
 }
 
+/// Share of throws that are left where they were drawn, of dice thrown onto one table.
+const LEFT: f64 = 0.5;
+
 /// Whether dice are tried out on the tables that they are thrown onto.
-fn is_exact(target: &Dice) -> bool {
+pub(super) fn is_exact(target: &Dice) -> bool {
     target.plan.carries() && !target.plan.surface.is_patched()
 }
 
-/// Whether half of all throws are left where they were drawn.
+/// Whether some throws are left where they were drawn.
 fn is_mixed(target: &Dice) -> bool {
     target.plan.together
 }
 
 /// Where a die's throw leads, as try-outs tell; `None` where it does not come to rest.
-fn led(target: &Dice, draw: &Draw, rest: Option<&Rest>, die: usize) -> Result<Option<Led>, ModelError> {
+pub(super) fn led(target: &Dice, draw: &Draw, rest: Option<&Rest>, die: usize) -> Result<Option<Led>, ModelError> {
     let offset = target.offset(draw, die);
     if is_exact(target) {
         let trip = rest.map(|rest| &rest.trips[die]).filter(|trip| trip.end == End::AtRest);
-        return Ok(trip.map(|trip| Led { rest: trip.position + offset, orientation: trip.orientation }));
+        let at_rest = |trip: &Trip| (trip.position + offset, trip.orientation);
+        return Ok(trip.map(at_rest).map(|(rest, orientation)| Led { rest, own: rest, orientation }));
     }
     let mut throw = draw.throws[die];
     let start = DVec3::new(throw.position.x, throw.position.y, 0.0);
     throw.position -= start;
     let Some(plain) = Work::default().try_out(&target.plan, &throw, None)? else { return Ok(None) };
-    let Some(orientation) = turned_on_table(target, draw, die, plain.orientation)? else { return Ok(None) };
-    Ok(Some(Led { rest: start + offset + plain.position, orientation }))
+    led_on_table(target, draw, die, (start + offset + plain.position, plain.orientation))
 }
 
-/// How a die lies at last that is thrown alone onto its table; `None` where it does not come to rest. `plain`: how it does on a plain one.
-fn turned_on_table(target: &Dice, draw: &Draw, die: usize, plain: DQuat) -> Result<Option<DQuat>, ModelError> {
+/// Where and how a die lies at last that is thrown alone onto its table; `None` where it does not come to rest. `plain`: where and how it does on a plain one, where it was
+/// led.
+pub(super) fn led_on_table(
+    target: &Dice,
+    draw: &Draw,
+    die: usize,
+    (rest, orientation): (DVec3, DQuat),
+) -> Result<Option<Led>, ModelError> {
     if target.plan.surface.is_plain() {
-        return Ok(Some(plain));
+        return Ok(Some(Led { rest, own: rest, orientation }));
     }
     let (throw, table) = (&draw.throws[die], &draw.tables[draw.table_of(die)]);
-    Ok(Work::default().try_out(&target.plan, throw, Some(table))?.map(|trip| trip.orientation))
+    let trip = Work::default().try_out(&target.plan, throw, Some(table))?;
+    let offset = target.offset(draw, die);
+    Ok(trip.map(|trip| Led { rest, own: trip.position + offset, orientation: trip.orientation }))
 }
 
 /// Weights of the turns of a die's pips, given how its body lies: what the demands of a face make of them.
-fn weights(target: &Dice, die: usize, orientation: DQuat) -> Vec<f64> {
+pub(super) fn weights(target: &Dice, die: usize, orientation: DQuat) -> Vec<f64> {
     let log = |pips| {
         let logs = target.plan.demands.iter().map(|demand| match &demand.constraint {
             Constraint::FaceUp(up) if demand.die == die => up.mark(orientation, pips).log,
@@ -83,11 +97,22 @@ fn weights(target: &Dice, die: usize, orientation: DQuat) -> Vec<f64> {
     logs.into_iter().map(|log| math::exp(log - most)).collect()
 }
 
+/// The turn of a die's pips, chosen by these weights.
+pub(super) fn turned(target: &Dice, die: usize, orientation: DQuat, stream: &mut Stream) -> u8 {
+    let weights = weights(target, die, orientation);
+    let mut left = weights.iter().sum::<f64>() * open_unit(stream);
+    let chosen = weights.iter().position(|weight| {
+        left -= weight;
+        left < 0.0
+    });
+    chosen.unwrap_or(weights.len() - 1) as u8
+}
+
 /// Most dice of one table that are recast at once.
-const MOST_AT_ONCE: usize = 3;
+pub(super) const MOST_AT_ONCE: usize = 3;
 
 /// The dice of a path: one a bit.
-fn members(path: Path) -> impl Iterator<Item = usize> {
+pub(super) fn members(path: Path) -> impl Iterator<Item = usize> {
     (0..MOST_DICE as usize).filter(move |die| path.0 >> die & 1 == 1)
 }
 
@@ -100,6 +125,29 @@ impl Recast {
         (die, place): (usize, [f64; 2]),
         stream: &mut Stream,
     ) -> Result<Option<Led>, ModelError> {
+        let Some((rest, orientation)) = self.lead(target, candidate, (die, place), LEFT, stream)? else {
+            return Ok(None);
+        };
+        let led = if is_exact(target) {
+            Some(Led { rest, own: rest, orientation })
+        } else {
+            led_on_table(target, candidate, die, (rest, orientation))?
+        };
+        if let Some(led) = led {
+            candidate.throws[die].turn = turned(target, die, led.orientation, stream);
+        }
+        Ok(led)
+    }
+
+    /// Throws one die anew and leads it to its place, or, that share of the time where dice meet, leaves it where it was drawn: where and how it comes to rest, if it does.
+    pub(super) fn lead(
+        self,
+        target: &Dice,
+        candidate: &mut Draw,
+        (die, place): (usize, [f64; 2]),
+        left: f64,
+        stream: &mut Stream,
+    ) -> Result<Option<(DVec3, DQuat)>, ModelError> {
         let (plan, cell) = (&target.plan, target.plan.surface.spacing());
         let mut throw = target.prior().throw(die, stream);
         if plan.carries() {
@@ -110,7 +158,7 @@ impl Recast {
         let table = is_exact(target).then(|| &candidate.tables[die]);
         let Some(trip) = Work::default().try_out(plan, &throw, table)? else { return Ok(None) };
         let mut rest = trip.position;
-        let is_left = is_mixed(target) && open_unit(stream) < 0.5;
+        let is_left = is_mixed(target) && open_unit(stream) < left;
         for axis in 0..2 {
             if is_left {
                 // In place of what the throw was drawn with.
@@ -130,24 +178,17 @@ impl Recast {
             }
         }
         candidate.throws[die] = throw;
-        let orientation = if is_exact(target) {
-            trip.orientation
-        } else {
-            let Some(orientation) = turned_on_table(target, candidate, die, trip.orientation)? else { return Ok(None) };
-            orientation
-        };
-        let weights = weights(target, die, orientation);
-        let mut left = weights.iter().sum::<f64>() * open_unit(stream);
-        let chosen = weights.iter().position(|weight| {
-            left -= weight;
-            left < 0.0
-        });
-        candidate.throws[die].turn = chosen.unwrap_or(weights.len() - 1) as u8;
-        Ok(Some(Led { rest, orientation }))
+        Ok(Some((rest, trip.orientation)))
     }
 
     /// Log density of proposing a die's throw as it is, but for what is the same for all.
-    fn log_q(self, target: &Dice, draw: &Draw, led: Option<Led>, die: usize) -> Result<LogDensity, ModelError> {
+    pub(super) fn log_q(
+        self,
+        target: &Dice,
+        draw: &Draw,
+        (die, led): (usize, Option<Led>),
+        left: f64,
+    ) -> Result<LogDensity, ModelError> {
         let (Some(place), Some(led)) = (target.plan.places[die], led) else { return Ok(LogDensity::ZERO) };
         let half = 0.5 * target.plan.surface.spacing();
         let along = |axis: usize| {
@@ -157,7 +198,7 @@ impl Recast {
         let place = if is_exact(target) {
             LogDensity::new(along(0) + along(1))?
         } else {
-            self.log_place(target, draw, (die, led.rest, place))?
+            self.log_place(target, draw, (die, led.rest, place), left)?
         };
         let throw = &draw.throws[die];
         let weights = weights(target, die, led.orientation);
@@ -172,6 +213,7 @@ impl Recast {
         target: &Dice,
         draw: &Draw,
         (die, rest, place): (usize, DVec3, [f64; 2]),
+        left: f64,
     ) -> Result<LogDensity, ModelError> {
         let about = |axis: usize| Gaussian::new(place[axis], self.sd).map_err(ModelError::new);
         let led = about(0)?.log_density(&rest[0])?.value() + about(1)?.log_density(&rest[1])?.value();
@@ -181,12 +223,13 @@ impl Recast {
         }
         let drawn = drawn(0)?.value() + drawn(1)?.value();
         let most = led.max(drawn);
-        Ok(LogDensity::new(most + math::ln(0.5 * (math::exp(led - most) + math::exp(drawn - most))))?)
+        let sum = (1.0 - left) * math::exp(led - most) + left * math::exp(drawn - most);
+        Ok(LogDensity::new(most + math::ln(sum))?)
     }
 }
 
 /// The ratio of two densities; 0 where the first is, whatever the second.
-fn over(from: LogDensity, to: LogDensity) -> Result<LogRatio, ModelError> {
+pub(super) fn over(from: LogDensity, to: LogDensity) -> Result<LogRatio, ModelError> {
     if from.is_zero() { Ok(LogRatio::ZERO) } else { Ok(LogRatio::of(from, to)?) }
 }
 
@@ -210,8 +253,8 @@ impl Move<Dice> for Recast {
         for (die, place) in aimed(target).skip(first).take(size) {
             let Some(old) = led(target, &current.draw, Some(&current.outcome), die)? else { return Ok(Proposal::Stay) };
             let Some(new) = self.cast(target, candidate, (die, place), stream)? else { return Ok(Proposal::Stay) };
-            from = from + self.log_q(target, &current.draw, Some(old), die)?;
-            to = to + self.log_q(target, candidate, Some(new), die)?;
+            from = from + self.log_q(target, &current.draw, (die, Some(old)), LEFT)?;
+            to = to + self.log_q(target, candidate, (die, Some(new)), LEFT)?;
             dice |= 1 << die;
         }
         // A die that leaves its table on the way has no way back.
@@ -229,7 +272,7 @@ impl Move<Dice> for Recast {
         let log_q = |state: &StateOf<Dice>| {
             members(path).try_fold(LogDensity::ONE, |sum, die| -> Result<_, ModelError> {
                 let led = led(target, &state.draw, Some(&state.outcome), die)?;
-                Ok(sum + self.log_q(target, &state.draw, led, die)?)
+                Ok(sum + self.log_q(target, &state.draw, (die, led), LEFT)?)
             })
         };
         let there = log_q(to)?;

@@ -5,6 +5,7 @@
 //! below `accuracy.gap` and closing. A gap that is small but opening is no event (rule of `crate::roots`); the search goes on from where it can close again.
 
 mod block;
+mod corners;
 mod plane;
 mod table;
 

@@ -4,10 +4,12 @@ use super::{LEANS, MOST_ADVANCES, Search, earliest};
 use crate::rigid::body::Phase;
 use crate::rigid::part::is_over;
 use crate::rigid::step::TOUCHING;
+use crate::rigid::tumble::Tumble;
 use crate::rigid::{RIM_POINTS, rim};
 use crate::roots::fall_of_quadratic;
 use crate::scenery::Aabb;
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DVec2, DVec3};
+use std::cell::RefCell;
 
 /// Distance of the capsule around a body from a plane, over the body's size, from which its skin is looked at. Default 0.05; smaller values look at capsules more often.
 const NEAR: f64 = 0.05;
@@ -21,7 +23,8 @@ struct Look<'b> {
     /// A box whose side the plane is, and that side's axis.
     edges: Option<(&'b Aabb, usize)>,
     x: DVec3,
-    r: DMat3,
+    t: f64,
+    tumble: &'b RefCell<Tumble>,
     /// Of the centre of gravity over the plane, less half the gap.
     height: f64,
     /// Rate of the height.
@@ -36,7 +39,8 @@ struct Look<'b> {
 impl Look<'_> {
     /// Whether a point (in body axes) that is behind the plane is beyond the edges of the side: then the plane says nothing about when it touches the box.
     fn is_beyond(&self, centre: DVec3) -> bool {
-        self.edges.is_some_and(|(bounds, axis)| !is_over(bounds, axis, self.x + self.r * centre))
+        let there = || self.x + self.tumble.borrow_mut().at(self.t) * centre;
+        self.edges.is_some_and(|(bounds, axis)| !is_over(bounds, axis, there()))
     }
 }
 
@@ -89,21 +93,25 @@ impl Search<'_> {
             let time = fall_of_quadratic([height, n.dot(path.v), 0.5 * n.dot(path.a)], self.until)?;
             return Some((time, 0));
         }
+        if let Some(found) = self.corners(part, (n, offset), edges, t) {
+            return found;
+        }
         let pull = -n.dot(path.a);
-        let mut tumble = self.body.tumble(spec);
+        let tumble = self.body.tumble(spec);
+        let (view, tumble) = (tumble.view(n), RefCell::new(tumble));
         for _ in 0..MOST_ADVANCES {
-            let r = tumble.at(t);
-            let turned = r.transpose();
+            let (lever, swing) = tumble.borrow_mut().see(&view, t);
             let x = path.after(t);
             let look = Look {
                 part,
                 edges,
                 x,
-                r,
+                t,
+                tumble: &tumble,
                 height: n.dot(x) - offset - 0.5 * spec.gap,
                 fall: n.dot(path.velocity_after(t)),
-                lever: turned * n,
-                swing: turned * n.cross(self.spin_at(&tumble, t)),
+                lever,
+                swing,
                 pull,
             };
             let mut next = Next { step: self.until - t, first: None, is_beyond: false };
@@ -151,20 +159,23 @@ impl Search<'_> {
     }
 
     fn balls(&self, look: &Look, next: &mut Next) {
-        let spec = self.spec;
-        for (k, feeler) in spec.feelers[..spec.hull].iter().enumerate() {
-            let f = look.height + look.lever.dot(feeler.centre) - feeler.radius;
-            let rate = look.fall + look.swing.dot(feeler.centre);
-            let m = (look.pull + self.axial * spec.arms[k]).max(0.0);
+        let (spec, half) = (self.spec, 0.5 * self.spec.gap);
+        let (height, fall, lever, swing) = (look.height, look.fall, look.lever, look.swing);
+        for (k, (feeler, arm)) in spec.feelers[..spec.hull].iter().zip(&spec.arms).enumerate() {
+            let f = height + lever.dot(feeler.centre) - feeler.radius;
+            let rate = fall + swing.dot(feeler.centre);
+            let m = (look.pull + self.axial * arm).max(0.0);
             if next.outlasts(f, rate, m) || self.lasts(look.part, k) {
                 continue;
             }
-            next.is_beyond |= f <= 0.5 * spec.gap && look.is_beyond(feeler.centre);
-            if f <= 0.5 * spec.gap && rate < 0.0 {
-                next.now(k, f);
-            } else {
-                next.not_before(earliest(f, rate, m), k, f);
+            if f <= half {
+                next.is_beyond |= look.is_beyond(feeler.centre);
+                if rate < 0.0 {
+                    next.now(k, f);
+                    continue;
+                }
             }
+            next.not_before(earliest(f, rate, m), k, f);
         }
     }
 

@@ -17,6 +17,8 @@ impl Search<'_> {
         let gravity = path.a.length();
         let mut tumble = self.body.tumble(spec);
         let mut window: Option<(f64, Bounds)> = None;
+        // The point that was nearest at the last look comes first: most others outlast its step.
+        let mut lead = 0;
         for _ in 0..MOST_ADVANCES {
             if t >= self.until || t.is_nan() {
                 return;
@@ -45,16 +47,35 @@ impl Search<'_> {
                 let r = tumble.at(t);
                 let w = self.spin_at(&tumble, t);
                 let mut first = None;
+                let at = (x, v, w, r);
+                self.table_feeler((part, lead), &spec.feelers[lead], table, &bounds, &at, &mut step, &mut first);
+                let up = DVec3::new(r.x_axis.z, r.y_axis.z, r.z_axis.z);
+                let mut level = self.level(&at, bounds.high, step);
                 for (k, feeler) in spec.feelers.iter().enumerate() {
-                    self.table_feeler((part, k), feeler, table, &bounds, &(x, v, w, r), &mut step, &mut first);
+                    if up.dot(feeler.centre) - feeler.radius > level || k == lead {
+                        continue;
+                    }
+                    let before = step;
+                    self.table_feeler((part, k), feeler, table, &bounds, &at, &mut step, &mut first);
+                    if step < before {
+                        level = self.level(&at, bounds.high, step);
+                    }
                 }
                 if step == 0.0 {
                     return self.hit(t, part, first.map_or(0, |(k, _)| k));
                 }
+                lead = first.map_or(lead, |(k, _)| k);
                 t += step;
             }
         }
         self.hit(t, part, 0);
+    }
+
+    /// Height over the centre of gravity from which no point of the body can come down to `high` within a step, at the speed that it can have at most.
+    fn level(&self, (x, v, ..): &(DVec3, DVec3, DVec3, DMat3), high: f64, step: f64) -> f64 {
+        let reach = self.spec.reach;
+        let pull = (self.turning * reach - self.body.path.a.z).max(0.0);
+        high - x.z + ((self.fastest * reach - v.z + 0.5 * pull * step) * step).max(0.0)
     }
 
     #[allow(clippy::too_many_arguments)]
@@ -73,12 +94,6 @@ impl Search<'_> {
         let turning = self.turning * spec.arms[k];
         let gravity = self.body.path.a;
         let m_low = (turning - gravity.z).max(0.0);
-        // Against the highest point around first, at the speed that it can have at most.
-        let rise = r.x_axis.z * feeler.centre.x + r.y_axis.z * feeler.centre.y + r.z_axis.z * feeler.centre.z;
-        let low = x.z + rise - feeler.radius - bounds.high;
-        if low > 0.0 && low + (v.z - self.fastest * spec.arms[k] - 0.5 * m_low * *step) * *step > 0.0 {
-            return;
-        }
         let arm = *r * feeler.centre;
         let p = *x + arm;
         let pv = *v + w.cross(arm);
@@ -94,9 +109,16 @@ impl Search<'_> {
             (p.z - value, pv.z - slope[0] * pv.x - slope[1] * pv.y)
         };
         let f = f - 0.5 * spec.gap;
-        let speed = v.length() + self.fastest * spec.arms[k] + gravity.length() * *step;
+        // The way of a corner over the surface is level, that of a ball along it.
+        let (way, sideways) = if feeler.radius > 0.0 {
+            (pv.length(), gravity.length())
+        } else {
+            (pv.truncate().length(), gravity.truncate().length())
+        };
+        let speed = way + (turning + sideways) * *step;
         let across = (1.0 + bounds.slope * bounds.slope).sqrt();
-        let m = m_low.max(0.0) * across + bounds.bend * speed * speed;
+        let pull = if feeler.radius > 0.0 { gravity.length() } else { bounds.slope * sideways - gravity.z };
+        let m = (turning * across + pull).max(0.0) + bounds.bend * speed * speed;
         if f > 0.5 * spec.gap && f + (rate - 0.5 * m * *step) * *step > 0.0 {
             return;
         }
@@ -113,6 +135,7 @@ impl Search<'_> {
         let time = earliest(f, rate, m);
         if time < *step {
             *step = time;
+            *first = Some((k, f));
         }
     }
 

@@ -26,16 +26,23 @@ pub(super) fn least_misfit() -> Contact {
     Contact { ball_pin_friction: 0.25, ..Contact::default() }
 }
 
-/// Coefficients in words.
-fn name(contact: &Contact) -> String {
-    format!(
-        "pin on pin restitution {} and friction {}, pin on lane {} and {}, ball on pin {} and {}",
+/// The coefficients that are searched for, in the order of the table.
+fn searched(contact: &Contact) -> [f64; 6] {
+    [
         contact.pin_pin_restitution,
         contact.pin_pin_friction,
         contact.pin_lane_restitution,
         contact.pin_lane_friction,
         contact.ball_pin_restitution,
         contact.ball_pin_friction,
+    ]
+}
+
+/// Coefficients in words.
+fn name(contact: &Contact) -> String {
+    let [pin_e, pin_mu, lane_e, lane_mu, ball_e, ball_mu] = searched(contact);
+    format!(
+        "pin on pin restitution {pin_e} and friction {pin_mu}, pin on lane {lane_e} and {lane_mu}, ball on pin {ball_e} and {ball_mu}"
     )
 }
 
@@ -93,17 +100,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         tried.push(Tried { contact, hooked, straight });
     }
     let rows = tried.iter().map(|tried| {
-        let contact = tried.contact;
-        let mut cells: Vec<String> = [
-            contact.pin_pin_restitution,
-            contact.pin_pin_friction,
-            contact.pin_lane_restitution,
-            contact.pin_lane_friction,
-            contact.ball_pin_restitution,
-            contact.ball_pin_friction,
-        ]
-        .map(|value| value.to_string())
-        .to_vec();
+        let mut cells = searched(&tried.contact).map(|value| value.to_string()).to_vec();
         cells.extend([tried.hooked.shown_window(), format!("{:.2}", tried.straight.width())]);
         cells.push(format!("{:.2}", tried.misfit()));
         cells

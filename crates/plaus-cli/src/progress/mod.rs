@@ -1,0 +1,319 @@
+//! Watches a run: shows how far it is, makes it durable about once a second, stops it when asked to.
+//!
+//! A thread of its own looks at the chains' [`Pulse`] while they work, so that something is seen from the first second on, however long a round takes.
+
+mod view;
+
+pub(crate) use view::acceptance;
+
+use crate::clock::Stopwatch;
+use crate::console;
+use crate::interrupt;
+use plaus_mcmc::{ChainPulse, Control, Progress, Pulse};
+use plaus_run::{Manifest, Mixing, Watch};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::Duration;
+use view::{Standing, View};
+
+/// How often it is looked whether there is a reason to stop, or something to show.
+const TICK: Duration = Duration::from_millis(50);
+/// What finding out how well a run mixes takes is at most one part in so many of its time.
+const MIXING_SHARE: f64 = 60.0;
+
+/// How progress is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Style {
+    /// Not at all.
+    Silent,
+    /// A block of lines on a terminal, drawn again and again.
+    Live,
+    /// A line now and then.
+    Plain,
+    /// A JSON line on stdout now and then.
+    Json,
+}
+
+/// Why a run was stopped before its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stop {
+    /// By Ctrl-C or a signal.
+    Interrupted,
+    /// By `--max-time`.
+    OutOfTime,
+}
+
+/// Iterations of all chains together, and how long they will take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Speed {
+    per_second: f64,
+    done: u64,
+    chains: u64,
+}
+
+impl Speed {
+    /// Seconds until each chain has done `end` iterations.
+    fn seconds_left(self, end: u64) -> f64 {
+        end.saturating_mul(self.chains).saturating_sub(self.done) as f64 / self.per_second
+    }
+}
+
+/// The watch of a run.
+pub(crate) struct Monitor {
+    style: Style,
+    verbose: bool,
+    limit: Option<Duration>,
+    pulse: Arc<Pulse>,
+    board: Mutex<Board>,
+    /// Told when the sampling is over.
+    over: Condvar,
+}
+
+/// What is known of the run, and what was shown of it.
+struct Board {
+    clock: Stopwatch,
+    /// Seconds the sampling took, once it is over.
+    took: Option<f64>,
+    manifest: Option<Arc<Manifest>>,
+    begun_at: u64,
+    /// Iterations that each chain has recorded.
+    done: u64,
+    standing: Standing,
+    shown: Option<Stopwatch>,
+    /// Lines on the terminal that the next drawing replaces.
+    drawn: usize,
+    stop: Option<Stop>,
+}
+
+impl Monitor {
+    /// A watch that stops the run after `limit`.
+    pub(crate) fn new(style: Style, verbose: bool, limit: Option<Duration>) -> Self {
+        let board = Board {
+            clock: Stopwatch::start(),
+            took: None,
+            manifest: None,
+            begun_at: 0,
+            done: 0,
+            standing: Standing::default(),
+            shown: None,
+            drawn: 0,
+            stop: None,
+        };
+        Self { style, verbose, limit, pulse: Arc::default(), board: Mutex::new(board), over: Condvar::new() }
+    }
+
+    /// Does `sampling` while a thread looks on; then takes away what was drawn, so that what follows stands in its place.
+    pub(crate) fn over<T>(&self, sampling: impl FnOnce() -> T) -> T {
+        /// Ends the other thread, also where `sampling` panics.
+        struct End<'a>(&'a Monitor);
+        impl Drop for End<'_> {
+            fn drop(&mut self) {
+                self.0.finish();
+            }
+        }
+        thread::scope(|scope| {
+            let _end = End(self);
+            scope.spawn(|| self.look_on());
+            sampling()
+        })
+    }
+
+    fn board(&self) -> MutexGuard<'_, Board> {
+        self.board.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Why the run was stopped, if it was.
+    pub(crate) fn stop(&self) -> Option<Stop> {
+        self.board().stop
+    }
+
+    /// Iterations each chain has recorded.
+    pub(crate) fn done(&self) -> u64 {
+        self.board().done
+    }
+
+    /// Iterations each chain had done before.
+    pub(crate) fn begun_at(&self) -> u64 {
+        self.board().begun_at
+    }
+
+    /// Seconds since the run began, or went on, until it ended.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.board().seconds()
+    }
+
+    /// Iterations of all chains together, per second.
+    pub(crate) fn rate(&self) -> f64 {
+        self.board().speed(&self.pulse.chains()).per_second
+    }
+
+    fn look_on(&self) {
+        let mut board = self.board();
+        while board.took.is_none() {
+            if board.manifest.is_some() {
+                self.check(&mut board);
+                self.show(&mut board);
+            }
+            board = self.over.wait_timeout(board, TICK).unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+
+    /// Stops the run where there is a reason.
+    fn check(&self, board: &mut Board) {
+        if interrupt::asked() {
+            board.stop = Some(Stop::Interrupted);
+        } else if self.limit.is_some_and(|limit| board.clock.elapsed() >= limit) {
+            board.stop.get_or_insert(Stop::OutOfTime);
+        }
+        if board.stop.is_some() {
+            self.pulse.stop();
+        }
+    }
+
+    fn show(&self, board: &mut Board) {
+        let seconds = board.seconds();
+        let every = match (self.style, self.verbose) {
+            (Style::Silent, _) => return,
+            (Style::Live, _) => 0.15,
+            (Style::Json, _) | (Style::Plain, true) => 1.0,
+            // Who reads a file wants to see that it works, and later not a thousand lines of it.
+            (Style::Plain, false) => (0.5 * seconds).clamp(1.0, 60.0),
+        };
+        let chains = self.pulse.chains();
+        if chains.is_empty() || board.shown.map_or(seconds, |shown| shown.seconds()) < every {
+            return;
+        }
+        let Some(manifest) = board.manifest.clone() else { return };
+        let (distinct, speed) = (self.pulse.distinct(), board.speed(&chains));
+        let view = View { manifest: &manifest, standing: &board.standing, chains: &chains, distinct, speed };
+        match self.style {
+            Style::Live => {
+                let mut lines = view.headlines();
+                lines.extend(view.chain_lines());
+                board.draw(&lines);
+            }
+            // Where the reader has gone, the end of the run will say so.
+            Style::Json => drop(console::print_line(&view.json().to_string())),
+            _ => {
+                console::note_line(&view.headlines().join("  "));
+                let chains = if self.verbose { view.chain_lines() } else { Vec::new() };
+                chains.iter().for_each(|line| console::note_line(line));
+            }
+        }
+        board.shown = Some(Stopwatch::start());
+    }
+
+    fn finish(&self) {
+        let mut board = self.board();
+        board.took = Some(board.seconds());
+        board.wipe();
+        self.over.notify_all();
+    }
+}
+
+impl Board {
+    fn seconds(&self) -> f64 {
+        self.took.unwrap_or_else(|| self.clock.seconds())
+    }
+
+    fn speed(&self, chains: &[ChainPulse]) -> Speed {
+        let done: u64 = chains.iter().map(|chain| chain.iterations).sum();
+        let before = self.begun_at * chains.len() as u64;
+        let per_second = done.saturating_sub(before) as f64 / self.seconds();
+        Speed { per_second, done, chains: chains.len() as u64 }
+    }
+
+    /// Draws lines in place of those before.
+    fn draw(&mut self, lines: &[String]) {
+        let text: String = lines.iter().map(|line| format!("\x1b[2K{line}\n")).collect();
+        // Without wrapping meanwhile: a line is a row, however narrow the terminal.
+        console::note(&format!("\x1b[?7l{}{text}\x1b[J\x1b[?7h", self.up()));
+        self.drawn = lines.len();
+    }
+
+    fn up(&self) -> String {
+        if self.drawn > 0 { format!("\x1b[{}A", self.drawn) } else { String::new() }
+    }
+
+    fn wipe(&mut self) {
+        if self.drawn > 0 {
+            console::note(&format!("{}\x1b[J", self.up()));
+            self.drawn = 0;
+        }
+    }
+}
+
+/// A [`Monitor`] in the thread that samples, with what only that thread needs.
+pub(crate) struct Rounds<'a> {
+    monitor: &'a Monitor,
+    checkpoint: Stopwatch,
+    /// Seconds to the next checkpoint: few before the first, then at least one, and more where writing one takes long.
+    pause: f64,
+    writing: Option<Stopwatch>,
+    mixing: Stopwatch,
+    /// Seconds until it is next found out how well the run mixes.
+    mixing_pause: f64,
+    /// Said once it is known what is sampled.
+    opening: &'a dyn Fn(&Manifest, u64),
+}
+
+impl<'a> Rounds<'a> {
+    /// `opening` is called before the first round.
+    pub(crate) fn new(monitor: &'a Monitor, opening: &'a dyn Fn(&Manifest, u64)) -> Self {
+        let now = Stopwatch::start();
+        Self { monitor, checkpoint: now, pause: 0.2, writing: None, mixing: now, mixing_pause: 0.5, opening }
+    }
+}
+
+impl Watch for Rounds<'_> {
+    fn begin(&mut self, manifest: &Manifest, done: u64) {
+        (self.opening)(manifest, done);
+        self.checkpoint = Stopwatch::start();
+        let mut board = self.monitor.board();
+        board.clock = self.checkpoint;
+        (board.begun_at, board.done) = (done, done);
+        board.manifest = Some(Arc::new(manifest.clone()));
+    }
+
+    fn round(&mut self, progress: &Progress<'_>) -> Control {
+        let mut board = self.monitor.board();
+        board.done = progress.end_iteration;
+        board.standing.update(progress);
+        self.monitor.check(&mut board);
+        if board.stop.is_some() { Control::Stop } else { Control::Continue }
+    }
+
+    fn checkpoint_due(&mut self) -> bool {
+        let due = self.checkpoint.seconds() >= self.pause;
+        self.writing = due.then(Stopwatch::start);
+        due
+    }
+
+    fn checkpoint_done(&mut self) {
+        if let Some(writing) = self.writing.take() {
+            self.pause = (20.0 * writing.seconds()).max(1.0);
+        }
+        self.checkpoint = Stopwatch::start();
+    }
+
+    fn pulse(&self) -> Arc<Pulse> {
+        Arc::clone(&self.monitor.pulse)
+    }
+
+    fn looks_at_mixing(&self) -> bool {
+        self.monitor.style != Style::Silent
+    }
+
+    fn mixing_due(&mut self) -> bool {
+        let due = self.mixing.seconds() >= self.mixing_pause;
+        if due {
+            self.mixing = Stopwatch::start();
+        }
+        due
+    }
+
+    fn mixing(&mut self, mixing: Option<Mixing>) {
+        self.mixing_pause = (MIXING_SHARE * self.mixing.seconds()).max(0.5);
+        self.monitor.board().standing.mixing = mixing;
+    }
+}

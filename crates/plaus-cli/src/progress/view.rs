@@ -1,0 +1,138 @@
+//! How far a run is, in words and as JSON.
+
+use super::Speed;
+use crate::clock::in_words;
+use crate::table::{grouped, lay_out, percent, rate};
+use plaus_mcmc::{ChainPulse, Hits, MoveCounts, Progress};
+use plaus_run::{Manifest, Mixing};
+use serde_json::{Value, json};
+
+/// Chains shown on a terminal; the others are summed up.
+const SHOWN_CHAINS: usize = 8;
+
+/// Where a run stood after its last round.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Standing {
+    /// Per chain, how often each move ended how, and hits.
+    chains: Vec<(Vec<MoveCounts>, Hits)>,
+    /// Where chains are tempered.
+    restarts: Option<u64>,
+    pub(super) mixing: Option<Mixing>,
+}
+
+impl Standing {
+    /// Takes over what a round brought.
+    pub(super) fn update(&mut self, progress: &Progress<'_>) {
+        self.chains = progress.chains.iter().map(|(counts, hits)| (counts.to_vec(), *hits)).collect();
+        let restarts = || progress.climbs.iter().map(|climb| climb.restarts()).sum();
+        self.restarts = (!progress.climbs.is_empty()).then(restarts);
+    }
+}
+
+/// All that is shown at a moment.
+pub(super) struct View<'a> {
+    pub(super) manifest: &'a Manifest,
+    pub(super) standing: &'a Standing,
+    /// How far each chain is now.
+    pub(super) chains: &'a [ChainPulse],
+    pub(super) distinct: u64,
+    pub(super) speed: Speed,
+}
+
+impl View<'_> {
+    /// Iterations that a chain has done, as a mean over the chains.
+    fn done(&self) -> u64 {
+        self.chains.iter().map(|chain| chain.iterations).sum::<u64>() / (self.chains.len() as u64).max(1)
+    }
+
+    /// How far the run is, what it has found, and how well it mixes where that is known.
+    pub(super) fn headlines(&self) -> Vec<String> {
+        let (plan, done) = (&self.manifest.plan, self.done());
+        let end = plan.end();
+        let phase = if done < plan.warmup { " (warm-up)" } else { "" };
+        let far = format!(
+            "{} {:>3.0}%  iteration {} of {}{phase}  {}  ETA {}{}",
+            self.manifest.scene,
+            (100.0 * done as f64 / end as f64).floor(),
+            grouped(done),
+            grouped(end),
+            rate(self.speed.per_second),
+            in_words(self.speed.seconds_left(end)),
+            if plan.solutions.is_some() { " at most" } else { "" },
+        );
+        let hits: u64 = self.chains.iter().map(|chain| chain.hits).sum();
+        let iterations: u64 = self.chains.iter().map(|chain| chain.iterations).sum();
+        let wanted = plan.solutions.map(|wanted| format!(" of {}", grouped(wanted))).unwrap_or_default();
+        let fresh =
+            self.standing.restarts.map(|restarts| format!("  restarts {}", grouped(restarts))).unwrap_or_default();
+        let hits = percent(hits as f64 / iterations as f64);
+        let mut lines = vec![far, format!("hits {hits}  distinct {}{wanted}{fresh}", grouped(self.distinct))];
+        if let Some(Mixing { rhat, ess: (scarce, ess) }) = &self.standing.mixing {
+            let rhat =
+                rhat.as_ref().map(|(name, rhat)| format!("R-hat at most {rhat:.3} ({name})  ")).unwrap_or_default();
+            lines.push(format!("outcomes: {rhat}ESS at least {ess:.0} ({scarce})"));
+        }
+        lines
+    }
+
+    /// A column a chain: how fast it is, what it hits, what it accepts of each move.
+    pub(super) fn chain_lines(&self) -> Vec<String> {
+        let shown = self.chains.len().min(SHOWN_CHAINS);
+        let row = |name: &str, cell: &dyn Fn(usize) -> String| -> Vec<String> {
+            std::iter::once(name.to_owned()).chain((0..shown).map(cell)).collect()
+        };
+        let hits = |chain: usize| percent(self.chains[chain].hits as f64 / self.chains[chain].iterations as f64);
+        let mut rows = vec![
+            row("", &|chain| format!("chain {chain}")),
+            row("  iterations", &|chain| grouped(self.chains[chain].iterations)),
+            row("  hits", &hits),
+            vec!["  accepted:".to_owned()],
+        ];
+        rows.extend(self.manifest.moves.iter().enumerate().map(|(index, name)| {
+            row(&format!("    {name}"), &|chain| {
+                let count = self.standing.chains.get(chain).and_then(|(counts, _)| counts.get(index));
+                let made = count.filter(|count| count.made() > 0);
+                made.map_or_else(|| "-".to_owned(), |count| percent(count.acceptance()))
+            })
+        }));
+        let mut lines: Vec<String> = lay_out(&rows).lines().map(str::to_owned).collect();
+        if let Some(more) = self.chains.len().checked_sub(SHOWN_CHAINS).filter(|&more| more > 0) {
+            lines.push(format!("  and {more} more chains"));
+        }
+        lines
+    }
+
+    /// The same for programs.
+    pub(super) fn json(&self) -> Value {
+        let moves = &self.manifest.moves;
+        let chain = |(index, now): (usize, &ChainPulse)| {
+            let before = self.standing.chains.get(index);
+            json!({
+                "chain": index,
+                "iterations": now.iterations,
+                "iterations_per_second": self.speed.per_second / self.chains.len() as f64,
+                "hits": now.hits,
+                "first_hit": before.and_then(|(_, hits)| hits.first),
+                "acceptance": before.map(|(counts, _)| acceptance(moves, counts)),
+            })
+        };
+        let mixing = self.standing.mixing.as_ref();
+        json!({
+            "event": "progress",
+            "iteration": self.done(),
+            "end": self.manifest.plan.end(),
+            "distinct": self.distinct,
+            "iterations_per_second": self.speed.per_second,
+            "eta_seconds": self.speed.seconds_left(self.manifest.plan.end()),
+            "restarts": self.standing.restarts.unwrap_or(0),
+            "max_rhat": mixing.and_then(|mixing| Some(mixing.rhat.as_ref()?.1)),
+            "min_ess": mixing.map(|mixing| mixing.ess.1),
+            "chains": self.chains.iter().enumerate().map(chain).collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// Acceptance of each move, by name.
+pub(crate) fn acceptance(moves: &[String], counts: &[MoveCounts]) -> Value {
+    moves.iter().zip(counts).map(|(name, count)| (name.clone(), json!(count.acceptance()))).collect()
+}

@@ -1,0 +1,252 @@
+//! Scales of moves, adapted in a chain's warm-up and kept from then on.
+//!
+//! A move whose steps have a size can leave that size to the chain: it says which [`Scale`]s it has, and how it would be at others. In the iterations before
+//! the sampling phase each scale follows Robbins and Monro's stochastic approximation of the equation *acceptance = target rate*, in its logarithm:
+//!
+//! `ln s ← ln s + γ_n (accepted − target)`, `γ_n = min(1, 4 n^(−2/3))`, n counting the proposals made at that scale.
+//!
+//! The decision, 0 or 1, takes the place of the probability of acceptance, of which it is an unbiased estimate: a simulation that stops early because it is
+//! certain to be rejected leaves that probability unknown. Where the sampling phase begins the scale becomes the mean of `ln s` over the proposals of the warm-up's
+//! second half, which is as exact as any estimate from these decisions (Polyak and Juditsky 1992), and stays: what is recorded is a Markov chain whose kernel no
+//! longer changes, exact whatever the scales came out as. What adapts for ever is not, unless the gain vanishes, and then only in the limit (Andrieu
+//! and Thoms, "A tutorial on adaptive MCMC", Statistics and Computing 18, 2008).
+//!
+//! The scales are a function of target, moves, seed and chain; each chain has its own, and so has each rung of tempered replicas.
+
+use crate::moves::{Mixture, Move, MoveId, Path};
+use crate::target::Target;
+use plaus_dist::math;
+use serde::{Deserialize, Serialize};
+
+/// A scale must have been tried so often in the warm-up's second half; else its move stays as it is configured. The error of `ln s` is then about 0.4 where the acceptance
+/// falls by 0.3 with each unit of `ln s`, as that of a Gaussian step on a Gaussian target does.
+pub const ENOUGH: u64 = 16;
+
+/// A scale that a move leaves to its chain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// A short name, within its move.
+    pub name: &'static str,
+    /// Where adaptation begins, from `least` to `most`.
+    pub start: f64,
+    /// The smallest, above 0.
+    pub least: f64,
+    /// The largest.
+    pub most: f64,
+    /// The share of proposals that should be accepted: [`Scale::ONE`], [`Scale::MANY`] or another between 0 and 1. It falls as the scale grows.
+    pub target: f64,
+}
+
+impl Scale {
+    /// For steps along one dimension: best for a Gaussian step on a Gaussian target (Gelman, Roberts and Gilks, "Efficient Metropolis jumping rules", 1996;
+    /// Garthwaite, Fan and Sisson, Communications in Statistics 45, 2016).
+    pub const ONE: f64 = 0.44;
+    /// For steps along many dimensions at once: best in the limit (Roberts, Gelman and Gilks 1997; Roberts and Rosenthal, "Optimal scaling for various
+    /// Metropolis–Hastings algorithms", Statistical Science 16, 2001).
+    pub const MANY: f64 = 0.234;
+
+    fn log(&self, value: f64) -> f64 {
+        math::ln(value.clamp(self.least, self.most))
+    }
+}
+
+/// How far one scale has come.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Adapted {
+    /// The logarithm of the scale.
+    log: f64,
+    /// Proposals made at it and those accepted: in the warm-up, and then since.
+    tried: u64,
+    accepted: u64,
+    /// Sum of `log` over the proposals of the warm-up's second half, and how many these are.
+    sum: f64,
+    summed: u64,
+}
+
+impl Adapted {
+    /// Proposals made at this scale since the warm-up, or in it as long as it lasts.
+    #[must_use]
+    pub fn tried(&self) -> u64 {
+        self.tried
+    }
+
+    /// Those of them that were accepted.
+    #[must_use]
+    pub fn accepted(&self) -> u64 {
+        self.accepted
+    }
+
+    fn is_known(&self) -> bool {
+        self.summed >= ENOUGH
+    }
+
+    fn learn(&mut self, scale: &Scale, accepted: bool, is_late: bool) {
+        let n = math::cbrt(self.tried as f64);
+        let gain = (4.0 / (n * n)).min(1.0);
+        let miss = if accepted { 1.0 - scale.target } else { -scale.target };
+        self.log = (self.log + gain * miss).clamp(math::ln(scale.least), math::ln(scale.most));
+        if is_late {
+            self.sum += self.log;
+            self.summed += 1;
+        }
+    }
+
+    fn freeze(&mut self) {
+        if self.is_known() {
+            self.log = self.sum / self.summed as f64;
+        }
+        (self.tried, self.accepted) = (0, 0);
+    }
+}
+
+/// The scales of a chain's moves: all that its adaptation has led to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Scales {
+    /// The first iteration that is made by their last values.
+    until: u64,
+    frozen: bool,
+    /// By move, in order of its scales.
+    of: Vec<Vec<Adapted>>,
+}
+
+impl Scales {
+    /// Where adaptation begins; `None` where no move has a scale.
+    fn start<T: Target>(moves: &Mixture<T>, until: u64) -> Option<Self> {
+        let begin = |scale: Scale| Adapted { log: scale.log(scale.start), tried: 0, accepted: 0, sum: 0.0, summed: 0 };
+        let of: Vec<Vec<Adapted>> =
+            moves.iter().map(|(_, kernel)| kernel.scales().into_iter().map(begin).collect()).collect();
+        of.iter().any(|scales| !scales.is_empty()).then_some(Self { until, frozen: false, of })
+    }
+
+    /// Whether the warm-up is over, so that they stay.
+    #[must_use]
+    pub fn are_frozen(&self) -> bool {
+        self.frozen
+    }
+
+    /// The scales of a move; `None` for one that is left as it is configured, as it was hardly ever tried.
+    #[must_use]
+    pub fn values(&self, id: MoveId) -> Vec<Option<f64>> {
+        let value = |one: &Adapted| (!self.frozen || one.is_known()).then(|| math::exp(one.log));
+        self.adapted(id).iter().map(value).collect()
+    }
+
+    /// How far the scales of a move have come.
+    #[must_use]
+    pub fn adapted(&self, id: MoveId) -> &[Adapted] {
+        self.of.get(usize::from(id.0)).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether they are scales of these moves.
+    #[must_use]
+    pub fn fit<T: Target>(&self, moves: &Mixture<T>) -> bool {
+        self.of.iter().map(Vec::len).eq(moves.iter().map(|(_, kernel)| kernel.scales().len()))
+    }
+}
+
+/// What a chain needs to adapt: its scales, and its moves at these scales.
+pub(crate) struct Adaptation<T: Target> {
+    declared: Vec<Vec<Scale>>,
+    scales: Scales,
+    remade: Vec<Option<Box<dyn Move<T>>>>,
+}
+
+impl<T: Target> Adaptation<T> {
+    /// In the iterations before `until`, from the beginning; `None` where there is nothing to adapt, or no iteration to do it in.
+    pub(crate) fn start(moves: &Mixture<T>, until: u64) -> Option<Self> {
+        // Iteration 0 is the start, which no move makes.
+        let scales = (until > 1).then(|| Scales::start(moves, until)).flatten()?;
+        Some(Self::resume(moves, scales))
+    }
+
+    /// From scales that were adapted before; they fit the moves.
+    pub(crate) fn resume(moves: &Mixture<T>, scales: Scales) -> Self {
+        let declared = moves.iter().map(|(_, kernel)| kernel.scales()).collect();
+        let remade = (0..).zip(moves.iter()).map(|(id, (_, kernel))| remade(kernel, &scales, MoveId(id))).collect();
+        Self { declared, scales, remade }
+    }
+
+    pub(crate) fn scales(&self) -> &Scales {
+        &self.scales
+    }
+
+    /// A move at its present scales; `None` where it has none.
+    pub(crate) fn kernel(&self, id: MoveId) -> Option<&dyn Move<T>> {
+        self.remade[usize::from(id.0)].as_deref()
+    }
+
+    /// Notes what became of a proposal that iteration `iteration` made.
+    pub(crate) fn learn(
+        &mut self,
+        moves: &Mixture<T>,
+        iteration: u64,
+        (id, path): (MoveId, Option<Path>),
+        accepted: bool,
+    ) {
+        let index = usize::from(id.0);
+        let (_, kernel) = moves.get(id);
+        let used = path.and_then(|path| kernel.scale_of(path)).filter(|&used| used < self.declared[index].len());
+        if let Some(used) = used {
+            let one = &mut self.scales.of[index][used];
+            one.tried += 1;
+            one.accepted += u64::from(accepted);
+            if !self.scales.frozen {
+                one.learn(&self.declared[index][used], accepted, iteration >= self.scales.until / 2);
+                self.remade[index] = remade(kernel, &self.scales, id);
+            }
+        }
+        if !self.scales.frozen && iteration + 1 >= self.scales.until {
+            self.scales.frozen = true;
+            self.scales.of.iter_mut().flatten().for_each(Adapted::freeze);
+            *self = Self::resume(moves, self.scales.clone());
+        }
+    }
+}
+
+fn remade<T: Target>(kernel: &dyn Move<T>, scales: &Scales, id: MoveId) -> Option<Box<dyn Move<T>>> {
+    let values = scales.values(id);
+    if values.is_empty() { None } else { kernel.at_scales(&values) }
+}
+
+impl<T: Target> Mixture<T> {
+    /// The same moves, with the same probabilities, at these scales: the kernel of a chain whose warm-up ended with them.
+    #[must_use]
+    pub fn at(&self, scales: &Scales) -> Self {
+        self.map(|id, kernel| remade(kernel, scales, id))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCALE: Scale = Scale { name: "step", start: 1.0, least: 1e-3, most: 1e3, target: Scale::ONE };
+
+    fn begun() -> Adapted {
+        Adapted { log: 0.0, tried: 0, accepted: 0, sum: 0.0, summed: 0 }
+    }
+
+    #[test]
+    fn scales_stay_between_their_ends() {
+        for (accepted, end) in [(true, 1e3), (false, 1e-3)] {
+            let mut one = begun();
+            for n in 1..200 {
+                one.tried = n;
+                one.learn(&SCALE, accepted, true);
+            }
+            assert!((math::exp(one.log) / end - 1.0).abs() < 1e-12, "{one:?}");
+        }
+    }
+
+    #[test]
+    fn what_was_hardly_tried_is_left_as_configured() {
+        let mut one = begun();
+        let known = |summed: u64| {
+            (one.summed, one.sum) = (summed, summed as f64);
+            let mut scales = Scales { until: 2, frozen: true, of: vec![vec![one]] };
+            scales.of[0][0].freeze();
+            scales.values(MoveId(0))
+        };
+        assert_eq!([ENOUGH - 1, ENOUGH].map(known), [vec![None], vec![Some(math::exp(1.0))]]);
+    }
+}

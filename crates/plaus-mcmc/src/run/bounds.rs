@@ -1,0 +1,34 @@
+//! Where blocks end: early ones soon, so that a run can be looked at, stopped and resumed from its first iterations on, however slow they are.
+
+/// Blocks grow with what is done, until they have full size: what a run loses that is cut short is at most this part of what it has.
+const PART: u64 = 8;
+
+/// End of the block that begins after iterations `0 .. done`; full blocks end at multiples of `block`. A function of these two alone, so that a run that was stopped and goes
+/// on records what one that was never stopped does.
+pub(super) fn end_of_block(done: u64, block: u64) -> u64 {
+    let grown = (done / PART).max(1);
+    let size = if grown >= block { block } else { 1 << grown.ilog2() };
+    (done / size + 1).saturating_mul(size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_grow_to_full_size_and_stay_aligned() {
+        let ends = |block: u64| {
+            let next = move |&done: &u64| Some(end_of_block(done, block));
+            std::iter::successors(Some(end_of_block(0, block)), next)
+        };
+        assert!(ends(1).take(50).eq(1..=50));
+        let early: Vec<u64> = ends(100).take(30).collect();
+        assert_eq!(early[..18], [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20]);
+        assert!(ends(100).skip_while(|&end| end < 800).take(5).eq([832, 900, 1000, 1100, 1200]));
+        // Each ends where one that begins anywhere within it would.
+        for end in ends(100).take(60) {
+            assert_eq!(end_of_block(end - 1, 100), end);
+        }
+        assert_eq!(end_of_block((1 << 48) - 1, u64::MAX), 1 << 48);
+    }
+}

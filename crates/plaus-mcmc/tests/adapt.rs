@@ -1,0 +1,325 @@
+//! Scales adapted in the warm-up: they come to what is wanted, stay from then on, and leave the target as it is; a twin that adapts for ever does not.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use plaus_dist::{
+    Density, Gaussian, LogDensity, LogPotential, LogRatio, Purpose, Sample, Seed, Stream, math, open_unit,
+};
+use plaus_mcmc::check::{OneStep, Statistic, one_step};
+use plaus_mcmc::diagnose::integrated_autocorrelation_time;
+use plaus_mcmc::{
+    Block, Chain, Control, Distinct, Goal, Mixture, ModelError, Move, MoveId, Path, Plan, Progress, Proposal, Redraw,
+    Replicas, Scale, Scales, Simulated, Sink, Snapshot, SolutionClass, Start, State, StateOf, Target, Verdict, run,
+};
+
+/// A number; its prior is Gaussian, or exponential, which forbids what is below 0. The constraint is Gaussian about 0.
+#[derive(Clone, Copy)]
+struct Number {
+    prior: Prior,
+    /// Standard deviation of the constraint.
+    narrow: f64,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Prior {
+    Gaussian,
+    Exponential,
+}
+
+const GAUSSIAN: Number = Number { prior: Prior::Gaussian, narrow: f64::INFINITY };
+const EXPONENTIAL: Number = Number { prior: Prior::Exponential, narrow: f64::INFINITY };
+
+impl Target for Number {
+    type Draw = f64;
+    type Outcome = f64;
+    type Scratch = ();
+    fn start(&self, stream: &mut Stream) -> f64 {
+        match self.prior {
+            Prior::Gaussian => Gaussian::new(0.0, 1.0).unwrap().sample(stream),
+            Prior::Exponential => -math::ln(open_unit(stream)),
+        }
+    }
+    fn log_prior(&self, draw: &f64) -> Result<LogDensity, ModelError> {
+        match self.prior {
+            Prior::Gaussian => Ok(Gaussian::new(0.0, 1.0).unwrap().log_density(draw)?),
+            Prior::Exponential if *draw < 0.0 => Ok(LogDensity::ZERO),
+            Prior::Exponential => Ok(LogDensity::new(-draw)?),
+        }
+    }
+    fn simulate(
+        &self,
+        draw: &f64,
+        _: Option<&StateOf<Self>>,
+        _: LogPotential,
+        (): &mut (),
+    ) -> Result<Simulated<f64>, ModelError> {
+        Ok(Simulated::Complete(*draw))
+    }
+    fn log_constraint(&self, outcome: &f64) -> Result<LogPotential, ModelError> {
+        Ok(LogPotential::new(-0.5 * math::square(outcome / self.narrow))?)
+    }
+}
+
+impl Goal for Number {
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+        (state.draw.abs() < 0.1).then(|| SolutionClass::of([(state.draw * 1e3) as i64]))
+    }
+}
+
+/// A Gaussian step, symmetric.
+#[derive(Clone, Copy)]
+struct Walk {
+    size: f64,
+    target: f64,
+}
+
+impl Move<Number> for Walk {
+    fn name(&self) -> &str {
+        "walk"
+    }
+    fn propose(
+        &self,
+        _: &Number,
+        _: &StateOf<Number>,
+        x: &mut f64,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        *x += self.size * Gaussian::new(0.0, 1.0).unwrap().sample(stream);
+        Ok(Proposal::SYMMETRIC)
+    }
+    fn log_ratio(&self, _: &Number, _: &StateOf<Number>, _: &StateOf<Number>, _: Path) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::ONE)
+    }
+    fn scales(&self) -> Vec<Scale> {
+        vec![Scale { name: "size", start: self.size, least: 1e-4, most: 1e4, target: self.target }]
+    }
+    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<Number>>> {
+        Some(Box::new(Self { size: values[0].unwrap_or(self.size), ..*self }))
+    }
+}
+
+fn walking(size: f64) -> Mixture<Number> {
+    Mixture::of(Box::new(Walk { size, target: Scale::ONE }))
+}
+
+fn size(scales: Option<&Scales>) -> f64 {
+    scales.unwrap().values(MoveId(0))[0].unwrap()
+}
+
+/// A chain of iterations before `until`, and the share it accepts in the `count` after them, with its autocorrelation time.
+fn adapted(start: f64, target: f64, seed: u64, until: u64, count: u64) -> (Scales, f64, f64) {
+    let moves = Mixture::of(Box::new(Walk { size: start, target }) as Box<dyn Move<Number>>);
+    let mut chain = Chain::start(&GAUSSIAN, &moves, Seed(seed).chain(0)).unwrap().adapting(until);
+    for _ in 1..until {
+        chain.step().unwrap();
+    }
+    let frozen = chain.scales().unwrap().clone();
+    let accepts: Vec<f64> =
+        (0..count).map(|_| f64::from(u8::from(chain.step().unwrap().verdict == Verdict::Accepted))).collect();
+    let after = chain.scales().unwrap();
+    assert!(frozen.are_frozen() && after.values(MoveId(0)) == frozen.values(MoveId(0)));
+    assert_eq!(after.adapted(MoveId(0))[0].tried(), count, "counted since the warm-up");
+    let tau = integrated_autocorrelation_time(&[&accepts]).unwrap().unwrap().tau;
+    (frozen, accepts.iter().sum::<f64>() / count as f64, tau)
+}
+
+/// The mean of `ln s` over the warm-up's second half, n proposals, solves *acceptance = target* up to an error whose effect on the acceptance has variance τ p (1 − p)/n,
+/// whatever the slope (Polyak and Juditsky 1992), τ being the decisions' autocorrelation time; the measured share of m proposals adds τ p (1 − p)/m. Eight chains at
+/// 1e-6 together: 5.4 standard deviations.
+#[test]
+fn a_gaussian_is_accepted_as_often_as_wanted() {
+    let (until, count) = (20_000, 20_000);
+    for target in [Scale::ONE, Scale::MANY] {
+        for (seed, start) in [(0, 1e-3), (1, 0.1), (2, 1.0), (3, 1e3)] {
+            let (scales, share, tau) = adapted(start, target, seed, until, count);
+            let variance = tau * target * (1.0 - target) * (2.0 / until as f64 + 1.0 / count as f64);
+            let allowed = 5.4 * variance.sqrt();
+            println!("from {start}: {:.3}, accepted {share:.4} for {target} ± {allowed:.4}", size(Some(&scales)));
+            assert!((share - target).abs() < allowed, "from {start}: {share} for {target} ± {allowed}");
+            // What aims a tenth higher is seen.
+            assert!((share - (target + 0.1)).abs() > allowed);
+        }
+    }
+    // A step of 2.4 standard deviations is accepted so often: 2/π atan(2/s) = 0.44.
+    let exact = 2.0 / math::tan(0.5 * std::f64::consts::PI * Scale::ONE);
+    let (scales, ..) = adapted(0.01, Scale::ONE, 9, 100_000, 100);
+    assert!((size(Some(&scales)) / exact - 1.0).abs() < 0.1, "{} for {exact}", size(Some(&scales)));
+}
+
+#[test]
+fn without_a_warm_up_nothing_is_adapted() {
+    let moves = walking(0.3);
+    let begun = |until| Chain::start(&GAUSSIAN, &moves, Seed(1).chain(0)).unwrap().adapting(until);
+    for until in [0, 1] {
+        let (mut plain, mut adapting) = (Chain::start(&GAUSSIAN, &moves, Seed(1).chain(0)).unwrap(), begun(until));
+        assert!(adapting.scales().is_none());
+        (0..200).for_each(|_| assert_eq!(plain.step().unwrap(), adapting.step().unwrap()));
+        assert_eq!(plain.state(), adapting.state());
+    }
+    // One iteration is too little to know, so the move stays as configured.
+    let mut short = begun(2);
+    short.step().unwrap();
+    assert!(short.scales().unwrap().are_frozen());
+    assert_eq!(short.scales().unwrap().values(MoveId(0)), [None]);
+}
+
+/// What is recorded is made by the moves at the frozen scales, which leave the target as it is.
+#[test]
+fn frozen_scales_leave_the_target_invariant() {
+    for number in [GAUSSIAN, EXPONENTIAL, Number { narrow: 0.5, ..GAUSSIAN }] {
+        let moves = walking(30.0);
+        let mut chain = Chain::start(&number, &moves, Seed(3).chain(0)).unwrap().adapting(2000);
+        for _ in 1..2000 {
+            chain.step().unwrap();
+        }
+        let kernel = moves.at(chain.scales().unwrap());
+        let mut twin =
+            Chain::resume(&number, &kernel, Seed(3).chain(0), 1999, chain.state().clone(), vec![<_>::default()]);
+        (0..100).for_each(|_| assert_eq!(twin.step().unwrap(), chain.step().unwrap()));
+        assert_eq!(twin.state(), chain.state());
+        let sd = (1.0 / (1.0 + 1.0 / math::square(number.narrow))).sqrt();
+        let exact = |stream: &mut Stream| {
+            let draw = if number.prior == Prior::Gaussian { sd * number.start(stream) } else { number.start(stream) };
+            State::evaluate(&number, draw, &mut ())
+        };
+        let statistic = Statistic::new("x", |state: &State<f64, f64>| state.draw);
+        let report = one_step(&number, &kernel, exact, &[statistic], OneStep { samples: 40_000, ..OneStep::default() });
+        let report = report.unwrap();
+        assert!(report.passed(), "{report}");
+    }
+}
+
+/// Steps from an exact draw, by a walk whose scale begins at 1 and goes on adapting with this gain. Where the exponential density ends half of the steps are
+/// refused, so that the scale learns where the chain is: short steps there, long ones far out.
+fn wandered(gain: f64, steps: u64, sample: u64) -> f64 {
+    let streams = Seed(17).chain(sample);
+    let draw = EXPONENTIAL.start(&mut streams.at(0, Purpose(100)));
+    let mut state = State::evaluate(&EXPONENTIAL, draw, &mut ()).unwrap();
+    let mut log = 0.0;
+    for step in 0..steps {
+        let moves = walking(math::exp(log));
+        let mut chain = Chain::resume(&EXPONENTIAL, &moves, streams, step, state, vec![<_>::default()]);
+        let accepted = chain.step().unwrap().verdict == Verdict::Accepted;
+        log += gain * (f64::from(u8::from(accepted)) - Scale::ONE);
+        state = chain.state().clone();
+    }
+    state.draw
+}
+
+/// Against the exact distribution function, by Dvoretzky, Kiefer and Wolfowitz with Massart's constant: P(D > ε) ≤ 2 exp(−2 n ε²).
+#[test]
+fn adapting_for_ever_is_biased_and_seen() {
+    const SAMPLES: u64 = 20_000;
+    let distance = |gain: f64| {
+        let mut ends: Vec<f64> = (0..SAMPLES).map(|sample| wandered(gain, 30, sample)).collect();
+        ends.sort_by(f64::total_cmp);
+        let n = SAMPLES as f64;
+        let off = |(k, x): (usize, &f64)| {
+            let exact = 1.0 - math::exp(-x);
+            (exact - k as f64 / n).abs().max((exact - (k + 1) as f64 / n).abs())
+        };
+        ends.iter().enumerate().map(off).fold(0.0, f64::max)
+    };
+    let allowed = (math::ln(2e6) / (2.0 * SAMPLES as f64)).sqrt();
+    let (still, adapting) = (distance(0.0), distance(0.5));
+    println!("without gain {still:.4}, with a gain that stays {adapting:.4}, allowed {allowed:.4}");
+    assert!(still <= allowed, "{still} above {allowed}");
+    assert!(adapting > allowed, "not caught: {adapting} within {allowed}");
+}
+
+/// Keeps the last snapshots; stops after some rounds.
+#[derive(Default)]
+struct Last {
+    snapshots: Vec<Snapshot<f64, f64>>,
+    draws: Vec<Vec<f64>>,
+    stop_after: Option<usize>,
+}
+
+impl Sink<f64, f64> for Last {
+    type Error = std::convert::Infallible;
+    fn block(&mut self, chain: u32, block: Block<f64, f64>, snapshot: &Snapshot<f64, f64>) -> Result<(), Self::Error> {
+        let chain = chain as usize;
+        if self.draws.len() <= chain {
+            self.draws.push(Vec::new());
+            self.snapshots.push(snapshot.clone());
+        }
+        self.snapshots[chain] = snapshot.clone();
+        for entry in block.entries {
+            self.draws[chain].extend(std::iter::repeat_n(entry.state.draw, entry.draws as usize));
+        }
+        Ok(())
+    }
+    fn round(&mut self, _: &Progress<'_>) -> Result<Control, Self::Error> {
+        self.stop_after = self.stop_after.map(|left| left - 1);
+        if self.stop_after == Some(0) {
+            self.stop_after = None;
+            return Ok(Control::Stop);
+        }
+        Ok(Control::Continue)
+    }
+}
+
+const PLAN: Plan = Plan {
+    seed: Seed(8),
+    chains: 3,
+    warmup: 400,
+    iterations: 300,
+    thin: 1,
+    block: 64,
+    solutions: None,
+    rungs: 1,
+    swap_every: 7,
+    adapt: true,
+};
+
+/// Whatever the threads, and wherever it was stopped; with replicas too. A longer run keeps the scales.
+#[test]
+fn adapted_runs_have_the_same_bits() {
+    let number = Number { narrow: 0.05, ..GAUSSIAN };
+    let moves = walking(3.0);
+    for plan in [PLAN, Plan { rungs: 4, ..PLAN }] {
+        let whole = |plan: Plan, threads: usize| {
+            let mut last = Last::default();
+            run(&number, &moves, plan, Vec::new(), threads, &mut last).unwrap();
+            last
+        };
+        let (one, three) = (whole(plan, 1), whole(plan, 3));
+        assert_eq!((&one.snapshots, &one.draws), (&three.snapshots, &three.draws));
+        let sizes: Vec<f64> = one.snapshots.iter().map(|snapshot| size(snapshot.scales.as_ref())).collect();
+        assert!(sizes[0] != sizes[1] && sizes.iter().all(|size| *size < 1.0), "{sizes:?}");
+        assert!(whole(Plan { adapt: false, ..plan }, 1).draws != one.draws);
+
+        let mut parts = Last { stop_after: Some(45), ..Last::default() };
+        run(&number, &moves, plan, Vec::new(), 1, &mut parts).unwrap();
+        let cut = parts.snapshots[0].scales.clone().unwrap();
+        let end = parts.snapshots[0].end_iteration;
+        assert!((64..400).contains(&end) && !cut.are_frozen(), "stopped while it adapts: {end}");
+        let starts = |from: &Last| -> Vec<Start<f64, f64>> {
+            from.snapshots.iter().map(|one| Start { snapshot: one.clone(), distinct: Distinct::default() }).collect()
+        };
+        run(&number, &moves, plan, starts(&parts), 2, &mut parts).unwrap();
+        assert_eq!((&one.snapshots, &one.draws), (&parts.snapshots, &parts.draws));
+
+        let longer = Plan { iterations: 900, ..plan };
+        run(&number, &moves, longer, starts(&parts), 2, &mut parts).unwrap();
+        assert_eq!(whole(longer, 1).draws, parts.draws);
+        let kept: Vec<f64> = parts.snapshots.iter().map(|snapshot| size(snapshot.scales.as_ref())).collect();
+        assert_eq!(kept, sizes);
+    }
+}
+
+/// Scales belong to the rung: the colder, the shorter, though replicas wander.
+#[test]
+fn every_rung_has_its_scale() {
+    let number = Number { narrow: 0.05, ..GAUSSIAN };
+    let (moves, fresh) = (walking(3.0), Mixture::of(Box::new(Redraw) as Box<dyn Move<Number>>));
+    let tempering = plaus_mcmc::Tempering { rungs: 4, swap_every: 3, warmup: 4000 };
+    let course = plaus_mcmc::Course { target: &number, moves: &moves, fresh: &fresh, tempering };
+    let mut replicas = Replicas::start(course, Seed(4), 0).unwrap().adapting(4000);
+    replicas.advance(6000, |_, _| ()).unwrap();
+    let snapshot = replicas.snapshot();
+    assert!(replicas.climb().restarts() > 10 && snapshot.fits(4, 1));
+    assert!(snapshot.scales[0].is_none(), "the first rung draws anew");
+    let sizes: Vec<f64> = snapshot.scales[1..].iter().map(|scales| size(scales.as_ref())).collect();
+    assert!(sizes.windows(2).all(|pair| pair[0] > pair[1]), "{sizes:?}");
+}

@@ -1,0 +1,88 @@
+//! What a run says of its mixing while it is sampled is what its diagnosis says afterwards, of as many draws.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::FailingDisk;
+use plaus_mcmc::{Control, Progress};
+use plaus_run::disk::Disk;
+use plaus_run::{Diagnosis, Folder, Mixing, More, Recipe, Run, RunOf, RunVisitor, Sampling, Watch, resume, sample};
+use plaus_scenes::{Role, Scene};
+
+/// Asks after each round, and may stop the run.
+#[derive(Default)]
+struct Curious {
+    found: Vec<(u64, Mixing)>,
+    last: Option<Mixing>,
+    stop_from: Option<u64>,
+}
+
+impl Watch for Curious {
+    fn round(&mut self, progress: &Progress<'_>) -> Control {
+        self.found.extend(self.last.take().map(|mixing| (progress.end_iteration, mixing)));
+        if self.stop_from.is_some_and(|from| progress.end_iteration >= from) {
+            Control::Stop
+        } else {
+            Control::Continue
+        }
+    }
+    fn looks_at_mixing(&self) -> bool {
+        true
+    }
+    fn mixing_due(&mut self) -> bool {
+        true
+    }
+    fn mixing(&mut self, mixing: Option<Mixing>) {
+        self.last = mixing;
+    }
+}
+
+/// The same from the records, of at most so many draws a chain.
+struct OfRecords(u64);
+
+impl RunVisitor for OfRecords {
+    type Output = Mixing;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Mixing {
+        let diagnosis = Diagnosis::of(&run, Some(self.0)).unwrap();
+        let rows = diagnosis.scalars.iter().filter(|row| row.scalar.role == Role::Outcome);
+        let rows: Vec<_> = rows.map(|row| (row.scalar.name.clone(), row.summary.unwrap())).collect();
+        let rhat = rows.iter().map(|(name, row)| (name.clone(), row.rhat.unwrap()));
+        let ess = rows.iter().map(|(name, row)| (name.clone(), row.ess_bulk.min(row.ess_tail)));
+        Mixing { rhat: rhat.max_by(|a, b| a.1.total_cmp(&b.1)), ess: ess.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap() }
+    }
+}
+
+fn recipe(iterations: u64, thin: u64) -> Recipe {
+    let mut recipe = common::recipe(None);
+    let sampler = &mut recipe.scenario.sampler;
+    (sampler.warmup, sampler.iterations, sampler.thin, sampler.checkpoint_every) = (100, iterations, thin, 500);
+    recipe
+}
+
+#[test]
+fn what_is_said_meanwhile_is_what_the_records_say() {
+    let place = tempfile::tempdir().unwrap();
+    // Makes nothing durable, which would take most of the time.
+    let disk = FailingDisk::new(u64::MAX, u64::MAX, false);
+    let disk: &dyn Disk = &disk;
+    // Few draws, all of which are kept; and many, of which every other is, as the diagnosis takes them too.
+    for (iterations, thin) in [(400, 1), (399, 3), (2048, 1)] {
+        let recipe = recipe(iterations, thin);
+        let [whole, parts] =
+            ["whole", "parts"].map(|name| Folder::new(place.path().join(format!("{name}{iterations}"))));
+        let mut watch = Curious::default();
+        sample(&whole, &recipe, Sampling { threads: 1, disk, watch: &mut watch }).unwrap();
+        let of_records = Run::open(&whole).unwrap().visit(OfRecords(1024)).unwrap();
+        let (end, last) = watch.found.last().unwrap();
+        assert_eq!((*end, last), (100 + iterations, &of_records));
+        assert!(watch.found.iter().all(|(end, _)| *end > 100), "nothing is said of the warm-up");
+
+        // A run that goes on knows what it recorded before.
+        let mut first = Curious { stop_from: Some(300), ..Curious::default() };
+        sample(&parts, &recipe, Sampling { threads: 2, disk, watch: &mut first }).unwrap();
+        let mut second = Curious::default();
+        resume(&parts, More::default(), Sampling { threads: 2, disk, watch: &mut second }).unwrap();
+        assert_eq!(second.found.last().unwrap().1, of_records);
+    }
+}

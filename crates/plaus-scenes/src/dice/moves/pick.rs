@@ -1,0 +1,138 @@
+//! Fresh throws picked among many.
+
+use super::aimed;
+use super::recast::{Led, MOST_AT_ONCE, Recast, led, led_on_table, members, over, turned};
+use crate::dice::{Dice, Draw, Rest};
+use plaus_dist::stream::below;
+use plaus_dist::{LogDensity, LogRatio, Stream, math, open_unit};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+
+/// Of dice thrown onto one table one, two or three that stand in a row are recast at once, each by tries that are made until one is picked: a try whose place of release is likely under the
+/// prior, and which, alone on its table, comes to rest near its target. Where dice hold each other off their places several have to go at once, and each only to where it is good: tries
+/// picked die by die find that in a time that adds up, where whole candidates at random would need the product.
+///
+/// A try is a recast's (see [`Recast`]), led more often; it is picked with a probability g that depends on the try and on its table, and is never 0. So a picked one has the density q g/Z of its
+/// throw, Z being the same for the way back, as is the chance that none of [`TRIES`] tries is picked; that leaves the ratio `q(old) g(old) / (q(new) g(new))`. This is rejection sampling (von
+/// Neumann 1951) inside of an independence move (Tierney, "Markov chains for exploring posterior distributions", Annals of Statistics 22, 1994).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pick {
+    /// Standard deviation of the place that tries aim at, along each axis, in m.
+    pub sd: f64,
+    /// How far from its target a die may come to rest alone and still be picked, by g's Gaussian factor, in m.
+    pub near: f64,
+}
+
+/// Most tries for a die.
+const TRIES: usize = 300;
+/// Share of tries left where the prior has them. It must not be 0: what another die pushed to its place was led anywhere, and there must be a way back to it.
+const LEFT: f64 = 0.1;
+/// The least g of the place of release, and of the place of rest: what a state that nobody would pick costs to leave.
+const LEAST: [f64; 2] = [0.01, 0.01];
+/// Places of release as likely as this, relative to the likeliest, are picked always, in nats.
+const SPARED: f64 = 2.0;
+
+impl Pick {
+    fn recast(self) -> Recast {
+        Recast { sd: self.sd }
+    }
+
+    /// The part of g that a place of release gives.
+    fn released(target: &Dice, draw: &Draw, die: usize) -> f64 {
+        let z = |axis: usize| {
+            let law = target.prior().number(die, axis);
+            (target.prior().value(draw, die, axis) - law.mean()) / law.sd()
+        };
+        math::exp((SPARED - 0.5 * (math::square(z(0)) + math::square(z(1)))).min(0.0)).max(LEAST[0])
+    }
+
+    /// The part of g that a place of rest gives.
+    fn rested(self, led: &Led, place: [f64; 2]) -> f64 {
+        let off = |axis: usize| (led.own[axis] - place[axis]) / self.near;
+        math::exp(-0.5 * (math::square(off(0)) + math::square(off(1)))).max(LEAST[1])
+    }
+
+    /// Tries until one is picked.
+    fn pick(
+        self,
+        target: &Dice,
+        candidate: &mut Draw,
+        (die, place): (usize, [f64; 2]),
+        stream: &mut Stream,
+    ) -> Result<Option<Led>, ModelError> {
+        for _ in 0..TRIES {
+            let Some(plain) = self.recast().lead(target, candidate, (die, place), LEFT, stream)? else { continue };
+            if open_unit(stream) >= Self::released(target, candidate, die) {
+                continue;
+            }
+            let Some(led) = led_on_table(target, candidate, die, plain)? else { continue };
+            if open_unit(stream) < self.rested(&led, place) {
+                candidate.throws[die].turn = turned(target, die, led.orientation, stream);
+                return Ok(Some(led));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Log of q g of some dice as they are, but for what is the same for all.
+    fn log_q(self, target: &Dice, draw: &Draw, dice: &[(usize, Led)]) -> Result<LogDensity, ModelError> {
+        dice.iter().try_fold(LogDensity::ONE, |sum, &(die, led)| {
+            let Some(place) = target.plan.places[die] else { return Ok(LogDensity::ZERO) };
+            let g = Self::released(target, draw, die) * self.rested(&led, place);
+            Ok(sum + self.recast().log_q(target, draw, (die, Some(led)), LEFT)? + LogDensity::new(math::ln(g))?)
+        })
+    }
+
+    /// The same of a state, by new try-outs; 0 where one does not come to rest.
+    fn log_q_of(self, target: &Dice, draw: &Draw, rest: &Rest, path: Path) -> Result<LogDensity, ModelError> {
+        let mut dice = Vec::new();
+        for die in members(path) {
+            let Some(led) = led(target, draw, Some(rest), die)? else { return Ok(LogDensity::ZERO) };
+            dice.push((die, led));
+        }
+        self.log_q(target, draw, &dice)
+    }
+}
+
+impl Move<Dice> for Pick {
+    fn name(&self) -> &'static str {
+        "pick"
+    }
+
+    fn propose(
+        &self,
+        target: &Dice,
+        current: &StateOf<Dice>,
+        candidate: &mut Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let count = aimed(target).count();
+        let size = 1 + below(stream, count.min(MOST_AT_ONCE));
+        let first = below(stream, count + 1 - size);
+        let path = Path(aimed(target).skip(first).take(size).fold(0, |dice, (die, _)| dice | 1 << die));
+        let from = self.log_q_of(target, &current.draw, &current.outcome, path)?;
+        if from.is_zero() {
+            return Ok(Proposal::Stay);
+        }
+        let mut picked = Vec::with_capacity(size);
+        for (die, place) in aimed(target).skip(first).take(size) {
+            let Some(led) = self.pick(target, candidate, (die, place), stream)? else { return Ok(Proposal::Stay) };
+            picked.push((die, led));
+        }
+        let to = self.log_q(target, candidate, &picked)?;
+        Ok(Proposal::Candidate { log_ratio: over(from, to)?, path, later: None })
+    }
+
+    fn log_ratio(
+        &self,
+        target: &Dice,
+        from: &StateOf<Dice>,
+        to: &StateOf<Dice>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        let there = self.log_q_of(target, &to.draw, &to.outcome, path)?;
+        if there.is_zero() {
+            return Ok(LogRatio::ZERO);
+        }
+        over(self.log_q_of(target, &from.draw, &from.outcome, path)?, there)
+    }
+}

@@ -1,0 +1,99 @@
+//! First contact with a half space of a few balls that turn about one axis: cuboids in the air if all their moments of inertia are equal, any body in a step.
+//!
+//! The height of each over the plane is a parabola, that of the centre of gravity, and a sine. What the sines are is found once; a look costs one sine and cosine for all of them, and
+//! each sine's own amplitude bounds its acceleration.
+
+use super::plane::BEYOND;
+use super::{MOST_ADVANCES, Search, earliest};
+use crate::rigid::part::is_over;
+use crate::rigid::tumble::Sines;
+use crate::scenery::Aabb;
+use glam::DVec3;
+use plaus_dist::math;
+
+/// Most balls that are looked at in this way: the corners of a cuboid.
+const MOST: usize = 8;
+
+/// Height of a ball over the plane, less that of the centre of gravity and the ball's radius: `fixed + cos · cos(ωt) + sin · sin(ωt)`.
+#[derive(Debug, Clone, Copy, Default)]
+struct Height {
+    fixed: f64,
+    cos: f64,
+    sin: f64,
+    /// Largest acceleration towards the plane, gravity's included.
+    m: f64,
+    /// Number of the ball.
+    ball: usize,
+}
+
+impl Search<'_> {
+    /// As [`half_space`](Self::half_space), from time `t` on; `None` where it is no case for this.
+    pub(super) fn corners(
+        &self,
+        part: u16,
+        (n, offset): (DVec3, f64),
+        edges: Option<(&Aabb, usize)>,
+        mut t: f64,
+    ) -> Option<Option<(f64, usize)>> {
+        let (spec, path) = (self.spec, &self.body.path);
+        let balls = &spec.feelers[..spec.hull];
+        if balls.len() > MOST || !spec.rings.is_empty() {
+            return None;
+        }
+        let mut tumble = self.body.tumble(spec);
+        let Sines { rate: turning, fixed, cos, sin } = tumble.sines(n)?;
+        let pull = -n.dot(path.a);
+        let mut heights = [Height::default(); MOST];
+        for (k, (height, ball)) in heights.iter_mut().zip(balls).enumerate() {
+            let (c, s) = (cos.dot(ball.centre), sin.dot(ball.centre));
+            let m = (pull + turning * turning * (c * c + s * s).sqrt()).max(0.0);
+            *height = Height { fixed: fixed.dot(ball.centre) - ball.radius, cos: c, sin: s, m, ball: k };
+        }
+        let heights = &mut heights[..balls.len()];
+        let (half, above) = (0.5 * spec.gap, n.dot(path.x) - offset - 0.5 * spec.gap);
+        let along = n.dot(path.v);
+        for _ in 0..MOST_ADVANCES {
+            let (s, c) = math::sin_cos(turning * t);
+            let middle = above + (along - 0.5 * pull * t) * t;
+            let fall = along - pull * t;
+            let mut step = self.until - t;
+            let (mut first, mut is_now) = (None, false);
+            for (place, h) in heights.iter().enumerate() {
+                let f = middle + h.fixed + h.cos * c + h.sin * s;
+                let rate = fall + (h.sin * c - h.cos * s) * turning;
+                if (f > 0.0 && f + (rate - 0.5 * h.m * step) * step > 0.0) || self.lasts(part, h.ball) {
+                    continue;
+                }
+                if f <= half
+                    && let Some((bounds, axis)) = edges
+                    && !is_over(bounds, axis, path.after(t) + tumble.at(t) * balls[h.ball].centre)
+                {
+                    return Some(Some((t, BEYOND)));
+                }
+                if f <= half && rate < 0.0 {
+                    // The deepest counts.
+                    if !is_now || first.is_none_or(|(_, deepest)| f < deepest) {
+                        first = Some((place, f));
+                    }
+                    (step, is_now) = (0.0, true);
+                } else {
+                    let time = earliest(f, rate, h.m);
+                    if time < step {
+                        (step, first) = (time, Some((place, f)));
+                    }
+                }
+            }
+            let Some((nearest, _)) = first else { return Some(None) };
+            if step == 0.0 {
+                return Some(Some((t, heights[nearest].ball)));
+            }
+            // It comes first at the next look: most others outlast its step.
+            heights.swap(0, nearest);
+            t += step;
+            if t >= self.until || t.is_nan() {
+                return Some(None);
+            }
+        }
+        Some(Some((t, if edges.is_some() { BEYOND } else { 0 })))
+    }
+}

@@ -1,0 +1,174 @@
+//! How near bodies of revolution are to each other and to balls: by the balls and rings of their skins.
+
+use super::Spec;
+use super::body::Pose;
+use super::pair::{PairTouch, balls, nearer};
+use crate::shape::{Feeler, Ring};
+use glam::DVec3;
+
+/// Stride over the balls of two rows in the first look; the best local minima are then followed ball by ball.
+const STRIDE: usize = 4;
+
+/// Most local minima followed.
+const FOLLOWED: usize = 4;
+
+/// The point of a ring's circle nearest to `d` (both about the ring's body), in body axes.
+fn nearest_on_ring(ring: &Ring, d: DVec3) -> DVec3 {
+    let flat = DVec3::new(d.x, d.y, 0.0);
+    let along = if flat == DVec3::ZERO { DVec3::X } else { flat.normalize() };
+    along * ring.circle + DVec3::new(0.0, 0.0, ring.height)
+}
+
+/// A body of revolution and a ball; `offset` from the ball's centre to the body's.
+pub(super) fn revolved_and_ball(s: &Spec, a: &Pose, offset: DVec3, radius: f64) -> PairTouch {
+    let d = a.r.transpose() * -offset;
+    let mut best: Option<(f64, DVec3, f64)> = None;
+    let mut consider = |centre: DVec3, r: f64| {
+        let gap = (d - centre).length() - r;
+        if best.is_none_or(|b| gap < b.0) {
+            best = Some((gap, centre, r));
+        }
+    };
+    for f in s.row() {
+        consider(f.centre, f.radius);
+    }
+    for ring in &s.rings {
+        consider(nearest_on_ring(ring, d), ring.radius);
+    }
+    let (_, centre, r) = best.unwrap_or((0.0, DVec3::ZERO, s.reach));
+    balls(offset, [a.r * centre, DVec3::ZERO], [r, radius])
+}
+
+/// Two rows of balls about two lines.
+struct Rows<'r> {
+    row: &'r [Feeler],
+    col: &'r [Feeler],
+    /// Squared distance of the centres of gravity, and products of the line between them and the axes, with each other.
+    apart: f64,
+    along: [f64; 2],
+    cos: f64,
+}
+
+impl Rows<'_> {
+    /// Squared distance of two balls' centres; for choosing among them.
+    #[inline]
+    fn distance_squared(&self, p: &Feeler, q: &Feeler) -> f64 {
+        let (y, z) = (p.centre.z, q.centre.z);
+        self.apart + (y + 2.0 * self.along[0]) * y + (z - 2.0 * (self.along[1] + y * self.cos)) * z
+    }
+
+    #[inline]
+    fn gap(&self, k: usize, l: usize) -> f64 {
+        let (p, q) = (&self.row[k], &self.col[l]);
+        self.distance_squared(p, q).max(0.0).sqrt() - p.radius - q.radius
+    }
+
+    /// The ball of the other row that is nearest to one of this, of those looked at first.
+    fn nearest_to(&self, k: usize) -> (f64, usize) {
+        let p = &self.row[k];
+        let mut best = (f64::INFINITY, 0);
+        for (l, q) in self.col.iter().enumerate().step_by(STRIDE) {
+            // Its centre is nearer than this where it is nearer than the best.
+            let reach = best.0 + p.radius + q.radius;
+            let square = self.distance_squared(p, q).max(0.0);
+            if reach > 0.0 && square < reach * reach {
+                best = (square.sqrt() - p.radius - q.radius, l);
+            }
+        }
+        best
+    }
+
+    /// From ball to ball as long as that brings them nearer.
+    fn follow(&self, (mut f, mut k, mut l): (f64, usize, usize)) -> (usize, usize) {
+        for _ in 0..self.row.len() + self.col.len() {
+            let (before, now) = ((k, l), f);
+            for (i, j) in [
+                (k.wrapping_sub(1), l),
+                (k + 1, l),
+                (k, l.wrapping_sub(1)),
+                (k, l + 1),
+                (k.wrapping_sub(1), l + 1),
+                (k + 1, l.wrapping_sub(1)),
+                (k + 1, l + 1),
+                (k.wrapping_sub(1), l.wrapping_sub(1)),
+            ] {
+                if i < self.row.len() && j < self.col.len() {
+                    let other = self.gap(i, j);
+                    if other < f {
+                        (k, l, f) = (i, j, other);
+                    }
+                }
+            }
+            if (k, l) == before || f >= now {
+                break;
+            }
+        }
+        (k, l)
+    }
+}
+
+/// Two bodies of revolution; `offset` from the second's centre of gravity to the first's.
+pub(super) fn two_revolved([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], offset: DVec3) -> PairTouch {
+    let (e, g) = (a.r.z_axis, b.r.z_axis);
+    let rows = Rows {
+        row: s.row(),
+        col: t.row(),
+        apart: offset.length_squared(),
+        along: [offset.dot(e), offset.dot(g)],
+        cos: e.dot(g),
+    };
+    let mut starts = [(f64::INFINITY, 0, 0); FOLLOWED];
+    for k in (0..rows.row.len()).step_by(STRIDE) {
+        let (f, l) = rows.nearest_to(k);
+        // The best of this row of the table, kept if among the best few.
+        let worst = starts.iter_mut().max_by(|x, y| x.0.total_cmp(&y.0));
+        if let Some(worst) = worst
+            && f < worst.0
+        {
+            *worst = (f, k, l);
+        }
+    }
+    starts.sort_by(|x, y| x.0.total_cmp(&y.0));
+    let mut best: Option<PairTouch> = None;
+    for &start in &starts {
+        // Balls between the looked-at ones stand out by a few millimetres at most: far starts cannot win.
+        if !start.0.is_finite() || start.0 > starts[0].0 + 0.2 * (s.size + t.size) {
+            continue;
+        }
+        let (k, l) = rows.follow(start);
+        let (p, q) = (&rows.row[k], &rows.col[l]);
+        nearer(&mut best, balls(offset, [e * p.centre.z, g * q.centre.z], [p.radius, q.radius]));
+    }
+    // Rings of each against the balls of the other.
+    let mut best = best.unwrap_or(balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]));
+    for (first, spec, pose, other, axis, to) in [(true, s, a, t, g, -offset), (false, t, b, s, e, offset)] {
+        // `to`: from this body to the other; both in this body's axes.
+        let turned = pose.r.transpose();
+        let (from, along) = (turned * to, turned * axis);
+        let [middle, around] = spec.foot;
+        for f in other.row().iter().step_by(2) {
+            let d = from + along * f.centre.z;
+            // The ball around all rings first, then that around each.
+            let far = best.gap + f.radius + around;
+            let flat = d.x * d.x + d.y * d.y;
+            if far <= 0.0 || flat + (d.z - middle) * (d.z - middle) > far * far {
+                continue;
+            }
+            for ring in &spec.rings {
+                let near = best.gap + f.radius + ring.radius + ring.circle;
+                let up = d.z - ring.height;
+                if near <= 0.0 || flat + up * up > near * near {
+                    continue;
+                }
+                let on = nearest_on_ring(ring, d);
+                if (d - on).length() - ring.radius - f.radius < best.gap {
+                    let centre = axis * f.centre.z;
+                    let arms = if first { [pose.r * on, centre] } else { [centre, pose.r * on] };
+                    let radii = if first { [ring.radius, f.radius] } else { [f.radius, ring.radius] };
+                    best = balls(offset, arms, radii);
+                }
+            }
+        }
+    }
+    best
+}

@@ -1,0 +1,167 @@
+//! Sliding friction at one contact: the direction of the slip that is left, and the load.
+//!
+//! With velocity `f` before any impulse and response `K`, a load `λ` with friction against the unit slip `s` leaves `u = f + (K n − μ K s) λ`, whose normal part is to be what is asked for.
+//! Coulomb's law holds where what is left slips along `s`: `s⊥ · u = 0` and `s · u > 0`. The angle of `s` is found by Newton's rule from the direction at the last look, in a frame
+//! along the first: two more rounds of it square the error twice, and a world in a mirror gives the mirrored bits.
+
+use glam::{DMat3, DVec2, DVec3};
+
+/// The slip of a contact that slides.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slip {
+    /// Unit vectors along the slip when it was seen first, and across.
+    frame: [DVec3; 2],
+    /// The response in that frame: along, mixed, across.
+    k: [f64; 3],
+    /// Response along the normal to forces in the frame, which is that in the frame to a normal force.
+    kn: DVec2,
+    /// Where the slip points to, in the frame.
+    towards: DVec2,
+}
+
+/// What a contact asks of its slip.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Asked {
+    pub(super) friction: f64,
+    /// Change of normal velocity that is missing, and the response to a normal force in it.
+    pub(super) missing: f64,
+    pub(super) along: f64,
+    /// At least the largest response across the normal.
+    pub(super) stiff: f64,
+    /// Angle in radians by which the slip's direction may be off.
+    pub(super) turn: f64,
+    /// Most rounds of looking for it.
+    pub(super) rounds: u32,
+}
+
+/// Sliding with a load.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slide {
+    pub(super) load: f64,
+    /// Unit vector of the slip.
+    pub(super) slip: DVec3,
+    /// Whether slip is left in this direction: if not, friction has reversed it.
+    pub(super) goes_on: bool,
+    /// Whether the direction was found within the angle allowed.
+    pub(super) is_right: bool,
+}
+
+/// Largest turn of one round, in radians.
+const FARTHEST: f64 = 0.5;
+
+/// Part of the response to a normal force that friction must leave, or it wedges the contact.
+const WEDGED: f64 = 1e-3;
+
+/// A unit vector turned towards another across it by the angle whose half has this half as its tangent.
+#[inline]
+fn turned_by(s: DVec2, t: DVec2, angle: f64) -> DVec2 {
+    let half = 0.5 * angle;
+    let square = half * half;
+    (s * (1.0 - square) + t * angle) * (1.0 / (1.0 + square))
+}
+
+impl Slip {
+    /// Slip in the direction of a vector across the normal; `None` where that vanishes.
+    pub(super) fn new(direction: DVec3, normal: DVec3, k: &DMat3, kn: DVec3) -> Option<Self> {
+        let along = direction.try_normalize()?;
+        let across = normal.cross(along);
+        let (p, q) = (*k * along, *k * across);
+        Some(Self {
+            frame: [along, across],
+            k: [along.dot(p), across.dot(p), across.dot(q)],
+            kn: DVec2::new(along.dot(kn), across.dot(kn)),
+            towards: DVec2::X,
+        })
+    }
+
+    /// The response to a force in the frame.
+    #[inline]
+    fn response(&self, force: DVec2) -> DVec2 {
+        let [xx, xy, yy] = self.k;
+        DVec2::new(xx * force.x + xy * force.y, xy * force.x + yy * force.y)
+    }
+
+    /// How it slides on from velocity `free`; `None` where friction wedges the contact.
+    #[inline]
+    pub(super) fn slide(&mut self, free: DVec3, asked: &Asked) -> Option<Slide> {
+        let Asked { friction, missing, along, stiff, turn, rounds } = *asked;
+        let free = DVec2::new(free.dot(self.frame[0]), free.dot(self.frame[1]));
+        let (mut goes_on, mut is_right) = (true, false);
+        for _ in 0..rounds {
+            let s = self.towards;
+            let gain = along - friction * self.kn.dot(s);
+            if gain <= WEDGED * along {
+                return None;
+            }
+            let inverse = 1.0 / gain;
+            let load = missing * inverse;
+            let t = s.perp();
+            let pushed = self.kn - self.response(s) * friction;
+            let left = free + pushed * load;
+            let (on, off) = (s.dot(left), t.dot(left));
+            goes_on = on > 0.0;
+            let turned = t.dot(pushed) * self.kn.dot(t) * inverse - t.dot(self.response(t));
+            let slope = friction * load * turned - on;
+            if goes_on && slope < 0.0 {
+                let angle = (-off / slope).clamp(-FARTHEST, FARTHEST);
+                self.towards = turned_by(s, t, angle);
+                is_right = angle.abs() <= turn;
+                if is_right {
+                    break;
+                }
+            } else {
+                // Not near it: a direction between what is left and what was.
+                self.towards = (left + s * (friction * load * stiff)).normalize_or(s);
+            }
+        }
+        let gain = along - friction * self.kn.dot(self.towards);
+        let slip = self.frame[0] * self.towards.x + self.frame[1] * self.towards.y;
+        (gain > WEDGED * along).then_some(Slide { load: missing / gain, slip, goes_on, is_right })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A contact of a body of unit mass, from a sequence that fills the box of its numbers evenly: response, its inverse, and a velocity that comes down.
+    fn contact(n: u32) -> (DMat3, DVec3) {
+        let part = |step: f64| (f64::from(n) * step) % 1.0;
+        let r =
+            DVec3::new(part(0.618_033_988_749) - 0.5, part(0.754_877_666_246) - 0.5, -0.3 - part(0.324_717_957_244));
+        let cross =
+            DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0));
+        let inertia = DMat3::from_diagonal(DVec3::new(1.0, 2.0 + 3.0 * part(0.472), 6.0));
+        let u = DVec3::new(2.0 * part(0.569_840_290_998) - 1.0, 2.0 * part(0.220_744_084_605) - 1.0, -0.5);
+        (DMat3::IDENTITY - cross * inertia * cross, u)
+    }
+
+    /// Where no force within the cone can hold a contact, what is left after one look slips against the friction, and its normal part is what was asked for.
+    #[test]
+    fn what_is_left_obeys_coulomb() {
+        let (n, friction) = (DVec3::Z, 0.3);
+        let (mut slid, mut right) = (0, 0);
+        for case in 1..2000 {
+            let (k, u) = contact(case);
+            let stick = k.inverse() * -u;
+            let held = stick.z > 0.0 && stick.truncate().length() <= friction * stick.z;
+            let kn = k * n;
+            let across = u + kn * (-u.z / kn.z);
+            let Some(mut slip) = Slip::new(across - n * across.z, n, &k, kn).filter(|_| !held) else { continue };
+            let asked =
+                Asked { friction, missing: -u.z, along: kn.z, stiff: k.x_axis.x + k.y_axis.y, turn: 1e-6, rounds: 20 };
+            let Some(slide) = slip.slide(u, &asked) else { continue };
+            let left = u + k * (n - slide.slip * friction) * slide.load;
+            slid += 1;
+            assert!(left.z.abs() < 1e-12 && slide.load > 0.0 && (slide.slip.length() - 1.0).abs() < 1e-12, "{case}");
+            if slide.is_right && slide.goes_on {
+                right += 1;
+                let tangent = left - n * left.z;
+                // The last round turned it by at most 1e-6 and left the square of that; where little slip is left, rounding has its share.
+                assert!(tangent.cross(slide.slip).length() <= 1e-9 * tangent.length() + 1e-14, "{case}: {left}");
+                assert!(tangent.dot(slide.slip) > 0.0, "{case}");
+            }
+        }
+        assert!(slid > 500 && right == slid, "{right} of {slid}");
+    }
+}

@@ -1,0 +1,67 @@
+//! What tests of turning bodies share: a stand-in for random bumps, a look whether bodies are in each other, relabelling.
+
+use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
+use plaus_sim::trace::Observer;
+use plaus_sim::{Scratch, State};
+
+/// A Gaussian's stand-in, within ±3.5.
+pub fn noise(i: i64, j: i64) -> f64 {
+    let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
+    h ^= h >> 31;
+    h = h.wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    h ^= h >> 29;
+    let u = |k: u32| f64::from((h >> (16 * k)) as u16) / 65535.0 - 0.5;
+    (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
+}
+
+/// Looks at every new motion, and half way before it, whether bodies are in each other.
+pub struct Overlaps<'w> {
+    world: &'w Rigid,
+    last: Vec<Turning>,
+    /// The deepest so far, in m.
+    pub worst: f64,
+}
+
+impl<'w> Overlaps<'w> {
+    pub fn new(world: &'w Rigid, state: &State<Turning>) -> Self {
+        Self { world, last: state.bodies().to_vec(), worst: 0.0 }
+    }
+
+    fn look(&mut self, index: usize, body: &Turning) {
+        for (other, there) in self.last.iter().enumerate() {
+            let present = [there, body].iter().all(|b| b.phase != Phase::Gone);
+            if other != index && present && there.path.t <= body.path.t {
+                let there = self.world.at(other, there, body.path.t);
+                self.worst = self.worst.max(-self.world.gap([index, other], [body, &there]));
+            }
+        }
+    }
+}
+
+impl Observer<Rigid> for Overlaps<'_> {
+    fn motion(&mut self, index: usize, body: &Turning) {
+        let before = &self.last[index];
+        let half = self.world.at(index, before, 0.5 * (before.path.t + body.path.t));
+        self.look(index, &half);
+        self.look(index, body);
+        self.last[index] = body.clone();
+    }
+}
+
+/// Runs two bodies, and the same two under exchanged labels, and asserts that they do the same to the last bit. `of` makes the world in which the bodies stand in an order. Returns how
+/// many impacts there were.
+pub fn same_when_relabelled(of: impl Fn([usize; 2]) -> Rigid, starts: [Start; 2], until: f64, what: &str) -> u64 {
+    let run = |order: [usize; 2]| {
+        let world = of(order);
+        let mut state = world.state(&order.map(|b| starts[b])).unwrap();
+        world.run(&mut state, &mut Scratch::default(), until, &mut ()).unwrap();
+        (world, state)
+    };
+    let ((a, plain), (b, shuffled)) = (run([0, 1]), run([1, 0]));
+    for label in 0..2 {
+        let p = a.at(label, &plain.bodies()[label], until);
+        let q = b.at(1 - label, &shuffled.bodies()[1 - label], until);
+        assert_eq!((p.path.x, p.path.v, p.turn, p.spin), (q.path.x, q.path.v, q.turn, q.spin), "{what}");
+    }
+    plain.counts().impacts
+}
