@@ -34,5 +34,5 @@ fn scales_are_shown_and_kept() {
     assert!(said("short").contains("as configured"));
     place.run("sample ball.toml --out plain -q --warmup 800");
     assert!(!said("plain").contains("scales") && scales("plain").iter().all(|one| one.as_array().unwrap().is_empty()));
-    place.ends("sample ball.toml --out bad --set adapt=often", 2).says(&["sampler.adapt", "true or false"]);
+    place.ends("sample ball.toml --out bad --set adapt=often", 2).says(&["--set adapt=often", "true or false"]);
 }
