@@ -12,7 +12,7 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 /// picked die by die find that in a time that adds up, where whole candidates at random would need the product.
 ///
 /// A try is a recast's (see [`Recast`]), led more often; it is picked with a probability g that depends on the try and on its table, and is never 0. So a picked one has the density q g/Z of its
-/// throw, Z being the same for the way back, as is the chance that none of [`TRIES`] tries is picked; that leaves the ratio `q(old) g(old) / (q(new) g(new))`. This is rejection sampling (von
+/// throw, Z being the same for the way back, as is the chance that none of `TRIES` tries is picked; that leaves the ratio `q(old) g(old) / (q(new) g(new))`. This is rejection sampling (von
 /// Neumann 1951) inside of an independence move (Tierney, "Markov chains for exploring posterior distributions", Annals of Statistics 22, 1994).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pick {
