@@ -21,15 +21,15 @@
 //!
 //! | world, outcome | draft | standard | fine | reference | rapier3d-f64, 1/240 |
 //! | --- | --- | --- | --- | --- | --- |
-//! | ten marbles over bins, 2 s: bins filled | 0.27 (0.037, 0.026) | 0.35 (0.036, 0.025) | 0.74 (0.037, 0.026) | 2.2 | 30 (0.34, 0.043) |
-//! | balls that spell HI, from the prior: k | 0.17 (0.016, 0.026) | 0.21 (0.014, 0.026) | 0.42 (0.013, 0.026) | 1.3 | 17 (0.050, 0.037) |
-//! | balls that spell ACM, likewise | 0.71 (0.052, 0.074) | 0.88 (0.051, 0.074) | 1.8 (0.047, 0.074) | 5.0 | 59 (0.14, 0.10) |
-//! | a die on a flat table: face and place | 0.075 (0.084, 0.076) | 0.11 (0.088, 0.076) | 0.26 (0.10, 0.076) | 0.76 | 0.57 (0.089, 0.076) |
-//! | a die on a bumpy table, likewise | 0.26 (0.082, 0.076) | 0.33 (0.079, 0.077) | 0.74 (0.087, 0.077) | 2.3 | 7.2 (0.14, 0.13) |
-//! | a ball at ten pins, 5 s: which pins stand | 4.5 (0.042, 0.026) | 5.2 (0.045, 0.025) | 12 (0.043, 0.027) | 48 | 95 (0.086, 0.020) |
+//! | ten marbles over bins, 2 s: bins filled | 0.21 (0.037, 0.026) | 0.27 (0.034, 0.025) | 0.56 (0.038, 0.025) | 1.7 | 32 (0.34, 0.047) |
+//! | balls that spell HI, from the prior: k | 0.16 (0.014, 0.027) | 0.19 (0.013, 0.027) | 0.35 (0.011, 0.027) | 1.0 | 18 (0.045, 0.037) |
+//! | balls that spell ACM, likewise | 0.74 (0.032, 0.067) | 0.86 (0.042, 0.067) | 1.5 (0.035, 0.067) | 4.0 | 60 (0.14, 0.097) |
+//! | a die on a flat table: face and place | 0.062 (0.079, 0.075) | 0.087 (0.084, 0.075) | 0.20 (0.093, 0.076) | 0.59 | 0.58 (0.085, 0.076) |
+//! | a die on a bumpy table, likewise | 0.21 (0.079, 0.076) | 0.26 (0.082, 0.077) | 0.52 (0.081, 0.077) | 1.6 | 7.3 (0.14, 0.13) |
+//! | a ball at ten pins, 5 s: which pins stand | 3.8 (0.022, 0.020) | 4.4 (0.024, 0.020) | 11 (0.021, 0.020) | 50 | 98 (0.076, 0.017) |
 //!
-//! ACM and pins had only 245 and 38 draws of the reference in that time: their distances say little. Marbles keep within a tenth of a radius of the reference for 0.65, 1.0 and 1.5 s in the
-//! median (`Draft`, `Standard`, `Fine`), and 11, 2 and 2 in a hundred draws fill another number of bins than they would there; a die keeps within a twentieth of its edge for 0.25, 0.3 and 0.4 s, and one throw in
+//! ACM and pins had only 307 and 67 draws of the reference in that time: their distances say little. Marbles keep within a tenth of a radius of the reference for 0.6, 0.95 and 1.5 s in the
+//! median (`Draft`, `Standard`, `Fine`), and 7, 5 and 2 in a hundred draws fill another number of bins than they would there; a die keeps within a twentieth of its edge for 0.3, 0.3 and 0.4 s, and one throw in
 //! two to four ends on another face or elsewhere.
 //!
 //! **f32 or f64.** There is only f64. Events are ordered by their times across bodies, and an f32 holds a time of 2 s to 2e-7 s, in which a marble at 1 m/s moves by 4e-5 of its radius:
