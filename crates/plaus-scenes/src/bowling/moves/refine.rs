@@ -16,9 +16,6 @@ pub struct Refine {
     pub about: Option<f64>,
 }
 
-/// Share of steps whose length still comes from the whole range.
-const WIDE_SHARE: f64 = 0.2;
-
 /// Path of a step about the adapted factor.
 const ADAPTED: Path = Path(1);
 
@@ -35,8 +32,8 @@ impl Move<Bowling> for Refine {
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         let (factor, path) = match self.about {
-            Some(about) if open_unit(stream) >= WIDE_SHARE => {
-                (about * math::exp(2.0 * open_unit(stream) - 1.0), ADAPTED)
+            Some(about) if open_unit(stream) >= walk::WIDE_SHARE => {
+                (about * math::exp(walk::NARROW * (2.0 * open_unit(stream) - 1.0)), ADAPTED)
             }
             _ => (math::exp(open_unit(stream) * math::ln(self.steps.finest)), Path(0)),
         };

@@ -1,11 +1,7 @@
 //! Sizes of steps.
 
+use crate::walk::{NARROW, WIDE_SHARE};
 use plaus_dist::{Stream, math, open_unit, standard_normal};
-
-/// How far the sizes of an adapted step reach to either side of its scale: a factor e.
-const NARROW: f64 = 1.0;
-/// Share of an adapted step's sizes that still come from the whole range: where a target has several hills, or one that narrows, another size serves elsewhere.
-const WIDE_SHARE: f64 = 0.2;
 
 /// Sizes of steps: uniform in their logarithm between two ends within (0, 1]. Steps of all sizes are tried all the time, so that none has to be tuned; or, once a
 /// chain has adapted the scale, most of them about that.
