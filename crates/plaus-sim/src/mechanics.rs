@@ -87,10 +87,22 @@ pub trait Mechanics {
         None
     }
 
-    /// Collides a body with a surface, both at the body's clock; records the contact where it lasts.
-    fn hit_surface(&self, index: usize, body: &mut Self::Body, surface: Surface) -> Option<Impact>;
-    /// Collides two bodies; `lasting` of the result says whether they are to be linked. `linked` says whether they are already.
-    fn hit_body(&self, pair: [usize; 2], bodies: [&mut Self::Body; 2], linked: bool) -> Option<Impact>;
+    /// Collides a body with a surface, both at the body's clock; records the contact where it lasts. Reports the impacts, one a point that is struck; whether there were any.
+    fn hit_surface(
+        &self,
+        index: usize,
+        body: &mut Self::Body,
+        surface: Surface,
+        report: &mut dyn FnMut(&Impact),
+    ) -> bool;
+    /// Collides two bodies, as above; where they did collide, says whether they are to be linked. `linked` says whether they are already.
+    fn hit_body(
+        &self,
+        pair: [usize; 2],
+        bodies: [&mut Self::Body; 2],
+        linked: bool,
+        report: &mut dyn FnMut(&Impact),
+    ) -> Option<bool>;
     /// The lasting surface contacts of a body.
     fn contacts<'b>(&self, body: &'b Self::Body) -> &'b [Surface];
     /// Decides what a group of bodies in lasting contact with each other (`links` among `members`, all clocks equal) does next: gives each a closed form. Drops

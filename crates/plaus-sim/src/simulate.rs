@@ -176,28 +176,32 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         while next < self.scratch.worklist.len() && next < MOST_AT_ONCE {
             let meeting = self.scratch.worklist[next];
             next += 1;
-            if let Some(impact) = self.collide(meeting) {
-                self.state.counts.impacts += 1;
-                self.observer.impact(&impact);
+            if self.collide(meeting) {
                 self.add_neighbours(meeting);
             }
         }
     }
 
-    fn collide(&mut self, meeting: Meeting) -> Option<Impact> {
+    fn collide(&mut self, meeting: Meeting) -> bool {
+        let Self { mechanics, state, observer, .. } = self;
+        let State { bodies, counts, links, .. } = &mut **state;
+        let mut report = |impact: &Impact| {
+            counts.impacts += 1;
+            observer.impact(impact);
+        };
         match meeting {
             Meeting::Surface(k, surface) => {
-                self.mechanics.hit_surface(k as usize, &mut self.state.bodies[k as usize], surface)
+                mechanics.hit_surface(k as usize, &mut bodies[k as usize], surface, &mut report)
             }
             Meeting::Bodies(i, j) => {
-                let linked = self.state.links.contains(i, j);
-                let (low, high) = self.state.bodies.split_at_mut(j as usize);
-                let impact =
-                    self.mechanics.hit_body([i as usize, j as usize], [&mut low[i as usize], &mut high[0]], linked)?;
-                if impact.lasting {
-                    self.state.links.insert(i, j);
+                let linked = links.contains(i, j);
+                let (low, high) = bodies.split_at_mut(j as usize);
+                let both = [&mut low[i as usize], &mut high[0]];
+                let met = mechanics.hit_body([i as usize, j as usize], both, linked, &mut report);
+                if met == Some(true) {
+                    links.insert(i, j);
                 }
-                Some(impact)
+                met.is_some()
             }
         }
     }

@@ -143,7 +143,13 @@ impl Mechanics for Marbles {
         detect::sphere_pair(&a.path, &b.path, reach, [from, until, horizon])
     }
 
-    fn hit_surface(&self, index: usize, body: &mut Marble, surface: Surface) -> Option<Impact> {
+    fn hit_surface(
+        &self,
+        index: usize,
+        body: &mut Marble,
+        surface: Surface,
+        report: &mut dyn FnMut(&Impact),
+    ) -> bool {
         let foot = self.scenery.foot(surface, body.path.x);
         let approach = -body.path.v.dot(foot.normal);
         let law = self.surface_law(index, surface);
@@ -151,7 +157,7 @@ impl Mechanics for Marbles {
         let known = body.contacts().contains(&surface);
         // A new contact whose approach is lost in rounding is taken as one that lasts: settling decides what becomes of it.
         if known && (settles || approach <= 0.0) {
-            return None;
+            return false;
         }
         let lasting = settles && body.add_contact(surface);
         let mut touch = self.touch(index, body);
@@ -161,7 +167,7 @@ impl Mechanics for Marbles {
         body.note_impact(self.rattle(index));
         let point = body.path.x - foot.normal * self.specs[index].radius;
         let other = Other::Surface(surface);
-        Some(Impact {
+        report(&Impact {
             time: body.path.t,
             body: index,
             other,
@@ -170,10 +176,17 @@ impl Mechanics for Marbles {
             impulse: impulse.on_first,
             approach,
             lasting,
-        })
+        });
+        true
     }
 
-    fn hit_body(&self, [i, j]: [usize; 2], [a, b]: [&mut Marble; 2], linked: bool) -> Option<Impact> {
+    fn hit_body(
+        &self,
+        [i, j]: [usize; 2],
+        [a, b]: [&mut Marble; 2],
+        linked: bool,
+        report: &mut dyn FnMut(&Impact),
+    ) -> Option<bool> {
         let offset = a.path.x - b.path.x;
         let distance = offset.length();
         let normal = if distance > 0.0 { offset / distance } else { DVec3::Z };
@@ -192,7 +205,8 @@ impl Mechanics for Marbles {
         b.note_impact(self.rattle(j));
         let point = b.path.x + normal * self.specs[j].radius;
         let other = Other::Body(j);
-        Some(Impact { time: a.path.t, body: i, other, point, normal, impulse: impulse.on_first, approach, lasting })
+        report(&Impact { time: a.path.t, body: i, other, point, normal, impulse: impulse.on_first, approach, lasting });
+        Some(lasting)
     }
 
     #[inline]

@@ -37,7 +37,7 @@ pub enum Phase {
     Waiting,
     /// Free flight: a parabola and free rotation.
     Flight,
-    /// A step of lasting contact: straight, at constant angular velocity.
+    /// A step of lasting contact: straight, with free rotation.
     Step,
     /// A ball slides or rolls on level ground: a parabola, and an angular velocity that changes evenly.
     Glide,
@@ -54,6 +54,13 @@ pub(crate) struct Motion {
     pub(crate) w: DVec3,
 }
 
+/// What contact changes: a velocity in m/s, and an angular momentum about the centre of gravity in kg m²/s.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Momentum {
+    pub(crate) v: DVec3,
+    pub(crate) l: DVec3,
+}
+
 /// Most points of a body that may touch fixed parts at once; those beyond are left out. A cuboid in a corner has 7.
 pub(crate) const MOST_TOUCHES: usize = 16;
 
@@ -64,7 +71,7 @@ pub struct Turning {
     pub path: Parabola,
     /// Orientation at the clock: turns body axes into world axes.
     pub turn: DQuat,
-    /// Angular velocity at the clock in rad/s, in world axes; constant over a step.
+    /// Angular velocity at the clock in rad/s, in world axes. Within a step that of its drift.
     pub spin: DVec3,
     /// Kind of motion.
     pub phase: Phase,
@@ -75,10 +82,8 @@ pub struct Turning {
     pub(crate) rolls_after: bool,
     /// The line that a ball's centre reaches at the end of its stretch: axis and place.
     pub(crate) line: Option<(u8, f64)>,
-    /// Velocities at the start and the end of a step.
-    pub(crate) ends: [Motion; 2],
-    /// Velocities of the drift of the step that was interrupted last.
-    drifted: Motion,
+    /// Velocity and angular momentum at the start and the end of a step.
+    pub(crate) ends: [Momentum; 2],
     /// Events since `hurried_from`, all within `accuracy.rattle`.
     hurried: u32,
     hurried_from: f64,
@@ -114,8 +119,7 @@ impl Turning {
             spin_rate: DVec3::ZERO,
             rolls_after: false,
             line: None,
-            ends: [Motion::default(); 2],
-            drifted: Motion::default(),
+            ends: [Momentum::default(); 2],
             hurried: 0,
             hurried_from: -NEVER,
             touching: [NOWHERE; MOST_TOUCHES],
@@ -153,45 +157,49 @@ impl Turning {
     }
 
     /// Velocities `dt` after the clock.
+    ///
+    /// Within a step the impulses of its contacts count evenly over time, so what frictionless contacts cannot change is kept at every time, Coulomb's law holds up to every time, and as kinetic
+    /// energy is convex no energy is made.
     pub(super) fn motion_after(&self, spec: &Spec, dt: f64) -> Motion {
         match self.phase {
-            Phase::Flight => {
-                Motion { v: self.path.velocity_after(dt), w: drift(&spec.inertia, self.turn, self.spin, dt).1 }
-            }
             Phase::Step => {
-                let part = (dt / (self.expiry - self.path.t)).clamp(0.0, 1.0);
+                let part = self.part_of_step(dt);
                 let [a, b] = self.ends;
-                Motion { v: a.v.lerp(b.v, part), w: a.w.lerp(b.w, part) }
+                let turn = if dt == 0.0 { self.turn } else { drift(&spec.inertia, self.turn, self.spin, dt).0 };
+                Motion { v: a.v.lerp(b.v, part), w: spec.inertia.spin(turn, a.l.lerp(b.l, part)) }
             }
-            Phase::Glide => Motion { v: self.path.velocity_after(dt), w: self.spin + self.spin_rate * dt },
+            Phase::Flight | Phase::Glide => {
+                Motion { v: self.path.velocity_after(dt), w: self.drift_spin(spec, dt) }
+            }
             Phase::Waiting | Phase::Rest | Phase::Gone => Motion { v: self.path.v, w: self.spin },
         }
     }
 
-    /// Velocities within a step: between those of its ends, and with no more energy than lies between those of its ends.
-    fn within_step(&self, spec: &Spec, gravity: DVec3, dt: f64) -> Motion {
-        let h = self.expiry - self.path.t;
-        let (part, m) = ((dt / h).clamp(0.0, 1.0), self.motion_after(spec, dt));
-        let turned = |dt: f64| drift_steadily(self.turn, self.spin, dt).0;
-        let kinetic = |turn: DQuat, m: &Motion| {
-            0.5 * (spec.mass * m.v.length_squared() + m.w.dot(spec.inertia.momentum(turn, m.w)))
-        };
-        let fallen = spec.mass * gravity.dot(self.path.v);
-        let (first, last) = (kinetic(self.turn, &self.ends[0]), kinetic(turned(h), &self.ends[1]) - fallen * h);
-        let allowed = (first + (last - first) * part + fallen * dt).max(0.0);
-        let now = kinetic(turned(dt), &m);
-        if now <= allowed {
-            return m;
+    /// How much of a step has passed `dt` after its start.
+    fn part_of_step(&self, dt: f64) -> f64 {
+        if dt > 0.0 { (dt / (self.expiry - self.path.t)).min(1.0) } else { 0.0 }
+    }
+
+    /// Angular velocity of the path that is taken, `dt` after the clock.
+    pub(super) fn drift_spin(&self, spec: &Spec, dt: f64) -> DVec3 {
+        match self.phase {
+            Phase::Flight | Phase::Step if spec.wobble != 0.0 => drift(&spec.inertia, self.turn, self.spin, dt).1,
+            Phase::Glide => self.spin + self.spin_rate * dt,
+            _ => self.spin,
         }
-        let slower = (allowed / now).sqrt();
-        Motion { v: m.v * slower, w: m.w * slower }
+    }
+
+    /// Whether it turns freely, in flight or within a step.
+    pub(super) fn turns_freely(&self) -> bool {
+        matches!(self.phase, Phase::Flight | Phase::Step)
     }
 
     /// The rotation of the current motion.
     pub(super) fn tumble(&self, spec: &Spec) -> Tumble {
-        match self.phase {
-            Phase::Flight => Tumble::free(&spec.inertia, self.turn, self.spin),
-            _ => Tumble::steady(self.turn, self.spin),
+        if self.turns_freely() {
+            Tumble::free(&spec.inertia, self.turn, self.spin)
+        } else {
+            Tumble::steady(self.turn, self.spin)
         }
     }
 
@@ -201,9 +209,6 @@ impl Turning {
         if time - self.hurried_from > spec.rattle {
             (self.hurried, self.hurried_from) = (0, time);
         }
-        if self.phase == Phase::Step {
-            self.drifted = Motion { v: self.path.v, w: self.spin };
-        }
         if dt != 0.0 {
             let x = self.path.after(dt);
             match self.phase {
@@ -212,17 +217,19 @@ impl Turning {
                     (self.turn, self.spin) = drift(&spec.inertia, self.turn, self.spin, dt);
                 }
                 Phase::Step => {
-                    let motion = if time >= self.expiry { self.ends[1] } else { self.within_step(spec, gravity, dt) };
-                    (self.turn, _) = drift_steadily(self.turn, self.spin, dt);
-                    self.ends[0] = motion;
-                    (self.path.v, self.spin) = (motion.v, motion.w);
+                    (self.turn, _) = drift(&spec.inertia, self.turn, self.spin, dt);
+                    let part = self.part_of_step(dt);
+                    let [a, b] = self.ends;
+                    let now = if time >= self.expiry { b } else { Momentum { v: a.v.lerp(b.v, part), l: a.l.lerp(b.l, part) } };
+                    self.ends[0] = now;
+                    (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
                     // What is left of the step is no longer straight in the same way; settling decides anew.
                     self.expiry = time;
                 }
                 Phase::Glide => {
                     let motion = self.motion_after(spec, dt);
                     // Only a picture of the ball needs its orientation: the mean angular velocity will do.
-                    (self.turn, _) = drift_steadily(self.turn, self.spin + self.spin_rate * (0.5 * dt), dt);
+                    self.turn = (super::tumble::rotation((self.spin + self.spin_rate * (0.5 * dt)) * dt) * self.turn).normalize();
                     (self.path.v, self.spin) = (motion.v, motion.w);
                 }
                 Phase::Waiting | Phase::Rest | Phase::Gone => {}
@@ -233,8 +240,8 @@ impl Turning {
                 super::glide::end(spec, gravity, self);
             }
         } else if self.phase == Phase::Step {
-            let motion = self.ends[0];
-            (self.path.v, self.spin) = (motion.v, motion.w);
+            let now = self.ends[0];
+            (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
         }
     }
 
@@ -243,27 +250,10 @@ impl Turning {
         self.hurried > MOST_HURRIED
     }
 
-    /// A contact was found on the drift of an interrupted step, but the step's velocities at this time, which lie between those of its ends, do not approach: the body takes the
-    /// drift's velocities then. What energy that adds is taken back after the impact, by [`slow_down`](Self::slow_down).
-    pub(super) fn take_drift(&mut self) {
-        if self.phase == Phase::Step {
-            self.set_motion(self.drifted);
-        }
-    }
-
-    pub(super) fn set_motion(&mut self, motion: Motion) {
+    /// Gives the body velocities at its clock.
+    pub(super) fn set_motion(&mut self, spec: &Spec, motion: Motion) {
         (self.path.v, self.spin) = (motion.v, motion.w);
-        self.ends[0] = motion;
-    }
-
-    /// Twice the kinetic energy at the clock.
-    pub(super) fn vigour(&self, spec: &Spec) -> f64 {
-        spec.mass * self.path.v.length_squared() + self.spin.dot(spec.inertia.momentum(self.turn, self.spin))
-    }
-
-    /// Scales the velocities.
-    pub(super) fn slow_down(&mut self, part: f64) {
-        self.set_motion(Motion { v: self.path.v * part, w: self.spin * part });
+        self.ends[0] = Momentum { v: motion.v, l: spec.inertia.momentum(self.turn, motion.w) };
     }
 
     /// Starts a phase that lasts until something happens.
@@ -276,10 +266,6 @@ impl Turning {
     pub(super) fn pose(&self) -> Pose {
         Pose { x: self.path.x, r: DMat3::from_quat(self.turn), v: self.path.v, w: self.spin }
     }
-}
-
-fn drift_steadily(turn: DQuat, w: DVec3, dt: f64) -> (DQuat, DVec3) {
-    ((super::tumble::rotation(w * dt) * turn).normalize(), w)
 }
 
 /// Place and velocities at one time.

@@ -1,12 +1,13 @@
-//! Which points touch, and one point's impact.
+//! Which points of a body touch what stands still, and its impact there.
 
 use super::body::{MOST_TOUCHES, Motion, Phase, Pose, Turning};
 use super::part::{Part, farthest_side};
-use super::step::TOUCHING;
+use super::solve::{Contact, Member};
+use super::step::{RigidScratch, TOUCHING};
+use super::strike::{Point, strike};
 use super::{Rigid, Spec};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
-use crate::resolve::{ContactMatrix, stronge_impulse};
 use crate::scenery::Surface;
 use glam::{DMat3, DVec3};
 
@@ -186,7 +187,13 @@ impl Rigid {
     /// Rebound speed up to which a contact lasts.
     #[inline]
     pub(super) fn settle_speed(&self, spec: &Spec, law: &Law) -> f64 {
-        self.accuracy.settle * (1.0 - law.restitution) * spec.speed
+        self.slowest_bounce(law) * spec.speed
+    }
+
+    /// Rebound over `√(g · size)` up to which a contact lasts. A bounce that is not higher than the gap at which bodies touch is none, however elastic.
+    #[inline]
+    pub(super) fn slowest_bounce(&self, law: &Law) -> f64 {
+        (self.accuracy.settle * (1.0 - law.restitution)).max((2.0 * self.accuracy.gap).sqrt())
     }
 
     /// Notes which points touch, once per time.
@@ -207,70 +214,47 @@ impl Rigid {
         body.listed = body.path.t;
     }
 
-    /// Impact of one point of a body on a part.
-    pub(super) fn hit_part(&self, index: usize, body: &mut Turning, part: u16, point: u16) -> Option<Impact> {
+    /// Impact of a body on what stands still, at this point and at all others that are struck at once. Whether there was one.
+    pub(super) fn hit_part(
+        &self,
+        index: usize,
+        body: &mut Turning,
+        (part, point): (u16, u16),
+        report: &mut dyn FnMut(&Impact),
+    ) -> bool {
         let spec = &self.specs[index];
-        // Only the event's own contact may be one that the drift alone brings about.
-        let first = body.listed != body.path.t;
         self.list_touches(index, body);
-        let mut pose = body.pose();
-        let touch = self.touch(index, &pose, part, point);
-        let mut u = pose.velocity(touch.arm);
-        let mut approach = -u.dot(touch.normal);
-        let vigour = body.vigour(spec);
-        let before = Motion { v: body.path.v, w: body.spin };
-        if approach <= 0.0 && first {
-            body.take_drift();
-            pose = body.pose();
-            u = pose.velocity(touch.arm);
-            approach = -u.dot(touch.normal);
-        }
-        let law = self.law_at(index, part, pose.x + touch.arm);
-        let settles = self.settle_speed(spec, &law);
-        let lasting = law.restitution * approach <= settles || body.is_hurried();
-        let far = touch.gap > TOUCHING * spec.gap;
-        if approach <= 0.0 || far || (lasting && approach <= LEFT * settles) {
-            // No impact: the drift's velocities, if taken, would bring energy.
-            body.set_motion(before);
-            return None;
-        }
-        let inverse = spec.inertia.inverse(&pose.r);
-        let k = response(1.0 / spec.mass, &inverse, touch.arm);
-        let e = if lasting { 0.0 } else { law.restitution };
-        let impulse = impulse(&k, u, touch.normal, e, law.friction, self.accuracy.slip_turn);
-        body.path.v += impulse / spec.mass;
-        body.spin += inverse * touch.arm.cross(impulse);
-        body.ends[0] = Motion { v: body.path.v, w: body.spin };
-        let after = body.vigour(spec);
-        if after > vigour {
-            body.slow_down((vigour / after).sqrt());
-        }
+        let pose = body.pose();
+        let mut members = [RigidScratch::member(spec, &pose.r, pose.v, pose.w)];
+        let hurried = body.is_hurried();
+        let first = self.point_on_part(&self.touch(index, &pose, part, point), index, &pose, hurried, &members[0]);
+        let Some(first) = first.filter(Point::is_struck) else { return false };
+        let mut points = vec![first];
+        self.for_known_touches(index, body, &pose, |t| {
+            if t.surface() != first.surface() {
+                points.extend(self.point_on_part(&t, index, &pose, hurried, &members[0]));
+            }
+        });
+        strike(&mut points, &mut members, self.accuracy.slip_turn);
+        body.set_motion(spec, Motion { v: members[0].v, w: members[0].w });
         if body.phase != Phase::Flight {
             body.phase = Phase::Step;
         }
-        let at = pose.x + touch.arm;
-        Some(Impact {
-            time: body.path.t,
-            body: index,
-            other: Other::Surface(touch.surface()),
-            point: at,
-            normal: touch.normal,
-            impulse,
-            approach,
-            lasting,
-        })
+        for p in &points {
+            p.report(body.path.t, index, pose.x, report);
+        }
+        true
     }
-}
 
-/// Approach, over the speed below which a bounce lasts, that is left to the solver of lasting contacts. Default 0.1; larger values lose the order of slow impacts.
-const LEFT: f64 = 0.1;
-
-/// Impulse of an impact in world axes. The tangents follow the slip, so that an impact in a plane stays in it.
-pub(crate) fn impulse(k: &DMat3, u: DVec3, normal: DVec3, restitution: f64, friction: f64, turn: f64) -> DVec3 {
-    let slip = u - normal * u.dot(normal);
-    let speed = slip.length();
-    let first = if speed > 0.0 { slip / speed } else { normal.any_orthonormal_vector() };
-    let frame = DMat3::from_cols(first, normal.cross(first), normal);
-    let local = ContactMatrix(frame.transpose() * *k * frame);
-    frame * stronge_impulse(&local, frame.transpose() * u, restitution, friction, turn)
+    fn point_on_part(&self, t: &Touch, index: usize, pose: &Pose, hurried: bool, member: &Member) -> Option<Point> {
+        let spec = &self.specs[index];
+        if t.gap > TOUCHING * spec.gap {
+            return None;
+        }
+        let law = self.law_at(index, t.part, pose.x + t.arm);
+        let k = response(member.inverse_mass, &member.inverse_inertia, t.arm);
+        let contact = Contact::new(0, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k);
+        let approach = -pose.velocity(t.arm).dot(t.normal);
+        Some(Point::new(contact, approach, &law, self.settle_speed(spec, &law), hurried, Other::Surface(t.surface())))
+    }
 }

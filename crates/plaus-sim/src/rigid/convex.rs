@@ -9,7 +9,7 @@
 //! Bodies in lasting contact are looked at in the same way, without the pairs of corners that span their contact: the steps deal with those.
 
 use super::Spec;
-use super::body::{Phase, Pose, Turning};
+use super::body::{Pose, Turning};
 use super::detect::earliest;
 use crate::shape::cuboid_pair::Meeting;
 use glam::DVec3;
@@ -134,7 +134,7 @@ fn bisect(mut low: f64, mut high: f64, mut is: impl FnMut(f64) -> bool) -> f64 {
 /// Largest angular speed of a body within its current motion.
 fn fastest(spec: &Spec, body: &Turning) -> f64 {
     let now = body.spin.length();
-    if spec.wobble == 0.0 || body.phase != Phase::Flight {
+    if spec.wobble == 0.0 || !body.turns_freely() {
         return now;
     }
     spec.inertia.momentum(body.turn, body.spin).length() / spec.inertia.moments.min_element()
@@ -169,9 +169,9 @@ impl Quest<'_> {
         let mut pose = |k: usize, time: f64| {
             let (spec, b) = ([s, t][k], bodies[k]);
             let dt = time - b.path.t;
-            let free = spec.wobble != 0.0 && b.phase == Phase::Flight;
+            let free = spec.wobble != 0.0 && b.turns_freely();
             let r = tumbles[k].at(dt);
-            let w = if free { tumbles[k].spin().unwrap_or_else(|| b.motion_after(spec, dt).w) } else { b.spin };
+            let w = if free { tumbles[k].spin().unwrap_or_else(|| b.drift_spin(spec, dt)) } else { b.spin };
             Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
         };
         let mut held = Held::<P>::none();

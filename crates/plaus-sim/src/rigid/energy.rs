@@ -25,24 +25,6 @@ impl RigidScratch {
         };
         self.places.iter().map(left).sum()
     }
-
-    /// A group's energy never grows, whatever the step's error.
-    pub(super) fn guard_energy(&mut self, world: &Rigid) {
-        let before = self.energy_to_keep(world);
-        let after: f64 = self
-            .places
-            .iter()
-            .zip(&self.members)
-            .map(|(p, m)| kinetic(&world.specs[p.body], p.end_turn, m.v, m.w))
-            .sum();
-        if after > before {
-            let part = (before.max(0.0) / after).sqrt();
-            for m in &mut self.members {
-                m.v *= part;
-                m.w *= part;
-            }
-        }
-    }
 }
 
 fn kinetic(spec: &Spec, turn: DQuat, v: DVec3, w: DVec3) -> f64 {

@@ -1,27 +1,20 @@
 //! The two halves of a step of lasting contact: a kick with the drift after it, and the second kick.
 
-use super::Rigid;
-use super::Spec;
-use super::contact::response;
+use super::body::Pose;
+use super::contact::{Touch, response};
 use super::energy::resist;
-use super::solve::{Contact, Enough, sweep};
+use super::pair::PairTouch;
+use super::solve::{Contact, Enough, solve};
 use super::step::{CLOSE, KEEP, PASSES, PASSES_OF_CUBOIDS, PUSH, RigidScratch, TOUCHING};
-use super::tumble::drift;
-use glam::{DQuat, DVec3};
+use super::Rigid;
+use crate::shape::Feeler;
+use glam::DVec3;
 
 /// A step that is under way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
-    h: f64,
     enough: Enough,
     half_kick: DVec3,
-}
-
-impl Step {
-    /// Angular velocity after half of the step without any contact.
-    fn half_spin(&self, spec: &Spec, turn: DQuat, w: DVec3) -> DVec3 {
-        if spec.wobble == 0.0 { w } else { drift(&spec.inertia, turn, w, 0.5 * self.h).1 }
-    }
 }
 
 impl RigidScratch {
@@ -30,26 +23,9 @@ impl RigidScratch {
     pub(super) fn drift(&mut self, world: &Rigid, h: f64) -> Step {
         let (push, fine) = (world.strength * h, self.fine(world) / h);
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
-        let step = Step { h, enough, half_kick: world.gravity * (0.5 * h) };
-        self.prepare(world, |spec, p| (p.start.v + step.half_kick, step.half_spin(spec, p.turn, p.start.w)));
-        // What a point may still fall, and how far turning alone lifts it towards its own circle.
-        for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
-            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
-            let rise = if spec.is_round || world.is_at_ledge(p.body, t.part, t.point) {
-                0.0
-            } else {
-                p.start.w.cross(p.start.w.cross(t.arm)).dot(t.normal)
-            };
-            c.target = ((KEEP * spec.gap - t.gap) / h).min(PUSH * world.accuracy.settle * spec.speed) - 0.5 * h * rise;
-        }
-        let first_pair = self.touches.len();
-        for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
-            let [p, q] = ab.map(|k| self.places[k].drifted(&self.members[k], h).0);
-            let both = ab.map(|k| self.places[k].body);
-            // How much farther apart than a straight way says turning brings them.
-            let bend = world.pair_again(both, [&p, &q], t).gap - t.gap - h * c.velocity(&self.members).dot(t.normal);
-            c.target = (world.pair_goal(both, t.gap, h) - t.gap - bend) / h;
-        }
+        let step = Step { enough, half_kick: world.gravity * (0.5 * h) };
+        self.prepare(world, |_, p| (p.start.v + step.half_kick, p.start.w));
+        self.aim(world, h);
         // The last step's forces are a good guess.
         for (c, &load) in self.contacts.iter_mut().zip(&self.loads) {
             if load != DVec3::ZERO {
@@ -59,40 +35,71 @@ impl RigidScratch {
         }
         let passes = if self.has_cuboids_in_touch() || self.is_at_ledges(world) { PASSES_OF_CUBOIDS } else { PASSES };
         for pass in 0..passes {
-            sweep(&mut self.contacts, &mut self.members, enough, world.accuracy.sweeps);
+            solve(&mut self.contacts, &mut self.members, &mut self.solver, enough, world.accuracy.sweeps);
             for (p, m) in self.places.iter_mut().zip(&self.members) {
-                (p.end, p.end_turn) = p.drifted(m, h);
+                p.spin = m.w;
+                (p.end, p.end_turn) = p.drifted(&world.specs[p.body], m.v, m.w, h);
             }
-            if pass + 1 < passes {
-                let mut off = false;
-                for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
-                    let p = &self.places[*k];
-                    let spec = &world.specs[p.body];
-                    let missing = (KEEP * spec.gap - world.touch(p.body, &p.end, t.part, t.point).gap) / h;
-                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * spec.gap;
-                    c.target += missing.min(PUSH * world.accuracy.settle * spec.speed);
-                }
-                for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
-                    let [p, q] = ab.map(|k| &self.places[k]);
-                    let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
-                    let both = [p.body, q.body];
-                    let missing = world.pair_goal(both, t.gap, h) - after.gap;
-                    off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() > CLOSE * world.pair_gap(both);
-                    c.target += missing / h;
-                }
-                if !off {
-                    break;
-                }
+            if pass + 1 < passes && !self.correct(world, h) {
+                break;
             }
         }
         step
+    }
+
+    /// Says what each contact is to bring about over a drift of `h` seconds, and guesses by how much its mean velocity will differ from that at the start.
+    fn aim(&mut self, world: &Rigid, h: f64) {
+        for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
+            let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
+            c.target = ((KEEP * spec.gap - t.gap) / h).min(PUSH * world.accuracy.settle * spec.speed);
+            // A point fixed in the body turns about its centre of gravity.
+            if let Some(feeler) = world.fixed_feeler(p.body, t) {
+                let centre = t.arm + t.normal * feeler.radius;
+                c.bias = p.start.w.cross(p.start.w.cross(centre)) * (0.5 * h);
+            }
+        }
+        let first_pair = self.touches.len();
+        for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
+            let at = ab.map(|k| (&self.places[k], &self.members[k]));
+            let begin = at.map(|(p, m)| Pose { v: m.v, w: m.w, ..p.start });
+            let end = at.map(|(p, m)| p.drifted(&world.specs[p.body], m.v, m.w, h).0);
+            let both = at.map(|(p, _)| p.body);
+            let after = world.pair_again(both, [&end[0], &end[1]], t);
+            c.target = (world.pair_goal(both, t.gap, h) - t.gap) / h;
+            c.bias = t.mean_velocity(&after, &begin, &end, h) - c.velocity(&self.members);
+        }
+    }
+
+    /// Learns from where the drift leads how the mean velocities at the contacts differ from those at its start. Whether that is not near enough to what they were to be.
+    fn correct(&mut self, world: &Rigid, h: f64) -> bool {
+        let mut off = false;
+        for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
+            let p = &self.places[*k];
+            let spec = &world.specs[p.body];
+            let after = world.touch(p.body, &p.end, t.part, t.point);
+            let mean = t.mean_velocity(&after, world.fixed_feeler(p.body, t), [&p.begin(), &p.end], h);
+            let missing = c.target - mean.dot(t.normal);
+            off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * spec.gap;
+            c.bias = mean - c.velocity(&self.members);
+        }
+        let first_pair = self.touches.len();
+        for (c, (ab, t)) in self.contacts[first_pair..].iter_mut().zip(&self.pairs) {
+            let at = ab.map(|k| &self.places[k]);
+            let both = at.map(|p| p.body);
+            let after = world.pair_again(both, [&at[0].end, &at[1].end], t);
+            let mean = t.mean_velocity(&after, &at.map(|p| p.begin()), &at.map(|p| p.end), h);
+            let missing = c.target - mean.dot(t.normal);
+            off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * world.pair_gap(both);
+            c.bias = mean - c.velocity(&self.members);
+        }
+        off
     }
 
     /// The second kick, over the points that still touch at the ends.
     pub(super) fn second_kick(&mut self, world: &Rigid, step: &Step) {
         for (m, p) in self.members.iter_mut().zip(&self.places) {
             let spec = &world.specs[p.body];
-            *m = Self::member(spec, &p.end.r, p.end.v + step.half_kick, step.half_spin(spec, p.end_turn, p.end.w));
+            *m = Self::member(spec, &p.end.r, p.end.v + step.half_kick, p.end.w);
         }
         resist(world, &self.places, &self.touches, &self.contacts, &mut self.members);
         for c in 0..self.contacts.len() {
@@ -114,6 +121,7 @@ impl RigidScratch {
                 (self.pair_contact(world, ab, &after), after.gap, world.pair_gap([p.body, q.body]))
             };
             if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
+                next.hold_slip(old.slip_direction());
                 next.impulse = old.impulse;
                 next.push(&mut self.members, next.impulse);
             } else {
@@ -122,7 +130,42 @@ impl RigidScratch {
             }
             self.contacts[c] = next;
         }
-        sweep(&mut self.contacts, &mut self.members, step.enough, world.accuracy.sweeps);
-        self.guard_energy(world);
+        solve(&mut self.contacts, &mut self.members, &mut self.solver, step.enough, world.accuracy.sweeps);
+    }
+}
+
+impl Rigid {
+    /// The ball at a point of contact, where it is fixed in its body: not a point of a ring, nor of an edge.
+    fn fixed_feeler(&self, body: usize, t: &Touch) -> Option<&Feeler> {
+        let (spec, point) = (&self.specs[body], usize::from(t.point));
+        let moves = spec.is_ball || spec.ring_of(point).is_some() || self.is_at_ledge(body, t.part, t.point);
+        if moves { None } else { spec.feelers.get(point) }
+    }
+}
+
+impl Touch {
+    /// Mean velocity at the point over a drift of `h` seconds to `after`: along the normal that of the gap, across it that with which it slips.
+    fn mean_velocity(&self, after: &Self, feeler: Option<&Feeler>, [begin, end]: [&Pose; 2], h: f64) -> DVec3 {
+        let n = self.normal;
+        let mean = match feeler {
+            // A ball fixed in the body: its middle's way is known, and it rolls.
+            Some(f) => {
+                let middle = |t: &Self| t.arm + t.normal * f.radius;
+                let way = end.x - begin.x + (middle(after) - middle(self));
+                way / h - (begin.w.cross(n) + end.w.cross(after.normal)) * (0.5 * f.radius)
+            }
+            _ => (begin.velocity(self.arm) + end.velocity(after.arm)) * 0.5,
+        };
+        mean + n * ((after.gap - self.gap) / h - mean.dot(n))
+    }
+}
+
+impl PairTouch {
+    /// The same between two bodies.
+    fn mean_velocity(&self, after: &Self, begin: &[Pose; 2], end: &[Pose; 2], h: f64) -> DVec3 {
+        let n = self.normal;
+        let slip = |t: &Self, [a, b]: &[Pose; 2]| a.velocity(t.arms[0]) - b.velocity(t.arms[1]);
+        let mean = (slip(self, begin) + slip(after, end)) * 0.5;
+        mean + n * ((after.gap - self.gap) / h - mean.dot(n))
     }
 }

@@ -90,15 +90,27 @@ impl Mechanics for Rigid {
         }
     }
 
-    fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface) -> Option<Impact> {
+    fn hit_surface(
+        &self,
+        index: usize,
+        body: &mut Turning,
+        surface: Surface,
+        report: &mut dyn FnMut(&Impact),
+    ) -> bool {
         match surface {
-            Surface::Part { part, point } => self.hit_part(index, body, part, point),
-            _ => None,
+            Surface::Part { part, point } => self.hit_part(index, body, (part, point), report),
+            _ => false,
         }
     }
 
-    fn hit_body(&self, pair: [usize; 2], bodies: [&mut Turning; 2], linked: bool) -> Option<Impact> {
-        self.hit_pair(pair, bodies, linked)
+    fn hit_body(
+        &self,
+        pair: [usize; 2],
+        bodies: [&mut Turning; 2],
+        linked: bool,
+        report: &mut dyn FnMut(&Impact),
+    ) -> Option<bool> {
+        self.hit_pair(pair, bodies, linked, report)
     }
 
     #[inline]

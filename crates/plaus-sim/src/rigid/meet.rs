@@ -34,23 +34,4 @@ impl Rigid {
         };
         again.unwrap_or_else(|| self.pair_touch(pair, poses))
     }
-
-    /// Whether what meets at their points of contact has names: two cuboids, or a polyhedron and another body.
-    pub(super) fn have_faces(&self, pair: [usize; 2]) -> bool {
-        self.are_cuboids(pair) || self.are_hulls(pair)
-    }
-
-    /// The point at which two bodies hit each other: the fastest of those that touch.
-    pub(super) fn hitting(&self, pair: [usize; 2], [a, b]: [&Pose; 2]) -> PairTouch {
-        let mut worst: Option<(f64, PairTouch)> = None;
-        if self.have_faces(pair) {
-            self.for_pair_touches(pair, [a, b], super::step::TOUCHING * self.pair_gap(pair), |t| {
-                let rate = t.rate(a, b);
-                if worst.is_none_or(|(w, _)| rate < w) {
-                    worst = Some((rate, t));
-                }
-            });
-        }
-        worst.map_or_else(|| self.pair_touch(pair, [a, b]), |(_, t)| t)
-    }
 }

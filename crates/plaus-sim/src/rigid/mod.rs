@@ -43,6 +43,7 @@ mod kicks;
 mod ledges;
 mod mechanics;
 mod meet;
+mod newton;
 mod pair;
 mod part;
 mod pile;
@@ -53,6 +54,7 @@ mod slip;
 mod solve;
 mod spec;
 mod step;
+mod strike;
 mod tumble;
 
 pub use body::{Phase, Start, Turning};
@@ -250,7 +252,7 @@ impl Rigid {
     #[must_use]
     pub fn energy(&self, index: usize, body: &Turning) -> f64 {
         let s = &self.specs[index];
-        let m = if body.phase == Phase::Step { body.ends[0] } else { body.motion_after(s, 0.0) };
+        let m = body.motion_after(s, 0.0);
         0.5 * (s.mass * m.v.length_squared() + m.w.dot(s.inertia.momentum(body.turn, m.w)))
             - s.mass * self.gravity.dot(body.path.x)
     }

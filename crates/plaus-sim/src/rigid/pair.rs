@@ -5,9 +5,10 @@
 
 use super::body::{Motion, Phase, Pose, Turning};
 use super::capsule::capsules;
-use super::contact::{impulse, response};
 use super::detect::earliest;
 use super::revolved::{revolved_and_ball, two_revolved};
+use super::step::{RigidScratch, pair_contact};
+use super::strike::{Point, strike};
 use super::{Rigid, Skin, Spec, step};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
@@ -97,8 +98,7 @@ impl Rigid {
 
     /// Rebound speed up to which a contact of two bodies lasts.
     pub(super) fn pair_settle_speed(&self, [i, j]: [usize; 2]) -> f64 {
-        let law = self.pair_law([i, j]);
-        self.accuracy.settle * (1.0 - law.restitution) * self.specs[i].speed.min(self.specs[j].speed)
+        self.slowest_bounce(self.pair_law([i, j])) * self.specs[i].speed.min(self.specs[j].speed)
     }
 
     /// The gap that a point of contact of two bodies is to have at the end of a step of `h` seconds: an overlap is undone at a limited speed.
@@ -151,11 +151,7 @@ impl Rigid {
             let (spec, b) = ([s, t][k], bodies[k]);
             let dt = time - b.path.t;
             let r = tumbles[k].at(dt);
-            let w = if (spec.wobble == 0.0 && b.phase != Phase::Glide) || b.phase == Phase::Step {
-                b.spin
-            } else {
-                tumbles[k].spin().unwrap_or_else(|| b.motion_after(spec, dt).w)
-            };
+            let w = tumbles[k].spin().unwrap_or_else(|| b.drift_spin(spec, dt));
             Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
         };
         let mut time = from;
@@ -219,90 +215,53 @@ impl Rigid {
         Some(time)
     }
 
-    /// Impact of two bodies at their nearest points.
-    pub(super) fn hit_pair(&self, pair: [usize; 2], [a, b]: [&mut Turning; 2], linked: bool) -> Option<Impact> {
+    /// Impact of two bodies, at all points that are struck at once; whether there was one, and whether their contact lasts from then on.
+    pub(super) fn hit_pair(
+        &self,
+        pair: [usize; 2],
+        [a, b]: [&mut Turning; 2],
+        linked: bool,
+        report: &mut dyn FnMut(&Impact),
+    ) -> Option<bool> {
         let [s, t] = pair.map(|k| &self.specs[k]);
-        let time = a.path.t;
-        let (mut p, mut q) = (a.pose(), b.pose());
-        let mut touch = self.hitting(pair, [&p, &q]);
-        let vigour = a.vigour(s) + b.vigour(t);
-        let before = [&*a, &*b].map(|body| Motion { v: body.path.v, w: body.spin });
-        let mut u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
-        if u.dot(touch.normal) >= 0.0 && !linked && (a.listed != time || b.listed != time) {
-            a.take_drift();
-            b.take_drift();
-            (p, q) = (a.pose(), b.pose());
-            touch = self.hitting(pair, [&p, &q]);
-            u = p.velocity(touch.arms[0]) - q.velocity(touch.arms[1]);
-        }
-        let approach = -u.dot(touch.normal);
+        let (time, hurried) = (a.path.t, a.is_hurried() || b.is_hurried());
+        let (p, q) = (a.pose(), b.pose());
         let law = self.pair_law(pair);
-        let settles = self.pair_settle_speed(pair);
-        let lasting = law.restitution * approach <= settles || a.is_hurried() || b.is_hurried();
-        if !linked
-            && approach <= 0.0
-            && touch.gap <= step::TOUCHING * self.pair_gap(pair)
-            && (a.is_hurried() || b.is_hurried())
-        {
+        let (settles, within) = (self.pair_settle_speed(pair), step::TOUCHING * self.pair_gap(pair));
+        let mut members = [RigidScratch::member(s, &p.r, p.v, p.w), RigidScratch::member(t, &q.r, q.v, q.w)];
+        let mut points = Vec::new();
+        self.for_pair_touches(pair, [&p, &q], within, |touch| {
+            let contact = pair_contact(&members, [0, 1], &touch, law.friction);
+            let point = Point::new(contact, -touch.rate(&p, &q), law, settles, hurried, Other::Body(pair[1]));
+            // A first contact is struck however slowly; what is slow later is for the steps of lasting contact.
+            points.push(Point { least: if linked && point.lasting { f64::INFINITY } else { 0.0 }, ..point });
+        });
+        if !points.iter().any(Point::is_struck) {
             // Found again and again without an approach, as where two pairs of points are equally near: their group is to deal with it.
-            a.set_motion(before[0]);
-            b.set_motion(before[1]);
-            for (index, body) in [(pair[0], &mut *a), (pair[1], &mut *b)] {
-                if body.phase != Phase::Flight {
-                    body.phase = Phase::Step;
-                }
-                self.list_touches(index, body);
+            let stuck = !linked && hurried && !points.is_empty();
+            if stuck {
+                self.touch_again(pair, [a, b]);
             }
-            let point = p.x + touch.arms[0];
-            return Some(Impact {
-                time,
-                body: pair[0],
-                other: Other::Body(pair[1]),
-                point,
-                normal: touch.normal,
-                impulse: DVec3::ZERO,
-                approach,
-                lasting: true,
-            });
+            return stuck.then_some(true);
         }
-        if approach <= 0.0 || touch.gap > step::TOUCHING * self.pair_gap(pair) || (linked && lasting) {
-            // No impact: the drift's velocities, if taken, would bring energy.
-            a.set_motion(before[0]);
-            b.set_motion(before[1]);
-            return None;
+        strike(&mut points, &mut members, self.accuracy.slip_turn);
+        a.set_motion(s, Motion { v: members[0].v, w: members[0].w });
+        b.set_motion(t, Motion { v: members[1].v, w: members[1].w });
+        self.touch_again(pair, [a, b]);
+        for point in &points {
+            point.report(time, pair[0], p.x, report);
         }
-        let (ia, ib) = (s.inertia.inverse(&p.r), t.inertia.inverse(&q.r));
-        let k = response(1.0 / s.mass, &ia, touch.arms[0]) + response(1.0 / t.mass, &ib, touch.arms[1]);
-        let e = if lasting { 0.0 } else { law.restitution };
-        let impulse = impulse(&k, u, touch.normal, e, law.friction, self.accuracy.slip_turn);
-        for (index, body, spec, inverse, arm, push) in
-            [(pair[0], &mut *a, s, ia, touch.arms[0], impulse), (pair[1], &mut *b, t, ib, touch.arms[1], -impulse)]
-        {
-            body.path.v += push / spec.mass;
-            body.spin += inverse * arm.cross(push);
-            body.ends[0] = Motion { v: body.path.v, w: body.spin };
+        Some(points.iter().all(|point| point.lasting))
+    }
+
+    /// Has both bodies look anew at what they touch.
+    fn touch_again(&self, pair: [usize; 2], bodies: [&mut Turning; 2]) {
+        for (index, body) in pair.into_iter().zip(bodies) {
             if body.phase != Phase::Flight {
                 body.phase = Phase::Step;
             }
             self.list_touches(index, body);
         }
-        let after = a.vigour(s) + b.vigour(t);
-        if after > vigour {
-            let part = (vigour / after).sqrt();
-            a.slow_down(part);
-            b.slow_down(part);
-        }
-        let point = p.x + touch.arms[0];
-        Some(Impact {
-            time,
-            body: pair[0],
-            other: Other::Body(pair[1]),
-            point,
-            normal: touch.normal,
-            impulse,
-            approach,
-            lasting,
-        })
     }
 }
 

@@ -21,7 +21,7 @@ impl RigidScratch {
         let mut worst = 0.0_f64;
         for (ab, t) in self.pairs.iter().filter(|p| p.1.feature.is_some()) {
             let [p, q] = ab.map(|k| &self.places[k]);
-            let [a, b] = [p, q].map(|p| p.drifted_at(p.start.v, p.start.w, h).0);
+            let [a, b] = [p, q].map(|p| p.drifted(&world.specs[p.body], p.start.v, p.start.w, h).0);
             let both = [p.body, q.body];
             let bend = world.pair_again(both, [&a, &b], t).gap - t.gap - h * t.rate(&p.start, &q.start);
             worst = worst.max(bend.abs() / world.specs[p.body].size.min(world.specs[q.body].size));
@@ -29,7 +29,7 @@ impl RigidScratch {
         for (k, t) in &self.touches {
             let p = &self.places[*k];
             if world.is_at_ledge(p.body, t.part, t.point) {
-                let there = p.drifted_at(p.start.v, p.start.w, h).0;
+                let there = p.drifted(&world.specs[p.body], p.start.v, p.start.w, h).0;
                 let rate = p.start.velocity(t.arm).dot(t.normal);
                 let bend = world.touch(p.body, &there, t.part, t.point).gap - t.gap - h * rate;
                 worst = worst.max(bend.abs() / world.specs[p.body].size);

@@ -2,7 +2,7 @@
 
 use super::Rigid;
 use super::contact::Touch;
-use super::solve::{Enough, sweep};
+use super::solve::{Enough, solve};
 use super::step::RigidScratch;
 use glam::{DMat3, DVec3};
 
@@ -53,7 +53,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     // What is carried by a corner of a pile near tipping is found slowly.
     let patience = if group.has_cuboids_in_touch() { PATIENCE } else { 1 };
     let enough = Enough::new(0.03 * limit / f64::from(patience), world.strength * h);
-    sweep(&mut group.contacts, &mut group.members, enough, world.accuracy.sweeps * patience);
+    solve(&mut group.contacts, &mut group.members, &mut group.solver, enough, world.accuracy.sweeps * patience);
     group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= limit)
 }
 

@@ -50,7 +50,7 @@ pub(super) struct Slide {
 const FARTHEST: f64 = 0.5;
 
 /// Part of the response to a normal force that friction must leave, or it wedges the contact.
-const WEDGED: f64 = 1e-3;
+pub(super) const WEDGED: f64 = 1e-3;
 
 /// A unit vector turned towards another across it by the angle whose half has this half as its tangent.
 #[inline]
@@ -72,6 +72,11 @@ impl Slip {
             kn: DVec2::new(along.dot(kn), across.dot(kn)),
             towards: DVec2::X,
         })
+    }
+
+    /// The unit vector of the slip.
+    pub(super) fn direction(&self) -> DVec3 {
+        self.frame[0] * self.towards.x + self.frame[1] * self.towards.y
     }
 
     /// The response to a force in the frame.
@@ -115,8 +120,7 @@ impl Slip {
             }
         }
         let gain = along - friction * self.kn.dot(self.towards);
-        let slip = self.frame[0] * self.towards.x + self.frame[1] * self.towards.y;
-        (gain > WEDGED * along).then_some(Slide { load: missing / gain, slip, goes_on, is_right })
+        (gain > WEDGED * along).then_some(Slide { load: missing / gain, slip: self.direction(), goes_on, is_right })
     }
 }
 

@@ -1,10 +1,11 @@
-//! Impulses of lasting contacts, found together: block Gauss–Seidel whose blocks obey Coulomb's law exactly.
+//! Impulses of lasting contacts, found together: Newton's rule, or block Gauss–Seidel whose blocks obey Coulomb's law exactly.
 
-use super::slip::{Asked, Slip};
+use super::newton::{Ending, Newton};
+use super::slip::{Asked, Slip, WEDGED};
 use glam::{DMat3, DVec3};
 
 /// A body while its contacts are solved.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Member {
     pub(crate) inverse_mass: f64,
     pub(crate) inverse_inertia: DMat3,
@@ -27,6 +28,10 @@ pub(crate) struct Contact {
     pub(crate) friction: f64,
     /// Least normal velocity after solving.
     pub(crate) target: f64,
+    /// What is added to the velocity at the point to get the one that is meant: its mean over a drift, say.
+    pub(crate) bias: DVec3,
+    /// The direction of the slip that friction is to oppose as long as it slides that way; else that of what slip is left.
+    pub(crate) held_slip: Option<DVec3>,
     /// Velocity change per impulse.
     k: DMat3,
     k_inverse: DMat3,
@@ -42,6 +47,9 @@ pub(crate) struct Contact {
     /// Whether it obeyed Coulomb's law after that, the direction of its slip included.
     is_right: bool,
 }
+
+/// How near to the edge of its cone an impulse counts as sliding: rounding of the projection.
+const AT_EDGE: f64 = 1e-12;
 
 /// Rounds over the direction of slip per visit; the sweeps around it do the rest.
 const ROUNDS: u32 = 1;
@@ -69,6 +77,8 @@ impl Contact {
             normal,
             friction,
             target: 0.0,
+            bias: DVec3::ZERO,
+            held_slip: None,
             k,
             k_inverse,
             kn,
@@ -79,6 +89,16 @@ impl Contact {
             slides: false,
             is_right: false,
         }
+    }
+
+    /// Mean velocity change per impulse.
+    pub(crate) fn compliance(&self) -> f64 {
+        (self.along + self.stiff) * (1.0 / 3.0)
+    }
+
+    /// Velocity change per impulse.
+    pub(crate) fn response(&self) -> DMat3 {
+        self.k
     }
 
     /// Relative velocity at the contact.
@@ -107,14 +127,14 @@ impl Contact {
     /// Gives this contact the impulse that it needs with all others as they are; returns the change of velocity that this meant.
     #[inline]
     pub(crate) fn solve(&mut self, members: &mut [Member], look: Look) -> f64 {
-        let u = self.velocity(members);
+        let u = self.velocity(members) + self.bias;
         let n = self.normal;
         let wanted = n * self.target - u;
         if self.impulse == DVec3::ZERO && wanted.dot(n) <= 0.0 {
             self.is_right = true;
             return 0.0;
         }
-        let next = self.still_sliding(u, look).unwrap_or_else(|| {
+        let next = self.sliding_as_held(u).or_else(|| self.still_sliding(u, look)).unwrap_or_else(|| {
             // No slip is left, and the impulse lies in the cone; or else it slides.
             let next = self.impulse + self.k_inverse * wanted;
             let load = next.dot(n);
@@ -127,6 +147,48 @@ impl Contact {
         self.push(members, change);
         self.impulse = next;
         change.length() * self.along
+    }
+
+    /// The unit vector of its slip, where it slides under load.
+    pub(crate) fn slip_direction(&self) -> Option<DVec3> {
+        let load = self.impulse.dot(self.normal);
+        let across = self.impulse - self.normal * load;
+        if self.slides && load > 0.0 { (-across).try_normalize() } else { None }
+    }
+
+    /// Notes whether its impulse is at the edge of its cone, where it slides.
+    fn note_slide(&mut self) {
+        let load = self.impulse.dot(self.normal);
+        let across = self.impulse - self.normal * load;
+        self.slides = load > 0.0 && across.length() >= self.friction * load * (1.0 - AT_EDGE);
+        self.is_right = true;
+    }
+
+    /// Has friction oppose the slip in this direction as long as there is any.
+    pub(crate) fn hold_slip(&mut self, direction: Option<DVec3>) {
+        let n = self.normal;
+        self.held_slip = direction.and_then(|d| (d - n * d.dot(n)).try_normalize());
+    }
+
+    /// The impulse against the slip that is held, if it goes on.
+    fn sliding_as_held(&mut self, u: DVec3) -> Option<DVec3> {
+        let s = self.held_slip?;
+        let free = u - self.k * self.impulse;
+        let missing = self.target - free.dot(self.normal);
+        (self.slides, self.is_right) = (true, true);
+        if missing <= 0.0 {
+            return Some(DVec3::ZERO);
+        }
+        let gain = self.along - self.friction * self.kn.dot(s);
+        if gain > WEDGED * self.along {
+            let next = (self.normal - s * self.friction) * (missing / gain);
+            if (free + self.k * next).dot(s) > 0.0 {
+                return Some(next);
+            }
+        }
+        // It comes to a stop or turns round.
+        self.held_slip = None;
+        None
     }
 
     /// The impulse of a contact that slid when it was looked at last and goes on sliding: Coulomb's law then holds with it.
@@ -196,21 +258,73 @@ impl Enough {
     }
 }
 
-/// Sweeps up and down over all contacts until a round changes no body's velocity by more than `enough` says, at most `most` times.
-///
-/// Velocities decide, not impulses: where contacts are redundant, impulses that cancel each other may go on growing for ever.
-pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: Enough, most: u32) {
-    let Enough { speed: enough, turn } = enough;
-    let look = Look { turn, rounds: if contacts.len() == 1 { ROUNDS_ALONE } else { ROUNDS } };
+/// Work space of [`solve`].
+#[derive(Debug, Default)]
+pub(crate) struct Solver {
+    newton: Newton,
+    impulses: Vec<DVec3>,
+    members: Vec<Member>,
+}
+
+/// Rounds of Newton's rule before sweeps are to bring it nearer, and after. Default 8 and 20: from the last step's impulses it takes 2 to 4.
+const ROUNDS_FIRST: usize = 8;
+const ROUNDS_AGAIN: usize = 20;
+
+/// Sweeps between. Default 10.
+const SWEEPS_BETWEEN: u32 = 10;
+
+/// Solves all contacts until a round changes no body's velocity by more than `enough` says: by Newton's rule, and where that does not converge (friction that wedges bodies) by sweeps, at
+/// most `most` of them. Whether it got there.
+pub(crate) fn solve(
+    contacts: &mut [Contact],
+    members: &mut [Member],
+    solver: &mut Solver,
+    enough: Enough,
+    most: u32,
+) -> bool {
     if let [only] = contacts {
+        let look = Look { turn: enough.turn, rounds: ROUNDS_ALONE };
         for _ in 0..4 {
             // With its slip's direction right, nothing is left to change.
-            if only.solve(members, look) <= enough || only.is_right {
-                break;
+            if only.solve(members, look) <= enough.speed || only.is_right {
+                return true;
             }
         }
-        return;
+        return false;
     }
+    if contacts.is_empty() {
+        return true;
+    }
+    let Solver { newton, impulses, members: backup } = solver;
+    for rounds in [ROUNDS_FIRST, ROUNDS_AGAIN] {
+        impulses.clear();
+        impulses.extend(contacts.iter().map(|c| c.impulse));
+        backup.clear();
+        backup.extend_from_slice(members);
+        if newton.solve(contacts, members, enough.speed, rounds) == Ending::Solved {
+            for c in contacts.iter_mut() {
+                c.note_slide();
+            }
+            return true;
+        }
+        for (c, impulse) in contacts.iter_mut().zip(&*impulses) {
+            c.impulse = *impulse;
+        }
+        members.copy_from_slice(backup);
+        let sweeps = if rounds == ROUNDS_FIRST { SWEEPS_BETWEEN.min(most) } else { most };
+        if sweep(contacts, members, enough, sweeps) {
+            return true;
+        }
+    }
+    false
+}
+
+/// Sweeps up and down over all contacts until a round changes no body's velocity by more than `enough` says, at most `most` times; whether it got there.
+///
+/// Velocities decide, not impulses: where contacts are redundant, impulses that cancel each other may go on growing for ever.
+fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: Enough, most: u32) -> bool {
+    let Enough { speed: enough, turn } = enough;
+    let look = Look { turn, rounds: ROUNDS };
     for round in 0..most {
         for m in members.iter_mut() {
             m.last = [m.v, m.w];
@@ -227,7 +341,8 @@ pub(crate) fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: En
                 && (m.w - m.last[1]).length_squared() * m.reach * m.reach <= enough * enough
         };
         if members.iter().all(quiet) {
-            break;
+            return true;
         }
     }
+    false
 }

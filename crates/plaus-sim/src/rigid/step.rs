@@ -1,17 +1,18 @@
 //! Lasting contact: what bodies that touch something do next, in steps on their group's own adaptive clock.
 //!
-//! A step is a half kick of gravity and contact impulses, a straight drift at constant angular velocity, and another half kick (RATTLE's order). The first impulses
-//! are such that every loaded point ends the drift at the gap that it is to keep, found in [`PASSES`] passes over the true geometry; the second such that no point
-//! approaches. Impacts of other points during the drift are found exactly on the path that is really taken. Energy is never let grow.
+//! A step is a half kick of gravity and contact impulses, a drift (straight, with free rotation, which keeps momentum), and another half kick: RATTLE's order (Andersen, J. Comput. Phys.
+//! 52 (1983)), of second order. The first impulses are such that every loaded point ends the drift at the gap that it is to keep and, where friction holds it, has not slipped, found in
+//! [`PASSES`] passes over the true geometry; the second such that no point approaches or, where friction holds it, slips. Where a point slides, both halves act against the slip over
+//! the drift. Impacts of other points during the drift are found exactly on the path that is really taken; the impulses of a step that one interrupts count up to then.
 
-use super::body::{Motion, NEVER, Phase, Pose, Turning};
+use super::body::{Momentum, Motion, NEVER, Phase, Pose, Turning};
 use super::contact::{Touch, response};
 use super::glide;
 use super::pair::PairTouch;
 use super::part::Part;
 use super::rest;
-use super::solve::{Contact, Member};
-use super::tumble::rotation;
+use super::solve::{Contact, Member, Solver};
+use super::tumble::{drift, rotation};
 use super::{Rigid, Spec};
 use crate::links::Links;
 use glam::{DMat3, DQuat, DVec3};
@@ -33,27 +34,33 @@ pub struct RigidScratch {
     pub(super) parting: Vec<([usize; 2], PairTouch)>,
     /// Of the touches first, then of the pairs.
     pub(super) contacts: Vec<Contact>,
+    pub(super) solver: Solver,
 }
 
 /// A member's pose and orientation at the start and at the end of a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) body: usize,
+    /// With the velocities before the first kick.
     pub(super) start: Pose,
     pub(super) turn: DQuat,
+    /// Angular velocity at the start of the drift.
+    pub(super) spin: DVec3,
+    /// With the velocities at the end of the drift.
     pub(super) end: Pose,
     pub(super) end_turn: DQuat,
 }
 
 impl Place {
-    /// Pose and orientation after a straight drift with a member's velocities.
-    pub(super) fn drifted(&self, m: &Member, h: f64) -> (Pose, DQuat) {
-        self.drifted_at(m.v, m.w, h)
+    /// Pose and orientation after a drift from these velocities: straight, with free rotation.
+    pub(super) fn drifted(&self, spec: &Spec, v: DVec3, w: DVec3, h: f64) -> (Pose, DQuat) {
+        let (turn, w) = drift(&spec.inertia, self.turn, w, h);
+        (Pose { x: self.start.x + v * h, r: DMat3::from_quat(turn), v, w }, turn)
     }
 
-    pub(super) fn drifted_at(&self, v: DVec3, w: DVec3, h: f64) -> (Pose, DQuat) {
-        let turn = (rotation(w * h) * self.turn).normalize();
-        (Pose { x: self.start.x + v * h, r: DMat3::from_quat(turn), v, w }, turn)
+    /// The start with the velocities of the drift.
+    pub(super) fn begin(&self) -> Pose {
+        Pose { v: self.end.v, w: self.spin, ..self.start }
     }
 }
 
@@ -129,7 +136,7 @@ pub(super) fn settle(
             Some(part) => h *= part,
             None => {
                 scratch.second_kick(world, &step);
-                return scratch.write(bodies, h);
+                return scratch.write(world, bodies, h);
             }
         }
     }
@@ -140,7 +147,7 @@ pub(super) fn settle(
     scratch.touches.sort_by_key(|t| t.0);
     let step = scratch.drift(world, h);
     scratch.second_kick(world, &step);
-    scratch.write(bodies, h);
+    scratch.write(world, bodies, h);
 }
 
 impl RigidScratch {
@@ -190,7 +197,7 @@ impl RigidScratch {
                 body.begin(Phase::Flight, world.gravity);
                 continue;
             }
-            self.places.push(Place { body: index, start: pose, turn: body.turn, end: pose, end_turn: body.turn });
+            self.places.push(Place { body: index, start: pose, turn: body.turn, spin: pose.w, end: pose, end_turn: body.turn });
         }
         self.parting.retain(|p| p.0.iter().all(|&k| self.places.iter().any(|q| q.body == k)));
         for p in self.pairs.iter_mut().chain(&mut self.parting) {
@@ -274,19 +281,15 @@ impl RigidScratch {
         }
     }
 
-    pub(super) fn pair_contact(&self, world: &Rigid, [a, b]: [usize; 2], t: &PairTouch) -> Contact {
-        let (m, n) = (&self.members[a], &self.members[b]);
-        let k = response(m.inverse_mass, &m.inverse_inertia, t.arms[0])
-            + response(n.inverse_mass, &n.inverse_inertia, t.arms[1]);
-        let friction = world.pair_law([self.places[a].body, self.places[b].body]).friction;
-        Contact::new(a, Some(b), t.arms, t.normal, friction, k)
+    pub(super) fn pair_contact(&self, world: &Rigid, ab: [usize; 2], t: &PairTouch) -> Contact {
+        pair_contact(&self.members, ab, t, world.pair_law(ab.map(|k| self.places[k].body)).friction)
     }
 
     /// Rest: without velocity, flat where the ground is, and lifted out of what overlap steps have left.
     fn lie_down(&self, world: &Rigid, bodies: &mut [Turning]) {
         for (k, p) in self.places.iter().enumerate() {
             let body = &mut bodies[p.body];
-            body.set_motion(Motion::default());
+            body.set_motion(&world.specs[p.body], Motion::default());
             body.begin(Phase::Rest, DVec3::ZERO);
             let touches = || self.touches.iter().filter(|t| t.0 == k).map(|t| &t.1);
             body.list(touches().map(Touch::surface));
@@ -312,13 +315,15 @@ impl RigidScratch {
         }
     }
 
-    fn write(&self, bodies: &mut [Turning], h: f64) {
+    fn write(&self, world: &Rigid, bodies: &mut [Turning], h: f64) {
         for (k, (p, m)) in self.places.iter().zip(&self.members).enumerate() {
             let body = &mut bodies[p.body];
             let forces = self.contacts.iter().zip(&self.touches).filter(|(_, t)| t.0 == k);
             body.set_loads(forces.map(|(c, _)| c.impulse * (2.0 / h)));
-            body.ends = [Motion { v: p.start.v, w: p.start.w }, Motion { v: m.v, w: m.w }];
-            (body.path.v, body.spin) = (p.end.v, p.end.w);
+            let inertia = &world.specs[p.body].inertia;
+            let momentum = |turn: DQuat, v: DVec3, w: DVec3| Momentum { v, l: inertia.momentum(turn, w) };
+            body.ends = [momentum(p.turn, p.start.v, p.start.w), momentum(p.end_turn, m.v, m.w)];
+            (body.path.v, body.spin) = (p.end.v, p.spin);
             body.begin(Phase::Step, DVec3::ZERO);
             body.expiry = body.path.t + h;
             body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface()));
@@ -328,3 +333,11 @@ impl RigidScratch {
 
 /// Sizes that a body may move within the unit of a step's length.
 const LONGEST: f64 = 4.0;
+
+/// A point of contact of two members.
+pub(super) fn pair_contact(members: &[Member], [a, b]: [usize; 2], t: &PairTouch, friction: f64) -> Contact {
+    let (m, n) = (&members[a], &members[b]);
+    let k =
+        response(m.inverse_mass, &m.inverse_inertia, t.arms[0]) + response(n.inverse_mass, &n.inverse_inertia, t.arms[1]);
+    Contact::new(a, Some(b), t.arms, t.normal, friction, k)
+}

@@ -45,6 +45,11 @@ impl Inertia {
         if self.kind == Kind::Equal { w * self.moments.x } else { turn * (self.moments * (turn.conjugate() * w)) }
     }
 
+    /// Angular velocity in world axes of a body with this angular momentum.
+    pub(crate) fn spin(&self, turn: DQuat, l: DVec3) -> DVec3 {
+        if self.kind == Kind::Equal { l / self.moments.x } else { turn * ((turn.conjugate() * l) / self.moments) }
+    }
+
     /// The inverse in world axes, for a body turned by `r`.
     #[inline]
     pub(crate) fn inverse(&self, r: &DMat3) -> DMat3 {

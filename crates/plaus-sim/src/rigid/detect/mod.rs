@@ -64,7 +64,7 @@ impl Rigid {
             return None;
         }
         let spec = &self.specs[index];
-        let free = body.phase == Phase::Flight;
+        let free = body.turns_freely();
         let momentum = spec.inertia.momentum(body.turn, body.spin).length();
         let fastest = if free {
             (momentum / spec.inertia.moments.min_element()).min(body.spin.length() * (1.0 + spec.wobble))
@@ -125,10 +125,10 @@ impl Search<'_> {
     /// Angular velocity after `t`, for which `tumble` was asked last; it changes only in free flight, and not if all moments are equal.
     #[inline]
     pub(super) fn spin_at(&self, tumble: &Tumble, t: f64) -> DVec3 {
-        if self.spec.wobble == 0.0 || self.body.phase != Phase::Flight {
+        if self.spec.wobble == 0.0 || !self.body.turns_freely() {
             self.body.spin
         } else {
-            tumble.spin().unwrap_or_else(|| self.body.motion_after(self.spec, t).w)
+            tumble.spin().unwrap_or_else(|| self.body.drift_spin(self.spec, t))
         }
     }
 }
