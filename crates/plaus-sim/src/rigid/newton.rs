@@ -12,6 +12,12 @@ use glam::{DMat3, DVec3};
 /// Compliance of a contact over its response to an impulse. Default 1e-7: smaller values lose digits to rounding, larger ones take more rounds.
 const COMPLIANCE: f64 = 1e-7;
 
+/// Change of velocity over the largest at a contact that rounding makes. Default 1e-8: ten times its own, over the compliance.
+const NOISE: f64 = 1e-8;
+
+/// Rounds after which some go half of the way. Default 6.
+const FRESH: usize = 6;
+
 /// Most bodies of a group that are solved in this way. Default 256.
 const MOST_MEMBERS: usize = 256;
 
@@ -32,21 +38,23 @@ pub(crate) struct Newton {
     place: Vec<usize>,
     degree: Vec<Option<usize>>,
     neighbours: Vec<bool>,
-    /// Velocities of the members that go with the contacts' impulses, and where the rounds are.
+    /// Velocities of the members that go with the contacts' impulses.
     starts: Vec<[DVec3; 2]>,
-    velocities: Vec<[DVec3; 2]>,
     /// What the cones make of each contact.
     projected: Vec<Projected>,
+    exact: Vec<DVec3>,
 }
 
 const NONE: u32 = u32::MAX;
 
 /// How a contact answers to a change of its velocity.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Projected {
     impulse: DVec3,
     /// Derivative of the impulse by the velocity, negative.
     stiffness: DMat3,
+    /// Direction of the friction where it slides.
+    sliding: Option<DVec3>,
 }
 
 /// How it ended.
@@ -62,26 +70,18 @@ impl Newton {
         if members.len() > MOST_MEMBERS {
             return Ending::NotSolved;
         }
+        let fastest = contacts.iter().filter(|c| c.target > -f64::MAX).map(|c| (c.velocity(members) + c.bias).length());
+        let enough = enough.max(NOISE * fastest.fold(0.0, f64::max));
         self.order(contacts, members.len());
         self.begin(contacts, members);
-        for _ in 0..most {
-            let Some(change) = self.round(contacts, members) else { return Ending::NotSolved };
-            if change <= enough {
-                // The impulses say the velocities to the last bit.
-                let mut off = 0.0_f64;
-                let after = std::mem::take(&mut self.velocities);
-                for (m, start) in members.iter_mut().zip(&self.starts) {
-                    [m.v, m.w] = *start;
-                }
-                for (c, p) in contacts.iter_mut().zip(&self.projected) {
-                    c.push(members, p.impulse - c.impulse);
-                    c.impulse = p.impulse;
-                }
-                for (m, v) in members.iter().zip(&after) {
-                    off = off.max((m.v - v[0]).length()).max((m.w - v[1]).length() * m.reach);
-                }
-                self.velocities = after;
-                if off <= enough {
+        for round in 0..most {
+            // Where rounds go to and fro, half of the way lies between.
+            let part = if round >= FRESH && round % 3 == 2 { 0.5 } else { 1.0 };
+            if self.round(contacts, members, part).is_none() {
+                return Ending::NotSolved;
+            }
+            if let Some(change) = self.take_impulses(contacts, members, enough) {
+                if change * COMPLIANCE <= enough {
                     return Ending::Solved;
                 }
                 self.begin(contacts, members);
@@ -90,31 +90,54 @@ impl Newton {
         Ending::NotSolved
     }
 
+    /// Starts anew from impulses and velocities that go with each other.
     fn begin(&mut self, contacts: &[Contact], members: &[Member]) {
         self.starts.clear();
         self.starts.extend(members.iter().map(|m| [m.v, m.w]));
         self.projected.clear();
-        self.projected.extend(contacts.iter().map(|c| project(c, members)));
+        self.projected.extend(contacts.iter().map(|c| project(c, members, None)));
     }
 
-    /// One round; the largest change of a body's velocity.
-    fn round(&mut self, contacts: &[Contact], members: &mut [Member]) -> Option<f64> {
+    /// One round, by this part of its change.
+    fn round(&mut self, contacts: &[Contact], members: &mut [Member], part: f64) -> Option<()> {
+        for (c, p) in contacts.iter().zip(&mut self.projected) {
+            *p = project(c, members, p.sliding);
+        }
         self.assemble(contacts, members);
         self.eliminate()?;
-        let mut change = 0.0_f64;
         for (m, &p) in members.iter_mut().zip(&self.place) {
             let x = &self.right[p];
-            let (v, w) = (DVec3::new(x[0], x[1], x[2]), DVec3::new(x[3], x[4], x[5]));
-            m.v += v;
-            m.w += w;
-            change = change.max(v.length()).max(w.length() * m.reach);
+            m.v += DVec3::new(x[0], x[1], x[2]) * part;
+            m.w += DVec3::new(x[3], x[4], x[5]) * part;
         }
-        self.velocities.clear();
-        self.velocities.extend(members.iter().map(|m| [m.v, m.w]));
-        for (c, p) in contacts.iter().zip(&mut self.projected) {
-            *p = project(c, members);
+        members.iter().all(|m| m.v.is_finite() && m.w.is_finite()).then_some(())
+    }
+
+    /// Gives contacts the impulses of the cones, and members the velocities that follow to the last bit, where these are within `enough` of those that the cones were asked with. By how much
+    /// impulses have changed then, as velocities at their contacts.
+    fn take_impulses(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64) -> Option<f64> {
+        self.exact.clear();
+        self.exact.extend(contacts.iter().map(|c| project(c, members, None).impulse));
+        for (m, start) in members.iter_mut().zip(&self.starts) {
+            m.last = [m.v, m.w];
+            [m.v, m.w] = *start;
         }
-        change.is_finite().then_some(change)
+        let mut change = 0.0_f64;
+        for (c, &impulse) in contacts.iter().zip(&self.exact) {
+            c.push(members, impulse - c.impulse);
+            change = change.max((impulse - c.impulse).length() * c.compliance());
+        }
+        let off = |m: &Member| (m.v - m.last[0]).length().max((m.w - m.last[1]).length() * m.reach);
+        if !members.iter().all(|m| off(m) <= enough) {
+            for m in members.iter_mut() {
+                [m.v, m.w] = m.last;
+            }
+            return None;
+        }
+        for (c, &impulse) in contacts.iter_mut().zip(&self.exact) {
+            c.impulse = impulse;
+        }
+        Some(change)
     }
 
     /// Finds an order of elimination that fills few blocks: always a body with the fewest neighbours left.
@@ -252,33 +275,32 @@ impl Newton {
     }
 }
 
-/// What Coulomb's cone makes of a contact with the members' velocities.
-fn project(c: &Contact, members: &[Member]) -> Projected {
-    let softness = COMPLIANCE * c.compliance();
-    let (n, stiff) = (c.normal, 1.0 / softness);
+/// What Coulomb's cone makes of a contact with the members' velocities. Where friction had the direction `before` and now would have the opposite one, the slip went through none: then the
+/// contact is tried without slip, or rounds might go to and fro for ever.
+fn project(c: &Contact, members: &[Member], before: Option<DVec3>) -> Projected {
+    let stiff = 1.0 / (COMPLIANCE * c.compliance());
+    let n = c.normal;
     let wrong = c.velocity(members) + c.bias - n * c.target;
     let trial = c.impulse - wrong * stiff;
     let load = trial.dot(n);
     if load.is_nan() || load <= 0.0 {
-        return Projected::default();
+        return Projected { impulse: DVec3::ZERO, stiffness: DMat3::ZERO, sliding: None };
     }
     let across = trial - n * load;
     let (side, most) = (across.length(), c.friction * load);
-    let along_normal = outer(n, n);
-    match c.held_slip {
+    let slides = |t: DVec3, turning: DMat3| {
+        let direction = n + t * c.friction;
+        Projected { impulse: direction * load, stiffness: (outer(direction, n) + turning) * stiff, sliding: Some(t) }
+    };
+    if let Some(s) = c.held_slip.filter(|s| across.dot(*s) < -most) {
         // Friction against the slip as it was, as long as it goes on.
-        Some(s) if across.dot(s) < -most => {
-            let direction = n - s * c.friction;
-            Projected { impulse: direction * load, stiffness: outer(direction, n) * stiff }
-        }
-        _ if side <= most => Projected { impulse: trial, stiffness: DMat3::IDENTITY * stiff },
-        _ => {
-            let t = across / side;
-            let direction = n + t * c.friction;
-            let turning = (DMat3::IDENTITY - along_normal - outer(t, t)) * (most / side);
-            Projected { impulse: direction * load, stiffness: (outer(direction, n) + turning) * stiff }
-        }
+        return slides(-s, DMat3::ZERO);
     }
+    if side <= most || before.is_some_and(|b| b.dot(across) < 0.0) {
+        return Projected { impulse: trial, stiffness: DMat3::IDENTITY * stiff, sliding: None };
+    }
+    let t = across / side;
+    slides(t, (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (most / side))
 }
 
 fn outer(a: DVec3, b: DVec3) -> DMat3 {
@@ -374,6 +396,33 @@ fn subtract_column(column: &mut Column, a: &Block, b: &Column) {
     for i in 0..6 {
         for (k, entry) in b.iter().enumerate() {
             column[i] -= a[i][k] * entry;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_are_eliminated() {
+        let mut seed = 1_u64;
+        let mut next = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let mut block = [[0.0; 6]; 6];
+        for (i, row) in block.iter_mut().enumerate() {
+            for entry in row.iter_mut() {
+                *entry = next();
+            }
+            row[i] += 4.0;
+        }
+        let x: Column = std::array::from_fn(|_| next());
+        let right: Column = std::array::from_fn(|i| (0..6).map(|j| block[i][j] * x[j]).sum());
+        let solved = divide_column(&factor(&block).unwrap(), &right);
+        for (a, b) in solved.iter().zip(&x) {
+            assert!((a - b).abs() < 1e-14, "{solved:?} {x:?}");
         }
     }
 }

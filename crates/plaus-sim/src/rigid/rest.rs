@@ -3,7 +3,7 @@
 use super::Rigid;
 use super::contact::Touch;
 use super::solve::{Enough, solve};
-use super::step::RigidScratch;
+use super::step::{Place, RigidScratch};
 use glam::{DMat3, DVec3};
 
 /// Whether all bodies of a group are slow enough to be looked at.
@@ -24,7 +24,10 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
         return false;
     }
     // Another step makes less of an overlap larger than what can be tidied.
-    if group.touches.iter().any(|(k, t)| t.gap < -OVERLAP * world.specs[group.places[*k].body].size) {
+    let size = |k: usize| world.specs[group.places[k].body].size;
+    if group.touches.iter().any(|(k, t)| t.gap < -OVERLAP * size(*k))
+        || group.pairs.iter().any(|([a, b], t)| t.gap < -OVERLAP * size(*a).min(size(*b)))
+    {
         return false;
     }
     if let [place] = &group.places[..] {
@@ -45,17 +48,32 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
             let law = world.law_at(place.body, first.part, place.start.x + first.arm);
             let press = -world.gravity.dot(normal);
             let slide = (world.gravity + normal * press).length();
-            return slide <= law.friction * press && is_above(&group.touches, world.gravity / world.strength);
+            // What is left of its motion is to be stopped by friction within a step: on ice it slides on.
+            let (v, w) = (place.start.v, place.start.w);
+            let moves = (v - normal * v.dot(normal)).length() + w.dot(normal).abs() * spec.reach;
+            return moves <= (law.friction * press - slide) * h
+                && slide <= law.friction * press
+                && is_above(&group.touches, world.gravity / world.strength);
         }
     }
-    group.prepare(world, |_, _| (world.gravity * h, DVec3::ZERO));
+    // What contacts cannot stop within a step is not at rest.
+    group.prepare(world, |_, p| (p.start.v + world.gravity * h, p.start.w));
     let limit = world.accuracy.rest_residual * world.strength * h;
+    let fastest = |p: &Place| p.start.v.length().max(p.start.w.length() * world.specs[p.body].reach);
+    let fastest = group.places.iter().map(fastest).fold(0.0, f64::max);
+    let residual = limit.min(STOPPED * fastest).max(NO_MOTION * world.strength * h);
     // What is carried by a corner of a pile near tipping is found slowly.
     let patience = if group.has_cuboids_in_touch() { PATIENCE } else { 1 };
     let enough = Enough::new(0.03 * limit / f64::from(patience), world.strength * h);
-    solve(&mut group.contacts, &mut group.members, &mut group.solver, enough, world.accuracy.sweeps * patience);
-    group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= limit)
+    solve(&mut group.contacts, &mut group.members, &mut group.solver, enough, world.accuracy.sweeps * patience)
+        && group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= residual)
 }
+
+/// Part of a motion that may be left where contacts are to stop it. Default 0.1: friction that cannot leaves all of it.
+const STOPPED: f64 = 0.1;
+
+/// Velocity over `g · step` that counts as none where contacts are tried. Default 1e-6, above what the solver leaves.
+const NO_MOTION: f64 = 1e-6;
 
 /// Whether a body of revolution lies on two points of its side, on which it can only roll.
 fn lies(touches: &[(usize, Touch)], axis: DVec3, size: f64) -> bool {

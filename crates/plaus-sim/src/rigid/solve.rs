@@ -266,12 +266,11 @@ pub(crate) struct Solver {
     members: Vec<Member>,
 }
 
-/// Rounds of Newton's rule before sweeps are to bring it nearer, and after. Default 8 and 20: from the last step's impulses it takes 2 to 4.
-const ROUNDS_FIRST: usize = 8;
-const ROUNDS_AGAIN: usize = 20;
+/// Most rounds of Newton's rule. Default 40: from the last step's impulses it takes 2 to 4.
+const NEWTON_ROUNDS: usize = 40;
 
-/// Sweeps between. Default 10.
-const SWEEPS_BETWEEN: u32 = 10;
+/// How many of the sweeps that a preset allows are made where Newton's rule fails: friction that wedges bodies. Default 60.
+const SWEEPS_AFTER: u32 = 60;
 
 /// Solves all contacts until a round changes no body's velocity by more than `enough` says: by Newton's rule, and where that does not converge (friction that wedges bodies) by sweeps, at
 /// most `most` of them. Whether it got there.
@@ -296,27 +295,21 @@ pub(crate) fn solve(
         return true;
     }
     let Solver { newton, impulses, members: backup } = solver;
-    for rounds in [ROUNDS_FIRST, ROUNDS_AGAIN] {
-        impulses.clear();
-        impulses.extend(contacts.iter().map(|c| c.impulse));
-        backup.clear();
-        backup.extend_from_slice(members);
-        if newton.solve(contacts, members, enough.speed, rounds) == Ending::Solved {
-            for c in contacts.iter_mut() {
-                c.note_slide();
-            }
-            return true;
+    impulses.clear();
+    impulses.extend(contacts.iter().map(|c| c.impulse));
+    backup.clear();
+    backup.extend_from_slice(members);
+    if newton.solve(contacts, members, enough.speed, NEWTON_ROUNDS) == Ending::Solved {
+        for c in contacts.iter_mut() {
+            c.note_slide();
         }
-        for (c, impulse) in contacts.iter_mut().zip(&*impulses) {
-            c.impulse = *impulse;
-        }
-        members.copy_from_slice(backup);
-        let sweeps = if rounds == ROUNDS_FIRST { SWEEPS_BETWEEN.min(most) } else { most };
-        if sweep(contacts, members, enough, sweeps) {
-            return true;
-        }
+        return true;
     }
-    false
+    for (c, impulse) in contacts.iter_mut().zip(&*impulses) {
+        c.impulse = *impulse;
+    }
+    members.copy_from_slice(backup);
+    sweep(contacts, members, enough, most.min(SWEEPS_AFTER))
 }
 
 /// Sweeps up and down over all contacts until a round changes no body's velocity by more than `enough` says, at most `most` times; whether it got there.

@@ -51,6 +51,9 @@ pub(crate) enum Skin {
     Hull,
 }
 
+/// How far moments of inertia may be off by rounding: 1e-9.
+const ROUNDING: f64 = 1e-9;
+
 /// Points of the first ring, a quarter turn apart from its lowest on; other rings have their lowest only.
 pub(crate) const RIM_POINTS: usize = 4;
 
@@ -74,6 +77,12 @@ impl Spec {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(bad(field, value));
             }
+        }
+        // Each moment is at most the sum of the two others: the integral of y² + z² at most that of x² + z² and x² + y².
+        let largest = inertia.max_element();
+        if largest > (inertia.x + inertia.y + inertia.z - largest) * (1.0 + ROUNDING) {
+            let expected = "moments of which none exceeds the sum of the two others";
+            return Err(WorldError::BadBody { body, field: "inertia", value: largest, expected });
         }
         world.laws.require(b.material)?;
         let mut feelers = b.shape.feelers();
