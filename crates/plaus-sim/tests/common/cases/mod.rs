@@ -10,7 +10,7 @@ mod round;
 mod throws;
 
 pub use guard::Guard;
-pub use throws::{Toss, read_tosses};
+pub use throws::{Toss, read_tosses, toss_body};
 
 use plaus_sim::{Accuracy, Preset};
 

@@ -104,12 +104,17 @@ pub fn read_tosses(text: &str) -> Result<Vec<Toss>, String> {
         .collect()
 }
 
-/// The world of the published tosses: mass, moment of inertia, friction and restitution as their authors state them.
-pub fn toss_world(s: &Setting<'_>) -> RigidWorld {
+/// The cube of the published tosses, with the mass and the moment of inertia that their authors state.
+pub fn toss_body() -> BodySpec {
     let mut body = cuboid(DVec3::splat(2.0 * HALF));
     body.mass.mass = 0.37;
     body.mass.inertia = DVec3::splat(0.295 * HALF * HALF);
-    on_floor(vec![body], Law::new(0.18, 0.125), s.preset)
+    body
+}
+
+/// Its world, with the friction and the restitution that they state.
+pub fn toss_world(s: &Setting<'_>) -> RigidWorld {
+    on_floor(vec![toss_body()], Law::new(0.18, 0.125), s.preset)
 }
 
 /// Random tosses like the published ones, where those are not at hand.
