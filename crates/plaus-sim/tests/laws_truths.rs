@@ -14,7 +14,7 @@ use small_steps::impact::impulse;
 use small_steps::tosses::{Toss, smooth, wild};
 
 /// Length of the truth's steps in s: what is unknown of it then is far below what presets are off.
-const STEP: f64 = 4e-4;
+const STEP: f64 = 1e-3;
 
 /// For each preset how far it is off, the worst of all looks and tosses; and what is unknown of the truth.
 fn errors(toss: &Toss) -> ([f64; 4], f64) {
@@ -69,24 +69,27 @@ fn impacts_converge_to_the_truth() {
     }
 }
 
-/// The impact law itself, by two makes: random bodies struck at random points. Nine in ten agree to what steps of third
-/// order leave of the turn of the slip; where the slip nearly stops, and then goes on another way, less is known.
+/// The impact law itself, by two makes: random bodies struck at random points. Nine in ten agree to a tenth of the square
+/// of the turn that a preset allows the slip in one step: found so at all four presets. Where the slip nearly stops and
+/// then goes on another way, less is known: the last in a hundred is only asked to be within the turn.
 #[test]
 fn two_makes_of_an_impact_agree() {
+    let law = |turn: f64| (0..200).map(move |k| impact_off(k, turn, 1.0));
     for preset in Preset::ALL {
         let turn = Accuracy::preset(preset).slip_turn;
-        let mut off: Vec<f64> = (0..200).map(|k| impact_off(k, turn)).collect();
+        let mut off: Vec<f64> = law(turn).collect();
         off.sort_by(f64::total_cmp);
-        println!("{turn}: {:.1e} {:.1e} {:.1e} {:.1e}", off[100], off[180], off[198], off[199]);
-        assert!(off[180] < 1e-5 + turn * turn * turn, "{turn}: {:.1e}", off[180]);
-        assert!(off[199] < 1e-4 + 0.3 * turn, "{turn}: {:.1e}", off[199]);
+        assert!(off[180] < 0.1 * turn * turn, "{turn}: {:.1e}", off[180]);
+        assert!(off[197] < turn, "{turn}: {:.1e}", off[197]);
     }
-    // Another law is seen: the same with Newton's restitution in the place of Stronge's, for which e is the ratio of
-    // normal speeds.
+    // A law that is off is seen: a twentieth more friction.
+    let turn = Accuracy::preset(Preset::Reference).slip_turn;
+    let seen = (0..200).filter(|&k| impact_off(k, turn, 1.05) > 0.1 * turn * turn).count();
+    assert!(seen > 60, "{seen} of 200");
 }
 
-/// How far the two makes are from each other, over the impulse, in the k-th impact.
-fn impact_off(k: u64, turn: f64) -> f64 {
+/// How far the two makes are from each other, over the impulse, in the k-th impact; the second has another friction.
+fn impact_off(k: u64, turn: f64, rougher: f64) -> f64 {
     let mut dice = Dice::new(29, k);
     let (arm, inertia) = (dice.in_cube(), DVec3::splat(0.3) + dice.in_cube() * 0.2);
     let column = |e: DVec3| e + (arm.cross(e) / inertia).cross(arm);
@@ -94,5 +97,5 @@ fn impact_off(k: u64, turn: f64) -> f64 {
     let u = dice.in_cube().with_z(-dice.between(0.05, 1.0));
     let (e, mu) = (dice.of(&[0.0, 0.125, 0.5, 0.9, 1.0]), dice.of(&[0.05, 0.18, 0.35, 0.8, 1.5]));
     let ours = stronge_impulse(&ContactMatrix(k), u, e, mu, turn);
-    (ours - impulse(&k, u, e, mu)).length() / ours.length()
+    (ours - impulse(&k, u, e, mu * rougher)).length() / ours.length()
 }

@@ -292,7 +292,7 @@ fn project(k: &DMat3, u: DVec3, old: DVec3, friction: f64) -> DVec3 {
         let next = rub.extend(normal);
         let change = (next - new).length();
         new = next;
-        if change <= 1e-15 * new.length() {
+        if change <= 1e-13 * new.length() {
             break;
         }
     }
