@@ -13,9 +13,14 @@ mod measure;
 #[path = "../tests/common/small_steps/mod.rs"]
 mod small_steps;
 
-use cases::{read_tosses, toss_body};
+use cases::boxes::{DOMINO, DOMINO_LAW, wave_speed};
+use cases::throws::toss_body;
+use cases::{Guard, Setting, read_tosses};
+use glam::DVec2;
+use laws::worlds::G;
 use measure::Stopwatch;
 use plaus_sim::{Law, Preset};
+use small_steps::planar::Row;
 use small_steps::tosses::{Look, Toss, smooth, wild};
 use std::error::Error;
 
@@ -56,10 +61,26 @@ fn table(toss: &Toss, dt: f64) {
     row("truth", &truths.iter().map(|t| t.0.clone()).collect::<Vec<_>>());
 }
 
+/// Speed of a wave of dominoes over √(g h): in small steps, and by each preset within `seconds` on the wall.
+fn dominoes(dt: f64, seconds: f64) {
+    for gap in [0.1, 0.3, 0.5] {
+        let half = DVec2::new(DOMINO.x, DOMINO.z) * 0.5;
+        let (pitch, push) = (DOMINO.x + gap * DOMINO.z, (G / DOMINO.z).sqrt());
+        let row = Row { half, pitch, count: 20, friction: DOMINO_LAW.friction, gravity: G, push };
+        let [a, b] = [1.0, 0.5].map(|part| wave_speed(&row.wave(1.5, part * dt), gap).unwrap_or(f64::NAN));
+        let truth = 2.0 * b - a;
+        println!("\ndominoes, gap {gap} h: truth {truth:.4}, in steps {a:.4}, in half steps {b:.4}");
+        for preset in Preset::ALL {
+            let setting = Setting { preset, guard: Guard { seconds, events: 10_000_000 }, throws: 1, tosses: &[] };
+            println!("{:<12}{}", preset.name(), cases::boxes::dominoes(&setting, gap, truth).text);
+        }
+    }
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let throws: u64 = args.first().map_or(Ok(1), |a| a.parse())?;
-    let dt: f64 = 1e-6 * args.get(1).map_or(Ok(200.0), |a| a.parse::<f64>())?;
+    let dt: f64 = 1e-6 * args.get(1).map_or(Ok(400.0), |a| a.parse::<f64>())?;
     println!(
         "Medians of the distance from the truth: of the centre over the shortest edge, and half the angle. The truth"
     );
@@ -68,6 +89,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for toss in smooth().iter().chain(&wild(throws)) {
         table(toss, dt);
     }
+    dominoes(0.5 * dt, if throws > 1 { 20.0 } else { 0.05 });
     if let Some(path) = args.get(2) {
         table(&real(path)?, dt);
     }

@@ -9,4 +9,5 @@
 
 pub mod body;
 pub mod impact;
+pub mod planar;
 pub mod tosses;
