@@ -4,7 +4,10 @@ mod alone;
 mod body;
 mod closed;
 mod group;
+mod guard;
+mod lift;
 mod mechanics;
+mod relax;
 mod solve;
 mod step;
 

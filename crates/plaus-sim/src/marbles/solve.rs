@@ -61,14 +61,29 @@ pub(super) struct Member {
     pub(super) start: DVec3,
     pub(super) start_v: DVec3,
     pub(super) start_w: DVec3,
+    /// Velocity and spin that it would have without contacts.
+    pub(super) free: (DVec3, DVec3),
     pub(super) v: DVec3,
     pub(super) w: DVec3,
     /// Centre at the end of the step, as far as known.
     pub(super) x: DVec3,
     pub(super) is_held: bool,
+    /// How far it is lifted out of what it overlaps.
+    pub(super) lift: DVec3,
 }
 
 impl Member {
+    /// A marble as a step finds it.
+    pub(super) fn new(index: u32, ball: Ball, x: DVec3, v: DVec3, w: DVec3) -> Self {
+        let (start, start_v, start_w) = (x, v, w);
+        Self { index, ball, start, start_v, start_w, free: (v, w), v, w, x, is_held: false, lift: DVec3::ZERO }
+    }
+
+    /// Sets velocity and spin as they are without contacts.
+    pub(super) fn set_free(&mut self, v: DVec3, w: DVec3) {
+        (self.free, self.v, self.w) = ((v, w), v, w);
+    }
+
     /// Acceleration of the parabola from the start to where the step ends.
     pub(super) fn acceleration(&self, h: f64) -> DVec3 {
         (self.x - self.start - self.start_v * h) * (2.0 / (h * h))
@@ -121,6 +136,33 @@ impl Contact {
     pub(super) fn clear(&mut self) {
         self.load = 0.0;
         (self.given_a, self.given_b) = (NOTHING, NOTHING);
+    }
+
+    /// Whether it bears a load.
+    pub(super) fn is_loaded(&self) -> bool {
+        self.load != 0.0
+    }
+
+    /// Whether it is a contact of this member.
+    pub(super) fn concerns(&self, member: usize) -> bool {
+        self.a == member || self.with == With::Member(member)
+    }
+
+    /// What the contact has given to its first member: changes of its velocity and of its spin times its radius.
+    pub(super) fn read(&self, members: &[Member], loads: &mut Vec<f64>) {
+        loads.extend(self.given_a.0.to_array());
+        loads.extend((self.given_a.1 * members[self.a].ball.radius).to_array());
+    }
+
+    /// Takes that back, and what follows for its second.
+    pub(super) fn write(&mut self, members: &[Member], loads: &[f64]) {
+        let p = &members[self.a].ball;
+        self.given_a = (DVec3::from_slice(loads), DVec3::from_slice(&loads[3..]) * p.inverse_radius);
+        if let With::Member(b) = self.with {
+            let q = &members[b].ball;
+            self.given_b =
+                (self.given_a.0 * (-p.mass * q.inverse_mass), self.given_a.1 * (q.turning / p.turning));
+        }
     }
 
     /// Adds what the contact has given to its members.
@@ -241,5 +283,8 @@ fn rub(ball: &Ball, law: &Law, (n, approach): (DVec3, f64), v: DVec3, w: DVec3) 
         return (v, w + n * (drilled - about));
     }
     let drag = slip * (-limit / speed);
+    if law.holds_from_turning() && surface == DVec3::ZERO {
+        return (v + drag, w + n * (drilled - about));
+    }
     (v + drag, w + drag.cross(n) * ball.lever + n * (drilled - about))
 }
