@@ -209,6 +209,12 @@ impl Marble {
         self.last_impact = self.path.t;
     }
 
+    /// Whether it was hit at the instant at which it stands.
+    #[inline]
+    pub(crate) fn was_hit(&self) -> bool {
+        self.path.t == self.last_impact
+    }
+
     /// Whether it rattles: further impacts of a law that takes energy are plastic.
     #[inline]
     pub(crate) fn rattles(&self) -> bool {

@@ -31,11 +31,12 @@ pub struct MarbleScratch {
 /// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half, so that little is still to come.
 const CREEP: f64 = 0.03;
 
-/// Least ratio of one sweep's change to the last's that is believed. Default 0.5: the usual one.
-const SHRINKS: f64 = 0.5;
+/// How many times its own size the change of a sweep is believed to have still to come, at least, since sweeps that are combined do not shrink evenly. Default 40; danger: less takes groups
+/// that could rest for moving ones, and they step on.
+const DOUBT: f64 = 40.0;
 
-/// How many times what sweeps to come can change has to be missing for rest to be given up. Default 4; danger: less takes slow groups for moving ones, and they step on.
-const DOUBT: f64 = 4.0;
+/// How often a step is halved at most that would lift its members more than their motion can pay for. Default 3.
+pub(super) const HALVINGS: u32 = 3;
 
 /// Overlap over the radius that rest may keep. Default 2e-5.
 pub(super) const OVERLAP: f64 = 2e-5;
@@ -164,14 +165,15 @@ impl MarbleScratch {
     }
 
     /// Whether anything overlaps by more than rest may keep: then a step comes first, which puts it back.
-    fn overlaps(&self) -> bool {
+    fn overlaps(&self, world: &Marbles) -> bool {
         self.contacts.iter().any(|c| {
             let radius = |k: usize| self.members[k].ball.radius;
-            let reach = match c.with {
-                With::Surface(_) => radius(c.a),
-                With::Member(b) => radius(c.a) + radius(b),
+            let (reach, distance) = match c.with {
+                // Beyond a side of its triangle, a contact is with the edge there.
+                With::Surface(s) => (radius(c.a), world.scenery.foot_near(s, self.members[c.a].start).distance),
+                With::Member(b) => (radius(c.a) + radius(b), c.foot.distance),
             };
-            reach - c.foot.distance > OVERLAP * reach
+            reach - distance > OVERLAP * reach
         })
     }
 
@@ -181,7 +183,7 @@ impl MarbleScratch {
             let limit = world.accuracy.rest_speed * world.speed_scale(m.index as usize);
             m.start_v.length() <= limit && m.start_w.length() * m.ball.radius <= limit
         });
-        if !slow || self.contacts.is_empty() || !h.is_finite() || self.overlaps() {
+        if !slow || self.contacts.is_empty() || !h.is_finite() || self.overlaps(world) {
             return false;
         }
         for m in &mut self.members {
@@ -211,10 +213,9 @@ impl MarbleScratch {
             let worst = loads.members.iter().map(fastest).fold(0.0, f64::max);
             holds = worst <= left;
             // Sweeps shrink geometrically: all that are still to come change no more than this.
-            let shrinks = (change / last).max(SHRINKS);
-            let to_come = if shrinks < 1.0 { change * shrinks / (1.0 - shrinks) } else { f64::INFINITY };
+            let to_come = if change < last { change / (1.0 - change / last) } else { f64::INFINITY };
             last = change;
-            if holds || change <= CREEP * left || worst - left > DOUBT * to_come {
+            if holds || change <= CREEP * left || worst - left > to_come.max(DOUBT * change) {
                 Verdict::Enough
             } else {
                 Verdict::GoOn
@@ -241,7 +242,7 @@ impl MarbleScratch {
         }
     }
 
-    fn step(&mut self, world: &Marbles, bodies: &mut [Marble], h: f64) {
+    fn step(&mut self, world: &Marbles, bodies: &mut [Marble], mut h: f64) {
         if !h.is_finite() {
             // Weightless and without relative motion: it goes on as it is.
             for m in &self.members {
@@ -249,9 +250,14 @@ impl MarbleScratch {
             }
             return;
         }
-        self.solve(world, bodies, h);
-        self.put_back(world);
-        guard(world, &mut self.members, &self.contacts);
+        for _ in 0..=HALVINGS {
+            self.solve(world, bodies, h);
+            self.put_back(world);
+            if guard(world, &mut self.members, &self.contacts) {
+                break;
+            }
+            h *= 0.5;
+        }
         for m in &self.members {
             let body = &mut bodies[m.index as usize];
             if !m.is_held {
@@ -280,7 +286,15 @@ impl MarbleScratch {
                     With::Surface(s) => world.scenery.foot_near(s, x).normal,
                     With::Member(b) => (x - self.members[b].x).normalize_or(first),
                 };
-                c.push = Push::new(first, last);
+                let (reach, other) = match c.with {
+                    With::Surface(_) => (self.members[c.a].ball.radius, DVec3::ZERO),
+                    With::Member(b) => {
+                        let other = &self.members[b];
+                        (self.members[c.a].ball.radius + other.ball.radius, other.start_v)
+                    }
+                };
+                let parting = (self.members[c.a].start_v - other).dot(first);
+                c.push = Push::new(first, last).across(c.foot.distance - reach, parting, h);
             }
             for m in &mut self.members {
                 m.set_free(m.start_v + world.gravity * h, m.start_w);

@@ -11,10 +11,13 @@ use glam::DVec3;
 /// Length of what is left of a unit vector below which it counts as spanned by others. Default 1e-9.
 const SPANNED: f64 = 1e-9;
 
+/// Energy over that of a lift by the height that the preset does not see, of which nothing is made. Default 1e-3.
+pub(super) const FORGIVEN: f64 = 1e-3;
+
 type Row = [f64; 6];
 
-/// Takes back the energy that a step of a group has added.
-pub(super) fn guard(world: &Marbles, members: &mut [Member], contacts: &[Contact]) {
+/// Takes back the energy that a step of a group has added; false where there was not enough to take it from.
+pub(super) fn guard(world: &Marbles, members: &mut [Member], contacts: &[Contact]) -> bool {
     let rubs = |k: usize| contacts.iter().any(|c| c.is_loaded() && c.law.friction > 0.0 && c.concerns(k));
     let kinetic = |m: &Member, turns: bool, v: DVec3, w: DVec3| {
         0.5 * (m.ball.mass * v.length_squared() + if turns { m.ball.inertia() * w.length_squared() } else { 0.0 })
@@ -25,7 +28,7 @@ pub(super) fn guard(world: &Marbles, members: &mut [Member], contacts: &[Contact
         after += kinetic(m, true, m.v, m.w);
     }
     if after <= before {
-        return;
+        return true;
     }
     let turning: Vec<bool> = (0..members.len()).map(rubs).collect();
     let kept = kept_motion(world, members, contacts, &turning);
@@ -37,6 +40,8 @@ pub(super) fn guard(world: &Marbles, members: &mut [Member], contacts: &[Contact
         rest += kinetic(m, turning[k], m.v - v, m.w - w);
     }
     let part = if rest > 0.0 { ((before - fixed) / rest).clamp(0.0, 1.0).sqrt() } else { 1.0 };
+    let weight: f64 = members.iter().filter(|m| m.is_held).map(|m| m.ball.mass * m.ball.radius).sum();
+    let enough = fixed - before <= FORGIVEN * world.unseen * world.strength * weight;
     for (k, m) in members.iter_mut().enumerate().filter(|(_, m)| m.is_held) {
         let (v, w) = kept[k];
         m.v = v + (m.v - v) * part;
@@ -44,6 +49,7 @@ pub(super) fn guard(world: &Marbles, members: &mut [Member], contacts: &[Contact
             m.w = w + (m.w - w) * part;
         }
     }
+    enough
 }
 
 /// The part of the velocities and spins that is rigid motion on which neither contacts nor gravity act.
@@ -77,9 +83,7 @@ fn kept_motion(world: &Marbles, members: &[Member], contacts: &[Contact], turnin
             .map(|(m, &t)| (u + turn.cross(m.x - centre), if t { turn } else { DVec3::ZERO }))
             .collect();
         let dot = |way: &[(DVec3, DVec3)], of: &dyn Fn(usize) -> (DVec3, DVec3)| -> f64 {
-            held()
-                .map(|(k, m)| m.ball.mass * way[k].0.dot(of(k).0) + m.ball.inertia() * way[k].1.dot(of(k).1))
-                .sum()
+            held().map(|(k, m)| m.ball.mass * way[k].0.dot(of(k).0) + m.ball.inertia() * way[k].1.dot(of(k).1)).sum()
         };
         let whole = dot(&way, &|k| way[k]).sqrt();
         for known in &ways {

@@ -234,7 +234,7 @@ fn place(start: &Start) -> Place {
     Place([start.time, start.position.x, start.position.y, start.position.z])
 }
 
-/// Gap over the radius that is never seen. Default 1e-9.
+/// Gap over the radius, and height of a bounce, that is never seen. Default 1e-9.
 const ROUNDING: f64 = 1e-9;
 
 /// Overlap at the start that counts as touching, over the radius. Default 1e-9; danger: larger values start bodies inside each other.

@@ -46,6 +46,12 @@ impl Ball {
         }
     }
 
+    /// Velocity of its centre once it rolls without slip, from velocity and spin as they are: the momentum about the point of contact is kept.
+    #[inline]
+    pub(super) fn rolling(&self, n: DVec3, v: DVec3, w: DVec3) -> DVec3 {
+        (v - n * v.dot(n) + w.cross(n) * (self.radius * self.gyration)) * self.share
+    }
+
     /// Inertia in kg m².
     #[inline]
     pub(super) fn inertia(&self) -> f64 {
@@ -160,8 +166,7 @@ impl Contact {
         self.given_a = (DVec3::from_slice(loads), DVec3::from_slice(&loads[3..]) * p.inverse_radius);
         if let With::Member(b) = self.with {
             let q = &members[b].ball;
-            self.given_b =
-                (self.given_a.0 * (-p.mass * q.inverse_mass), self.given_a.1 * (q.turning / p.turning));
+            self.given_b = (self.given_a.0 * (-p.mass * q.inverse_mass), self.given_a.1 * (q.turning / p.turning));
         }
     }
 
@@ -202,7 +207,7 @@ impl Contact {
         let (mut v_b, mut w_b) = (b.v - self.given_b.0, b.w - self.given_b.1);
         let (p, q) = (&a.ball, &b.ball);
         let n = self.push.last;
-        let approach = -(v_a - v_b).dot(n);
+        let approach = -(v_a - v_b).dot(n) - self.push.slack;
         self.load = approach.max(0.0);
         (self.given_a, self.given_b) = (NOTHING, NOTHING);
         if approach > 0.0 {
@@ -232,6 +237,8 @@ pub(super) struct Push {
     pub(super) last: DVec3,
     /// Direction of the normal impulse, scaled so that a unit changes the final normal velocity by one unit per mass.
     direction: DVec3,
+    /// Normal velocity at the end, towards the other and in m/s, that the contact allows: what only closes the gap that it had, or has opened on the way.
+    slack: f64,
 }
 
 impl Push {
@@ -241,7 +248,13 @@ impl Push {
         let sum = first + last;
         let along = sum.dot(last);
         // Normals that turn by more than a right angle within a step: the step was too long for this edge; use the last.
-        Self { last, direction: if along > 0.5 { sum / along } else { last } }
+        Self { last, direction: if along > 0.5 { sum / along } else { last }, slack: 0.0 }
+    }
+
+    /// The same for a contact with a gap at the start of a step of `h` seconds, and the normal velocity `parting` there: it bears only what would overlap at the end.
+    #[inline]
+    pub(super) fn across(self, gap: f64, parting: f64, h: f64) -> Self {
+        Self { slack: (2.0 * gap / h + parting).max(0.0), ..self }
     }
 
     /// A push along a normal that does not turn.
@@ -254,10 +267,11 @@ impl Push {
 /// Approach stopped, velocity and spin of a ball after a surface has stopped it and rubbed it. Mass plays no part.
 #[inline(always)]
 pub(super) fn respond(ball: &Ball, law: &Law, push: &Push, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
-    let approach = -v.dot(push.last);
+    let approach = -v.dot(push.last) - push.slack;
     if approach > 0.0 {
-        let (v, w) = rub(ball, law, (push.last, approach), v + push.direction * approach, w);
-        (approach, v, w)
+        let left = push.last * -push.slack;
+        let (v, w) = rub(ball, law, (push.last, approach), v + push.direction * approach - left, w);
+        (approach, v + left, w)
     } else {
         (0.0, v, w)
     }
