@@ -11,7 +11,7 @@
 //! | `rest_residual` | g·step | 2e-2 | 1e-2 | 1e-3 | 3e-4 | 1e-8–1e-1 | large: slopes steeper than friction allows hold bodies | what a static solution may leave unbalanced |
 //! | `slip_turn` | rad | 0.5 | 0.3 | 0.1 | 0.03 | 0.005–0.5 | large: direction of friction within an impact is off, error ∝ turn³ | Darboux–Keller steps of third order |
 //! | `gap` | body size | 1e-4 | 1e-5 | 1e-6 | 1e-8 | 1e-9–1e-3 | large: bodies float; small: more steps of conservative advancement | first contact of turning bodies; spheres need none |
-//! | `events` | count per body | 2e3 | 5e3 | 5e4 | 5e5 | 1e2–1e7 | small: long runs end as `OutOfEvents` | a guard; ten marbles need about 40 each |
+//! | `events` | count per body | 2e4 | 2e4 | 5e4 | 5e5 | 1e2–1e7 | small: long runs end as `OutOfEvents` | a guard; ten marbles need about 40 each |
 //!
 //! **Which preset to take.** `Standard` for sampling, `Draft` while looking for a scenario that works (a quarter less time), `Fine` for a trajectory that is shown (two to three times the
 //! time), `Reference` only to judge the others (six times, and far more where bodies lie in heaps). Free flight, bounces, sliding and rolling on planes are exact at every preset: a
@@ -113,7 +113,7 @@ impl Accuracy {
                 rest_residual: 2e-2,
                 slip_turn: 0.5,
                 gap: 1e-4,
-                events: 2_000,
+                events: 20_000,
             },
             Preset::Standard => Self {
                 settle: 3e-2,
@@ -125,7 +125,7 @@ impl Accuracy {
                 rest_residual: 1e-2,
                 slip_turn: 0.3,
                 gap: 1e-5,
-                events: 5_000,
+                events: 20_000,
             },
             Preset::Fine => Self {
                 settle: 3e-3,

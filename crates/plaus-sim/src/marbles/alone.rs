@@ -95,13 +95,14 @@ impl Alone<'_> {
         let (world, scenery, radius) = (self.world, &self.world.scenery, self.ball.radius);
         let (start, start_v, start_w) = (body.path.x, body.path.v, body.spin);
         let pull = if body.phase == Phase::Step { body.path.a } else { DVec3::ZERO };
-        let (gap, parting) = (self.foot.distance - radius, start_v.dot(self.foot.normal));
+        let (gap, first) = (self.foot.distance - radius, self.foot.normal);
+        let motion = [start_v, start_v - start_w.cross(first) * radius];
         let mut x = start + (start_v + pull * (0.5 * h)) * h;
         let (mut load, mut v, mut w) = (0.0, start_v, start_w);
         // The first pass predicts where the step ends.
         for _ in 0..2 {
-            let push = Push::new(self.foot.normal, scenery.foot_near(self.surface, x).normal);
-            (load, v, w) = self.respond(&push.across(gap, parting, h), start_v + world.gravity * h, start_w);
+            let push = Push::new(first, scenery.foot_near(self.surface, x).normal).across(first, gap, motion, h);
+            (load, v, w) = self.respond(&push, start_v + world.gravity * h, start_w);
             x = start + (start_v + v) * (0.5 * h);
         }
         let foot = scenery.foot_near(self.surface, x);

@@ -286,15 +286,8 @@ impl MarbleScratch {
                     With::Surface(s) => world.scenery.foot_near(s, x).normal,
                     With::Member(b) => (x - self.members[b].x).normalize_or(first),
                 };
-                let (reach, other) = match c.with {
-                    With::Surface(_) => (self.members[c.a].ball.radius, DVec3::ZERO),
-                    With::Member(b) => {
-                        let other = &self.members[b];
-                        (self.members[c.a].ball.radius + other.ball.radius, other.start_v)
-                    }
-                };
-                let parting = (self.members[c.a].start_v - other).dot(first);
-                c.push = Push::new(first, last).across(c.foot.distance - reach, parting, h);
+                let (reach, motion) = c.start(&self.members);
+                c.push = Push::new(first, last).across(first, c.foot.distance - reach, motion, h);
             }
             for m in &mut self.members {
                 m.set_free(m.start_v + world.gravity * h, m.start_w);

@@ -144,6 +144,20 @@ impl Contact {
         (self.given_a, self.given_b) = (NOTHING, NOTHING);
     }
 
+    /// Distance of the centre at which it touches; relative velocities of the centres and of the touching points at the start.
+    pub(super) fn start(&self, members: &[Member]) -> (f64, [DVec3; 2]) {
+        let (a, n) = (&members[self.a], self.foot.normal);
+        let surface = a.start_w * a.ball.radius;
+        match self.with {
+            With::Surface(_) => (a.ball.radius, [a.start_v, a.start_v - surface.cross(n)]),
+            With::Member(b) => {
+                let b = &members[b];
+                let v = a.start_v - b.start_v;
+                (a.ball.radius + b.ball.radius, [v, v - (surface + b.start_w * b.ball.radius).cross(n)])
+            }
+        }
+    }
+
     /// Whether it bears a load.
     pub(super) fn is_loaded(&self) -> bool {
         self.load != 0.0
@@ -211,14 +225,17 @@ impl Contact {
         self.load = approach.max(0.0);
         (self.given_a, self.given_b) = (NOTHING, NOTHING);
         if approach > 0.0 {
-            let load = approach / self.inverse;
-            let push = self.push.direction * load;
-            let relative = v_a - v_b + push * self.inverse;
+            let relative = v_a - v_b + self.push.direction * approach;
             let slip = relative - (w_a * p.radius + w_b * q.radius).cross(n);
             let slip = slip - n * slip.dot(n);
-            let (speed, limit) = (slip.length(), self.law.friction * load);
-            let drag = if speed <= limit * self.compliance { slip / -self.compliance } else { slip * (-limit / speed) };
-            let (impulse, turn) = (push + drag, drag.cross(n));
+            // Both in units of relative velocity of the centres, until they are impulses.
+            let stick = slip * (-self.inverse / self.compliance);
+            let sticks = stick.length() <= self.law.friction * approach;
+            let (load, drag) =
+                if sticks { (approach, stick) } else { self.push.drag(slip, self.law.friction, approach) };
+            let drag = drag / self.inverse;
+            let impulse = self.push.direction * (load / self.inverse) + drag;
+            let turn = drag.cross(self.push.direction);
             self.given_a = (impulse * p.inverse_mass, turn * p.turning);
             self.given_b = (impulse * -q.inverse_mass, turn * q.turning);
             (v_a, w_a) = (v_a + self.given_a.0, w_a + self.given_a.1);
@@ -239,6 +256,8 @@ pub(super) struct Push {
     direction: DVec3,
     /// Normal velocity at the end, towards the other and in m/s, that the contact allows: what only closes the gap that it had, or has opened on the way.
     slack: f64,
+    /// Slip of the touching points at the start, in m/s.
+    slip: DVec3,
 }
 
 impl Push {
@@ -248,13 +267,31 @@ impl Push {
         let sum = first + last;
         let along = sum.dot(last);
         // Normals that turn by more than a right angle within a step: the step was too long for this edge; use the last.
-        Self { last, direction: if along > 0.5 { sum / along } else { last }, slack: 0.0 }
+        Self { last, direction: if along > 0.5 { sum / along } else { last }, slack: 0.0, slip: DVec3::ZERO }
     }
 
-    /// The same for a contact with a gap at the start of a step of `h` seconds, and the normal velocity `parting` there: it bears only what would overlap at the end.
+    /// The same for a contact with a gap at the start of a step of `h` seconds, where `v` is the relative velocity of the centres and `slip` that of the touching points: it bears only what
+    /// would overlap at the end.
     #[inline]
-    pub(super) fn across(self, gap: f64, parting: f64, h: f64) -> Self {
-        Self { slack: (2.0 * gap / h + parting).max(0.0), ..self }
+    pub(super) fn across(self, first: DVec3, gap: f64, [v, slip]: [DVec3; 2], h: f64) -> Self {
+        Self { slack: (2.0 * gap / h + v.dot(first)).max(0.0), slip: slip - first * slip.dot(first), ..self }
+    }
+
+    /// Sliding friction of at most `friction` times the load against the mean of the slip at the start and of `slip`, which is that at the end but for it: with it, the load that stops
+    /// `approach`. Both in units of the velocity that they change. The mean is what the step slides along, to second order, and friction against it never adds energy.
+    #[inline]
+    fn drag(&self, slip: DVec3, friction: f64, approach: f64) -> (f64, DVec3) {
+        let mean = if self.slip.dot(slip) > 0.0 { self.slip + slip } else { slip };
+        let across = mean - self.direction * (mean.dot(self.direction) / self.direction.length_squared());
+        let along = across.normalize_or_zero();
+        // Friction half-way lifts or presses a little at the end.
+        let size = friction * self.direction.length();
+        let lifts = 1.0 - size * along.dot(self.last);
+        if lifts > 0.5 {
+            let load = approach / lifts;
+            return (load, along * (-size * load));
+        }
+        (approach, slip.normalize_or_zero() * (-friction * approach))
     }
 
     /// A push along a normal that does not turn.
@@ -270,18 +307,23 @@ pub(super) fn respond(ball: &Ball, law: &Law, push: &Push, v: DVec3, w: DVec3) -
     let approach = -v.dot(push.last) - push.slack;
     if approach > 0.0 {
         let left = push.last * -push.slack;
-        let (v, w) = rub(ball, law, (push.last, approach), v + push.direction * approach - left, w);
-        (approach, v + left, w)
+        let (load, v, w) = rub(ball, law, push, approach, v + push.direction * approach - left, w);
+        (load, v + left, w)
     } else {
         (0.0, v, w)
     }
 }
 
-/// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under a load that stopped `approach`.
+/// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under a load that stopped `approach`. Slip is that at the end of the step; friction's lever
+/// is the normal half-way, so that a spin about the normal follows it.
 #[inline(always)]
-fn rub(ball: &Ball, law: &Law, (n, approach): (DVec3, f64), v: DVec3, w: DVec3) -> (DVec3, DVec3) {
-    let about = w.dot(n);
-    let drilled = (about.abs() - law.spinning * approach * ball.lever).max(0.0).copysign(about);
+fn rub(ball: &Ball, law: &Law, push: &Push, approach: f64, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
+    let n = push.last;
+    let turned = |drag: DVec3| w + drag.cross(push.direction) * ball.lever;
+    let drilled = |w: DVec3| {
+        let about = w.dot(n);
+        ((about.abs() - law.spinning * approach * ball.lever).max(0.0).copysign(about), about)
+    };
     let surface = w.cross(n) * ball.radius;
     let free = (v + surface * ball.gyration) * ball.share;
     let speed = free.length();
@@ -289,16 +331,13 @@ fn rub(ball: &Ball, law: &Law, (n, approach): (DVec3, f64), v: DVec3, w: DVec3) 
     let rolling = if resisted > 0.0 { free * (resisted / speed) } else { DVec3::ZERO };
     let limit = law.friction * approach;
     if (rolling - v).length_squared() <= limit * limit {
-        return (rolling, n.cross(rolling) * ball.inverse_radius + n * drilled);
+        let (left, _) = drilled(turned(rolling - v));
+        return (approach, rolling, n.cross(rolling) * ball.inverse_radius + n * left);
     }
-    let slip = v - surface;
-    let speed = slip.length();
-    if speed == 0.0 {
-        return (v, w + n * (drilled - about));
-    }
-    let drag = slip * (-limit / speed);
-    if law.holds_from_turning() && surface == DVec3::ZERO {
-        return (v + drag, w + n * (drilled - about));
-    }
-    (v + drag, w + drag.cross(n) * ball.lever + n * (drilled - about))
+    let (load, drag) = push.drag(v - surface, law.friction, approach);
+    let v = v + push.direction * (load - approach) + drag;
+    let held = law.holds_from_turning() && surface == DVec3::ZERO;
+    let w = if held { w } else { turned(drag) };
+    let (left, about) = drilled(w);
+    (load, v, w + n * (left - about))
 }
