@@ -31,9 +31,12 @@ pub struct MarbleScratch {
 /// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half, so that little is still to come.
 const CREEP: f64 = 0.03;
 
-/// How many times its own size the change of a sweep is believed to have still to come, at least, since sweeps that are combined do not shrink evenly. Default 40; danger: less takes groups
+/// How many times its own size the change of a sweep is believed to have still to come, at least, since sweeps that are combined do not shrink evenly. Default 20; danger: less takes groups
 /// that could rest for moving ones, and they step on.
-const DOUBT: f64 = 40.0;
+const DOUBT: f64 = 20.0;
+
+/// How much larger a change ends the sweeps that only predict where a step ends. Default 10.
+const PREDICT: f64 = 10.0;
 
 /// How often a step is halved at most that would lift its members more than their motion can pay for. Default 3.
 pub(super) const HALVINGS: u32 = 3;
@@ -278,7 +281,7 @@ impl MarbleScratch {
             m.x = m.start + (m.start_v + pull * (0.5 * h)) * h;
         }
         // The first pass predicts where the step ends.
-        for _ in 0..2 {
+        for tolerance in [PREDICT, 1.0] {
             for c in &mut self.contacts {
                 let x = self.members[c.a].x;
                 let first = c.foot.normal;
@@ -292,7 +295,7 @@ impl MarbleScratch {
             for m in &mut self.members {
                 m.set_free(m.start_v + world.gravity * h, m.start_w);
             }
-            self.relax(world.accuracy.sweeps, world.accuracy.sweep_tolerance * world.strength * h);
+            self.relax(world.accuracy.sweeps, tolerance * world.accuracy.sweep_tolerance * world.strength * h);
             for m in &mut self.members {
                 m.x = m.start + (m.start_v + m.v) * (0.5 * h);
             }

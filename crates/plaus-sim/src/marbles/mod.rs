@@ -144,6 +144,12 @@ impl Marbles {
         self.gravity
     }
 
+    /// All tolerances.
+    #[must_use]
+    pub fn accuracy(&self) -> Accuracy {
+        self.accuracy
+    }
+
     /// Moves mesh vertices (see [`crate::scenery::Mesh::move_vertices`]); states of this world stay valid only if they have not started.
     ///
     /// # Errors

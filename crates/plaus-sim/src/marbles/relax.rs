@@ -7,8 +7,11 @@
 //! Source: Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12 (1965); Walker & Ni, "Anderson acceleration for fixed-point iterations", SIAM J. Numer. Anal.
 //! 49 (2011), for the form used here and its kinship with GMRES.
 
-/// Plain sweeps before any are combined. Default 4: most groups are done by then.
-const PLAIN: u32 = 4;
+/// Plain sweeps before any are combined. Default 8: most groups are done by then.
+const PLAIN: u32 = 8;
+
+/// Sweeps that may be done at least, whatever the preset says: a draft too must not let heavy balls sink. Default 60.
+const FEWEST: u32 = 60;
 
 /// How many changes are combined at most. Default 12; danger: few are not enough for long chains of unequal masses, many cost time and go astray where contacts open and close.
 const WINDOW: usize = 12;
@@ -44,6 +47,7 @@ pub(super) fn relax<S: Swept>(
     mut judge: impl FnMut(&mut S, f64) -> Verdict,
 ) -> bool {
     memory.forget();
+    let most = most.max(FEWEST);
     for k in 0..most {
         let remembers = k >= PLAIN && k + 1 < most;
         if remembers {
