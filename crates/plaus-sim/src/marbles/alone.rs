@@ -113,8 +113,9 @@ impl Alone<'_> {
         End { x, v, w }
     }
 
-    /// Takes back what discretisation has added to the energy, as [`guard`](super::guard) does: from the motion downhill and from slip, not from rolling or gliding across the slope.
-    /// `fallen` is the work of gravity per unit mass. False where there was not enough to take it from.
+    /// Takes back what discretisation has added to the energy, as [`guard`](super::guard) does: from the motion
+    /// downhill and from slip, not from rolling or gliding across the slope. `fallen` is the work of gravity per unit
+    /// mass. False where there was not enough to take it from.
     fn guard(&self, start: (DVec3, DVec3), fallen: f64, end: &mut End) -> bool {
         let (n, gravity, End { v, w, .. }) = (self.foot.normal, self.world.gravity, *end);
         let inertia = self.ball.inertia() * self.ball.inverse_mass;

@@ -30,7 +30,7 @@ impl MarbleSpec {
     pub(crate) fn check(&self, body: usize) -> Result<(), WorldError> {
         for (field, value) in [("radius", self.radius), ("mass", self.mass), ("gyration", self.gyration)] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(WorldError::BadBody { body, field, value, expected: "a positive number" });
+                return Err(WorldError::BadBody { body, field, value, expected: "a positive, finite number" });
             }
         }
         Ok(())

@@ -1,11 +1,14 @@
 //! One marble on one plane: sliding, rolling, spinning and rest in closed form.
 //!
-//! With normal load g_n = −g·n and k = I/(m r²), the slip `u = v − r ω × n` obeys `u' = g_t − (1 + 1/k) μ g_n û`. It keeps its direction where the tangential gravity
-//! g_t vanishes or is parallel to it; then the path is a parabola until `|u| = 0` (on a level plane with k = 2/5 at `t = 2|u|/(7 μ g)`). Rolling has
-//! `v' = g_t/(1+k)`, against rolling resistance c less `c g_n/(1+k)` along the motion, which stops it. Everything else (a curved way on an incline) belongs to `step`.
+//! With normal load g_n = −g·n and k = I/(m r²), the slip `u = v − r ω × n` obeys `u' = g_t − (1 + 1/k) μ g_n û`. It
+//! keeps its direction where the tangential gravity g_t vanishes or is parallel to it; then the path is a parabola
+//! until `|u| = 0` (on a level plane with k = 2/5 at `t = 2|u|/(7 μ g)`). Rolling has `v' = g_t/(1+k)`, against rolling
+//! resistance c less `c g_n/(1+k)` along the motion, which stops it. Everything else (a curved way on an incline)
+//! belongs to `step`.
 //!
-//! Deviation: rolling resistance acts only while rolling, not while sliding, as is usual in billiards models (Leckie & Greenspan 2006), save that a ball that slides without turning is
-//! not made to turn where the resistance c is at least µ: friction's torque µ g_n r is then within what resists.
+//! Deviation: rolling resistance acts only while rolling, not while sliding, as is usual in billiards models (Leckie &
+//! Greenspan 2006), save that a ball that slides without turning is not made to turn where the resistance c is at least
+//! µ: friction's torque µ g_n r is then within what resists.
 
 use super::Marbles;
 use super::body::{Ending, Marble, Phase};
@@ -13,7 +16,8 @@ use crate::roots::fall_of_quadratic;
 use crate::scenery::Surface;
 use glam::DVec3;
 
-/// Directions count as parallel, and slip or tangential gravity as zero, up to this part. Dimensionless; 1e-12: a few thousand rounding errors.
+/// Directions count as parallel, and slip or tangential gravity as zero, up to this part. Dimensionless; 1e-12: a few
+/// thousand rounding errors.
 const PARALLEL: f64 = 1e-12;
 
 /// The forces of one marble on one plane, per unit mass.

@@ -1,13 +1,16 @@
 //! Lasting contact without a closed form: a group of marbles on its own adaptive clock.
 //!
-//! Each step solves the contacts' impulses together (block Gauss–Seidel with exact Coulomb blocks, which [`relax`] makes converge whatever the masses, until no contact is left
-//! approaching by more than `sweep_tolerance · g · step`), moves every centre along the parabola that joins the two ends, and puts the centres back onto the surfaces they touch
-//! ([`lift`]). Between its ends a step is a parabola like any other motion, so collisions with others are found exactly on the path that is really taken. Energy never grows, and
-//! what takes back what discretisation adds leaves every momentum that the laws keep ([`guard`]).
+//! Each step solves the contacts' impulses together (block Gauss–Seidel with exact Coulomb blocks, which [`relax`]
+//! makes converge whatever the masses, until no contact is left approaching by more than `sweep_tolerance · g · step`),
+//! moves every centre along the parabola that joins the two ends, and puts the centres back onto the surfaces they
+//! touch ([`lift`]). Between its ends a step is a parabola like any other motion, so collisions with others are found
+//! exactly on the path that is really taken. Energy never grows, and what takes back what discretisation adds leaves
+//! every momentum that the laws keep ([`guard`]).
 //!
-//! What that costs, and where it is not exact: an impact on one member ends the step of the whole group, so a pile of n balls that collapses costs n times its impacts, and where impacts
-//! come faster than steps, a step's correction of positions takes effect only in part. Balls then reach into each other by what sweeps leave of approach, `sweep_tolerance · g · step²`
-//! per step (`cargo run --release -p plaus-sim --example pile -- 1.5`).
+//! What that costs, and where it is not exact: an impact on one member ends the step of the whole group, so a pile of n
+//! balls that collapses costs n times its impacts, and where impacts come faster than steps, a step's correction of
+//! positions takes effect only in part. Balls then reach into each other by what sweeps leave of approach,
+//! `sweep_tolerance · g · step²` per step (`cargo run --release -p plaus-sim --example pile -- 1.5`).
 
 use super::Marbles;
 use super::body::{Marble, Phase};
@@ -28,11 +31,13 @@ pub struct MarbleScratch {
     memory: Memory,
 }
 
-/// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half, so that little is still to come.
+/// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half,
+/// so that little is still to come.
 const CREEP: f64 = 0.03;
 
-/// How many times its own size the change of a sweep is believed to have still to come, at least, since sweeps that are combined do not shrink evenly. Default 20; danger: less takes groups
-/// that could rest for moving ones, and they step on.
+/// How many times its own size the change of a sweep is believed to have still to come, at least, since sweeps that are
+/// combined do not shrink evenly. Default 20; danger: less takes groups that could rest for moving ones, and they step
+/// on.
 const DOUBT: f64 = 20.0;
 
 /// How much larger a change ends the sweeps that only predict where a step ends. Default 10.
@@ -44,15 +49,17 @@ pub(super) const HALVINGS: u32 = 3;
 /// Overlap over the radius that rest may keep. Default 2e-5.
 pub(super) const OVERLAP: f64 = 2e-5;
 
-/// Approach along a lasting contact that a step may start with, over the speed at which contacts settle. Default 0.02: a path then dips into the surface by less than
-/// 1e-4 radii at the standard preset.
+/// Approach along a lasting contact that a step may start with, over the speed at which contacts settle. Default 0.02:
+/// a path then dips into the surface by less than 1e-4 radii at the standard preset.
 pub(super) const APPROACH: f64 = 0.02;
 
-/// Slip of the touching points over the centre's speed up to which a ball counts as rolling where the length of a step is chosen. Default 0.01; danger: where it still slips, steps are
-/// longer by up to `√(1 + gyration)` than its sliding asks for.
+/// Slip of the touching points over the centre's speed up to which a ball counts as rolling where the length of a step
+/// is chosen. Default 0.01; danger: where it still slips, steps are longer by up to `√(1 + gyration)` than its sliding
+/// asks for.
 const ROLLS: f64 = 0.01;
 
-/// Gravity as it moves the centre of a ball over a surface with this normal: one that rolls turns a part of it into spin.
+/// Gravity as it moves the centre of a ball over a surface with this normal: one that rolls turns a part of it into
+/// spin.
 #[inline]
 pub(super) fn moving_strength(world: &Marbles, ball: &Ball, normal: DVec3, v: DVec3, w: DVec3) -> f64 {
     let slip = v - w.cross(normal) * ball.radius;
@@ -145,7 +152,8 @@ impl MarbleScratch {
         }
     }
 
-    /// Length of the next step: a part of the time in which gravity, or the motion, covers the curvature of what is touched.
+    /// Length of the next step: a part of the time in which gravity, or the motion, covers the curvature of what is
+    /// touched.
     fn step_length(&self, world: &Marbles) -> f64 {
         let mut shortest = f64::INFINITY;
         for c in &self.contacts {
@@ -227,8 +235,8 @@ impl MarbleScratch {
         holds
     }
 
-    /// Solves all contacts for members whose velocities are free of them, starting from the impulses that the contacts hold, until a sweep
-    /// changes no velocity by more than `enough`, or `most` sweeps are done.
+    /// Solves all contacts for members whose velocities are free of them, starting from the impulses that the contacts
+    /// hold, until a sweep changes no velocity by more than `enough`, or `most` sweeps are done.
     fn relax(&mut self, most: u32, enough: f64) {
         for c in &self.contacts {
             c.apply(&mut self.members);
@@ -302,7 +310,8 @@ impl MarbleScratch {
         }
     }
 
-    /// Puts centres back onto what they touch: first towards what bears a load, one contact after the other with the scenery last, then only out of what they still are in.
+    /// Puts centres back onto what they touch: first towards what bears a load, one contact after the other with the
+    /// scenery last, then only out of what they still are in.
     fn put_back(&mut self, world: &Marbles) {
         for c in self.contacts.iter().rev() {
             let (missing, normal) = overlap(world, &self.members, c);
@@ -333,7 +342,8 @@ struct Loads<'g> {
 }
 
 impl Swept for Loads<'_> {
-    /// Solves each contact twice, up and down again: the lowest come last, so that nothing is left moving into the scenery. The largest change of a velocity on the way down.
+    /// Solves each contact twice, up and down again: the lowest come last, so that nothing is left moving into the
+    /// scenery. The largest change of a velocity on the way down.
     fn sweep(&mut self) -> f64 {
         for c in &mut *self.contacts {
             c.solve(self.members);

@@ -1,8 +1,11 @@
-//! What discretisation adds to the energy of a step is taken from those motions only that the contacts and gravity act on.
+//! What discretisation adds to the energy of a step is taken from those motions only that the contacts and gravity act
+//! on.
 //!
-//! A group moves rigidly in some ways without any contact or gravity doing work: two balls over a frictionless floor go on together and turn about each other, a ball rolls around a bowl.
-//! The momentum of each such way is kept by the laws, so the guard must not take from it: the velocities are split into that part and the rest, which are orthogonal in the kinetic
-//! energy, and only the rest is made slower. Where it has not enough, as at the turning point of a swing, it is stopped and the remainder of what was added stays.
+//! A group moves rigidly in some ways without any contact or gravity doing work: two balls over a frictionless floor go
+//! on together and turn about each other, a ball rolls around a bowl. The momentum of each such way is kept by the
+//! laws, so the guard must not take from it: the velocities are split into that part and the rest, which are orthogonal
+//! in the kinetic energy, and only the rest is made slower. Where it has not enough, as at the turning point of a
+//! swing, it is stopped and the remainder of what was added stays.
 
 use super::Marbles;
 use super::solve::{Contact, Member, With};

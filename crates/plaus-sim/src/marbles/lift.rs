@@ -1,7 +1,8 @@
 //! Centres that overlap what they touch are put back: by the least motion, weighed by mass, that leaves no overlap.
 //!
-//! That is a linear complementarity problem like that of the impulses, with overlaps in the place of approaches, and the same sweeps solve it; it is posed anew where surfaces have
-//! turned on the way. Motions between balls keep their common centre of mass.
+//! That is a linear complementarity problem like that of the impulses, with overlaps in the place of approaches, and
+//! the same sweeps solve it; it is posed anew where surfaces have turned on the way. Motions between balls keep their
+//! common centre of mass.
 
 use super::Marbles;
 use super::relax::{Memory, Swept, Verdict, relax};

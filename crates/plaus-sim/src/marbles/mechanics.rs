@@ -32,14 +32,16 @@ impl Marbles {
         self.rattles[index]
     }
 
-    /// Separating speed up to which a lasting contact goes on. After an impact it is that of a rebound that settles; what else parts a contact is the error of a step, and what comes back
-    /// from below the height that the preset doesn't see has not parted, however elastic the law.
+    /// Separating speed up to which a lasting contact goes on. After an impact it is that of a rebound that settles;
+    /// what else parts a contact is the error of a step, and what comes back from below the height that the preset
+    /// doesn't see has not parted, however elastic the law.
     #[inline]
     pub(crate) fn parting_speed(&self, scale: f64, law: &Law, was_hit: bool) -> f64 {
         if was_hit { self.settle_speed(scale, law) } else { self.accuracy.settle * scale }
     }
 
-    /// Whether an impact is the begin of lasting contact: its rebound would be unseen, or its approach is lost in rounding.
+    /// Whether an impact is the begin of lasting contact: its rebound would be unseen, or its approach is lost in
+    /// rounding.
     fn lasts(&self, scale: f64, law: &Law, meeting: &Approach) -> bool {
         let rebound = law.restitution * meeting.speed;
         meeting.rattles && law.restitution < 1.0
@@ -47,7 +49,8 @@ impl Marbles {
             || self.is_unseen(scale, rebound, meeting.pressed)
     }
 
-    /// Whether a rebound is so low that nobody sees it at any preset. What is pressed on at `pressed` m/s² rises by v²/(2 · pressed).
+    /// Whether a rebound is so low that nobody sees it at any preset. What is pressed on at `pressed` m/s² rises by
+    /// v²/(2 · pressed).
     fn is_unseen(&self, scale: f64, rebound: f64, pressed: f64) -> bool {
         let height = ROUNDING.min(0.5 * self.accuracy.settle * self.accuracy.settle);
         // The square of the scale is gravity times radius.
@@ -70,7 +73,8 @@ impl Marbles {
     }
 }
 
-/// Approach over the speed of the faster body that is lost in rounding. Dimensionless; default 1e-12, a few thousand rounding errors.
+/// Approach over the speed of the faster body that is lost in rounding. Dimensionless; default 1e-12, a few thousand
+/// rounding errors.
 const GRAZE: f64 = 1e-12;
 
 /// Two things about to collide.
@@ -179,7 +183,8 @@ impl Mechanics for Marbles {
         let meeting = Approach { speed: approach, fastest, pressed, rattles };
         let settles = self.lasts(self.speed_scale(index), law, &meeting);
         let known = body.contacts().contains(&surface);
-        // A new contact whose approach is lost in rounding is taken as one that lasts: settling decides what becomes of it.
+        // A new contact whose approach is lost in rounding is taken as one that lasts: settling decides what becomes of
+        // it.
         if known && (settles || approach <= 0.0) {
             return None;
         }

@@ -14,7 +14,7 @@ mod step;
 pub use body::{Marble, MarbleSpec, Phase, Start};
 
 use crate::accuracy::Accuracy;
-use crate::error::WorldError;
+use crate::error::{WorldError, first_not_finite};
 use crate::material::Laws;
 use crate::queue::Place;
 use crate::scenery::Scenery;
@@ -69,8 +69,8 @@ impl Marbles {
     pub fn new(world: MarbleWorld) -> Result<Self, WorldError> {
         let MarbleWorld { specs, laws, scenery, gravity, accuracy, duration } = world;
         accuracy.check()?;
-        if !gravity.is_finite() {
-            return Err(WorldError::BadNumber { field: "gravity", value: f64::NAN, expected: "finite components" });
+        if let Some(value) = first_not_finite(&[gravity]) {
+            return Err(WorldError::BadNumber { field: "gravity", value, expected: "finite components" });
         }
         if !(duration > 0.0 && duration.is_finite()) {
             return Err(WorldError::BadNumber {

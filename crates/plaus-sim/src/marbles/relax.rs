@@ -1,11 +1,14 @@
 //! Sweeps over coupled contacts that converge whatever the masses: block Gauss–Seidel with Anderson's acceleration.
 //!
-//! A sweep alone carries a load one body further and moves what is heavy by what is light: a ball of 10⁶ masses on a small one takes 10⁶ sweeps. Where a few sweeps have not been enough,
-//! the next begins at the combination of the last ones whose change would be least if sweeps were linear. For contacts that stay as they are (open, sticking or sliding) they are, and then
-//! as many sweeps as there are independent loads are enough, like a direct solution; where contacts change, the sweep itself has the last word, so that no law of contact is bent.
+//! A sweep alone carries a load one body further and moves what is heavy by what is light: a ball of 10⁶ masses on a
+//! small one takes 10⁶ sweeps. Where a few sweeps have not been enough, the next begins at the combination of the last
+//! ones whose change would be least if sweeps were linear. For contacts that stay as they are (open, sticking or
+//! sliding) they are, and then as many sweeps as there are independent loads are enough, like a direct solution; where
+//! contacts change, the sweep itself has the last word, so that no law of contact is bent.
 //!
-//! Source: Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12 (1965); Walker & Ni, "Anderson acceleration for fixed-point iterations", SIAM J. Numer. Anal.
-//! 49 (2011), for the form used here and its kinship with GMRES.
+//! Source: Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12 (1965); Walker & Ni, "Anderson
+//! acceleration for fixed-point iterations", SIAM J. Numer. Anal. 49 (2011), for the form used here and its kinship
+//! with GMRES.
 
 /// Plain sweeps before any are combined. Default 8: most groups are done by then.
 const PLAIN: u32 = 8;
@@ -13,10 +16,12 @@ const PLAIN: u32 = 8;
 /// Sweeps that may be done at least, whatever the preset says: a draft too must not let heavy balls sink. Default 60.
 const FEWEST: u32 = 60;
 
-/// How many changes are combined at most. Default 12; danger: few are not enough for long chains of unequal masses, many cost time and go astray where contacts open and close.
+/// How many changes are combined at most. Default 12; danger: few are not enough for long chains of unequal masses,
+/// many cost time and go astray where contacts open and close.
 const WINDOW: usize = 12;
 
-/// Part of a change that must be new for it to count. Dimensionless; default 1e-9: rounding of changes that are a millionth of what they change.
+/// Part of a change that must be new for it to count. Dimensionless; default 1e-9: rounding of changes that are a
+/// millionth of what they change.
 const NEW: f64 = 1e-9;
 
 /// Growth of what a sweep changes at which what is remembered is forgotten: other contacts bear now. Default 4.
@@ -39,7 +44,8 @@ pub(super) enum Verdict {
     GoOn,
 }
 
-/// Sweeps until `judge`, asked with the system and the change left after each sweep, has enough, or `most` are done. Whether it had enough.
+/// Sweeps until `judge`, asked with the system and the change left after each sweep, has enough, or `most` are done.
+/// Whether it had enough.
 pub(super) fn relax<S: Swept>(
     system: &mut S,
     memory: &mut Memory,
@@ -77,7 +83,8 @@ pub(super) struct Memory {
     /// What the last sweep changed, and where it led.
     change: Vec<f64>,
     led_to: Vec<f64>,
-    /// How changes, and where they led, differed from sweep to sweep; `WINDOW` columns at most, the oldest is written over.
+    /// How changes, and where they led, differed from sweep to sweep; `WINDOW` columns at most, the oldest is written
+    /// over.
     changes: Vec<Vec<f64>>,
     leads: Vec<Vec<f64>>,
     /// Orthonormal directions of the changes, and their coefficients.

@@ -1,7 +1,8 @@
 //! One contact of a group, solved exactly given the others: the block of a Gauss–Seidel sweep.
 //!
-//! Impulses act along the normal half-way through the step and must leave no approach along the normal at its end. On a circle that reflects the velocity about the
-//! half-way normal, which keeps its length: the scheme is of second order and does not lose energy to curvature (it is RATTLE's idea).
+//! Impulses act along the normal half-way through the step and must leave no approach along the normal at its end. On a
+//! circle that reflects the velocity about the half-way normal, which keeps its length: the scheme is of second order
+//! and does not lose energy to curvature (it is RATTLE's idea).
 
 use super::MarbleSpec;
 use crate::material::Law;
@@ -46,7 +47,8 @@ impl Ball {
         }
     }
 
-    /// Velocity of its centre once it rolls without slip, from velocity and spin as they are: the momentum about the point of contact is kept.
+    /// Velocity of its centre once it rolls without slip, from velocity and spin as they are: the momentum about the
+    /// point of contact is kept.
     #[inline]
     pub(super) fn rolling(&self, n: DVec3, v: DVec3, w: DVec3) -> DVec3 {
         (v - n * v.dot(n) + w.cross(n) * (self.radius * self.gyration)) * self.share
@@ -144,7 +146,8 @@ impl Contact {
         (self.given_a, self.given_b) = (NOTHING, NOTHING);
     }
 
-    /// Distance of the centre at which it touches; relative velocities of the centres and of the touching points at the start.
+    /// Distance of the centre at which it touches; relative velocities of the centres and of the touching points at the
+    /// start.
     pub(super) fn start(&self, members: &[Member]) -> (f64, [DVec3; 2]) {
         let (a, n) = (&members[self.a], self.foot.normal);
         let surface = a.start_w * a.ball.radius;
@@ -254,7 +257,8 @@ pub(super) struct Push {
     pub(super) last: DVec3,
     /// Direction of the normal impulse, scaled so that a unit changes the final normal velocity by one unit per mass.
     direction: DVec3,
-    /// Normal velocity at the end, towards the other and in m/s, that the contact allows: what only closes the gap that it had, or has opened on the way.
+    /// Normal velocity at the end, towards the other and in m/s, that the contact allows: what only closes the gap that
+    /// it had, or has opened on the way.
     slack: f64,
     /// Slip of the touching points at the start, in m/s.
     slip: DVec3,
@@ -266,19 +270,21 @@ impl Push {
     pub(super) fn new(first: DVec3, last: DVec3) -> Self {
         let sum = first + last;
         let along = sum.dot(last);
-        // Normals that turn by more than a right angle within a step: the step was too long for this edge; use the last.
+        // Normals that turn by more than a right angle within a step: the step was too long for this edge; use the
+        // last.
         Self { last, direction: if along > 0.5 { sum / along } else { last }, slack: 0.0, slip: DVec3::ZERO }
     }
 
-    /// The same for a contact with a gap at the start of a step of `h` seconds, where `v` is the relative velocity of the centres and `slip` that of the touching points: it bears only what
-    /// would overlap at the end.
+    /// The same for a contact with a gap at the start of a step of `h` seconds, where `v` is the relative velocity of
+    /// the centres and `slip` that of the touching points: it bears only what would overlap at the end.
     #[inline]
     pub(super) fn across(self, first: DVec3, gap: f64, [v, slip]: [DVec3; 2], h: f64) -> Self {
         Self { slack: (2.0 * gap / h + v.dot(first)).max(0.0), slip: slip - first * slip.dot(first), ..self }
     }
 
-    /// Sliding friction of at most `friction` times the load against the mean of the slip at the start and of `slip`, which is that at the end but for it: with it, the load that stops
-    /// `approach`. Both in units of the velocity that they change. The mean is what the step slides along, to second order, and friction against it never adds energy.
+    /// Sliding friction of at most `friction` times the load against the mean of the slip at the start and of `slip`,
+    /// which is that at the end but for it: with it, the load that stops `approach`. Both in units of the velocity that
+    /// they change. The mean is what the step slides along, to second order, and friction against it never adds energy.
     #[inline]
     fn drag(&self, slip: DVec3, friction: f64, approach: f64) -> (f64, DVec3) {
         let mean = if self.slip.dot(slip) > 0.0 { self.slip + slip } else { slip };
@@ -314,8 +320,9 @@ pub(super) fn respond(ball: &Ball, law: &Law, push: &Push, v: DVec3, w: DVec3) -
     }
 }
 
-/// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under a load that stopped `approach`. Slip is that at the end of the step; friction's lever
-/// is the normal half-way, so that a spin about the normal follows it.
+/// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under a load that
+/// stopped `approach`. Slip is that at the end of the step; friction's lever is the normal half-way, so that a spin
+/// about the normal follows it.
 #[inline(always)]
 fn rub(ball: &Ball, law: &Law, push: &Push, approach: f64, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
     let n = push.last;

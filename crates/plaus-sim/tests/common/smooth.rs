@@ -1,7 +1,9 @@
-//! An integrator of another make, for comparison: balls in contacts that neither open nor change between sticking and sliding.
+//! An integrator of another make, for comparison: balls in contacts that neither open nor change between sticking and
+//! sliding.
 //!
-//! Forces are found from the constraints on accelerations (an index-1 system of differential and algebraic equations, solved by elimination), and the motion by the classical fourth-order
-//! method of Runge and Kutta with small steps. It shares nothing with the steps of lasting contact, which solve impulses on velocities.
+//! Forces are found from the constraints on accelerations (an index-1 system of differential and algebraic equations,
+//! solved by elimination), and the motion by the classical fourth-order method of Runge and Kutta with small steps. It
+//! shares nothing with the steps of lasting contact, which solve impulses on velocities.
 
 use glam::DVec3;
 
@@ -88,7 +90,8 @@ impl Smooth {
         }
     }
 
-    /// Of the touching points: relative velocity, how fast the normal turns, and the normal acceleration that keeps them together.
+    /// Of the touching points: relative velocity, how fast the normal turns, and the normal acceleration that keeps
+    /// them together.
     fn motion(&self, balls: &[Ball], touch: &Touch, n: DVec3) -> (DVec3, DVec3, f64) {
         let a = &balls[touch.a];
         let (v, w, distance) = match touch.with {
@@ -197,10 +200,8 @@ fn solve(columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
         for i in 0..n {
             if i != k {
                 let factor = rows[i][k] / rows[k][k];
-                for j in k..=n {
-                    let above = rows[k][j];
-                    rows[i][j] -= factor * above;
-                }
+                let above = rows[k].clone();
+                rows[i].iter_mut().zip(&above).skip(k).for_each(|(x, y)| *x -= factor * y);
             }
         }
     }
