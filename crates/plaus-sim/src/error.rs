@@ -2,6 +2,11 @@
 
 use glam::DVec3;
 
+/// The first of some vectors' coordinates that is NaN or infinite, for an error to name.
+pub(crate) fn first_not_finite(vectors: &[DVec3]) -> Option<f64> {
+    vectors.iter().flat_map(|v| v.to_array()).find(|x| !x.is_finite())
+}
+
 /// A world or a state that cannot be simulated, with the body, triangle or surface at fault.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WorldError {

@@ -17,7 +17,8 @@ pub struct Law {
     pub restitution: f64,
     /// Restitution of the tangential motion of a sphere; in [0, 1]. 0 sticks (the usual case), 1 is Garwin's super-ball.
     pub tangential: f64,
-    /// Rolling resistance: the resisting torque is at most this × normal force × radius; in [0, ∞). Glass on wood: 0.001–0.02.
+    /// Rolling resistance: the resisting torque is at most this × normal force × radius; in [0, ∞). Glass on wood: 0.001–0.02. It acts while the ball rolls, and where it is at least
+    /// `friction` it keeps a ball that slides without turning from turning.
     pub rolling: f64,
     /// Resistance to spinning about the normal: torque = this × normal force × radius; in [0, ∞).
     pub spinning: f64,
@@ -40,6 +41,12 @@ impl Law {
     #[must_use]
     pub const fn with_tangential(self, tangential: f64) -> Self {
         Self { tangential, ..self }
+    }
+
+    /// Whether sliding friction cannot turn a ball that does not turn: the resistance to rolling is as large as it.
+    #[inline]
+    pub(crate) fn holds_from_turning(&self) -> bool {
+        self.rolling >= self.friction
     }
 
     fn check(&self) -> Result<(), (&'static str, f64)> {

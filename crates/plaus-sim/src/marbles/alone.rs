@@ -1,10 +1,11 @@
 //! A step of one marble on one surface: what most steps are, without the bookkeeping of a group.
 //!
-//! It does what [`group`](super::group) does with a group of one contact, in the same order of operations, so that both give the same bits.
+//! It does what [`group`](super::group) does with a group of one contact.
 
 use super::Marbles;
 use super::body::{Marble, Phase};
-use super::group::{APPROACH, OVERLAP, moving_strength, time_scale};
+use super::group::{APPROACH, HALVINGS, OVERLAP, moving_strength, time_scale};
+use super::guard::FORGIVEN;
 use super::solve::{Ball, Push, respond};
 use crate::material::Law;
 use crate::scenery::{Foot, Surface};
@@ -74,34 +75,83 @@ impl Alone<'_> {
         v.length().max(w.length() * radius) <= world.accuracy.rest_residual * world.strength * h
     }
 
-    fn step(&self, body: &mut Marble, h: f64) {
-        let (world, scenery) = (self.world, &self.world.scenery);
+    fn step(&self, body: &mut Marble, mut h: f64) {
+        let (start, v, w) = (body.path.x, body.path.v, body.spin);
+        let mut halvings = HALVINGS;
+        let end = loop {
+            let mut end = self.end_of_step(body, h);
+            if self.guard((v, w), self.world.gravity.dot(end.x - start), &mut end) || halvings == 0 {
+                break end;
+            }
+            (halvings, h) = (halvings - 1, 0.5 * h);
+        };
+        body.begin(Phase::Step, (end.x - start - v * h) * (2.0 / (h * h)));
+        body.spin_rate = (end.w - w) / h;
+        body.end_velocity = end.v;
+        body.expiry = body.path.t + h;
+    }
+
+    fn end_of_step(&self, body: &Marble, h: f64) -> End {
+        let (world, scenery, radius) = (self.world, &self.world.scenery, self.ball.radius);
         let (start, start_v, start_w) = (body.path.x, body.path.v, body.spin);
         let pull = if body.phase == Phase::Step { body.path.a } else { DVec3::ZERO };
+        let (gap, first) = (self.foot.distance - radius, self.foot.normal);
+        let motion = [start_v, start_v - start_w.cross(first) * radius];
         let mut x = start + (start_v + pull * (0.5 * h)) * h;
         let (mut load, mut v, mut w) = (0.0, start_v, start_w);
         // The first pass predicts where the step ends.
         for _ in 0..2 {
-            let push = Push::new(self.foot.normal, scenery.foot_near(self.surface, x).normal);
+            let push = Push::new(first, scenery.foot_near(self.surface, x).normal).across(first, gap, motion, h);
             (load, v, w) = self.respond(&push, start_v + world.gravity * h, start_w);
             x = start + (start_v + v) * (0.5 * h);
         }
         let foot = scenery.foot_near(self.surface, x);
-        let missing = self.ball.radius - foot.distance;
+        let missing = radius - foot.distance;
         if missing > 0.0 || load != 0.0 {
             x += foot.normal * missing;
         }
-        let (mass, inertia) = (self.ball.mass, self.ball.inertia());
-        let kinetic = |v: DVec3, w: DVec3| 0.5 * (mass * v.length_squared() + inertia * w.length_squared());
-        let before = kinetic(start_v, start_w) + mass * world.gravity.dot(x - start);
-        let after = kinetic(v, w);
-        if after > before {
-            let part = if before > 0.0 { (before / after).sqrt() } else { 0.0 };
-            (v, w) = (v * part, w * part);
+        End { x, v, w }
+    }
+
+    /// Takes back what discretisation has added to the energy, as [`guard`](super::guard) does: from the motion
+    /// downhill and from slip, not from rolling or gliding across the slope. `fallen` is the work of gravity per unit
+    /// mass. False where there was not enough to take it from.
+    fn guard(&self, start: (DVec3, DVec3), fallen: f64, end: &mut End) -> bool {
+        let (n, gravity, End { v, w, .. }) = (self.foot.normal, self.world.gravity, *end);
+        let inertia = self.ball.inertia() * self.ball.inverse_mass;
+        let kinetic = |v: DVec3, w: DVec3| 0.5 * (v.length_squared() + inertia * w.length_squared());
+        let before = kinetic(start.0, start.1) + fallen;
+        if kinetic(v, w) <= before {
+            return true;
         }
-        body.begin(Phase::Step, (x - start - start_v * h) * (2.0 / (h * h)));
-        body.spin_rate = (w - start_w) / h;
-        body.end_velocity = v;
-        body.expiry = body.path.t + h;
+        let downhill = gravity - n * gravity.dot(n);
+        let steep = downhill.length_squared();
+        let level = steep <= LEVEL * LEVEL * gravity.length_squared();
+        let across = |u: DVec3| {
+            let u = u - n * u.dot(n);
+            if level { u } else { u - downhill * (u.dot(downhill) / steep) }
+        };
+        let (kept_v, kept_w) = if self.law.friction > 0.0 {
+            let rolls = across(self.ball.rolling(n, v, w));
+            (rolls, n.cross(rolls) / self.ball.radius + n * w.dot(n))
+        } else {
+            (across(v), w)
+        };
+        let rest = kinetic(v - kept_v, w - kept_w);
+        let left = before - kinetic(kept_v, kept_w);
+        let part = if rest > 0.0 { (left / rest).clamp(0.0, 1.0).sqrt() } else { 1.0 };
+        (end.v, end.w) = (kept_v + (v - kept_v) * part, kept_w + (w - kept_w) * part);
+        left >= -FORGIVEN * self.world.unseen * self.world.strength * self.ball.radius
     }
 }
+
+/// Where and how a step ends.
+#[derive(Clone, Copy)]
+struct End {
+    x: DVec3,
+    v: DVec3,
+    w: DVec3,
+}
+
+/// Tangential gravity over gravity up to which a surface counts as level. Default 1e-9.
+const LEVEL: f64 = 1e-9;

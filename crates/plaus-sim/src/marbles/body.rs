@@ -30,7 +30,7 @@ impl MarbleSpec {
     pub(crate) fn check(&self, body: usize) -> Result<(), WorldError> {
         for (field, value) in [("radius", self.radius), ("mass", self.mass), ("gyration", self.gyration)] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(WorldError::BadBody { body, field, value, expected: "a positive number" });
+                return Err(WorldError::BadBody { body, field, value, expected: "a positive, finite number" });
             }
         }
         Ok(())
@@ -207,6 +207,12 @@ impl Marble {
     pub(crate) fn note_impact(&mut self, rattle: f64) {
         self.rattles = if self.path.t - self.last_impact <= rattle { self.rattles.saturating_add(1) } else { 0 };
         self.last_impact = self.path.t;
+    }
+
+    /// Whether it was hit at the instant at which it stands.
+    #[inline]
+    pub(crate) fn was_hit(&self) -> bool {
+        self.path.t == self.last_impact
     }
 
     /// Whether it rattles: further impacts of a law that takes energy are plastic.

@@ -1,10 +1,14 @@
 //! One marble on one plane: sliding, rolling, spinning and rest in closed form.
 //!
-//! With normal load g_n = −g·n and k = I/(m r²), the slip `u = v − r ω × n` obeys `u' = g_t − (1 + 1/k) μ g_n û`. It keeps its direction where the tangential gravity
-//! g_t vanishes or is parallel to it; then the path is a parabola until `|u| = 0` (on a level plane with k = 2/5 at `t = 2|u|/(7 μ g)`). Rolling has
-//! `v' = g_t/(1+k)`, against rolling resistance c less `c g_n/(1+k)` along the motion, which stops it. Everything else (a curved way on an incline) belongs to `step`.
+//! With normal load g_n = −g·n and k = I/(m r²), the slip `u = v − r ω × n` obeys `u' = g_t − (1 + 1/k) μ g_n û`. It
+//! keeps its direction where the tangential gravity g_t vanishes or is parallel to it; then the path is a parabola
+//! until `|u| = 0` (on a level plane with k = 2/5 at `t = 2|u|/(7 μ g)`). Rolling has `v' = g_t/(1+k)`, against rolling
+//! resistance c less `c g_n/(1+k)` along the motion, which stops it. Everything else (a curved way on an incline)
+//! belongs to `step`.
 //!
-//! Deviation: rolling resistance acts only while rolling, not while sliding, as is usual in billiards models (Leckie & Greenspan 2006).
+//! Deviation: rolling resistance acts only while rolling, not while sliding, as is usual in billiards models (Leckie &
+//! Greenspan 2006), save that a ball that slides without turning is not made to turn where the resistance c is at least
+//! µ: friction's torque µ g_n r is then within what resists.
 
 use super::Marbles;
 use super::body::{Ending, Marble, Phase};
@@ -12,7 +16,8 @@ use crate::roots::fall_of_quadratic;
 use crate::scenery::Surface;
 use glam::DVec3;
 
-/// Directions count as parallel, and slip or tangential gravity as zero, up to this part. Dimensionless; 1e-12: a few thousand rounding errors.
+/// Directions count as parallel, and slip or tangential gravity as zero, up to this part. Dimensionless; 1e-12: a few
+/// thousand rounding errors.
 const PARALLEL: f64 = 1e-12;
 
 /// The forces of one marble on one plane, per unit mass.
@@ -25,6 +30,8 @@ struct Plane {
     spinning: f64,
     gyration: f64,
     radius: f64,
+    /// Whether friction cannot turn a ball that does not turn.
+    holds: bool,
 }
 
 /// Gives the marble a closed form if there is one; false where it needs steps. Its only contact must be `surface`.
@@ -52,6 +59,7 @@ pub(crate) fn begin(world: &Marbles, index: usize, body: &mut Marble, surface: S
         spinning: law.spinning,
         gyration: spec.gyration,
         radius: spec.radius,
+        holds: law.holds_from_turning(),
     };
     body.path.v -= normal * body.path.v.dot(normal);
     let found = plane.motion(body);
@@ -84,7 +92,7 @@ impl Plane {
         let slip = v - surface_speed;
         let slips = slip.length() > PARALLEL * (v.length() + surface_speed.length());
         if slips && self.friction > 0.0 {
-            return self.slide(slip);
+            return if self.holds && surface_speed == DVec3::ZERO { self.drag(slip) } else { self.slide(slip) };
         }
         if self.friction == 0.0 {
             return Some(self.frictionless(v, body));
@@ -130,12 +138,31 @@ impl Plane {
         Some(motion)
     }
 
+    /// Slides without turning.
+    fn drag(&self, slip: DVec3) -> Option<Motion> {
+        let speed = slip.length();
+        let along = slip / speed;
+        if self.pull.cross(along).length() > PARALLEL * self.pull.length() {
+            return None;
+        }
+        let rate = self.pull.dot(along) - self.friction * self.load;
+        let mut motion = Motion::endless(Phase::Slide, along * rate, DVec3::ZERO);
+        if rate < 0.0 {
+            motion.lasts = -speed / rate;
+            motion.ending = Ending::Stops;
+        }
+        Some(motion)
+    }
+
     fn roll(&self, v: DVec3, body: &Marble) -> Option<Motion> {
         let (speed, steepness) = (v.length(), self.pull.length());
         let resistance = self.rolling * self.load;
         if speed == 0.0 {
             if steepness <= resistance.min(self.friction * self.load) || steepness == 0.0 {
                 return Some(self.stand(body));
+            }
+            if self.holds {
+                return self.drag(self.pull);
             }
             return self.roll_along(self.pull / steepness, 0.0);
         }

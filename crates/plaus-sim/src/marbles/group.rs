@@ -1,17 +1,22 @@
 //! Lasting contact without a closed form: a group of marbles on its own adaptive clock.
 //!
-//! Each step solves the contacts' impulses together (block Gauss–Seidel with exact Coulomb blocks), moves every centre along the parabola that joins the two
-//! ends, and puts the centres back onto the surfaces they touch. Between its ends a step is a parabola like any other motion, so collisions with
-//! others are found exactly on the path that is really taken.
+//! Each step solves the contacts' impulses together (block Gauss–Seidel with exact Coulomb blocks, which [`relax`]
+//! makes converge whatever the masses, until no contact is left approaching by more than `sweep_tolerance · g · step`),
+//! moves every centre along the parabola that joins the two ends, and puts the centres back onto the surfaces they
+//! touch ([`lift`]). Between its ends a step is a parabola like any other motion, so collisions with others are found
+//! exactly on the path that is really taken. Energy never grows, and what takes back what discretisation adds leaves
+//! every momentum that the laws keep ([`guard`]).
 //!
-//! What that costs, and where it is not exact: an impact on one member ends the step of the whole group, so a pile of n balls that collapses costs n times its
-//! impacts (a cube of 216: up to 20 ms each), and where impacts come faster than steps, a step's correction of positions never takes effect. Balls then reach into each other by what sweeps
-//! leave of approach, `sweep_tolerance · g · step²` per step: up to 3e-3 of a radius in the collapse of that cube at the standard preset, 1e-4 while its columns stand
-//! (`cargo run --release -p plaus-sim --example pile -- 1.5`); at the fine one 5e-6 and 1e-7. Groups of a few balls, as in bins, are seldom interrupted: of a million marbles in 10⁵ drops 56 reached
-//! deeper than 1e-4 into something at the end.
+//! What that costs, and where it is not exact: an impact on one member ends the step of the whole group, so a pile of n
+//! balls that collapses costs n times its impacts, and where impacts come faster than steps, a step's correction of
+//! positions takes effect only in part. Balls then reach into each other by what sweeps leave of approach,
+//! `sweep_tolerance · g · step²` per step (`cargo run --release -p plaus-sim --example pile -- 1.5`).
 
 use super::Marbles;
 use super::body::{Marble, Phase};
+use super::guard::guard;
+use super::lift::{Lift, lift, overlap};
+use super::relax::{Memory, Swept, Verdict, relax};
 use super::solve::{Ball, Contact, Member, Push, With};
 use crate::links::Links;
 use crate::scenery::Foot;
@@ -22,38 +27,39 @@ use glam::DVec3;
 pub struct MarbleScratch {
     members: Vec<Member>,
     contacts: Vec<Contact>,
+    lifts: Vec<Lift>,
+    memory: Memory,
 }
 
-/// Sweeps of the pass that only predicts where a step ends.
-const PREDICT: u32 = 3;
-
-/// Most corrections of position per step; more than two are rare outside piles.
-const CORRECTIONS: usize = 40;
-
-/// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half, so that little is still to come.
+/// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half,
+/// so that little is still to come.
 const CREEP: f64 = 0.03;
 
-/// Least ratio of one sweep's change to the last's that is believed. Default 0.5: the usual one.
-const SHRINKS: f64 = 0.5;
+/// How many times its own size the change of a sweep is believed to have still to come, at least, since sweeps that are
+/// combined do not shrink evenly. Default 20; danger: less takes groups that could rest for moving ones, and they step
+/// on.
+const DOUBT: f64 = 20.0;
 
-/// How many times what sweeps to come can change has to be missing for rest to be given up. Default 4; danger: less takes slow groups for moving ones, and they step on.
-const DOUBT: f64 = 4.0;
+/// How much larger a change ends the sweeps that only predict where a step ends. Default 10.
+const PREDICT: f64 = 10.0;
+
+/// How often a step is halved at most that would lift its members more than their motion can pay for. Default 3.
+pub(super) const HALVINGS: u32 = 3;
 
 /// Overlap over the radius that rest may keep. Default 2e-5.
 pub(super) const OVERLAP: f64 = 2e-5;
 
-/// Overlap over the radius that needs no further correction. Default 1e-6.
-const CORRECTED: f64 = 1e-6;
-
-/// Approach along a lasting contact that a step may start with, over the speed at which contacts settle. Default 0.02: a path then dips into the surface by less than
-/// 1e-4 radii at the standard preset.
+/// Approach along a lasting contact that a step may start with, over the speed at which contacts settle. Default 0.02:
+/// a path then dips into the surface by less than 1e-4 radii at the standard preset.
 pub(super) const APPROACH: f64 = 0.02;
 
-/// Slip of the touching points over the centre's speed up to which a ball counts as rolling where the length of a step is chosen. Default 0.01; danger: where it still slips, steps are
-/// longer by up to `√(1 + gyration)` than its sliding asks for.
+/// Slip of the touching points over the centre's speed up to which a ball counts as rolling where the length of a step
+/// is chosen. Default 0.01; danger: where it still slips, steps are longer by up to `√(1 + gyration)` than its sliding
+/// asks for.
 const ROLLS: f64 = 0.01;
 
-/// Gravity as it moves the centre of a ball over a surface with this normal: one that rolls turns a part of it into spin.
+/// Gravity as it moves the centre of a ball over a surface with this normal: one that rolls turns a part of it into
+/// spin.
 #[inline]
 pub(super) fn moving_strength(world: &Marbles, ball: &Ball, normal: DVec3, v: DVec3, w: DVec3) -> f64 {
     let slip = v - w.cross(normal) * ball.radius;
@@ -89,18 +95,7 @@ impl MarbleScratch {
         self.members.clear();
         for &k in indices {
             let b = &bodies[k as usize];
-            let (start, start_v, start_w) = (b.path.x, b.path.v, b.spin);
-            self.members.push(Member {
-                index: k,
-                ball: world.balls[k as usize],
-                start,
-                start_v,
-                start_w,
-                v: start_v,
-                w: start_w,
-                x: start,
-                is_held: false,
-            });
+            self.members.push(Member::new(k, world.balls[k as usize], b.path.x, b.path.v, b.spin));
         }
         // Bottom first, then by position: loads travel up in one sweep, and the order knows nothing of labels.
         self.members.sort_by(|a, b| world.bottom_first(a.start, b.start));
@@ -157,7 +152,8 @@ impl MarbleScratch {
         }
     }
 
-    /// Length of the next step: a part of the time in which gravity, or the motion, covers the curvature of what is touched.
+    /// Length of the next step: a part of the time in which gravity, or the motion, covers the curvature of what is
+    /// touched.
     fn step_length(&self, world: &Marbles) -> f64 {
         let mut shortest = f64::INFINITY;
         for c in &self.contacts {
@@ -180,14 +176,15 @@ impl MarbleScratch {
     }
 
     /// Whether anything overlaps by more than rest may keep: then a step comes first, which puts it back.
-    fn overlaps(&self) -> bool {
+    fn overlaps(&self, world: &Marbles) -> bool {
         self.contacts.iter().any(|c| {
             let radius = |k: usize| self.members[k].ball.radius;
-            let reach = match c.with {
-                With::Surface(_) => radius(c.a),
-                With::Member(b) => radius(c.a) + radius(b),
+            let (reach, distance) = match c.with {
+                // Beyond a side of its triangle, a contact is with the edge there.
+                With::Surface(s) => (radius(c.a), world.scenery.foot_near(s, self.members[c.a].start).distance),
+                With::Member(b) => (radius(c.a) + radius(b), c.foot.distance),
             };
-            reach - c.foot.distance > OVERLAP * reach
+            reach - distance > OVERLAP * reach
         })
     }
 
@@ -197,11 +194,12 @@ impl MarbleScratch {
             let limit = world.accuracy.rest_speed * world.speed_scale(m.index as usize);
             m.start_v.length() <= limit && m.start_w.length() * m.ball.radius <= limit
         });
-        if !slow || self.contacts.is_empty() || !h.is_finite() || self.overlaps() {
+        if !slow || self.contacts.is_empty() || !h.is_finite() || self.overlaps(world) {
             return false;
         }
         for m in &mut self.members {
-            (m.v, m.w, m.x) = (world.gravity * h, DVec3::ZERO, m.start);
+            m.set_free(world.gravity * h, DVec3::ZERO);
+            m.x = m.start;
         }
         // Where they can't, the step begins with the impulses found: they are about those that it needs.
         if !self.can_hold(world.accuracy.sweeps, world.accuracy.rest_residual * world.strength * h) {
@@ -219,48 +217,34 @@ impl MarbleScratch {
     /// Whether the contacts can stop all members up to speeds of `left`.
     fn can_hold(&mut self, most: u32, left: f64) -> bool {
         let mut last = f64::INFINITY;
-        for _ in 0..most {
-            let change = self.sweep().sqrt();
+        let mut holds = false;
+        let Self { members, contacts, memory, .. } = self;
+        relax(&mut Loads { members, contacts }, memory, most, |loads, change| {
             let fastest = |m: &Member| m.v.length().max(m.w.length() * m.ball.radius);
-            let worst = self.members.iter().map(fastest).fold(0.0, f64::max);
-            if worst <= left {
-                return true;
-            }
+            let worst = loads.members.iter().map(fastest).fold(0.0, f64::max);
+            holds = worst <= left;
             // Sweeps shrink geometrically: all that are still to come change no more than this.
-            let shrinks = (change / last).max(SHRINKS);
-            let to_come = if shrinks < 1.0 { change * shrinks / (1.0 - shrinks) } else { f64::INFINITY };
-            if change <= CREEP * left || worst - left > DOUBT * to_come {
-                return false;
-            }
+            let to_come = if change < last { change / (1.0 - change / last) } else { f64::INFINITY };
             last = change;
-        }
-        false
+            if holds || change <= CREEP * left || worst - left > to_come.max(DOUBT * change) {
+                Verdict::Enough
+            } else {
+                Verdict::GoOn
+            }
+        });
+        holds
     }
 
-    /// Solves all contacts for members whose velocities are free of them, starting from the impulses that the contacts hold, until a sweep
-    /// changes no velocity by more than `enough`, or `most` sweeps are done.
+    /// Solves all contacts for members whose velocities are free of them, starting from the impulses that the contacts
+    /// hold, until a sweep changes no velocity by more than `enough`, or `most` sweeps are done.
     fn relax(&mut self, most: u32, enough: f64) {
         for c in &self.contacts {
             c.apply(&mut self.members);
         }
-        for _ in 0..most {
-            if self.sweep() <= enough * enough || self.contacts.len() == 1 {
-                break;
-            }
-        }
-    }
-
-    /// Solves each contact twice, up and down again: the lowest come last, so that nothing is left moving into the scenery. The square of the largest change
-    /// of a velocity on the way down.
-    fn sweep(&mut self) -> f64 {
-        for c in &mut self.contacts {
-            c.solve(&mut self.members);
-        }
-        let mut change: f64 = 0.0;
-        for c in self.contacts.iter_mut().rev() {
-            change = change.max(c.solve(&mut self.members));
-        }
-        change
+        let Self { members, contacts, memory, .. } = self;
+        relax(&mut Loads { members, contacts }, memory, most, |loads, change| {
+            if change <= enough || loads.contacts.len() == 1 { Verdict::Enough } else { Verdict::GoOn }
+        });
     }
 
     fn clear(&mut self) {
@@ -269,7 +253,7 @@ impl MarbleScratch {
         }
     }
 
-    fn step(&mut self, world: &Marbles, bodies: &mut [Marble], h: f64) {
+    fn step(&mut self, world: &Marbles, bodies: &mut [Marble], mut h: f64) {
         if !h.is_finite() {
             // Weightless and without relative motion: it goes on as it is.
             for m in &self.members {
@@ -277,9 +261,14 @@ impl MarbleScratch {
             }
             return;
         }
-        self.solve(world, bodies, h);
-        self.put_back(world);
-        self.guard_energy(world);
+        for _ in 0..=HALVINGS {
+            self.solve(world, bodies, h);
+            self.put_back(world);
+            if guard(world, &mut self.members, &self.contacts) {
+                break;
+            }
+            h *= 0.5;
+        }
         for m in &self.members {
             let body = &mut bodies[m.index as usize];
             if !m.is_held {
@@ -299,7 +288,8 @@ impl MarbleScratch {
             let pull = if body.phase == Phase::Step { body.path.a } else { DVec3::ZERO };
             m.x = m.start + (m.start_v + pull * (0.5 * h)) * h;
         }
-        for most in [PREDICT, world.accuracy.sweeps] {
+        // The first pass predicts where the step ends.
+        for tolerance in [PREDICT, 1.0] {
             for c in &mut self.contacts {
                 let x = self.members[c.a].x;
                 let first = c.foot.normal;
@@ -307,74 +297,75 @@ impl MarbleScratch {
                     With::Surface(s) => world.scenery.foot_near(s, x).normal,
                     With::Member(b) => (x - self.members[b].x).normalize_or(first),
                 };
-                c.push = Push::new(first, last);
+                let (reach, motion) = c.start(&self.members);
+                c.push = Push::new(first, last).across(first, c.foot.distance - reach, motion, h);
             }
             for m in &mut self.members {
-                (m.v, m.w) = (m.start_v + world.gravity * h, m.start_w);
+                m.set_free(m.start_v + world.gravity * h, m.start_w);
             }
-            self.relax(most, world.accuracy.sweep_tolerance * world.strength * h);
+            self.relax(world.accuracy.sweeps, tolerance * world.accuracy.sweep_tolerance * world.strength * h);
             for m in &mut self.members {
                 m.x = m.start + (m.start_v + m.v) * (0.5 * h);
             }
         }
     }
 
-    /// Puts centres back onto what they touch: first towards what bears a load, then only out of what they are in. The scenery has the last word.
+    /// Puts centres back onto what they touch: first towards what bears a load, one contact after the other with the
+    /// scenery last, then only out of what they still are in.
     fn put_back(&mut self, world: &Marbles) {
-        let rounds = if self.contacts.len() == 1 { 1 } else { CORRECTIONS };
-        for round in 0..rounds {
-            let mut moved = false;
-            for c in self.contacts.iter().rev() {
-                let m = self.members[c.a];
-                let (missing, normal) = match c.with {
-                    With::Surface(s) => {
-                        let foot = world.scenery.foot_near(s, m.x);
-                        (m.ball.radius - foot.distance, foot.normal)
-                    }
-                    With::Member(b) => {
-                        let offset = m.x - self.members[b].x;
-                        let distance = offset.length();
-                        (
-                            m.ball.radius + self.members[b].ball.radius - distance,
-                            if distance > 0.0 { offset / distance } else { c.push.last },
-                        )
-                    }
-                };
-                if missing <= 0.0 && (round > 0 || c.load == 0.0) {
-                    continue;
-                }
-                moved |= missing.abs() > CORRECTED * m.ball.radius;
-                match c.with {
-                    With::Surface(_) => self.members[c.a].x += normal * missing,
-                    With::Member(b) => {
-                        let other = self.members[b].ball.mass;
-                        let share = missing / (m.ball.mass + other);
-                        self.members[c.a].x += normal * (share * other);
-                        self.members[b].x -= normal * (share * m.ball.mass);
-                    }
-                }
+        for c in self.contacts.iter().rev() {
+            let (missing, normal) = overlap(world, &self.members, c);
+            if missing <= 0.0 && !c.is_loaded() {
+                continue;
             }
-            if !moved {
-                break;
+            match c.with {
+                With::Surface(_) => self.members[c.a].x += normal * missing,
+                With::Member(b) => {
+                    let (mass, other) = (self.members[c.a].ball.mass, self.members[b].ball.mass);
+                    let share = missing / (mass + other);
+                    self.members[c.a].x += normal * (share * other);
+                    self.members[b].x -= normal * (share * mass);
+                }
             }
         }
+        if self.contacts.len() > 1 {
+            let Self { members, contacts, lifts, memory } = self;
+            lift(world, members, contacts, lifts, memory);
+        }
+    }
+}
+
+/// The impulses of a group's contacts.
+struct Loads<'g> {
+    members: &'g mut [Member],
+    contacts: &'g mut [Contact],
+}
+
+impl Swept for Loads<'_> {
+    /// Solves each contact twice, up and down again: the lowest come last, so that nothing is left moving into the
+    /// scenery. The largest change of a velocity on the way down.
+    fn sweep(&mut self) -> f64 {
+        for c in &mut *self.contacts {
+            c.solve(self.members);
+        }
+        let mut change: f64 = 0.0;
+        for c in self.contacts.iter_mut().rev() {
+            change = change.max(c.solve(self.members));
+        }
+        change.sqrt()
     }
 
-    /// Takes back what discretisation added: a group's energy never grows.
-    fn guard_energy(&mut self, world: &Marbles) {
-        let kinetic = |m: &Member, v: DVec3, w: DVec3| {
-            0.5 * (m.ball.mass * v.length_squared() + m.ball.inertia() * w.length_squared())
-        };
-        let held = || self.members.iter().filter(|m| m.is_held);
-        let before: f64 =
-            held().map(|m| kinetic(m, m.start_v, m.start_w) + m.ball.mass * world.gravity.dot(m.x - m.start)).sum();
-        let after: f64 = held().map(|m| kinetic(m, m.v, m.w)).sum();
-        if after > before {
-            let part = if before > 0.0 { (before / after).sqrt() } else { 0.0 };
-            for m in self.members.iter_mut().filter(|m| m.is_held) {
-                m.v *= part;
-                m.w *= part;
-            }
+    fn read(&self, loads: &mut Vec<f64>) {
+        self.contacts.iter().for_each(|c| c.read(self.members, loads));
+    }
+
+    fn write(&mut self, loads: &[f64]) {
+        for m in &mut *self.members {
+            (m.v, m.w) = m.free;
+        }
+        for (c, given) in self.contacts.iter_mut().zip(loads.chunks_exact(6)) {
+            c.write(self.members, given);
+            c.apply(self.members);
         }
     }
 }

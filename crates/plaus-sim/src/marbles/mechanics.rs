@@ -2,7 +2,7 @@
 
 use super::body::{Marble, Phase};
 use super::group::MarbleScratch;
-use super::{Marbles, step};
+use super::{Marbles, ROUNDING, step};
 use crate::detect;
 use crate::links::Links;
 use crate::material::Law;
@@ -32,10 +32,29 @@ impl Marbles {
         self.rattles[index]
     }
 
-    /// Whether an impact is the begin of lasting contact: its rebound would be unseen, or its approach is lost in rounding.
-    fn lasts(&self, scale: f64, law: &Law, approach: f64, speed: f64, rattles: bool) -> bool {
-        rattles && law.restitution < 1.0
-            || law.restitution * approach <= self.settle_speed(scale, law).max(GRAZE * speed)
+    /// Separating speed up to which a lasting contact goes on. After an impact it is that of a rebound that settles;
+    /// what else parts a contact is the error of a step, and what comes back from below the height that the preset
+    /// doesn't see has not parted, however elastic the law.
+    #[inline]
+    pub(crate) fn parting_speed(&self, scale: f64, law: &Law, was_hit: bool) -> f64 {
+        if was_hit { self.settle_speed(scale, law) } else { self.accuracy.settle * scale }
+    }
+
+    /// Whether an impact is the begin of lasting contact: its rebound would be unseen, or its approach is lost in
+    /// rounding.
+    fn lasts(&self, scale: f64, law: &Law, meeting: &Approach) -> bool {
+        let rebound = law.restitution * meeting.speed;
+        meeting.rattles && law.restitution < 1.0
+            || rebound <= self.settle_speed(scale, law).max(GRAZE * meeting.fastest)
+            || self.is_unseen(scale, rebound, meeting.pressed)
+    }
+
+    /// Whether a rebound is so low that nobody sees it at any preset. What is pressed on at `pressed` m/s² rises by
+    /// v²/(2 · pressed).
+    fn is_unseen(&self, scale: f64, rebound: f64, pressed: f64) -> bool {
+        let height = ROUNDING.min(0.5 * self.accuracy.settle * self.accuracy.settle);
+        // The square of the scale is gravity times radius.
+        pressed > 0.0 && rebound * rebound * self.strength <= 2.0 * height * pressed * scale * scale
     }
 
     /// An order of centres in which loads travel up, and that knows nothing of labels.
@@ -54,8 +73,20 @@ impl Marbles {
     }
 }
 
-/// Approach over the relative speed that is lost in rounding. Dimensionless; default 1e-12, a few thousand rounding errors.
+/// Approach over the speed of the faster body that is lost in rounding. Dimensionless; default 1e-12, a few thousand
+/// rounding errors.
 const GRAZE: f64 = 1e-12;
+
+/// Two things about to collide.
+struct Approach {
+    /// Normal relative speed in m/s.
+    speed: f64,
+    /// Speed of the faster of both.
+    fastest: f64,
+    /// Acceleration with which they are pressed together.
+    pressed: f64,
+    rattles: bool,
+}
 
 /// The same law without rebound.
 fn plastic(law: &Law) -> Law {
@@ -153,9 +184,13 @@ impl Mechanics for Marbles {
         let foot = self.scenery.foot(surface, body.path.x);
         let approach = -body.path.v.dot(foot.normal);
         let law = self.surface_law(index, surface);
-        let settles = self.lasts(self.speed_scale(index), law, approach, body.path.v.length(), body.rattles());
+        let pressed = -body.path.a.dot(foot.normal).min(self.gravity.dot(foot.normal));
+        let (fastest, rattles) = (body.path.v.length(), body.rattles());
+        let meeting = Approach { speed: approach, fastest, pressed, rattles };
+        let settles = self.lasts(self.speed_scale(index), law, &meeting);
         let known = body.contacts().contains(&surface);
-        // A new contact whose approach is lost in rounding is taken as one that lasts: settling decides what becomes of it.
+        // A new contact whose approach is lost in rounding is taken as one that lasts: settling decides what becomes of
+        // it.
         if known && (settles || approach <= 0.0) {
             return false;
         }
@@ -193,7 +228,13 @@ impl Mechanics for Marbles {
         let approach = -(a.path.v - b.path.v).dot(normal);
         let law = self.pair_law(i, j);
         let scale = self.speed_scale(i).min(self.speed_scale(j));
-        let lasting = self.lasts(scale, law, approach, (a.path.v - b.path.v).length(), a.rattles() || b.rattles());
+        let meeting = Approach {
+            speed: approach,
+            fastest: a.path.v.length().max(b.path.v.length()),
+            pressed: -(a.path.a - b.path.a).dot(normal),
+            rattles: a.rattles() || b.rattles(),
+        };
+        let lasting = self.lasts(scale, law, &meeting);
         if linked && (lasting || approach <= 0.0) {
             return None;
         }

@@ -4,14 +4,17 @@ mod alone;
 mod body;
 mod closed;
 mod group;
+mod guard;
+mod lift;
 mod mechanics;
+mod relax;
 mod solve;
 mod step;
 
 pub use body::{Marble, MarbleSpec, Phase, Start};
 
 use crate::accuracy::Accuracy;
-use crate::error::WorldError;
+use crate::error::{WorldError, first_not_finite};
 use crate::material::Laws;
 use crate::queue::Place;
 use crate::scenery::Scenery;
@@ -66,8 +69,8 @@ impl Marbles {
     pub fn new(world: MarbleWorld) -> Result<Self, WorldError> {
         let MarbleWorld { specs, laws, scenery, gravity, accuracy, duration } = world;
         accuracy.check()?;
-        if !gravity.is_finite() {
-            return Err(WorldError::BadNumber { field: "gravity", value: f64::NAN, expected: "finite components" });
+        if let Some(value) = first_not_finite(&[gravity]) {
+            return Err(WorldError::BadNumber { field: "gravity", value, expected: "finite components" });
         }
         if !(duration > 0.0 && duration.is_finite()) {
             return Err(WorldError::BadNumber {
@@ -139,6 +142,12 @@ impl Marbles {
     #[must_use]
     pub fn gravity(&self) -> DVec3 {
         self.gravity
+    }
+
+    /// All tolerances.
+    #[must_use]
+    pub fn accuracy(&self) -> Accuracy {
+        self.accuracy
     }
 
     /// Moves mesh vertices (see [`crate::scenery::Mesh::move_vertices`]); states of this world stay valid only if they have not started.
@@ -231,7 +240,7 @@ fn place(start: &Start) -> Place {
     Place([start.time, start.position.x, start.position.y, start.position.z])
 }
 
-/// Gap over the radius that is never seen. Default 1e-9.
+/// Gap over the radius, and height of a bounce, that is never seen. Default 1e-9.
 const ROUNDING: f64 = 1e-9;
 
 /// Overlap at the start that counts as touching, over the radius. Default 1e-9; danger: larger values start bodies inside each other.

@@ -1,7 +1,8 @@
 //! One contact of a group, solved exactly given the others: the block of a Gauss–Seidel sweep.
 //!
-//! Impulses act along the normal half-way through the step and must leave no approach along the normal at its end. On a circle that reflects the velocity about the
-//! half-way normal, which keeps its length: the scheme is of second order and does not lose energy to curvature (it is RATTLE's idea).
+//! Impulses act along the normal half-way through the step and must leave no approach along the normal at its end. On a
+//! circle that reflects the velocity about the half-way normal, which keeps its length: the scheme is of second order
+//! and does not lose energy to curvature (it is RATTLE's idea).
 
 use super::MarbleSpec;
 use crate::material::Law;
@@ -46,6 +47,13 @@ impl Ball {
         }
     }
 
+    /// Velocity of its centre once it rolls without slip, from velocity and spin as they are: the momentum about the
+    /// point of contact is kept.
+    #[inline]
+    pub(super) fn rolling(&self, n: DVec3, v: DVec3, w: DVec3) -> DVec3 {
+        (v - n * v.dot(n) + w.cross(n) * (self.radius * self.gyration)) * self.share
+    }
+
     /// Inertia in kg m².
     #[inline]
     pub(super) fn inertia(&self) -> f64 {
@@ -61,14 +69,29 @@ pub(super) struct Member {
     pub(super) start: DVec3,
     pub(super) start_v: DVec3,
     pub(super) start_w: DVec3,
+    /// Velocity and spin that it would have without contacts.
+    pub(super) free: (DVec3, DVec3),
     pub(super) v: DVec3,
     pub(super) w: DVec3,
     /// Centre at the end of the step, as far as known.
     pub(super) x: DVec3,
     pub(super) is_held: bool,
+    /// How far it is lifted out of what it overlaps.
+    pub(super) lift: DVec3,
 }
 
 impl Member {
+    /// A marble as a step finds it.
+    pub(super) fn new(index: u32, ball: Ball, x: DVec3, v: DVec3, w: DVec3) -> Self {
+        let (start, start_v, start_w) = (x, v, w);
+        Self { index, ball, start, start_v, start_w, free: (v, w), v, w, x, is_held: false, lift: DVec3::ZERO }
+    }
+
+    /// Sets velocity and spin as they are without contacts.
+    pub(super) fn set_free(&mut self, v: DVec3, w: DVec3) {
+        (self.free, self.v, self.w) = ((v, w), v, w);
+    }
+
     /// Acceleration of the parabola from the start to where the step ends.
     pub(super) fn acceleration(&self, h: f64) -> DVec3 {
         (self.x - self.start - self.start_v * h) * (2.0 / (h * h))
@@ -123,6 +146,47 @@ impl Contact {
         (self.given_a, self.given_b) = (NOTHING, NOTHING);
     }
 
+    /// Distance of the centre at which it touches; relative velocities of the centres and of the touching points at the
+    /// start.
+    pub(super) fn start(&self, members: &[Member]) -> (f64, [DVec3; 2]) {
+        let (a, n) = (&members[self.a], self.foot.normal);
+        let surface = a.start_w * a.ball.radius;
+        match self.with {
+            With::Surface(_) => (a.ball.radius, [a.start_v, a.start_v - surface.cross(n)]),
+            With::Member(b) => {
+                let b = &members[b];
+                let v = a.start_v - b.start_v;
+                (a.ball.radius + b.ball.radius, [v, v - (surface + b.start_w * b.ball.radius).cross(n)])
+            }
+        }
+    }
+
+    /// Whether it bears a load.
+    pub(super) fn is_loaded(&self) -> bool {
+        self.load != 0.0
+    }
+
+    /// Whether it is a contact of this member.
+    pub(super) fn concerns(&self, member: usize) -> bool {
+        self.a == member || self.with == With::Member(member)
+    }
+
+    /// What the contact has given to its first member: changes of its velocity and of its spin times its radius.
+    pub(super) fn read(&self, members: &[Member], loads: &mut Vec<f64>) {
+        loads.extend(self.given_a.0.to_array());
+        loads.extend((self.given_a.1 * members[self.a].ball.radius).to_array());
+    }
+
+    /// Takes that back, and what follows for its second.
+    pub(super) fn write(&mut self, members: &[Member], loads: &[f64]) {
+        let p = &members[self.a].ball;
+        self.given_a = (DVec3::from_slice(loads), DVec3::from_slice(&loads[3..]) * p.inverse_radius);
+        if let With::Member(b) = self.with {
+            let q = &members[b].ball;
+            self.given_b = (self.given_a.0 * (-p.mass * q.inverse_mass), self.given_a.1 * (q.turning / p.turning));
+        }
+    }
+
     /// Adds what the contact has given to its members.
     pub(super) fn apply(&self, members: &mut [Member]) {
         let a = &mut members[self.a];
@@ -160,18 +224,21 @@ impl Contact {
         let (mut v_b, mut w_b) = (b.v - self.given_b.0, b.w - self.given_b.1);
         let (p, q) = (&a.ball, &b.ball);
         let n = self.push.last;
-        let approach = -(v_a - v_b).dot(n);
+        let approach = -(v_a - v_b).dot(n) - self.push.slack;
         self.load = approach.max(0.0);
         (self.given_a, self.given_b) = (NOTHING, NOTHING);
         if approach > 0.0 {
-            let load = approach / self.inverse;
-            let push = self.push.direction * load;
-            let relative = v_a - v_b + push * self.inverse;
+            let relative = v_a - v_b + self.push.direction * approach;
             let slip = relative - (w_a * p.radius + w_b * q.radius).cross(n);
             let slip = slip - n * slip.dot(n);
-            let (speed, limit) = (slip.length(), self.law.friction * load);
-            let drag = if speed <= limit * self.compliance { slip / -self.compliance } else { slip * (-limit / speed) };
-            let (impulse, turn) = (push + drag, drag.cross(n));
+            // Both in units of relative velocity of the centres, until they are impulses.
+            let stick = slip * (-self.inverse / self.compliance);
+            let sticks = stick.length() <= self.law.friction * approach;
+            let (load, drag) =
+                if sticks { (approach, stick) } else { self.push.drag(slip, self.law.friction, approach) };
+            let drag = drag / self.inverse;
+            let impulse = self.push.direction * (load / self.inverse) + drag;
+            let turn = drag.cross(self.push.direction);
             self.given_a = (impulse * p.inverse_mass, turn * p.turning);
             self.given_b = (impulse * -q.inverse_mass, turn * q.turning);
             (v_a, w_a) = (v_a + self.given_a.0, w_a + self.given_a.1);
@@ -190,6 +257,11 @@ pub(super) struct Push {
     pub(super) last: DVec3,
     /// Direction of the normal impulse, scaled so that a unit changes the final normal velocity by one unit per mass.
     direction: DVec3,
+    /// Normal velocity at the end, towards the other and in m/s, that the contact allows: what only closes the gap that
+    /// it had, or has opened on the way.
+    slack: f64,
+    /// Slip of the touching points at the start, in m/s.
+    slip: DVec3,
 }
 
 impl Push {
@@ -198,8 +270,34 @@ impl Push {
     pub(super) fn new(first: DVec3, last: DVec3) -> Self {
         let sum = first + last;
         let along = sum.dot(last);
-        // Normals that turn by more than a right angle within a step: the step was too long for this edge; use the last.
-        Self { last, direction: if along > 0.5 { sum / along } else { last } }
+        // Normals that turn by more than a right angle within a step: the step was too long for this edge; use the
+        // last.
+        Self { last, direction: if along > 0.5 { sum / along } else { last }, slack: 0.0, slip: DVec3::ZERO }
+    }
+
+    /// The same for a contact with a gap at the start of a step of `h` seconds, where `v` is the relative velocity of
+    /// the centres and `slip` that of the touching points: it bears only what would overlap at the end.
+    #[inline]
+    pub(super) fn across(self, first: DVec3, gap: f64, [v, slip]: [DVec3; 2], h: f64) -> Self {
+        Self { slack: (2.0 * gap / h + v.dot(first)).max(0.0), slip: slip - first * slip.dot(first), ..self }
+    }
+
+    /// Sliding friction of at most `friction` times the load against the mean of the slip at the start and of `slip`,
+    /// which is that at the end but for it: with it, the load that stops `approach`. Both in units of the velocity that
+    /// they change. The mean is what the step slides along, to second order, and friction against it never adds energy.
+    #[inline]
+    fn drag(&self, slip: DVec3, friction: f64, approach: f64) -> (f64, DVec3) {
+        let mean = if self.slip.dot(slip) > 0.0 { self.slip + slip } else { slip };
+        let across = mean - self.direction * (mean.dot(self.direction) / self.direction.length_squared());
+        let along = across.normalize_or_zero();
+        // Friction half-way lifts or presses a little at the end.
+        let size = friction * self.direction.length();
+        let lifts = 1.0 - size * along.dot(self.last);
+        if lifts > 0.5 {
+            let load = approach / lifts;
+            return (load, along * (-size * load));
+        }
+        (approach, slip.normalize_or_zero() * (-friction * approach))
     }
 
     /// A push along a normal that does not turn.
@@ -212,20 +310,27 @@ impl Push {
 /// Approach stopped, velocity and spin of a ball after a surface has stopped it and rubbed it. Mass plays no part.
 #[inline(always)]
 pub(super) fn respond(ball: &Ball, law: &Law, push: &Push, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
-    let approach = -v.dot(push.last);
+    let approach = -v.dot(push.last) - push.slack;
     if approach > 0.0 {
-        let (v, w) = rub(ball, law, (push.last, approach), v + push.direction * approach, w);
-        (approach, v, w)
+        let left = push.last * -push.slack;
+        let (load, v, w) = rub(ball, law, push, approach, v + push.direction * approach - left, w);
+        (load, v + left, w)
     } else {
         (0.0, v, w)
     }
 }
 
-/// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under a load that stopped `approach`.
+/// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under a load that
+/// stopped `approach`. Slip is that at the end of the step; friction's lever is the normal half-way, so that a spin
+/// about the normal follows it.
 #[inline(always)]
-fn rub(ball: &Ball, law: &Law, (n, approach): (DVec3, f64), v: DVec3, w: DVec3) -> (DVec3, DVec3) {
-    let about = w.dot(n);
-    let drilled = (about.abs() - law.spinning * approach * ball.lever).max(0.0).copysign(about);
+fn rub(ball: &Ball, law: &Law, push: &Push, approach: f64, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
+    let n = push.last;
+    let turned = |drag: DVec3| w + drag.cross(push.direction) * ball.lever;
+    let drilled = |w: DVec3| {
+        let about = w.dot(n);
+        ((about.abs() - law.spinning * approach * ball.lever).max(0.0).copysign(about), about)
+    };
     let surface = w.cross(n) * ball.radius;
     let free = (v + surface * ball.gyration) * ball.share;
     let speed = free.length();
@@ -233,13 +338,13 @@ fn rub(ball: &Ball, law: &Law, (n, approach): (DVec3, f64), v: DVec3, w: DVec3) 
     let rolling = if resisted > 0.0 { free * (resisted / speed) } else { DVec3::ZERO };
     let limit = law.friction * approach;
     if (rolling - v).length_squared() <= limit * limit {
-        return (rolling, n.cross(rolling) * ball.inverse_radius + n * drilled);
+        let (left, _) = drilled(turned(rolling - v));
+        return (approach, rolling, n.cross(rolling) * ball.inverse_radius + n * left);
     }
-    let slip = v - surface;
-    let speed = slip.length();
-    if speed == 0.0 {
-        return (v, w + n * (drilled - about));
-    }
-    let drag = slip * (-limit / speed);
-    (v + drag, w + drag.cross(n) * ball.lever + n * (drilled - about))
+    let (load, drag) = push.drag(v - surface, law.friction, approach);
+    let v = v + push.direction * (load - approach) + drag;
+    let held = law.holds_from_turning() && surface == DVec3::ZERO;
+    let w = if held { w } else { turned(drag) };
+    let (left, about) = drilled(w);
+    (load, v, w + n * (left - about))
 }

@@ -2,7 +2,7 @@
 
 use super::Marbles;
 use super::body::{Ending, Marble, Phase};
-use super::group::MarbleScratch;
+use super::group::{MarbleScratch, OVERLAP};
 use super::{alone, closed};
 use crate::links::{Link, Links};
 use crate::scenery::{Foot, Surface};
@@ -31,7 +31,9 @@ pub(super) fn settle(
             return body.begin(Phase::Flight, world.gravity);
         }
         if let (&[surface], Some(foot)) = (body.contacts(), foot) {
-            if !closed::begin(world, index, body, surface) {
+            let radius = world.specs[index].radius;
+            let sunk = radius - foot.distance > OVERLAP * radius;
+            if sunk || !closed::begin(world, index, body, surface) {
                 alone::settle(world, index, body, surface, foot);
             }
             return;
@@ -47,6 +49,7 @@ fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) -> Option<F
         Ending::Leaves(side) if at_end => Some(side),
         _ => None,
     };
+    let was_hit = body.was_hit();
     let was_waiting = body.phase == Phase::Waiting;
     body.ending = Ending::Plain;
     if was_waiting || body.contacts().is_empty() {
@@ -68,7 +71,7 @@ fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) -> Option<F
         if surface != old && before[..count].contains(&surface) {
             (surface, foot) = (old, world.scenery.foot(old, x));
         }
-        let most = world.settle_speed(scale, world.surface_law(index, surface)).max(unnoticed);
+        let most = world.parting_speed(scale, world.surface_law(index, surface), was_hit).max(unnoticed);
         let keeps = v.dot(foot.normal) <= most && foot.distance - radius <= world.unseen * radius;
         last = if keeps { Some(foot) } else { last };
         keeps.then_some(surface)
@@ -82,7 +85,8 @@ fn link_lasts(world: &Marbles, [i, j]: Link, bodies: &[Marble]) -> bool {
     let (offset, v) = (a.path.x - b.path.x, a.path.v - b.path.v);
     let (distance, reach) = (offset.length(), world.specs[i].radius + world.specs[j].radius);
     let scale = world.speed_scale(i).min(world.speed_scale(j));
-    let most = world.settle_speed(scale, world.pair_law(i, j)).max(KEEP * (scale + v.length()));
+    let were_hit = a.was_hit() || b.was_hit();
+    let most = world.parting_speed(scale, world.pair_law(i, j), were_hit).max(KEEP * (scale + v.length()));
     v.dot(offset) <= most * distance && distance - reach <= world.unseen * reach
 }
 

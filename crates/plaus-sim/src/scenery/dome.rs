@@ -1,6 +1,6 @@
 //! Spherical caps: bowls (the ball is inside the sphere) and domes (it is outside).
 
-use crate::error::WorldError;
+use crate::error::{WorldError, first_not_finite};
 use crate::material::Material;
 use crate::scenery::{Aabb, Foot};
 use glam::DVec3;
@@ -31,8 +31,11 @@ impl Dome {
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(bad("radius", radius, "a positive length"));
         }
-        if !centre.is_finite() || !clip.min.is_finite() || !clip.max.is_finite() {
-            return Err(bad("centre or clip", f64::NAN, "finite coordinates"));
+        if let Some(value) = first_not_finite(&[centre]) {
+            return Err(bad("centre", value, "finite coordinates"));
+        }
+        if let Some(value) = first_not_finite(&[clip.min, clip.max]) {
+            return Err(bad("clip", value, "finite coordinates"));
         }
         Ok(Self { centre, radius, hollow, clip, material })
     }

@@ -1,6 +1,6 @@
 //! Infinite planes: everything behind one is solid.
 
-use crate::error::WorldError;
+use crate::error::{WorldError, first_not_finite};
 use crate::material::Material;
 use crate::scenery::Aabb;
 use glam::DVec3;
@@ -28,8 +28,8 @@ impl Plane {
         if !(length > 0.0 && length.is_finite()) {
             return Err(bad("normal", length, "a vector of finite, non-zero length"));
         }
-        if !point.is_finite() {
-            return Err(bad("point", f64::NAN, "finite coordinates"));
+        if let Some(value) = first_not_finite(&[point]) {
+            return Err(bad("point", value, "finite coordinates"));
         }
         let normal = normal / length;
         Ok(Self { normal, offset: normal.dot(point), material })
