@@ -126,7 +126,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     fn start(&mut self) -> Option<Outcome> {
         if self.state.started {
             self.scratch.queue.rebuild(&self.state.events, &self.state.places);
-            return None;
+            return self.state.all_resting(self.mechanics).then_some(Outcome::AllAtRest);
         }
         self.state.started = true;
         let n = self.state.bodies.len() as u32;

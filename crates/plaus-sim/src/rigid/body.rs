@@ -84,6 +84,9 @@ pub struct Turning {
     pub(crate) line: Option<(u8, f64)>,
     /// Velocity and angular momentum at the start and the end of a step.
     pub(crate) ends: [Momentum; 2],
+    /// What is added to the angular momentum between the ends of a step, times 4 in its middle: the impulses between two bodies that pass each other count at where both are then, so that what
+    /// they have together is kept.
+    pub(crate) passing: DVec3,
     /// Events since `hurried_from`, all within `accuracy.rattle`.
     hurried: u32,
     hurried_from: f64,
@@ -120,6 +123,7 @@ impl Turning {
             rolls_after: false,
             line: None,
             ends: [Momentum::default(); 2],
+            passing: DVec3::ZERO,
             hurried: 0,
             hurried_from: -NEVER,
             touching: [NOWHERE; MOST_TOUCHES],
@@ -163,10 +167,9 @@ impl Turning {
     pub(super) fn motion_after(&self, spec: &Spec, dt: f64) -> Motion {
         match self.phase {
             Phase::Step => {
-                let part = self.part_of_step(dt);
-                let [a, b] = self.ends;
+                let now = self.within_step(dt);
                 let turn = if dt == 0.0 { self.turn } else { drift(&spec.inertia, self.turn, self.spin, dt).0 };
-                Motion { v: a.v.lerp(b.v, part), w: spec.inertia.spin(turn, a.l.lerp(b.l, part)) }
+                Motion { v: now.v, w: spec.inertia.spin(turn, now.l) }
             }
             Phase::Flight | Phase::Glide => {
                 Motion { v: self.path.velocity_after(dt), w: self.drift_spin(spec, dt) }
@@ -175,9 +178,17 @@ impl Turning {
         }
     }
 
-    /// How much of a step has passed `dt` after its start.
-    fn part_of_step(&self, dt: f64) -> f64 {
-        if dt > 0.0 { (dt / (self.expiry - self.path.t)).min(1.0) } else { 0.0 }
+    /// Velocity and angular momentum `dt` after the start of a step.
+    fn within_step(&self, dt: f64) -> Momentum {
+        let [a, b] = self.ends;
+        if dt <= 0.0 {
+            return a;
+        }
+        let part = dt / (self.expiry - self.path.t);
+        if part >= 1.0 {
+            return b;
+        }
+        Momentum { v: a.v.lerp(b.v, part), l: a.l.lerp(b.l, part) + self.passing * (part * (1.0 - part)) }
     }
 
     /// Angular velocity of the path that is taken, `dt` after the clock.
@@ -218,9 +229,7 @@ impl Turning {
                 }
                 Phase::Step => {
                     (self.turn, _) = drift(&spec.inertia, self.turn, self.spin, dt);
-                    let part = self.part_of_step(dt);
-                    let [a, b] = self.ends;
-                    let now = if time >= self.expiry { b } else { Momentum { v: a.v.lerp(b.v, part), l: a.l.lerp(b.l, part) } };
+                    let now = if time >= self.expiry { self.ends[1] } else { self.within_step(dt) };
                     self.ends[0] = now;
                     (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
                     // What is left of the step is no longer straight in the same way; settling decides anew.

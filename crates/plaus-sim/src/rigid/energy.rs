@@ -5,7 +5,7 @@
 //! their energy.
 
 use super::contact::Touch;
-use super::solve::{Contact, Member};
+use super::solve::{Contact, Enough, Member, solve};
 use super::step::{Place, RigidScratch};
 use super::{Rigid, Spec};
 use glam::{DQuat, DVec3};
@@ -17,6 +17,54 @@ impl RigidScratch {
         (self.energy_to_keep(world) < 0.0).then_some(0.5)
     }
 
+    /// Takes back what a step's error has brought: along the first kick's impulses, whose part `α` is moved to the second kick, where the contacts bring back what they need. No other momentum is
+    /// touched, impulses stay in their cones. `firsts` are the contacts with the impulses of the first kick. What cannot be had in this way is left; whether all was.
+    pub(super) fn keep_energy(&mut self, world: &Rigid, firsts: &[Contact], enough: Enough) -> bool {
+        let allowed = self.energy_to_keep(world) + TINY * self.weight_times_gap(world);
+        let mut over = self.kinetic(world) - allowed;
+        if over <= 0.0 || firsts.iter().all(|c| c.impulse == DVec3::ZERO) {
+            return true;
+        }
+        let (members, contacts) = (self.members.clone(), self.contacts.clone());
+        let (mut last, mut part) = (0.0, FIRST_PART);
+        for _ in 0..ROUNDS {
+            self.members.copy_from_slice(&members);
+            self.contacts.copy_from_slice(&contacts);
+            for (c, first) in self.contacts.iter_mut().zip(firsts) {
+                first.push(&mut self.members, first.impulse * -part);
+                if c.target > -f64::MAX {
+                    c.impulse += first.impulse * part;
+                    c.push(&mut self.members, first.impulse * part);
+                }
+            }
+            solve(&mut self.contacts, &mut self.members, &mut self.solver, enough, world.accuracy.sweeps);
+            let now = self.kinetic(world) - allowed;
+            if now <= 0.0 {
+                return true;
+            }
+            // A little farther than the chord says: below is what counts.
+            let next = part - now * (part - last) / (now - over) * FARTHER;
+            (last, over) = (part, now);
+            if !next.is_finite() || next.abs() > MOST_PART {
+                break;
+            }
+            part = next;
+        }
+        self.members.copy_from_slice(&members);
+        self.contacts.copy_from_slice(&contacts);
+        false
+    }
+
+    fn kinetic(&self, world: &Rigid) -> f64 {
+        let both = self.places.iter().zip(&self.members);
+        both.map(|(p, m)| kinetic(&world.specs[p.body], p.end_turn, m.v, m.w)).sum()
+    }
+
+    fn weight_times_gap(&self, world: &Rigid) -> f64 {
+        let spec = |p: &Place| &world.specs[p.body];
+        self.places.iter().map(|p| spec(p).mass * world.strength * spec(p).gap).sum()
+    }
+
     /// Kinetic energy that the drift of a step leaves of what was there, negative where it lifted bodies higher than that.
     fn energy_to_keep(&self, world: &Rigid) -> f64 {
         let left = |p: &Place| {
@@ -26,6 +74,17 @@ impl RigidScratch {
         self.places.iter().map(left).sum()
     }
 }
+
+/// Energy over the weight times the gap at which bodies touch that a step may bring. Default 0.01: rounding and what the solver leaves.
+const TINY: f64 = 0.01;
+
+/// The part of the first kick that is moved at first, the most, and how often another is tried.
+const FIRST_PART: f64 = 0.02;
+const MOST_PART: f64 = 0.9;
+const ROUNDS: usize = 4;
+
+/// How much farther than the chord says. Default 1.05.
+const FARTHER: f64 = 1.05;
 
 fn kinetic(spec: &Spec, turn: DQuat, v: DVec3, w: DVec3) -> f64 {
     0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)))

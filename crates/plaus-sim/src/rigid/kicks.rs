@@ -95,13 +95,14 @@ impl RigidScratch {
         off
     }
 
-    /// The second kick, over the points that still touch at the ends.
-    pub(super) fn second_kick(&mut self, world: &Rigid, step: &Step) {
+    /// The second kick, over the points that still touch at the ends. Whether energy is kept.
+    pub(super) fn second_kick(&mut self, world: &Rigid, step: &Step) -> bool {
         for (m, p) in self.members.iter_mut().zip(&self.places) {
             let spec = &world.specs[p.body];
             *m = Self::member(spec, &p.end.r, p.end.v + step.half_kick, p.end.w);
         }
         resist(world, &self.places, &self.touches, &self.contacts, &mut self.members);
+        self.firsts.clone_from(&self.contacts);
         for c in 0..self.contacts.len() {
             let old = self.contacts[c];
             let (mut next, gap, touching) = if let Some((a, t)) = self.touches.get(c) {
@@ -131,6 +132,10 @@ impl RigidScratch {
             self.contacts[c] = next;
         }
         solve(&mut self.contacts, &mut self.members, &mut self.solver, step.enough, world.accuracy.sweeps);
+        let firsts = std::mem::take(&mut self.firsts);
+        let is_kept = self.keep_energy(world, &firsts, step.enough);
+        self.firsts = firsts;
+        is_kept
     }
 }
 

@@ -51,7 +51,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
             // What is left of its motion is to be stopped by friction within a step: on ice it slides on.
             let (v, w) = (place.start.v, place.start.w);
             let moves = (v - normal * v.dot(normal)).length() + w.dot(normal).abs() * spec.reach;
-            return moves <= (law.friction * press - slide) * h
+            return moves <= (law.friction * press - slide + NO_MOTION * press) * h
                 && slide <= law.friction * press
                 && is_above(&group.touches, world.gravity / world.strength);
         }
@@ -65,8 +65,8 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     // What is carried by a corner of a pile near tipping is found slowly.
     let patience = if group.has_cuboids_in_touch() { PATIENCE } else { 1 };
     let enough = Enough::new(0.03 * limit / f64::from(patience), world.strength * h);
-    solve(&mut group.contacts, &mut group.members, &mut group.solver, enough, world.accuracy.sweeps * patience)
-        && group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= residual)
+    solve(&mut group.contacts, &mut group.members, &mut group.solver, enough, world.accuracy.sweeps * patience);
+    group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= residual)
 }
 
 /// Part of a motion that may be left where contacts are to stop it. Default 0.1: friction that cannot leaves all of it.

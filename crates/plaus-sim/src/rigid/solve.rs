@@ -269,6 +269,9 @@ pub(crate) struct Solver {
 /// Most rounds of Newton's rule. Default 40: from the last step's impulses it takes 2 to 4.
 const NEWTON_ROUNDS: usize = 40;
 
+/// How much finer Newton's rule is solved than sweeps would be: another round at most. Default 1e-3.
+const NEWTON_FINER: f64 = 1e-3;
+
 /// How many of the sweeps that a preset allows are made where Newton's rule fails: friction that wedges bodies. Default 60.
 const SWEEPS_AFTER: u32 = 60;
 
@@ -299,7 +302,7 @@ pub(crate) fn solve(
     impulses.extend(contacts.iter().map(|c| c.impulse));
     backup.clear();
     backup.extend_from_slice(members);
-    if newton.solve(contacts, members, enough.speed, NEWTON_ROUNDS) == Ending::Solved {
+    if newton.solve(contacts, members, NEWTON_FINER * enough.speed, NEWTON_ROUNDS) == Ending::Solved {
         for c in contacts.iter_mut() {
             c.note_slide();
         }

@@ -34,6 +34,8 @@ pub struct RigidScratch {
     pub(super) parting: Vec<([usize; 2], PairTouch)>,
     /// Of the touches first, then of the pairs.
     pub(super) contacts: Vec<Contact>,
+    /// The same with the impulses of a step's first kick.
+    pub(super) firsts: Vec<Contact>,
     pub(super) solver: Solver,
 }
 
@@ -130,15 +132,26 @@ pub(super) fn settle(
         scratch.lie_down(world, bodies);
         return;
     }
+    let mut is_forced = true;
     for _ in 0..SHORTENINGS {
         let step = scratch.drift(world, h);
         match scratch.returns().or_else(|| scratch.misses(world, h)).or_else(|| scratch.climbs(world)) {
-            Some(part) => h *= part,
+            Some(part) => {
+                is_forced = true;
+                h *= part;
+            }
             None => {
-                scratch.second_kick(world, &step);
-                return scratch.write(world, bodies, h);
+                is_forced = false;
+                if scratch.second_kick(world, &step) {
+                    return scratch.write(world, bodies, h);
+                }
+                // Energy that its impulses cannot be made to give back: a shorter step makes less of it.
+                h *= 0.5;
             }
         }
+    }
+    if !is_forced {
+        return scratch.write(world, bodies, 2.0 * h);
     }
     // Bounces too fast for any step: they count as lasting.
     scratch.loads.clear();
@@ -323,10 +336,18 @@ impl RigidScratch {
             let inertia = &world.specs[p.body].inertia;
             let momentum = |turn: DQuat, v: DVec3, w: DVec3| Momentum { v, l: inertia.momentum(turn, w) };
             body.ends = [momentum(p.turn, p.start.v, p.start.w), momentum(p.end_turn, m.v, m.w)];
+            body.passing = DVec3::ZERO;
             (body.path.v, body.spin) = (p.end.v, p.spin);
             body.begin(Phase::Step, DVec3::ZERO);
             body.expiry = body.path.t + h;
             body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface()));
+        }
+        let first_pair = self.touches.len();
+        for ((c, first), (ab, _)) in self.contacts[first_pair..].iter().zip(&self.firsts[first_pair..]).zip(&self.pairs) {
+            let [p, q] = ab.map(|k| &self.places[k]);
+            let passing = (p.end.v - q.end.v).cross(first.impulse + c.impulse) * (0.5 * h);
+            bodies[p.body].passing += passing;
+            bodies[q.body].passing += passing;
         }
     }
 }
