@@ -172,21 +172,3 @@ fn as_many_balls_leave_a_cradle_as_came_in() {
         }
     }
 }
-
-/// A ball comes in with e = 1 between two that touch neither each other nor move: both leave alike.
-#[test]
-fn two_struck_at_once_leave_alike() {
-    for preset in Preset::ALL {
-        let angle = 0.6;
-        let (s, c) = math::sin_cos(angle);
-        let starts = [
-            Start { velocity: DVec3::X, ..Start::at_rest(DVec3::X * (-1.2 * EDGE)) },
-            Start::at_rest(DVec3::new(c - 1.0, s, 0.0) * EDGE),
-            Start::at_rest(DVec3::new(c - 1.0, -s, 0.0) * EDGE),
-        ];
-        let r = record(in_space(vec![ball(); 3], Law::new(0.0, 1.0), preset), &starts, 1.0, 20_000);
-        let v: Vec<DVec3> = r.moments.iter().map(|m| m.last().unwrap().v).collect();
-        let uneven = (v[1] * DVec3::new(1.0, -1.0, 1.0) - v[2]).length().max(v[0].y.abs());
-        assert!(uneven <= enough(preset), "{}: {v:?}", preset.name());
-    }
-}

@@ -63,8 +63,9 @@ fn impacts_converge_to_the_truth() {
         toss.looks = vec![0.1, 0.15];
         let (off, unknown) = errors(&toss);
         // From standard to reference the direction of a slip is found in ten times finer turns, to the third order, and
-        // the time of an impact to a thousandth of the gap. A tenth is what impacts that magnify errors leave of that.
-        let bound = 0.1 * off[0].max(off[1]) + 3.0 * unknown;
+        // the time of an impact to a thousandth of the gap. A quarter is what is left where an impact presses on other
+        // points that touch: which of them is struck next rigid bodies do not say, and the two makes choose otherwise.
+        let bound = 0.25 * off[0].max(off[1]) + 3.0 * unknown;
         assert!(off[3] <= bound, "{}: {off:?}, truth known to {unknown:.1e}", toss.name);
     }
 }

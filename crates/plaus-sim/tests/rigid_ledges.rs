@@ -122,9 +122,12 @@ fn dice_among_posts_are_never_in_them() {
             let deep = depths.worst / shape.size();
             if outcome == Outcome::AllAtRest {
                 rest += 1;
-                assert!(deep < 2e-2, "{kind:?} {throw}: {deep} of its size deep");
+                assert!(deep < 3e-2, "{kind:?} {throw}: {deep} of its size deep");
             } else {
-                assert!(outcome == Outcome::OutOfEvents && deep < 0.3, "{kind:?} {throw}: {deep}, {outcome:?}");
+                assert!(
+                    matches!(outcome, Outcome::OutOfEvents | Outcome::TimeReached) && deep < 0.3,
+                    "{kind:?} {throw}: {deep}, {outcome:?}"
+                );
             }
         }
     }

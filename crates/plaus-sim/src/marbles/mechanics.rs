@@ -174,13 +174,7 @@ impl Mechanics for Marbles {
         detect::sphere_pair(&a.path, &b.path, reach, [from, until, horizon])
     }
 
-    fn hit_surface(
-        &self,
-        index: usize,
-        body: &mut Marble,
-        surface: Surface,
-        report: &mut dyn FnMut(&Impact),
-    ) -> bool {
+    fn hit_surface(&self, index: usize, body: &mut Marble, surface: Surface, report: &mut dyn FnMut(&Impact)) -> bool {
         let foot = self.scenery.foot(surface, body.path.x);
         let approach = -body.path.v.dot(foot.normal);
         let law = self.surface_law(index, surface);

@@ -171,9 +171,7 @@ impl Turning {
                 let turn = if dt == 0.0 { self.turn } else { drift(&spec.inertia, self.turn, self.spin, dt).0 };
                 Motion { v: now.v, w: spec.inertia.spin(turn, now.l) }
             }
-            Phase::Flight | Phase::Glide => {
-                Motion { v: self.path.velocity_after(dt), w: self.drift_spin(spec, dt) }
-            }
+            Phase::Flight | Phase::Glide => Motion { v: self.path.velocity_after(dt), w: self.drift_spin(spec, dt) },
             Phase::Waiting | Phase::Rest | Phase::Gone => Motion { v: self.path.v, w: self.spin },
         }
     }
@@ -238,7 +236,8 @@ impl Turning {
                 Phase::Glide => {
                     let motion = self.motion_after(spec, dt);
                     // Only a picture of the ball needs its orientation: the mean angular velocity will do.
-                    self.turn = (super::tumble::rotation((self.spin + self.spin_rate * (0.5 * dt)) * dt) * self.turn).normalize();
+                    self.turn = (super::tumble::rotation((self.spin + self.spin_rate * (0.5 * dt)) * dt) * self.turn)
+                        .normalize();
                     (self.path.v, self.spin) = (motion.v, motion.w);
                 }
                 Phase::Waiting | Phase::Rest | Phase::Gone => {}

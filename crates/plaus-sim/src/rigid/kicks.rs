@@ -1,12 +1,12 @@
 //! The two halves of a step of lasting contact: a kick with the drift after it, and the second kick.
 
+use super::Rigid;
 use super::body::Pose;
 use super::contact::{Touch, response};
 use super::energy::resist;
 use super::pair::PairTouch;
 use super::solve::{Contact, Enough, solve};
 use super::step::{CLOSE, KEEP, PASSES, PASSES_OF_CUBOIDS, PUSH, RigidScratch, TOUCHING};
-use super::Rigid;
 use crate::shape::Feeler;
 use glam::DVec3;
 

@@ -90,13 +90,7 @@ impl Mechanics for Rigid {
         }
     }
 
-    fn hit_surface(
-        &self,
-        index: usize,
-        body: &mut Turning,
-        surface: Surface,
-        report: &mut dyn FnMut(&Impact),
-    ) -> bool {
+    fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface, report: &mut dyn FnMut(&Impact)) -> bool {
         match surface {
             Surface::Part { part, point } => self.hit_part(index, body, (part, point), report),
             _ => false,

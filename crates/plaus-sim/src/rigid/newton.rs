@@ -66,7 +66,13 @@ pub(crate) enum Ending {
 
 impl Newton {
     /// Rounds until no body's velocity changes by more than `enough`, at most `most`. Where it is solved, impulses and velocities are consistent to rounding.
-    pub(crate) fn solve(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64, most: usize) -> Ending {
+    pub(crate) fn solve(
+        &mut self,
+        contacts: &mut [Contact],
+        members: &mut [Member],
+        enough: f64,
+        most: usize,
+    ) -> Ending {
         if members.len() > MOST_MEMBERS {
             return Ending::NotSolved;
         }

@@ -210,7 +210,14 @@ impl RigidScratch {
                 body.begin(Phase::Flight, world.gravity);
                 continue;
             }
-            self.places.push(Place { body: index, start: pose, turn: body.turn, spin: pose.w, end: pose, end_turn: body.turn });
+            self.places.push(Place {
+                body: index,
+                start: pose,
+                turn: body.turn,
+                spin: pose.w,
+                end: pose,
+                end_turn: body.turn,
+            });
         }
         self.parting.retain(|p| p.0.iter().all(|&k| self.places.iter().any(|q| q.body == k)));
         for p in self.pairs.iter_mut().chain(&mut self.parting) {
@@ -343,7 +350,8 @@ impl RigidScratch {
             body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface()));
         }
         let first_pair = self.touches.len();
-        for ((c, first), (ab, _)) in self.contacts[first_pair..].iter().zip(&self.firsts[first_pair..]).zip(&self.pairs) {
+        for ((c, first), (ab, _)) in self.contacts[first_pair..].iter().zip(&self.firsts[first_pair..]).zip(&self.pairs)
+        {
             let [p, q] = ab.map(|k| &self.places[k]);
             let passing = (p.end.v - q.end.v).cross(first.impulse + c.impulse) * (0.5 * h);
             bodies[p.body].passing += passing;
@@ -358,7 +366,7 @@ const LONGEST: f64 = 4.0;
 /// A point of contact of two members.
 pub(super) fn pair_contact(members: &[Member], [a, b]: [usize; 2], t: &PairTouch, friction: f64) -> Contact {
     let (m, n) = (&members[a], &members[b]);
-    let k =
-        response(m.inverse_mass, &m.inverse_inertia, t.arms[0]) + response(n.inverse_mass, &n.inverse_inertia, t.arms[1]);
+    let k = response(m.inverse_mass, &m.inverse_inertia, t.arms[0])
+        + response(n.inverse_mass, &n.inverse_inertia, t.arms[1]);
     Contact::new(a, Some(b), t.arms, t.normal, friction, k)
 }

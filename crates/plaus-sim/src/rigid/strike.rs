@@ -1,8 +1,8 @@
 //! Impacts of turning bodies, at one point or at several at once.
 //!
 //! A body that strikes at one point obeys Stronge's law ([`stronge_impulse`]). Where several points of one body on what stands still, or of one pair of bodies, are struck at one
-//! instant, or one impulse would drive another point that touches into its partner, they are struck at once: no order of points plays a part, and a symmetric impact stays
-//! symmetric. Each point then parts with its restitution times its approach (Newton's rule), what touches without approach does not approach afterwards, and impulses lie in Coulomb's cones:
+//! instant, they are struck at once: no order of points plays a part, and a symmetric impact stays symmetric. A point that touches and is driven into its partner by an impact elsewhere is
+//! struck next. Each point then parts with its restitution times its approach (Newton's rule), what touches without approach does not approach afterwards, and impulses lie in Coulomb's cones:
 //! Moreau, "Unilateral contact and dry friction in finite freedom dynamics" (1988), solved to rounding. Deviation: as Newton's rule can make energy where points slide, the restitutions are
 //! scaled down by what keeps it from growing; at 0 friction and contact only take.
 //!
@@ -54,7 +54,16 @@ impl Point {
         let c = &self.contact;
         if c.impulse != DVec3::ZERO {
             let (point, lasting) = (x + c.arms[0], self.lasting);
-            report(&Impact { time, body, other: self.other, point, normal: c.normal, impulse: c.impulse, approach: self.approach, lasting });
+            report(&Impact {
+                time,
+                body,
+                other: self.other,
+                point,
+                normal: c.normal,
+                impulse: c.impulse,
+                approach: self.approach,
+                lasting,
+            });
         }
     }
 
@@ -62,9 +71,6 @@ impl Point {
         self.approach > self.least
     }
 }
-
-/// Approach of a point that touches after an impact at another, over the impact's, that counts as none. Default 1e-9, far above rounding.
-const NOT_PRESSED: f64 = 1e-9;
 
 /// Halvings of the interval in which the part of the restitutions lies that makes no energy.
 const HALVINGS: usize = 16;
@@ -89,14 +95,9 @@ pub(super) fn strike(points: &mut [Point], members: &mut [Member], turn: f64) {
         first.contact.impulse = impulse(&first.contact, u, first.restitution, turn);
         let struck = first.contact;
         struck.push(members, struck.impulse);
-        let slow = NOT_PRESSED * first.approach;
-        let is_pressed = |p: &Point| -p.contact.velocity(members).dot(p.contact.normal) > p.least.max(slow);
-        if !points[1..].iter().any(is_pressed) {
-            return;
-        }
-        struck.push(members, -struck.impulse);
+    } else {
+        strike_at_once(points, members);
     }
-    strike_at_once(points, members);
 }
 
 fn strike_at_once(points: &mut [Point], members: &mut [Member]) {
