@@ -5,6 +5,7 @@
 mod arviz;
 mod clients;
 mod command;
+mod engines;
 mod golden;
 mod registry;
 mod steps;
@@ -19,6 +20,7 @@ usage: cargo xtask CHORE
   test                 everything that must pass: what CI runs
   ci                   the same
   clients              of that, only what other programs make of exports and galleries
+  engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost
   reproduce-figures [--out FOLDER] [--quick] [--only SCENE]
                        the paper's figures and claims, sampled anew, into out/figures
   plausibility [--out FOLDER] [--quick] [--only SCENE]
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
     let done = match arguments.split_first() {
         Some((&("test" | "ci"), [])) => test::run(),
         Some((&"clients", [])) => test::clients(),
+        Some((&"engines", [])) => engines::run(),
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"plausibility", rest)) => plausibility(rest),
         Some((&"golden", rest)) => golden::run(rest),

@@ -82,6 +82,15 @@ impl Failure {
         self
     }
 
+    /// What is wrong in one line, for those who are told of it elsewhere.
+    pub(crate) fn message(&self) -> Option<String> {
+        match self {
+            Self::Scenario(error) => error.problems.first().map(|problem| problem.message.clone()),
+            Self::Message(message) => Some(message.clone()),
+            Self::ReaderGone => None,
+        }
+    }
+
     /// Tells the user; gives the exit code.
     pub(crate) fn report(&self) -> ExitCode {
         match self {

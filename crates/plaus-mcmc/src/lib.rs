@@ -69,7 +69,8 @@ pub use record::{Block, Entry};
 pub use redraw::Redraw;
 pub use replicas::{Climb, Course, Replicas, ReplicasSnapshot, RungStatistics, Tempering, TopStep};
 pub use run::{
-    ChainPulse, Control, Ending, Plan, PlanError, Progress, Pulse, RunError, Sink, Snapshot, Start, run, run_watched,
+    ChainPulse, Control, Ending, Plan, PlanError, Progress, Pulse, RunError, Sink, Snapshot, Start, run, run_some,
+    run_watched,
 };
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};

@@ -50,6 +50,12 @@ pub enum RunFileProblem {
         "the manifest cannot be read: {0}. Without it the records of the chains cannot be read either; the same scenario, seed and version of plaus sample the same run again"
     )]
     Manifest(String),
+    /// The folder holds something else than what is to be gone on with.
+    #[error("holds another run: {0}; choose another name")]
+    OtherRun(String),
+    /// Pieces that make no whole.
+    #[error("{0}")]
+    Pieces(String),
     /// Another version of plaus made the run.
     #[error("made by plaus {made}, this is {present}, which may sample other values: resume it with plaus {made}")]
     OtherVersion {

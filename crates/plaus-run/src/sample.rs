@@ -8,11 +8,15 @@ use crate::gauge::{Gauge, Mixing};
 use crate::manifest::{Manifest, Recipe, VERSION, stored_scalars};
 use crate::records::{self, Extent};
 use crate::replay::evaluate_again;
-use crate::sink::{FolderSink, Place};
+use crate::shard::Shard;
+use crate::siblings::Siblings;
+use crate::sink::{FolderSink, Hunt, Place};
+use crate::trail;
 use plaus_mcmc::{Control, Distinct, Ending, Progress, Pulse, RunError, Start, Target};
 use plaus_scenes::{Scenario, Scene, Visitor};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Where the chains of a scene go on from.
@@ -52,6 +56,11 @@ pub trait Watch {
 
     /// Called with what was found; `None` where there is too little to tell.
     fn mixing(&mut self, _mixing: Option<Mixing>) {}
+
+    /// Called again and again while another process writes the run that is to be gone on with; says whether to wait.
+    fn locked(&mut self, _folder: &Folder) -> bool {
+        false
+    }
 }
 
 /// Watches nothing: runs to the end, with a checkpoint after every round.
@@ -91,19 +100,69 @@ impl<'a> Sampling<'a> {
 /// # Errors
 /// [`Error`] where the folder exists, the scenario makes no scene, a chain fails or the disk refuses.
 pub fn sample(folder: &Folder, recipe: &Recipe, sampling: Sampling<'_>) -> Result<Ending, Error> {
-    struct Begin<'a, 'b>(&'a Folder, &'a Recipe, Sampling<'b>);
+    sample_shard(folder, recipe, None, sampling)
+}
+
+/// As [`sample()`], only the chains of one piece; all where there is none.
+///
+/// # Errors
+/// As [`sample()`], and where there are fewer chains than pieces.
+pub fn sample_shard(
+    folder: &Folder,
+    recipe: &Recipe,
+    shard: Option<Shard>,
+    sampling: Sampling<'_>,
+) -> Result<Ending, Error> {
+    struct Begin<'a, 'b>(&'a Folder, &'a Recipe, Option<Shard>, Sampling<'b>);
     impl Visitor for Begin<'_, '_> {
         type Output = Result<Ending, Error>;
         fn visit<S: Scene>(self, scene: S) -> Self::Output {
-            let Self(folder, recipe, sampling) = self;
-            let manifest = recipe.manifest(&scene)?;
+            let Self(folder, recipe, shard, sampling) = self;
+            let manifest = piece(recipe, &scene, shard)?;
             let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
             folder.create(sampling.disk, &json)?;
             let _claim = folder.claim()?;
             go_on(folder, &manifest, &scene, Vec::new(), sampling)
         }
     }
-    recipe.scenario.world.visit(Begin(folder, recipe, sampling))?
+    recipe.scenario.world.visit(Begin(folder, recipe, shard, sampling))?
+}
+
+/// Samples a new run, or a piece of one, into `folder`; where that holds this very run already, goes on with it. So a job that is started again and
+/// again comes to its end.
+///
+/// # Errors
+/// As [`sample_shard`] and [`resume`], and where the folder holds another run.
+pub fn sample_or_go_on(
+    folder: &Folder,
+    recipe: &Recipe,
+    shard: Option<Shard>,
+    sampling: Sampling<'_>,
+) -> Result<Ending, Error> {
+    struct Expected<'a>(&'a Recipe, Option<Shard>);
+    impl Visitor for Expected<'_> {
+        type Output = Result<Manifest, Error>;
+        fn visit<S: Scene>(self, scene: S) -> Self::Output {
+            piece(self.0, &scene, self.1)
+        }
+    }
+    if !folder.manifest().exists() {
+        return sample_shard(folder, recipe, shard, sampling);
+    }
+    let found = Manifest::read(folder)?;
+    let expected = recipe.scenario.world.visit(Expected(recipe, shard))??;
+    match found.differs_from(&expected) {
+        Some(difference) => Err(RunFileError::new(folder.path(), RunFileProblem::OtherRun(difference)).into()),
+        None => resume(folder, More::default(), sampling),
+    }
+}
+
+fn piece<S: Scene>(recipe: &Recipe, scene: &S, shard: Option<Shard>) -> Result<Manifest, Error> {
+    let manifest = Manifest { shard, ..recipe.manifest(scene)? };
+    if let Some(shard) = shard {
+        shard.range(manifest.plan.chains).map_err(|error| Error::Request(error.to_string()))?;
+    }
+    Ok(manifest)
 }
 
 /// What a run is asked for beyond its plan.
@@ -130,7 +189,12 @@ pub fn resume(folder: &Folder, more: More, sampling: Sampling<'_>) -> Result<End
         }
     }
     Manifest::read(folder)?; // what is no run gets no lock file
-    let _claim = folder.claim()?;
+    let _claim = loop {
+        match folder.claim() {
+            Err(error) if matches!(error.problem, RunFileProblem::Locked) && sampling.watch.locked(folder) => {}
+            claim => break claim?,
+        }
+    };
     let mut manifest = Manifest::read(folder)?; // nobody else changes it from here on
     if manifest.plaus != VERSION {
         let problem = RunFileProblem::OtherVersion { made: manifest.plaus, present: VERSION };
@@ -164,6 +228,11 @@ fn extend(manifest: &mut Manifest, scenario: &Scenario, more: More) -> Result<bo
         manifest.plan.iterations = wanted;
     }
     if let Some(wanted) = more.solutions {
+        if manifest.shard.is_some() && before.solutions.is_none() {
+            let message = "a piece that was begun without `--solutions` cannot look for them: pieces have to note from their \
+                first iteration on where they could be cut; sample the pieces again";
+            return Err(Error::Request(message.to_owned()));
+        }
         if let Some(planned) = before.solutions.filter(|&planned| wanted < planned) {
             let message = format!("{planned} distinct solutions are looked for already: ask for {planned} or more");
             return Err(Error::Request(message));
@@ -185,11 +254,13 @@ fn restore<S: Scene>(
         let message = "the scene's scalars are not those of the manifest".to_owned();
         return Err(RunFileError::new(folder.manifest(), RunFileProblem::Differs(message)).into());
     }
-    let (run, chains) = (manifest.run_id(), manifest.plan.chains);
-    let checkpoints = checkpoint::settle::<S::Draw, S::Outcome>(folder, disk, run, chains)?;
+    let (run, chains) = (manifest.run_id(), manifest.chains());
+    let checkpoints = checkpoint::settle::<S::Draw, S::Outcome>(folder, disk, run, chains.clone())?;
     if checkpoints.is_empty() {
-        (0..chains).try_for_each(|chain| cut(folder, disk, chain, 0))?;
+        chains.into_iter().try_for_each(|chain| cut(&folder.records(chain), disk, 0))?;
     }
+    let done = checkpoints.first().map_or(0, |checkpoint| checkpoint.snapshot.end_iteration);
+    cut(&folder.trail(), disk, trail::length_until(&folder.trail(), run, done)?)?;
     let restore = |checkpoint| restore_chain(folder, manifest, scene, disk, checkpoint);
     sampling.pool()?.install(|| checkpoints.into_par_iter().map(restore).collect())
 }
@@ -228,14 +299,13 @@ fn restore_chain<S: Scene>(
         let message = format!("the checkpoint is not one of {rungs} rungs");
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
     }
-    cut(folder, disk, chain, records)?;
+    cut(&path, disk, records)?;
     Ok(Start { snapshot, distinct })
 }
 
-fn cut(folder: &Folder, disk: &dyn Disk, chain: u32, bytes: u64) -> Result<(), RunFileError> {
-    let path = folder.records(chain);
-    if records::length(&path)? > bytes {
-        disk.truncate(&path, bytes).map_err(RunFileError::io(&path, "cut"))?;
+fn cut(path: &Path, disk: &dyn Disk, bytes: u64) -> Result<(), RunFileError> {
+    if records::length(path)? > bytes {
+        disk.truncate(path, bytes).map_err(RunFileError::io(path, "cut"))?;
     }
     Ok(())
 }
@@ -249,21 +319,28 @@ fn go_on<S: Scene>(
 ) -> Result<Ending, Error> {
     let moves = scene.moves(&manifest.scenario()?.sampler.rules)?;
     let done = starts.first().map_or(0, |start| start.snapshot.end_iteration);
-    let lengths = (0..manifest.plan.chains)
-        .map(|chain| records::length(&folder.records(chain)))
-        .collect::<Result<Vec<_>, _>>()?;
+    let lengths =
+        manifest.chains().map(|chain| records::length(&folder.records(chain))).collect::<Result<Vec<_>, _>>()?;
     let pool = sampling.pool()?;
     let Sampling { threads, disk, watch } = sampling;
     watch.begin(manifest, done);
     let (plan, pulse, run) = (manifest.plan, watch.pulse(), manifest.run_id());
     let gauge = if watch.looks_at_mixing() { Some(gauge(folder, scene, manifest, &lengths, done)?) } else { None };
-    let mut sink = FolderSink::new(Place { folder, disk, run, pool }, watch, gauge, lengths, done);
-    let ended = plaus_mcmc::run_watched(scene, &moves, plan, starts, threads, &mut sink, &pulse);
+    let chains = manifest.chains();
+    let place = Place { folder, disk, run, pool, first: chains.start };
+    let hunt = plan.solutions.filter(|_| manifest.shard.is_some());
+    let mut hunt = hunt.map(|wanted| Hunt { siblings: Siblings::new(folder, run), wanted, over: false });
+    let found: Vec<_> = starts.iter().flat_map(|start| start.distinct.firsts().iter().copied()).collect();
+    if hunt.as_mut().is_some_and(|hunt| hunt.is_over(&found, done)) {
+        return Ok(Ending::EnoughSolutions);
+    }
+    let mut sink = FolderSink::new(place, watch, gauge, lengths, done, hunt);
+    let ended = plaus_mcmc::run_some(scene, &moves, plan, chains, starts, threads, &mut sink, &pulse);
     let finished = if matches!(ended, Err(RunError::Sink(_))) { Ok(()) } else { sink.checkpoint() };
     let safe = sink.safe();
     let ending = ended.map_err(|error| Error::of_run(error, safe))?;
     finished.map_err(|error| Error::of_run(RunError::Sink(error), safe))?;
-    Ok(ending)
+    Ok(if sink.is_past_the_end() { Ending::EnoughSolutions } else { ending })
 }
 
 /// A gauge that has seen what is recorded already.
@@ -274,8 +351,8 @@ fn gauge<'a, S: Scene>(
     lengths: &[u64],
     end_iteration: u64,
 ) -> Result<Gauge<'a, S>, RunFileError> {
-    let mut gauge = Gauge::new(scene, &manifest.plan);
-    for (chain, &bytes) in (0..).zip(lengths).filter(|_| end_iteration > manifest.plan.warmup) {
+    let mut gauge = Gauge::new(scene, &manifest.plan, manifest.chains());
+    for (chain, &bytes) in manifest.chains().zip(lengths).filter(|_| end_iteration > manifest.plan.warmup) {
         let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes, end_iteration };
         gauge.read(&folder.records(chain), extent)?;
     }
