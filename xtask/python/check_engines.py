@@ -25,7 +25,7 @@ from environment import environment
 
 REQUIREMENTS = ["hyperqueue==0.27.0", "openjd-cli==0.8.0"]
 # What shells, TOML, JSON and templates find special.
-JOB = "it's a \"job\" $HOME {x} %{TASK_ID} {{Param.Piece0}}"
+JOB = "it's a \"job\" $HOME {x} %j {{Param.Piece0}}"
 FILE = "ball's \"2d\".toml"
 PIECES = 4
 # Nothing here takes minutes, unless something hangs.
@@ -77,6 +77,8 @@ class Job:
         shutil.rmtree(self.place, ignore_errors=True)
         self.place.mkdir(parents=True)
         self.path = self.place / JOB
+        # Whether some piece was seen to say that its disk is full.
+        self.named = False
         scenario = self.place / FILE
         shutil.copy(arguments.scenario, scenario)
         # Some seconds a piece, and records of a few megabytes.
@@ -97,18 +99,26 @@ class Job:
 
     def status(self):
         done = subprocess.run([self.plaus, "status", "--json", str(self.path)], capture_output=True, text=True)
-        return json.loads(done.stdout)
+        status = json.loads(done.stdout)
+        failed = [piece["signal"] for piece in status["pieces"] if piece["standing"] == "failed"]
+        self.named = self.named or any("The run is safe up to iteration" in (one["why"] or "") for one in failed)
+        return status
 
     def standings(self):
         return self.status()["summary"]["standings"]
 
     def write_again(self):
+        self.status()
         self.call("submit", "--again", self.path)
 
     def at_work(self):
         """Whether some piece has done a part of its iterations."""
         signals = [piece["signal"] for piece in self.status()["pieces"]]
         return any(signal and 0 < signal["iteration"] < signal["end"] for signal in signals)
+
+    def has_named_a_full_disk(self):
+        self.status()
+        return self.named
 
     def is_the_whole(self):
         whole, merged = self.place / "whole", self.path / "run"
@@ -121,9 +131,7 @@ class Job:
 
     def had_accidents(self):
         demand((self.place / "full").exists() and (self.place / "killed").exists(), "no accident happened")
-        failed = [piece["signal"] for piece in self.status()["pieces"] if piece["standing"] == "failed"]
-        whys = [signal["why"] or "" for signal in failed]
-        demand(any("The run is safe up to iteration" in why for why in whys), f"no full disk was named: {whys}")
+        demand(self.named, "no full disk was named")
 
     def refuses(self):
         """What a merge says of pieces that make no whole; each leaves nothing behind."""
@@ -133,7 +141,7 @@ class Job:
         (pieces / "2").rename(aside)
         demand("piece 2/4 is missing" in self.call(*merge, code=2), "a missing piece is not named")
         other = ["--shard", "2/4", "--out", pieces / "2", "--quiet", "--set", "sigma_d=0.3"]
-        self.call("sample", self.place / FILE, *self.run, *other, "--iterations", "10")
+        self.call("sample", self.place / FILE, *self.run, *other, "--max-time", "0s", code=1)
         said = self.call(*merge, code=2)
         demand("is no piece of the run" in said and "pieces/2" in said, f"another scenario is not named: {said}")
         shutil.rmtree(pieces / "2")
@@ -145,14 +153,32 @@ class Job:
         demand(not out.exists(), "a refused merge left something")
 
 
+# What our part of a server says begins so; HyperQueue prints lines of its own.
+SAID = "plaus: "
+
+
+def start_server(words, folder):
+    """Our part of a server; its bars of progress go to a file."""
+    log = open(folder / "server.txt", "a")
+    return subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True, cwd=folder)
+
+
+def answer(server):
+    """The next thing that a server says; nothing where it has ended."""
+    for line in server.stdout:
+        if line.startswith(SAID):
+            return line.removeprefix(SAID).strip()
+    return ""
+
+
 def check_hyperqueue(job, python):
     """A server with two workers on the loopback interface, killed in the middle with all its tasks."""
 
     def serve():
         script = [str(python), __file__, "--serve", str(job.place / "server")]
         shutil.rmtree(job.place / "server", ignore_errors=True)
-        server = subprocess.Popen(script, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=job.place)
-        demand(server.stdout.readline() == "ready\n", "HyperQueue does not start")
+        server = start_server(script, job.place)
+        demand(answer(server) == "ready", "HyperQueue does not start")
         return server
 
     def submit(server):
@@ -162,6 +188,7 @@ def check_hyperqueue(job, python):
 
     server = serve()
     submit(server)
+    wait_for("a full disk", job.has_named_a_full_disk)
     wait_for("pieces at work", job.at_work)
     server.send_signal(signal.SIGKILL)
     server.wait()
@@ -172,9 +199,7 @@ def check_hyperqueue(job, python):
         rounds += 1
         demand(rounds <= 4, f"the job does not come to its end: {job.standings()}")
         submit(server)
-        demand(server.stdout.readline() in ("done\n", "failed\n"), "HyperQueue says nothing")
-        if rounds == 1:
-            job.had_accidents()
+        demand(answer(server) in ("done", "failed"), "HyperQueue says nothing")
     server.stdin.close()
     server.wait()
     return f"{rounds} submissions after the first"
@@ -190,7 +215,7 @@ def serve(folder):
     with LocalCluster(folder, WorkerConfig(cores=1)) as cluster:
         cluster.start_worker(WorkerConfig(cores=1))
         client = cluster.client()
-        print("ready", flush=True)
+        print(f"{SAID}ready", flush=True)
         for line in sys.stdin:
             file = tomllib.loads(Path(json.loads(line)).read_text())
             tasks, known = Tasks(max_fails=None), {}
@@ -205,7 +230,7 @@ def serve(folder):
                     crash_limit=task["crash_limit"],
                 )
             done = client.wait_for_jobs([client.submit(tasks)], raise_on_error=False)
-            print("done" if done else "failed", flush=True)
+            print(f"{SAID}{'done' if done else 'failed'}", flush=True)
 
 
 def check_openjd(job, python):
@@ -222,15 +247,11 @@ def check_openjd(job, python):
     wait_for("pieces at work", job.at_work)
     session.send_signal(signal.SIGKILL)
     session.wait()
-    rounds, named = 0, False
+    rounds = 0
     while not (job.path / "run").exists():
         rounds += 1
         demand(rounds <= 6, f"the job does not come to its end: {job.standings()}")
         run().wait()
-        if not named and (job.place / "killed").exists():
-            named = True
-            demand((job.place / "full").exists(), "no disk was full")
-    demand(named, "no piece was killed")
     return f"{rounds} runs after the first"
 
 
@@ -246,6 +267,7 @@ def check_slurm(job, _):
             demand(done.returncode == 0, f"submit: {done.stdout}{done.stderr}")
 
         go()
+        wait_for("a full disk", job.has_named_a_full_disk)
         wait_for("pieces at work", job.at_work)
         cluster.kill_node()
         cluster.start_node()
@@ -254,8 +276,7 @@ def check_slurm(job, _):
             wait_for("Slurm's queue", lambda: cluster.is_idle())
             if (job.path / "run").exists():
                 break
-            if rounds == 0:
-                job.had_accidents()
+            job.status()
             rounds += 1
             demand(rounds <= 4, f"the job does not come to its end: {job.standings()}")
             go()
@@ -368,15 +389,12 @@ def measure_speed(job, python, seconds):
         alone = time.perf_counter() - begin
         folder = job.place / f"job-{index}"
         job.call("submit", scenario, *run, "--iterations", length, "--to", "hyperqueue", "--shards", 2, "--out", folder)
-        server = subprocess.Popen(
-            [str(python), __file__, "--serve", str(job.place / f"server-{index}")],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=job.place,
-        )
-        demand(server.stdout.readline() == "ready\n", "HyperQueue does not start")
+        server = start_server([str(python), __file__, "--serve", str(job.place / f"server-{index}")], job.place)
+        demand(answer(server) == "ready", "HyperQueue does not start")
         begin = time.perf_counter()
         server.stdin.write(json.dumps(str(folder / "submit" / "job.toml")) + "\n")
         server.stdin.flush()
-        demand(server.stdout.readline() == "done\n", "HyperQueue did not run the pieces")
+        demand(answer(server) == "done", "HyperQueue did not run the pieces")
         shared = time.perf_counter() - begin
         server.stdin.close()
         server.wait()
@@ -412,6 +430,7 @@ def main() -> int:
             job = Job(arguments, engine)
             how = CHECKS[engine](job, python)
             files = job.is_the_whole()
+            job.had_accidents()
             job.refuses()
             if engine == arguments.engines[0]:
                 twice_at_once(job)

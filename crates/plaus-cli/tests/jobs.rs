@@ -10,7 +10,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
 /// A folder and a file with all that shells, TOML, JSON and templates find special.
-const JOB: &str = "it's a \"job\" $HOME $(date) `id` %j %{TASK_ID} {shard} {{Param.Piece0}} \\n ;&|*?";
+const JOB: &str = "it's a \"job\" $HOME $(date) `id` %j {shard} {{Param.Piece0}} \\n ;&|*?";
 const FILE: &str = "ball's $(1) \"2d\" {shard} {{x}}.toml";
 
 /// Runs `plaus` with these words.
@@ -48,12 +48,16 @@ fn scripts_of_slurm_run_as_they_are() {
     let job = job(&place, "slurm", "3");
     let script = |name: &str| job.join("submit").join(name);
     let text = std::fs::read_to_string(script("pieces.sh")).unwrap();
-    assert!(text.contains("#SBATCH --array=1-3\n") && text.contains("#SBATCH --output=logs/piece-%a.txt\n"), "{text}");
+    assert!(
+        text.contains("#SBATCH --array=1-3\n") && text.contains("/piece-\"$SLURM_ARRAY_TASK_ID\".txt 2>&1\n"),
+        "{text}"
+    );
     for task in ["1", "2", "3"] {
         let mut shell = Command::new("sh");
         shell.arg(script("pieces.sh")).env("SLURM_ARRAY_TASK_ID", task).env_remove("HQ_TASK_ID").current_dir("/");
         assert!(shell.status().unwrap().success());
     }
+    assert!(std::fs::read_to_string(job.join("logs/piece-2.txt")).unwrap().contains("seed 5"));
     assert!(Command::new("sh").arg(script("merge.sh")).current_dir("/").status().unwrap().success());
     is_the_whole(&place);
 }
@@ -74,9 +78,9 @@ fn the_merge_is_submitted_as_depending_on_the_pieces() {
     assert_eq!(Ended::of(output, "submit").code, Some(0));
     let said = std::fs::read_to_string(place.path("said")).unwrap();
     let job = std::path::absolute(job).unwrap().display().to_string();
-    let expected = format!(
-        "--parsable\n--chdir={job}\n{job}/submit/pieces.sh\n--parsable\n--chdir={job}\n--dependency=afterok:4711\n{job}/submit/merge.sh\n"
-    );
+    let pieces = format!("--parsable\n{job}/submit/pieces.sh\n");
+    let merge = format!("--parsable\n--dependency=afterok:4711\n{job}/submit/merge.sh\n");
+    let expected = pieces + &merge;
     assert_eq!(said, expected);
 }
 
@@ -183,6 +187,9 @@ fn what_makes_no_job_is_refused() {
     place.ends("submit --again nowhere", 2).says(&["nowhere: there is no job here"]);
     place.ends("submit nothing.toml --to slurm --shards 2 --out job", 2).says(&["nothing.toml: cannot read"]);
     place.ends(&format!("{submit} --shards 2 --out ball.toml"), 2).says(&["ball.toml: exists already"]);
+    assert_eq!(place.names(), ["ball.toml"]);
+    let replaced = place.ends("submit ball.toml --to hyperqueue --shards 2 --out %{TASK_ID}", 2);
+    replaced.says(&["HyperQueue replaces `%{…}` in names"]);
     assert_eq!(place.names(), ["ball.toml"]);
     place.ok(&format!("{submit} --shards 2 --out job"));
     place.ends(&format!("{submit} --shards 2 --out job"), 2).says(&["job: exists already"]);

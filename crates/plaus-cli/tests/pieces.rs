@@ -1,4 +1,5 @@
-//! Pieces of a run, merged, are byte for byte the run that one machine makes; what makes no whole is refused, and nothing is overwritten.
+//! Pieces of a run, merged, are byte for byte the run that one machine makes; what makes no whole is refused, and
+//! nothing is overwritten.
 #![allow(clippy::unwrap_used)]
 
 mod common;
@@ -95,6 +96,27 @@ fn a_piece_goes_on_and_gets_longer() {
     let other = place.ends("sample ball.toml --seed 8 -q --shard 1/2 --out cut/1 --continue", 2);
     other.says(&["error: cut/1: holds another run: it has `seed = 7` in [sampler], not `seed = 8`"]);
     place.ends("sample ball.toml -q --shard 2/2 --out cut/1 --continue", 2).says(&["cut/1: holds another run"]);
+}
+
+/// Engines may start a piece twice: one process makes it, the other waits, and finds nothing left to do.
+#[test]
+fn a_piece_started_twice_at_once_is_made_once() {
+    let place = Place::new();
+    place.ok("sample ball.toml -q --shard 1/2 --out alone");
+    for again in 0..8 {
+        let start = || {
+            let command = format!("sample ball.toml -q --shard 1/2 --out both{again} --continue");
+            place.command(&command).stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped()).spawn()
+        };
+        for process in [start().unwrap(), start().unwrap()] {
+            let ended = common::Ended::of(process.wait_with_output().unwrap(), "twice at once");
+            assert_eq!(ended.code, Some(0), "{}", ended.err);
+        }
+        let (mut alone, mut both) = (place.bytes("alone"), place.bytes(&format!("both{again}")));
+        // Says which process was the last.
+        (alone.remove("progress.json"), both.remove("progress.json"));
+        assert!(both == alone, "{again}");
+    }
 }
 
 /// Where a run ends that looks for solutions follows from all pieces together.

@@ -137,7 +137,7 @@ pub fn sample_or_go_on(
     folder: &Folder,
     recipe: &Recipe,
     shard: Option<Shard>,
-    sampling: Sampling<'_>,
+    mut sampling: Sampling<'_>,
 ) -> Result<Ending, Error> {
     struct Expected<'a>(&'a Recipe, Option<Shard>);
     impl Visitor for Expected<'_> {
@@ -147,7 +147,16 @@ pub fn sample_or_go_on(
         }
     }
     if !folder.manifest().exists() {
-        return sample_shard(folder, recipe, shard, sampling);
+        let Sampling { threads, disk, ref mut watch } = sampling;
+        let begun = sample_shard(folder, recipe, shard, Sampling { threads, disk, watch: &mut **watch });
+        // Of two processes that begin at once, one makes the run; the other goes on with it.
+        let too_late = |problem: &RunFileProblem| {
+            matches!(problem, RunFileProblem::Exists | RunFileProblem::Io { action: "make the run", .. })
+        };
+        match begun {
+            Err(Error::File(error)) if too_late(&error.problem) && folder.manifest().exists() => {}
+            begun => return begun,
+        }
     }
     let found = Manifest::read(folder)?;
     let expected = recipe.scenario.world.visit(Expected(recipe, shard))??;

@@ -1,7 +1,8 @@
 //! Pieces of a run: whole chains, cut as evenly as can be, that other machines can work at.
 //!
-//! A piece is a run of its own: it can be killed, resumed, diagnosed, exported. Its chains keep their numbers among all, and its files have
-//! the bytes that they have where one machine runs all chains; [`merge`](crate::merge) only puts them side by side.
+//! A piece is a run of its own: it can be killed, resumed, diagnosed, exported. Its chains keep their numbers among
+//! all, and its files have the bytes that they have where one machine runs all chains; [`merge`](crate::merge) only
+//! puts them side by side.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -68,7 +69,8 @@ impl Shard {
         self.of
     }
 
-    /// Its part of `total` things that are cut into pieces: chains here; batches of particles or of draws are cut the same way.
+    /// Its part of `total` things that are cut into pieces: chains here; batches of particles or of draws are cut the
+    /// same way.
     ///
     /// # Errors
     /// [`ShardError`] where it would have none, or its numbers name no piece.

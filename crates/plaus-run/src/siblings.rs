@@ -1,7 +1,9 @@
-//! What the pieces beside this one have found so far: so that a piece that looks for solutions need not find all of them by itself.
+//! What the pieces beside this one have found so far: so that a piece that looks for solutions need not find all of
+//! them by itself.
 //!
-//! What is known is never too early: another solution can only bring the end forward. So a piece that is past the end that it knows of is past the end
-//! of the run, and has made everything that a merge takes of it. How far it goes beyond depends on who was faster; what is merged does not.
+//! What is known is never too early: another solution can only bring the end forward. So a piece that is past the end
+//! that it knows of is past the end of the run, and has made everything that a merge takes of it. How far it goes
+//! beyond depends on who was faster; what is merged does not.
 
 use crate::error::RunFileError;
 use crate::folder::{Folder, parent_of};
@@ -25,7 +27,8 @@ impl Siblings {
         Self { own: own.clone(), run, read: BTreeMap::new(), found: BTreeMap::new() }
     }
 
-    /// The iteration that completes `wanted` solutions, as far as is known here and to those beside; `None` where there are not so many yet.
+    /// The iteration that completes `wanted` solutions, as far as is known here and to those beside; `None` where there
+    /// are not so many yet.
     pub(crate) fn end(&mut self, ours: &[FirstOfClass], wanted: u64) -> Option<u64> {
         self.look();
         ours.iter().for_each(|first| self.note(first));

@@ -1,8 +1,8 @@
 //! Where a piece could be cut: checkpoints of all its chains after every round, one frame a round, appended.
 //!
-//! Pieces that look for distinct solutions each go further than the run will: where it ends follows from all of them together. A merge cuts
-//! each piece at the last end of a block before that, which all have, and makes the rest anew. What was found first is noted too: for the pieces
-//! beside, see `siblings`.
+//! Pieces that look for distinct solutions each go further than the run will: where it ends follows from all of them
+//! together. A merge cuts each piece at the last end of a block before that, which all have, and makes the rest anew.
+//! What was found first is noted too: for the pieces beside, see `siblings`.
 
 use crate::checkpoint::Checkpoint;
 use crate::codec::{self, Frames, Kind};
@@ -47,7 +47,8 @@ pub(crate) fn append<D: Serialize, O: Serialize>(
     disk.append(&path, &frame).map_err(RunFileError::io(&path, "write"))
 }
 
-/// Iterations that the rounds end at, from the first on, with where each round's frame begins and ends in the file. None where there is no trail.
+/// Iterations that the rounds end at, from the first on, with where each round's frame begins and ends in the file.
+/// None where there is no trail.
 ///
 /// # Errors
 /// [`RunFileError`] where the file is another run's. What is damaged ends it: a trail may end in the middle of a frame.

@@ -83,7 +83,8 @@ fn a_merge_that_is_stopped_leaves_nothing() {
     assert_eq!(std::fs::read_dir(place.path()).unwrap().count(), 2);
 }
 
-/// Pieces that look for solutions side by side stop soon after the run does, instead of each finding all by itself; what is merged is the same.
+/// Pieces that look for solutions side by side stop soon after the run does, instead of each finding all by itself;
+/// what is merged is the same.
 #[test]
 fn pieces_that_hunt_learn_from_those_beside_them() {
     let mut recipe = recipe(Some(150));

@@ -5,7 +5,8 @@ use plaus_run::{Shard, ShardError};
 use std::env;
 use std::path::{Path, PathBuf};
 
-/// Where engines say which task of an array this is: the innermost first, as HyperQueue's workers may run within an array of Slurm.
+/// Where engines say which task of an array this is: the innermost first, as HyperQueue's workers may run within an
+/// array of Slurm.
 const TASKS: [&str; 2] = ["HQ_TASK_ID", "SLURM_ARRAY_TASK_ID"];
 /// What stands for the number of the piece in `--out`.
 pub(super) const PLACE: &str = "{shard}";
@@ -21,7 +22,8 @@ pub(super) fn named(text: &str) -> Result<Shard, Failure> {
     format!("{value}/{of}").parse().map_err(|error: ShardError| refuse(&format!("{name} is `{value}`: {error}")))
 }
 
-/// The folder of a piece: `{shard}` as the last part of `out` is its number. Nowhere else, so that folders may be called what they like.
+/// The folder of a piece: `{shard}` as the last part of `out` is its number. Nowhere else, so that folders may be
+/// called what they like.
 pub(super) fn folder(out: &Path, shard: Option<Shard>) -> PathBuf {
     match shard {
         Some(shard) if out.file_name().is_some_and(|name| name == PLACE) => {

@@ -137,7 +137,7 @@ impl Summary {
             pieces: pieces.len(),
             standings,
             share: pieces.iter().map(share_of).sum::<f64>() / pieces.len().max(1) as f64,
-            iterations_per_second: running().map(|signal| signal.iterations_per_second).sum(),
+            iterations_per_second: running().map(|signal| signal.iterations_per_second).fold(0.0, |sum, one| sum + one),
             eta_seconds: running().map(left).filter(|left| left.is_finite()).reduce(f64::max),
         }
     }

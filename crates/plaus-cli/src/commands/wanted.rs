@@ -1,4 +1,5 @@
-//! Which run is wanted: a scenario, and what the command line says of it. `plaus sample` and `plaus submit` share it, so that they mean the same run.
+//! Which run is wanted: a scenario, and what the command line says of it. `plaus sample` and `plaus submit` share it,
+//! so that they mean the same run.
 
 use crate::failure::Failure;
 use crate::scenario_file;

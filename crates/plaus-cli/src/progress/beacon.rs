@@ -1,4 +1,5 @@
-//! A small file in the folder of a piece that says how far it is: read by `plaus status`, on any machine that sees the folder, and believed by nobody else.
+//! A small file in the folder of a piece that says how far it is: read by `plaus status`, on any machine that sees the
+//! folder, and believed by nobody else.
 
 use crate::clock::unix_seconds;
 use plaus_mcmc::ChainPulse;

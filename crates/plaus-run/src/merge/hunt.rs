@@ -1,9 +1,10 @@
 //! Pieces that look for distinct solutions together.
 //!
-//! A run that looks for K solutions ends at the first iteration by which its chains together have recorded K. No piece knows that iteration: each goes
-//! on until its own chains and those of the pieces beside it, as far as it knows, have K, which is never before it. So where the run ends follows from what all pieces recorded, not from who was
-//! faster. There they are cut: at the last end of a block before it that all have in their trails; what is left, less than a block, is
-//! sampled again.
+//! A run that looks for K solutions ends at the first iteration by which its chains together have recorded K. No piece
+//! knows that iteration: each goes on until its own chains and those of the pieces beside it, as far as it knows, have
+//! K, which is never before it. So where the run ends follows from what all pieces recorded, not from who was faster.
+//! There they are cut: at the last end of a block before it that all have in their trails; what is left, less than a
+//! block, is sampled again.
 
 use super::pieces::{Piece, Pieces};
 use super::{Merging, copy_chain, refuse, seal, write};
@@ -19,7 +20,8 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// The iteration that recorded the last demanded solution; `None` where none were demanded, or the pieces went to the end of the plan without.
+/// The iteration that recorded the last demanded solution; `None` where none were demanded, or the pieces went to the
+/// end of the plan without.
 ///
 /// # Errors
 /// [`Error`] where a piece has to go on before that is known.
@@ -106,7 +108,8 @@ pub(super) fn merge(
     Ok(bytes)
 }
 
-/// The last round that ends at iteration `last` or before, and that all pieces have in their trails; 0 where there is none.
+/// The last round that ends at iteration `last` or before, and that all pieces have in their trails; 0 where there is
+/// none.
 fn common_round(pieces: &Pieces, last: u64) -> Result<u64, Error> {
     let mut common: Option<BTreeSet<u64>> = None;
     for piece in &pieces.all {

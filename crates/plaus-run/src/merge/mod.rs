@@ -1,7 +1,8 @@
 //! The run that one machine would have made, from pieces that several made.
 //!
-//! The files of a chain have the same bytes in a piece and in the whole, so they are copied, each frame with its checksum found right; memory stays
-//! flat. Pieces that look for distinct solutions are cut where the run ends, see [`hunt`].
+//! The files of a chain have the same bytes in a piece and in the whole, so they are copied, each frame with its
+//! checksum found right; memory stays flat. Pieces that look for distinct solutions are cut where the run ends, see
+//! [`hunt`].
 
 mod hunt;
 mod pieces;
@@ -77,8 +78,8 @@ pub struct Merged {
 /// Makes the run `out` from pieces: each path is one, or a folder of some. The pieces stay as they are.
 ///
 /// # Errors
-/// [`Error`], naming the piece, where one is missing, there twice, unfinished, damaged, being written, or of another run; where `out` exists; or where
-/// the disk refuses. Nothing is made then.
+/// [`Error`], naming the piece, where one is missing, there twice, unfinished, damaged, being written, or of another
+/// run; where `out` exists; or where the disk refuses. Nothing is made then.
 pub fn merge(paths: &[PathBuf], out: &Folder, merging: Merging<'_>) -> Result<Merged, Error> {
     out.refuse_to_replace()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(merging.threads).build();

@@ -1,4 +1,5 @@
-//! What each engine is given. Commands are lists of arguments wherever the engine takes them; the scripts of Slurm quote each argument for the shell.
+//! What each engine is given. Commands are lists of arguments wherever the engine takes them; the scripts of Slurm
+//! quote each argument for the shell.
 
 use super::job::{Engine, Job, text_of};
 use crate::commands::sample::quoted;
@@ -17,8 +18,8 @@ pub(super) fn in_shell(words: &[String]) -> String {
     words.iter().map(|word| quoted(Path::new(word))).collect::<Vec<_>>().join(" ")
 }
 
-/// Writes the engine's files for the pieces numbered `wanted`; gives the commands that submit them, in order. `PIECES` in one stands for what the command
-/// before printed.
+/// Writes the engine's files for the pieces numbered `wanted`; gives the commands that submit them, in order. `PIECES`
+/// in one stands for what the command before printed.
 pub(super) fn write(job: &Job, wanted: &[u32]) -> Result<Vec<Vec<String>>, Failure> {
     match job.what.engine {
         Engine::Slurm => slurm(job, wanted),
@@ -42,22 +43,24 @@ pub(super) fn ranges(numbers: &[u32]) -> String {
 pub(super) const PIECES: &str = "PIECES";
 
 fn slurm(job: &Job, wanted: &[u32]) -> Result<Vec<Vec<String>>, Failure> {
+    // Slurm replaces `%j` and the like in names of folders, and cannot be told not to: so the shell writes the logs.
     let script = |name: &str, threads: usize, log: &str, more: &str, command: &[String]| {
+        let logs = quoted(Path::new(&text_of(&job.path().join("logs"))?));
         let text = format!(
             "#!/bin/sh\n#SBATCH --job-name=plaus-{name}\n#SBATCH --ntasks=1\n#SBATCH --cpus-per-task={threads}\n\
-             #SBATCH --output=logs/{log}.txt\n#SBATCH --open-mode=append\n{more}exec {}\n",
+             #SBATCH --chdir=/\n#SBATCH --output=/dev/null\n{more}exec {} >> {logs}/{log} 2>&1\n",
             in_shell(command)
         );
         text_of(&job.write(&Path::new("submit").join(format!("{name}.sh")), &text)?)
     };
     let threads = job.what.threads.max(1);
     let array = format!("#SBATCH --requeue\n#SBATCH --array={}\n", ranges(wanted));
-    let pieces = script("pieces", threads, "piece-%a", &array, &job.piece_command("task")?)?;
-    let merge = script("merge", 1, "merge", "", &job.merge_command()?)?;
-    let chdir = format!("--chdir={}", text_of(job.path())?);
+    let log = "piece-\"$SLURM_ARRAY_TASK_ID\".txt";
+    let pieces = script("pieces", threads, log, &array, &job.piece_command("task")?)?;
+    let merge = script("merge", 1, "merge.txt", "", &job.merge_command()?)?;
     let sbatch = |more: &[String], script: String| {
         let words = ["sbatch", "--parsable"].map(str::to_owned);
-        [&words[..], std::slice::from_ref(&chdir), more, &job.what.options, &[script]].concat()
+        [&words[..], more, &job.what.options, &[script]].concat()
     };
     Ok(vec![sbatch(&[], pieces), sbatch(&[format!("--dependency=afterok:{PIECES}")], merge)])
 }

@@ -85,6 +85,10 @@ impl Args {
         else {
             return Err(missing());
         };
+        if engine == Engine::Hyperqueue && job::text_of(&out)?.contains("%{") {
+            let out = out.display();
+            return Err(Failure::Message(format!("{out}: HyperQueue replaces `%{{…}}` in names; choose another")));
+        }
         let recipe = wanted.recipe()?;
         let program = match self.program {
             Some(program) => program,
