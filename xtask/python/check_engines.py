@@ -270,6 +270,7 @@ def check_slurm(job, _):
         wait_for("a full disk", job.has_named_a_full_disk)
         wait_for("pieces at work", job.at_work)
         cluster.kill_node()
+        time.sleep(3)  # Slurm gives a job that has just begun some time before it asks for it
         cluster.start_node()
         rounds = 0
         while True:
@@ -304,7 +305,7 @@ class Slurm:
             "SlurmctldLogFile": folder / "slurmctld.log", "SlurmdLogFile": folder / "slurmd.log",
             "ProctrackType": "proctrack/pgid", "TaskPlugin": "task/none", "SelectType": "select/cons_tres",
             "SelectTypeParameters": "CR_Core", "JobAcctGatherType": "jobacct_gather/none", "MpiDefault": "none",
-            "ReturnToService": 2, "JobRequeue": 1, "SchedulerParameters": "sched_interval=1,batch_sched_delay=1",
+            "ReturnToService": 2, "JobRequeue": 1, "BatchStartTimeout": 1, "SlurmdTimeout": 6, "SchedulerParameters": "sched_interval=1,batch_sched_delay=1",
         }
         lines = [f"{key}={value}" for key, value in settings.items()]
         lines.append(f"NodeName={host} NodeAddr=127.0.0.1 CPUs={os.cpu_count()} State=UNKNOWN")
@@ -320,7 +321,8 @@ class Slurm:
 
     def start_node(self):
         self.node = self.start("slurmd", "-D")
-        wait_for("a node that takes jobs", lambda: "idle" in self.ask("sinfo", "-h", "-o", "%T"), 60)
+        ready = {"idle", "mixed", "allocated"}
+        wait_for("a node that takes jobs", lambda: self.ask("sinfo", "-h", "-o", "%T").strip() in ready, 60)
 
     def ask(self, *words):
         return subprocess.run(words, env=self.env, capture_output=True, text=True).stdout

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes many small pieces of one run, merges them, and says what that costs: time, memory, files.
 
-    measure_merge.py --plaus PLAUS --scenario FILE --work FOLDER --pieces N [--iterations N]
+    measure_merge.py --plaus PLAUS --scenario FILE --work FOLDER --pieces N [--chains N] [--iterations N]
 """
 
 import argparse
@@ -30,14 +30,15 @@ def main():
     parser.add_argument("--scenario", type=Path, required=True)
     parser.add_argument("--work", type=Path, required=True)
     parser.add_argument("--pieces", type=int, required=True)
+    parser.add_argument("--chains", type=int, help="of all pieces together; one a piece unless given")
     parser.add_argument("--iterations", type=int, default=1000)
     arguments = parser.parse_args()
     plaus, place = str(arguments.plaus.resolve()), arguments.work.resolve() / f"merge-{arguments.pieces}"
     shutil.rmtree(place, ignore_errors=True)
     place.mkdir(parents=True)
     shutil.copy(arguments.scenario, place / "scenario.toml")
-    run = [plaus, "sample", "scenario.toml", "--chains", str(arguments.pieces), "--iterations", str(arguments.iterations)]
-    run += ["--warmup", "0", "--thin", "1", "--threads", "1", "--quiet", "--out", "pieces/{shard}"]
+    run = [plaus, "sample", "scenario.toml", "--chains", str(arguments.chains or arguments.pieces)]
+    run += ["--iterations", str(arguments.iterations), "--warmup", "0", "--thin", "1", "--threads", "1", "--quiet", "--out", "pieces/{shard}"]
 
     def sample(piece):
         # 1 where the demand is rare: no iteration has met it yet.
@@ -48,11 +49,13 @@ def main():
         list(pool.map(sample, range(1, arguments.pieces + 1)))
     took = time.perf_counter() - begin
     size = sum(path.stat().st_size for path in (place / "pieces").glob("*/chain-*")) / 1e9
-    print(f"{arguments.pieces} pieces, {size:.3f} GB, made in {took:.1f} s", flush=True)
+    made = f"{arguments.pieces} pieces, {arguments.chains or arguments.pieces} chains"
+    print(f"{made}, {size:.3f} GB, made in {took:.1f} s", flush=True)
     for again in range(3):
         out = f"run-{again}"
         seconds, processor, memory = used([plaus, "merge", "pieces", "--out", out, "--quiet"], place)
-        print(f"merge: {seconds:.2f} s, {processor:.2f} s of processor, {memory:.0f} MB of memory, {seconds / size:.2f} s a GB", flush=True)
+        cost = f"{seconds:.2f} s, {processor:.2f} s of processor, {memory:.0f} MB of memory"
+        print(f"merge: {cost}, {seconds / size:.2f} s a GB", flush=True)
     seconds, processor, memory = used(["sh", "-c", '"$0" diagnose run-0 > diagnosis.txt; [ $? -le 1 ]', plaus], place)
     print(f"diagnose: {seconds:.2f} s, {processor:.2f} s of processor, {memory:.0f} MB of memory", flush=True)
 
