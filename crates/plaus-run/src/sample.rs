@@ -151,7 +151,8 @@ pub fn sample_or_go_on(
         let begun = sample_shard(folder, recipe, shard, Sampling { threads, disk, watch: &mut **watch });
         // Of two processes that begin at once, one makes the run; the other goes on with it.
         let too_late = |problem: &RunFileProblem| {
-            matches!(problem, RunFileProblem::Exists | RunFileProblem::Io { action: "make the run", .. })
+            use RunFileProblem::{Exists, Io, Locked};
+            matches!(problem, Exists | Locked | Io { action: "make the run", .. })
         };
         match begun {
             Err(Error::File(error)) if too_late(&error.problem) && folder.manifest().exists() => {}
