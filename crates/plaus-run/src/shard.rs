@@ -1,7 +1,7 @@
 //! Pieces of a run: whole chains, cut as evenly as can be, that other machines can work at.
 //!
 //! A piece is a run of its own: it can be killed, resumed, diagnosed, exported. Its chains keep their numbers among
-//! all, and its files have the bytes that they have where one machine runs all chains; [`merge`](crate::merge) only
+//! all, and its files have the bytes that they have where one machine runs all chains; [`merge`](mod@crate::merge) only
 //! puts them side by side.
 
 use serde::{Deserialize, Serialize};
