@@ -114,7 +114,8 @@ fn a_piece_started_twice_at_once_is_made_once() {
         }
         let (mut alone, mut both) = (place.bytes("alone"), place.bytes(&format!("both{again}")));
         // Says which process was the last.
-        (alone.remove("progress.json"), both.remove("progress.json"));
+        alone.remove("progress.json");
+        both.remove("progress.json");
         assert!(both == alone, "{again}");
     }
 }

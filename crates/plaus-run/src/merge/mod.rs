@@ -2,7 +2,7 @@
 //!
 //! The files of a chain have the same bytes in a piece and in the whole, so they are copied, each frame with its
 //! checksum found right; memory stays flat. Pieces that look for distinct solutions are cut where the run ends, see
-//! [`hunt`].
+//! `hunt`.
 
 mod hunt;
 mod pieces;
