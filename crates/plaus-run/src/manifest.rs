@@ -43,6 +43,9 @@ pub struct Manifest {
     pub moves: Vec<String>,
     /// The scalars of the scene.
     pub scalars: Vec<StoredScalar>,
+    /// What was required beyond the scenario, in a word: the recorded log constraints hold its factor, and the run goes on only with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub requirement: Option<String>,
 }
 
 /// The scenario of a run.
@@ -132,6 +135,7 @@ impl Recipe {
             acceptance_rule: rules.flags().into_iter().map(|(flag, on)| (flag.to_owned(), on)).collect(),
             moves: scene.moves(rules)?.names(),
             scalars: stored_scalars(scene),
+            requirement: None,
         })
     }
 }
@@ -259,6 +263,18 @@ impl Manifest {
             return Err(Error::StoredScenario("it is not the one of the run's plan".to_owned()));
         }
         Ok(scenario)
+    }
+
+    /// That the scenario alone says whether an outcome satisfies.
+    ///
+    /// # Errors
+    /// [`Error::Request`] where the run has a requirement, which only the program that gave it can ask.
+    pub fn judges_alone(&self) -> Result<(), Error> {
+        self.requirement.as_ref().map_or(Ok(()), |name| {
+            Err(Error::Request(format!(
+                "this run has a requirement, {name}, that its folder does not hold: whether another simulation meets it cannot be told"
+            )))
+        })
     }
 
     /// A number that the chains' files bear, so that files of different runs cannot be mixed up.
