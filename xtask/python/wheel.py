@@ -49,6 +49,8 @@ def build(target: Path, profile: str) -> int:
     shutil.rmtree(dist, ignore_errors=True)
     words = [python.with_name("maturin"), "build", "--locked", "--profile", profile, "--out", dist]
     words += ["--manifest-path", PACKAGE / "Cargo.toml", "--interpreter", sys.executable, "--target-dir", target]
+    if profile == "release":
+        words.append("--strip")
     if run(words, cwd=ROOT) != 0:
         print("maturin failed")
         return 1

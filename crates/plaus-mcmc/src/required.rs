@@ -75,7 +75,9 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
         let mark = self.requirement.judge(self.target, &seen)?;
         if let Some(most) = self.requirement.most().filter(|most| mark.log > *most) {
             let (found, most) = (mark.log.value(), most.value());
-            return Err(ModelError::new(format!("a requirement's log potential {found} exceeds the most it said, {most}")));
+            return Err(ModelError::new(format!(
+                "a requirement's log potential {found} exceeds the most it said, {most}"
+            )));
         }
         let (draw, log_prior) = (seen.draw.clone(), seen.log_prior);
         let log_constraint = seen.log_constraint + mark.log;

@@ -24,7 +24,9 @@ fn frames(duration: f64, fps: f64) -> PyResult<Vec<f64>> {
     }
     let last = (duration * fps).floor();
     if last >= MOST_POSES as f64 {
-        return Err(PyValueError::new_err(format!("fps is {fps}: {last} frames are more than the {MOST_POSES} there may be")));
+        return Err(PyValueError::new_err(format!(
+            "fps is {fps}: {last} frames are more than the {MOST_POSES} there may be"
+        )));
     }
     Ok((0..=last as u64).map(|frame| frame as f64 / fps).collect())
 }

@@ -183,7 +183,8 @@ impl Asked {
             return Ok(Mark { log: if met { LogPotential::ONE } else { LogPotential::ZERO }, met });
         }
         let wrong = || {
-            let message = format!("{name} answered {answer}: a pair (log potential, met) is expected, or True or False");
+            let message =
+                format!("{name} answered {answer}: a pair (log potential, met) is expected, or True or False");
             PyTypeError::new_err(message)
         };
         let pair = answer.cast::<PyTuple>().map_err(|_| wrong())?;
@@ -193,7 +194,9 @@ impl Asked {
         let log: f64 = pair.get_item(0)?.extract().map_err(|_| wrong())?;
         let met = pair.get_item(1)?.is_truthy()?;
         let log = LogPotential::new(log).map_err(|_| {
-            PyValueError::new_err(format!("{name} answered a log potential of {log}: a number below ∞ is expected, or -inf"))
+            PyValueError::new_err(format!(
+                "{name} answered a log potential of {log}: a number below ∞ is expected, or -inf"
+            ))
         })?;
         Ok(Mark { log, met })
     }
@@ -251,6 +254,13 @@ impl Drive for ByPython {
         let asked = Arc::clone(&self.0);
         let most = asked.get().most;
         let required = Required::new(&**scene, OfScene { asked, scene: Arc::clone(scene), names, most });
-        plaus_mcmc::required::run(&required, moves, (journey.plan, journey.starts), journey.threads, sink, journey.pulse)
+        plaus_mcmc::required::run(
+            &required,
+            moves,
+            (journey.plan, journey.starts),
+            journey.threads,
+            sink,
+            journey.pulse,
+        )
     }
 }

@@ -233,9 +233,7 @@ pub(crate) fn sample<'py>(
     interval: f64,
 ) -> PyResult<(&'static str, f64)> {
     let task = match scenario {
-        Some(scenario) => {
-            Task::Sample(Recipe { solutions, ..scenario.get().with(py, overrides)?.recipe })
-        }
+        Some(scenario) => Task::Sample(Recipe { solutions, ..scenario.get().with(py, overrides)?.recipe }),
         None => Task::Resume(More { iterations, solutions }),
     };
     let board = Arc::new(Board::default());

@@ -83,12 +83,7 @@ impl Scenario {
     /// The same with some keys changed: `set("sigma_d=0.05")` as on the command line, or `set(sigma_d=0.05)`, or `set(**{"weights.aim": 2})`.
     /// A key is a full dotted name or an end of it that no other key has.
     #[pyo3(signature = (*overrides, **keys))]
-    fn set(
-        &self,
-        py: Python<'_>,
-        overrides: Vec<String>,
-        keys: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<Self> {
+    fn set(&self, py: Python<'_>, overrides: Vec<String>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let mut more = overrides;
         for (key, value) in keys.into_iter().flatten() {
             let key: String = key.extract()?;
@@ -139,7 +134,9 @@ impl Scenario {
 
     fn __hash__(&self) -> u64 {
         // FNV-1a over the whole text: equal scenarios have equal texts.
-        self.toml().bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+        self.toml()
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
     }
 
     fn __repr__(&self) -> String {
@@ -192,7 +189,9 @@ fn value(item: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
         number.extract().map(Value::Float)
     } else {
         let kind = item.get_type().name()?.to_string();
-        Err(PyTypeError::new_err(format!("{path}: a {kind} is no value of a scenario: numbers, strings, booleans, lists, dictionaries are")))
+        Err(PyTypeError::new_err(format!(
+            "{path}: a {kind} is no value of a scenario: numbers, strings, booleans, lists, dictionaries are"
+        )))
     }
 }
 

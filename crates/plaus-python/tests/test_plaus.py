@@ -143,7 +143,7 @@ def test_solutions_replays_and_events_agree(run):
     assert (replay.chain, replay.draw) == solution.sample and replay.log_p == solution.log_p and replay.satisfied
     assert run.replay(str(solution.sample)).facts == run.replay(solution).facts == replay.facts
     poses = replay.poses(fps=100)
-    assert poses.position.shape == (len(poses.times), 1, 3) and poses.bodies == replay.bodies == ["ball"]
+    assert poses.position.shape == (len(poses.times), 1, 3) and poses.bodies == replay.bodies == ["ball_0"]
     assert np.allclose(np.linalg.norm(poses.orientation, axis=2), 1.0)
     events = replay.events
     # A ball is at its impact where it says that it is: its radius from the point, along the normal.
@@ -165,7 +165,7 @@ def test_a_missing_solution_or_draw_is_named(run):
     for fps in (0.0, -1.0, math.nan, math.inf, 1e12):
         with pytest.raises(ValueError, match="fps"):
             run.poses(0, fps)
-    with pytest.raises(ValueError, match="nan is no time"):
+    with pytest.raises(ValueError, match="NaN is no time"):
         run.replay().poses(times=[math.nan])
 
 
@@ -359,7 +359,8 @@ def test_a_requirement_is_asked_by_the_chain(tmp_path):
     with_it = short(requirement=required, out=tmp_path / "a", threads=2)
     without = short()
     mean = lambda made: made.draws["rest_x"].mean()
-    assert abs(mean(with_it) - 1.05) < 0.03 < abs(mean(without) - 1.05) + 0.03
+    # The factor's own width is 0.02; the scenario's is 0.1, about 1.
+    assert abs(mean(with_it) - 1.05) < 0.02 and abs(mean(without) - 1.05) > 0.03
     satisfied = with_it.draws["satisfied"]
     assert (np.abs(with_it.draws["rest_x"][satisfied] - 1.05) < 0.05).all() and satisfied.any()
     assert required.cost.calls > 0 and required.cost.seconds > 0
@@ -408,7 +409,7 @@ def test_a_requirement_sees_motion_and_impacts():
 
     made = short(requirement=look, iterations=50)
     bodies, rest, times, scalars, text = seen[0]
-    assert bodies == ["ball"] == list(rest) and len(rest["ball"]) == 3
+    assert bodies == ["ball_0"] == list(rest) and len(rest["ball_0"]) == 3
     assert len(times) >= 3 and (np.diff(times) >= 0).all() and "rest_x" in scalars and "rest_x=" in text
     assert np.array_equal(made.draws["rest_x"], short(iterations=50).draws["rest_x"])
 
@@ -567,8 +568,6 @@ def test_starts_that_cannot_be_are_refused():
         world.run([["a", "b", "c"]])
     with pytest.raises(ValueError, match="no time"):
         world.run([[[0, 0, 0.1]]], times=[math.nan])
-    with pytest.raises((MemoryError, ValueError)):
-        world.run(np.tile([0, 0, 0.1], (100, 1, 1)), times=np.zeros(1_000_000_000_000 // 8) if False else range(10**8))
     with pytest.raises(ValueError, match="has no bodies"):
         sim.World().run([[[0, 0, 0]]])
     with pytest.raises(ValueError, match="no law says"):
@@ -580,6 +579,17 @@ def test_starts_that_cannot_be_are_refused():
         bad.law(friction=-1, restitution=0.5)
         bad.ball(1.0)
         bad.run([[[0, 0, 0]]])
+
+
+@pytest.mark.skipif(
+    not pathlib.Path("/proc/sys/vm/overcommit_memory").exists()
+    or pathlib.Path("/proc/sys/vm/overcommit_memory").read_text().strip() != "0",
+    reason="only where the system says that there is no such memory",
+)
+def test_memory_that_runs_out_is_an_exception():
+    # 4e11 poses: ten terabytes.
+    with pytest.raises(MemoryError, match="no memory"):
+        sim.World.dice().run(np.tile([0, 0, 0.1], (200_000, 1, 1)), times=np.zeros(2_000_000))
 
 
 # --- the package

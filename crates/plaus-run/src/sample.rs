@@ -2,10 +2,10 @@
 
 use crate::checkpoint::{self, Checkpoint};
 use crate::disk::{Disk, RealDisk};
+use crate::drive::{Alone, Drive, Journey};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::gauge::{Gauge, Mixing};
-use crate::drive::{Alone, Drive, Journey};
 use crate::manifest::{Manifest, Recipe, VERSION, stored_scalars};
 use crate::records::{self, Extent};
 use crate::replay::evaluate_again;

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -63,6 +62,8 @@ class Replay:
     """A sample, simulated again from its draw: bit for bit what the chain saw, unless another accuracy was asked for."""
 
     def __init__(self, facts: str, motion: _plaus.Motion) -> None:
+        import json
+
         self._motion = motion
         self.facts: dict[str, Any] = json.loads(facts)
         """All that is known of it: sample, iteration, seed, log p, numbers of the scene."""

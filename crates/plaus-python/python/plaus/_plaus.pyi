@@ -177,7 +177,7 @@ def sample(
     overrides: Sequence[str],
     solutions: int | None,
     iterations: int | None,
-    threads: int,
+    threads: int | None,
     fleeting: bool,
     max_time: float | None,
     asked: Asked | None,
@@ -234,7 +234,7 @@ class SimWorld:
         until: float,
         times: Sequence[float],
         events: bool,
-        threads: int,
+        threads: int | None,
     ) -> dict[str, Any]:
         """Runs from every start, on all threads; arrays by name."""
 

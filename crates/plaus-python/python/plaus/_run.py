@@ -1,14 +1,13 @@
-"""Runs: draws as arrays, solutions, motions, pages."""
+"""Runs: draws as arrays, solutions, motions, pages.
+
+What only some calls need is imported by them: `import plaus` stays quick.
+"""
 
 from __future__ import annotations
 
-import json
 import os
-import shutil
-import tempfile
 import weakref
 from collections.abc import Iterable, Sequence
-from html import escape
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 from plaus import _plaus
@@ -63,6 +62,8 @@ class _Folder:
 def _remove(folder: str, owner: int) -> None:
     # A forked child leaves what its parent still needs.
     if os.getpid() == owner:
+        import shutil
+
         shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -72,6 +73,8 @@ class _TemporaryFolder(_Folder):
     fleeting = True
 
     def __init__(self) -> None:
+        import tempfile
+
         place = tempfile.mkdtemp(prefix="plaus-")
         super().__init__(os.path.join(place, "run"))
         self._end = weakref.finalize(self, _remove, place, os.getpid())
@@ -116,6 +119,7 @@ class Gallery:
 
     def open(self) -> str:
         """Shows the page in a browser; gives the file that it is in."""
+        import tempfile
         import webbrowser
 
         place = os.path.join(tempfile.mkdtemp(prefix="plaus-gallery-"), "gallery.html")
@@ -124,6 +128,8 @@ class Gallery:
         return place
 
     def _repr_html_(self) -> str:
+        from html import escape
+
         # Without allow-same-origin: the page can run and download, and see nothing of the notebook.
         return (
             f'<iframe sandbox="allow-scripts allow-downloads" srcdoc="{escape(self.html, quote=True)}" '
@@ -149,6 +155,8 @@ class Run:
         _ended: tuple[str, float] | None = None,
         _requirement: Requirement | None = None,
     ) -> None:
+        import json
+
         self._run = _plaus.RunFolder(path, salvage)
         self._folder = _folder or _Folder(path)
         self.manifest: dict[str, Any] = json.loads(self._run.manifest())
@@ -259,6 +267,8 @@ class Run:
 
         `most`: look at so many draws of each chain at most.
         """
+        import json
+
         made: dict[str, Any] = json.loads(self._run.diagnose(most))
         return made
 
@@ -359,6 +369,8 @@ class Run:
 
     def save(self, path: Path) -> Run:
         """Keeps the run in the folder `path`, which must not exist; gives it there."""
+        import shutil
+
         place = os.fspath(path)
         if os.path.lexists(place):
             raise FileExistsError(f"{place} exists already; choose another name")

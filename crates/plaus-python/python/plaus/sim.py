@@ -18,6 +18,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Union
 
 from plaus import _plaus
+from plaus._sampling import _whole
 
 if TYPE_CHECKING:
     import numpy as np
@@ -314,7 +315,7 @@ class World:
             until=float(until),
             times=moments,
             events=bool(events),
-            threads=int(threads),
+            threads=_whole("threads", threads, 0),
         )
         return Batch(made, moments)
 

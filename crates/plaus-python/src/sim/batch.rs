@@ -8,7 +8,7 @@ use plaus_sim::mechanics::{Impact, Other};
 use plaus_sim::trace::Trace;
 use plaus_sim::{Outcome, Scratch};
 use pyo3::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Acquire, Ordering::Relaxed, Ordering::Release};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
@@ -152,6 +152,16 @@ impl Made {
     }
 }
 
+/// Says that a worker is done, also where it panics, and wakes who waits.
+struct Over<'a>(&'a AtomicUsize, &'a thread::Thread);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Release);
+        self.1.unpark();
+    }
+}
+
 impl Batch {
     /// Runs everything, without Python's lock but for a look now and then whether it wants an end.
     pub(super) fn run(&self, py: Python<'_>, world: &Mutex<Physical>, threads: usize) -> PyResult<Made> {
@@ -178,10 +188,12 @@ impl Batch {
         let threads = if threads == 0 { cores() } else { threads }.min(self.starts.count.max(1));
         let rows = Mutex::new(made.rows(self.starts.bodies, self.times.len()).into_iter());
         let (stop, all) = (AtomicBool::new(false), Mutex::new((None::<Failed>, Vec::new())));
+        let (left, waiting) = (AtomicUsize::new(threads), thread::current());
         let asked = thread::scope(|scope| {
             let worker = |world: E| {
-                let (rows, stop, all) = (&rows, &stop, &all);
+                let (rows, stop, all, left, waiting) = (&rows, &stop, &all, &left, &waiting);
                 move || {
+                    let _over = Over(left, waiting);
                     let mut scratch = Scratch::default();
                     let take = || -> Vec<Row<'_>> {
                         let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
@@ -207,9 +219,12 @@ impl Batch {
                     }
                 }
             };
-            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker(world.clone()))).collect();
-            while workers.iter().any(|worker| !worker.is_finished()) {
-                thread::park_timeout(TICK.min(Duration::from_millis(1 + self.starts.count as u64 / 64)));
+            (0..threads).for_each(|_| drop(scope.spawn(worker(world.clone()))));
+            while left.load(Acquire) > 0 {
+                thread::park_timeout(TICK);
+                if left.load(Acquire) == 0 {
+                    break;
+                }
                 let asked = Python::attach(|py| py.check_signals());
                 if asked.is_err() {
                     stop.store(true, Relaxed);

@@ -61,12 +61,8 @@ pub(super) trait Engine: Mechanics + Sized {
 
 impl Engine for Marbles {
     fn begin(&self, starts: &[Start]) -> Result<State<Marble>, WorldError> {
-        let start = |s: &Start| marbles::Start {
-            position: s.position,
-            velocity: s.velocity,
-            spin: s.spin,
-            time: s.release,
-        };
+        let start =
+            |s: &Start| marbles::Start { position: s.position, velocity: s.velocity, spin: s.spin, time: s.release };
         self.state(&starts.iter().map(start).collect::<Vec<_>>())
     }
 

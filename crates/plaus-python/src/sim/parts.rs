@@ -214,7 +214,9 @@ impl Surface {
                 Part::Block { bounds, material, stretches: Vec::new() }
             }
             "table" => Part::Table(Box::new(Table::new(self.table()?, material))),
-            other => return refuse(format!("a {other} is for worlds of marbles: planes, blocks and tables are for others")),
+            other => {
+                return refuse(format!("a {other} is for worlds of marbles: planes, blocks and tables are for others"));
+            }
         })
     }
 

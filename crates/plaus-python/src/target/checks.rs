@@ -86,7 +86,10 @@ fn look(
         accepted += report.accepted();
         made += report.moves.iter().map(|(_, counts)| counts.made()).sum::<u64>();
     };
-    note("prior alone", one_step(&flat, &lend::<PriorOnly<'_, ByFunctions>>(at_prior)?, prior(&flat), &statistics, asked)?);
+    note(
+        "prior alone",
+        one_step(&flat, &lend::<PriorOnly<'_, ByFunctions>>(at_prior)?, prior(&flat), &statistics, asked)?,
+    );
     if let Some(bound) = plan.bound {
         note("target", one_step(target, &at_target, rejection(target, bound), &statistics, asked)?);
     }

@@ -128,12 +128,15 @@ pub(crate) fn sample_target<'py>(
     let made = arrays(py, &kept)?;
     let counts = names.iter().zip(&kept.counts).map(|(name, counts)| (name, counts.acceptance()));
     made.set_item("acceptance", counts.collect::<Vec<_>>())?;
-    made.set_item("ending", match ending {
-        Ending::Complete => "complete",
-        Ending::EnoughSolutions => "enough_solutions",
-        Ending::Stopped if interrupted => "interrupted",
-        Ending::Stopped => "stopped",
-    })?;
+    made.set_item(
+        "ending",
+        match ending {
+            Ending::Complete => "complete",
+            Ending::EnoughSolutions => "enough_solutions",
+            Ending::Stopped if interrupted => "interrupted",
+            Ending::Stopped => "stopped",
+        },
+    )?;
     Ok(made)
 }
 
