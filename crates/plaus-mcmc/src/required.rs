@@ -45,6 +45,9 @@ pub struct Judged<D, O> {
 /// The judged state of a target.
 type JudgedOf<T> = Judged<<T as Target>::Draw, <T as Target>::Outcome>;
 
+/// Where the chains of a target go on from.
+type StartsOf<T> = Vec<Start<<T as Target>::Draw, <T as Target>::Outcome>>;
+
 /// A target under a requirement.
 #[derive(Debug)]
 pub struct Required<'a, T, R> {
@@ -226,7 +229,7 @@ impl<'a, T: Target + 'static, R: Requirement<T>> Move<Required<'a, T, R>> for Ra
 pub fn run<T: Goal + 'static, R: Requirement<T>, K: Sink<T::Draw, T::Outcome>>(
     required: &Required<'_, T, R>,
     moves: &Mixture<T>,
-    (plan, starts): (Plan, Vec<Start<T::Draw, T::Outcome>>),
+    (plan, starts): (Plan, StartsOf<T>),
     threads: usize,
     sink: &mut K,
     pulse: &Pulse,

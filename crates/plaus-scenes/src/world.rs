@@ -8,9 +8,9 @@ use plaus_sim::rigid::Rigid;
 #[derive(Debug, Clone)]
 pub enum Physical {
     /// Balls without orientation.
-    Marbles(Marbles),
+    Marbles(Box<Marbles>),
     /// Bodies that turn.
-    Rigid(Rigid),
+    Rigid(Box<Rigid>),
 }
 
 /// A world with a place for each of its bodies. z points up.

@@ -168,8 +168,8 @@ impl Batch {
         let world = world.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let mut made = Made::of(self)?;
         let ran = match world {
-            Physical::Marbles(world) => py.detach(|| self.run_in(world, &mut made, threads)),
-            Physical::Rigid(world) => py.detach(|| self.run_in(world, &mut made, threads)),
+            Physical::Marbles(world) => py.detach(|| self.run_in(*world, &mut made, threads)),
+            Physical::Rigid(world) => py.detach(|| self.run_in(*world, &mut made, threads)),
         };
         let (failed, events) = ran?;
         match failed {

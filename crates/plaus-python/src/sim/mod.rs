@@ -126,14 +126,14 @@ impl SimWorld {
     #[staticmethod]
     fn bins(count: usize, duration: f64, accuracy: &str, events: Option<u64>) -> PyResult<Self> {
         let made = Bins::default().world(count, self::accuracy(accuracy, events)?, duration);
-        Ok(Self::of(Physical::Marbles(made.map_err(wrong)?), Vec::new()))
+        Ok(Self::of(Physical::Marbles(Box::new(made.map_err(wrong)?)), Vec::new()))
     }
 
     /// Dice of 16 mm on a flat table.
     #[staticmethod]
     fn dice(count: usize, accuracy: &str, events: Option<u64>) -> PyResult<Self> {
         let die = DieOnTable { accuracy: self::accuracy(accuracy, events)?, ..DieOnTable::default() };
-        Ok(Self::of(Physical::Rigid(die.world_of(count, |_, _| 0.0).map_err(wrong)?), Vec::new()))
+        Ok(Self::of(Physical::Rigid(Box::new(die.world_of(count, |_, _| 0.0).map_err(wrong)?)), Vec::new()))
     }
 
     /// The world of a scenario, with all that is random left out.

@@ -137,7 +137,7 @@ impl Whole {
         let gravity = DVec3::from_array(self.gravity);
         let (accuracy, duration) = (self.accuracy, self.duration);
         let world = Marbles::new(MarbleWorld { specs, laws, scenery, gravity, accuracy, duration });
-        world.map(Physical::Marbles).map_err(wrong)
+        world.map(|world| Physical::Marbles(Box::new(world))).map_err(wrong)
     }
 
     /// A world of bodies that turn, among planes, blocks and tables.
@@ -155,7 +155,7 @@ impl Whole {
             sink: f64::NEG_INFINITY,
             duration: self.duration,
         });
-        world.map(Physical::Rigid).map_err(wrong)
+        world.map(|world| Physical::Rigid(Box::new(world))).map_err(wrong)
     }
 }
 

@@ -179,7 +179,7 @@ impl Lane {
         let up = DVec3::new(0.0, 0.0, self.pin.balance());
         let ball = DVec3::new(0.0, -LENGTH, self.alley.ball_radius);
         let places = std::iter::once(ball).chain(self.pins.iter().map(|&pin| Alley::spot(pin) + up)).collect();
-        Ok(PlainWorld { world: Physical::Rigid(self.alley.world_of(&self.pin)?), places })
+        Ok(PlainWorld { world: Physical::Rigid(Box::new(self.alley.world_of(&self.pin)?)), places })
     }
 
     /// The world of a draw, and where everything starts: the ball so far in m before the head pin's spot.

@@ -163,7 +163,8 @@ pub(super) struct Recorded {
 impl Plan {
     /// The dice above a level table of mean friction and restitution.
     pub(super) fn plain_world(&self, dice: usize) -> Result<PlainWorld, ModelError> {
-        let world = Physical::Rigid(self.world(dice, Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL).map(Part::Plane))?);
+        let table = Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL).map(Part::Plane);
+        let world = Physical::Rigid(Box::new(self.world(dice, table)?));
         // Farther apart than they are long, however they are turned.
         let apart = 2.5 * self.cuboid.half().length();
         Ok(PlainWorld { world, places: (0..dice).map(|die| DVec3::new(apart * die as f64, 0.0, HAND)).collect() })

@@ -102,7 +102,10 @@ impl Arena {
             let (column, row) = (bin % self.columns, bin / self.columns);
             DVec3::new((column as f64 + 0.5) * side, (row as f64 + 0.5) * side, drop)
         };
-        Ok(PlainWorld { world: Physical::Marbles(self.world(balls)?), places: (0..balls).map(over).collect() })
+        Ok(PlainWorld {
+            world: Physical::Marbles(Box::new(self.world(balls)?)),
+            places: (0..balls).map(over).collect(),
+        })
     }
 
     /// The random vertices.
