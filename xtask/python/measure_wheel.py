@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Numbers of the Python package, each beside what it is asked to be. Timings are medians of several, taken in turn with what they are compared with."""
+"""Numbers of the Python package, each beside what it is asked to be. Timings are medians of several, taken in turn with
+what they are compared with."""
 
 import argparse
 import os
@@ -31,7 +32,8 @@ def say(what: str, found: str, asked: str) -> None:
 
 
 def imports() -> None:
-    """What `import plaus` adds to a bare interpreter, on the processor: whatever else the machine does adds to the clock on the wall."""
+    """What `import plaus` adds to a bare interpreter, on the processor: whatever else the machine does adds to the
+    clock on the wall."""
 
     def of(code: str) -> float:
         def spent() -> float:
@@ -45,11 +47,16 @@ def imports() -> None:
 
         return statistics.median(once() for _ in range(21))
 
-    say("import plaus, beyond a bare interpreter, on the processor", f"{1e3 * (of('import plaus') - of('pass')):.1f} ms", "at most 50 ms")
+    say(
+        "import plaus, beyond a bare interpreter, on the processor",
+        f"{1e3 * (of('import plaus') - of('pass')):.1f} ms",
+        "at most 50 ms",
+    )
 
 
 def processor(work) -> float:
-    """Seconds on the processor, of this process and of those that it starts: whatever else the machine does hardly adds to them."""
+    """Seconds on the processor, of this process and of those that it starts: whatever else the machine does hardly adds
+    to them."""
 
     def spent() -> float:
         usage = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
@@ -133,12 +140,20 @@ def simulator(examples: Path, rounds: int) -> None:
         # Of each run the fastest of nine: what the machine does beside hardly counts.
         words = [examples / "drops", "1000", "standard", "10", "0.1", "time"]
         said = subprocess.run(words, check=True, capture_output=True, text=True).stdout
-        events, each = (float(number) for number in re.search(r"events per run ([\d.]+), ns per event (\d+)", said).groups())
+        events, each = (
+            float(number) for number in re.search(r"events per run ([\d.]+), ns per event (\d+)", said).groups()
+        )
         ours = processor(lambda: bins.run(drops, release=release, threads=1)) / runs
         ratios.append(1e-9 * events * each / ours)
-    say(f"ten marbles, {1e6 * ours:.0f} us a run: throughput over the Rust example's", f"{statistics.median(ratios):.2f}", "at least 0.9")
+    say(
+        f"ten marbles, {1e6 * ours:.0f} us a run: throughput over the Rust example's",
+        f"{statistics.median(ratios):.2f}",
+        "at least 0.9",
+    )
 
-    starts = dict(position=np.zeros((runs, 1, 3)), velocity=np.zeros((runs, 1, 3)), spin=rng.uniform(-30, 30, (runs, 1, 3)))
+    starts = dict(
+        position=np.zeros((runs, 1, 3)), velocity=np.zeros((runs, 1, 3)), spin=rng.uniform(-30, 30, (runs, 1, 3))
+    )
     starts["position"][:, 0, 2] = rng.uniform(0.08, 0.12, runs)
     for axis, (low, high) in enumerate([(0.5, 1.5), (-0.2, 0.2), (-0.5, 0.0)]):
         starts["velocity"][:, 0, axis] = rng.uniform(low, high, runs)
@@ -151,8 +166,14 @@ def simulator(examples: Path, rounds: int) -> None:
         theirs = float(re.search(r"standard\s+0\s+\S+us\s+\S+us\s+([\d.]+)us", said).group(1))
         ours = 1e6 * processor(lambda: die.run(**starts, threads=1)) / runs
         ratios.append(theirs / ours)
-    say(f"one die, {ours:.1f} us a throw: throughput over the Rust example's", f"{statistics.median(ratios):.2f}", "at least 0.9")
-    one, all_cores = (min(clocked(lambda: die.run(**starts, threads=threads)) for _ in range(rounds)) for threads in (1, 0))
+    say(
+        f"one die, {ours:.1f} us a throw: throughput over the Rust example's",
+        f"{statistics.median(ratios):.2f}",
+        "at least 0.9",
+    )
+    one, all_cores = (
+        min(clocked(lambda: die.run(**starts, threads=threads)) for _ in range(rounds)) for threads in (1, 0)
+    )
     say(f"one die, all {os.cpu_count()} cores over one", f"{one / all_cores:.2f}", "")
 
 

@@ -18,7 +18,9 @@ def main() -> int:
         nbformat.validate(notebook)
         begun = time.perf_counter()
         with tempfile.TemporaryDirectory() as place:
-            client = NotebookClient(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": place}})
+            client = NotebookClient(
+                notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": place}}
+            )
             try:
                 client.execute()
             except CellExecutionError as error:

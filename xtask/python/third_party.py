@@ -17,7 +17,9 @@ RULE = "-" * 78
 def crates() -> list[dict]:
     """All crates of others that are linked into the extension on this platform."""
     cargo = os.environ.get("CARGO", "cargo")
-    host = re.search(r"host: (\S+)", subprocess.run(["rustc", "-vV"], check=True, capture_output=True, text=True).stdout)
+    host = re.search(
+        r"host: (\S+)", subprocess.run(["rustc", "-vV"], check=True, capture_output=True, text=True).stdout
+    )
     words = [cargo, "metadata", "--format-version", "1", "--locked", "--filter-platform", host.group(1)]
     metadata = json.loads(subprocess.run(words, check=True, capture_output=True, cwd=ROOT, text=True).stdout)
     packages = {package["id"]: package for package in metadata["packages"]}
@@ -34,12 +36,17 @@ def crates() -> list[dict]:
             is_macro = any("proc-macro" in target["kind"] for target in packages[dependency["pkg"]]["targets"])
             if None in kinds and not is_macro:
                 ahead.append(dependency["pkg"])
-    return sorted((packages[id] for id in seen if packages[id]["source"]), key=lambda package: (package["name"], package["version"]))
+    return sorted(
+        (packages[id] for id in seen if packages[id]["source"]),
+        key=lambda package: (package["name"], package["version"]),
+    )
 
 
 def texts(folder: Path) -> list[str]:
     """The licences that lie in a crate's folder."""
-    names = sorted(path for path in folder.iterdir() if re.match(r"(?i)(licen[cs]e|copying|unlicense|notice)", path.name))
+    names = sorted(
+        path for path in folder.iterdir() if re.match(r"(?i)(licen[cs]e|copying|unlicense|notice)", path.name)
+    )
     return [path.read_text(encoding="utf-8", errors="replace").strip() for path in names if path.is_file()]
 
 
@@ -77,5 +84,7 @@ def problems() -> list[str]:
         if (PACKAGE / name).read_bytes() != (ROOT / name).read_bytes():
             wrong.append(f"crates/plaus-python/{name} is not the one at the top")
     if not LIST.exists() or LIST.read_text(encoding="utf-8") != listing():
-        wrong.append("crates/plaus-python/THIRD-PARTY.txt is not what follows from Cargo.lock: `cargo xtask wheel --licences` writes it")
+        wrong.append(
+            "crates/plaus-python/THIRD-PARTY.txt is not what follows from Cargo.lock: `cargo xtask wheel --licences` writes it"
+        )
     return wrong

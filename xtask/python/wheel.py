@@ -98,7 +98,9 @@ def tests(python: Path, target: Path, command: Path | None) -> int:
 
 def notebooks(python: Path, target: Path) -> int:
     """Every notebook, cell by cell."""
-    return run([python, ROOT / "xtask/python/notebooks.py", PACKAGE / "examples"], cwd=target / "wheel", env=bare(python))
+    return run(
+        [python, ROOT / "xtask/python/notebooks.py", PACKAGE / "examples"], cwd=target / "wheel", env=bare(python)
+    )
 
 
 def other_pythons() -> list[str]:
@@ -118,7 +120,11 @@ def check(target: Path, all_of_them: bool) -> int:
     python = environment(target / "wheel" / "tried", TRIED_WITH)
     command = target / "release" / "plaus"
     command = command if command.exists() else None
-    for step in (lambda: install(python, wheel), lambda: tests(python, target, command), lambda: notebooks(python, target)):
+    for step in (
+        lambda: install(python, wheel),
+        lambda: tests(python, target, command),
+        lambda: notebooks(python, target),
+    ):
         if step() != 0:
             return 1
     for other in other_pythons() if all_of_them else []:
@@ -156,7 +162,9 @@ def main() -> int:
     if given.what == "measure":
         python = given.target / "wheel" / "tried" / "bin" / "python"
         words = [python, ROOT / "xtask/python/measure_wheel.py", "--command", given.target / "release" / "plaus"]
-        return run([*words, "--examples", given.target / "release" / "examples"], cwd=given.target / "wheel", env=bare(python))
+        return run(
+            [*words, "--examples", given.target / "release" / "examples"], cwd=given.target / "wheel", env=bare(python)
+        )
     return check(given.target, given.all)
 
 

@@ -8,7 +8,8 @@
 //! assert!(wrong.contains("there is no such run"), "{wrong}");
 //! ```
 //!
-//! Data goes to stdout, progress and errors to stderr. Exit codes: 0 done, 1 no satisfying sample or failed diagnostics, 2 a wrong scenario, command
+//! Data goes to stdout, progress and errors to stderr. Exit codes: 0 done, 1 no satisfying sample or failed
+//! diagnostics, 2 a wrong scenario, command
 //! line or run, 130 interrupted with a checkpoint.
 
 mod clock;

@@ -1,7 +1,10 @@
-//! A target that something more is asked of: `p_w · p_c · p_r`, where a [`Requirement`] judges the state that the target made.
+//! A target that something more is asked of: `p_w · p_c · p_r`, where a [`Requirement`] judges the state that the
+//! target made.
 //!
-//! The target's own moves propose for it ([`Required::moves`]), its simulation still stops early, and the requirement is asked last, only where
-//! its answer can change the decision. So what is dear to judge, a function of a script for one, is judged seldom, and the chain stays exact.
+//! The target's own moves propose for it ([`Required::moves`]), its simulation still stops early, and the requirement
+//! is asked last, only where
+//! its answer can change the decision. So what is dear to judge, a function of a script for one, is judged seldom, and
+//! the chain stays exact.
 
 use crate::adapt::Scale;
 use crate::chain::ChainError;
@@ -21,9 +24,11 @@ pub struct Mark {
     pub met: bool,
 }
 
-/// Something more that is asked of a target's states. It must be a function of the state alone: the same state, the same mark.
+/// Something more that is asked of a target's states. It must be a function of the state alone: the same state, the
+/// same mark.
 pub trait Requirement<T: Target>: Sync {
-    /// The largest log potential there is, or anything above; `None` where there is no such bound, and then no simulation stops early.
+    /// The largest log potential there is, or anything above; `None` where there is no such bound, and then no
+    /// simulation stops early.
     fn most(&self) -> Option<LogPotential>;
 
     /// Judges a state.
@@ -105,7 +110,8 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
         Ok(Start { snapshot, distinct })
     }
 
-    /// What the target's own constraint must exceed where this one's must exceed `floor`. Rounding is monotone: own ≤ `seen` ≤ floor − most
+    /// What the target's own constraint must exceed where this one's must exceed `floor`. Rounding is monotone: own ≤
+    /// `seen` ≤ floor − most
     /// gives own + log ≤ floor, also in floating point.
     fn floor_seen(&self, floor: LogPotential) -> Result<LogPotential, ModelError> {
         let Some(most) = self.requirement.most() else { return Ok(LogPotential::ZERO) };
@@ -221,7 +227,8 @@ impl<'a, T: Target + 'static, R: Requirement<T>> Move<Required<'a, T, R>> for Ra
     }
 }
 
-/// As [`run_watched`](crate::run_watched()), of the target that `required` is about, with its `moves`, to a sink of that target: what is recorded are its states, with
+/// As [`run_watched`](crate::run_watched()), of the target that `required` is about, with its `moves`, to a sink of
+/// that target: what is recorded are its states, with
 /// the log constraint of both. The plan comes with where to go on from, as such a run left it.
 ///
 /// # Errors
@@ -244,7 +251,8 @@ pub fn run<T: Goal + 'static, R: Requirement<T>, K: Sink<T::Draw, T::Outcome>>(
     run_watched(required, &moves, plan, restored, threads, &mut Plain(sink), pulse)
 }
 
-/// Hands what a chain under a requirement leaves behind to a sink of the target: states without their marks, but with the log constraint of both.
+/// Hands what a chain under a requirement leaves behind to a sink of the target: states without their marks, but with
+/// the log constraint of both.
 struct Plain<'s, K>(&'s mut K);
 
 /// A state without its mark, but with the log constraint of both.

@@ -1,4 +1,5 @@
-//! A target under a requirement: it keeps the law it should have, and is asked seldom. Wrong twins: a requirement that does not answer for the state alone, and one
+//! A target under a requirement: it keeps the law it should have, and is asked seldom. Wrong twins: a requirement that
+//! does not answer for the state alone, and one
 //! that exceeds what it said is the most.
 
 // Helpers outside of `#[test]` functions panic as tests do.

@@ -88,7 +88,8 @@ pub(crate) fn of_scenario(py: Python<'_>, error: &scenario::ScenarioError) -> Py
     }
 }
 
-/// The exception of what went wrong with a run. What a callback raised is raised again, with a note that says where the chain was.
+/// The exception of what went wrong with a run. What a callback raised is raised again, with a note that says where the
+/// chain was.
 pub(crate) fn of_run(py: Python<'_>, error: &plaus_run::Error) -> PyErr {
     match error {
         plaus_run::Error::Config(config) => {

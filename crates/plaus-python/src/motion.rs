@@ -64,7 +64,8 @@ impl Motion {
         self.0.tracks.iter().map(|track| track.name.clone()).collect()
     }
 
-    /// Times (s), positions (time, body, xyz; m, y up) and unit quaternions (time, body, xyzw) at `times`, or at `fps` frames a second.
+    /// Times (s), positions (time, body, xyz; m, y up) and unit quaternions (time, body, xyzw) at `times`, or at `fps`
+    /// frames a second.
     #[pyo3(signature = (fps = 60.0, times = None))]
     fn poses<'py>(&self, py: Python<'py>, fps: f64, times: Option<Vec<f64>>) -> PyResult<[Bound<'py, PyAny>; 3]> {
         let times = match times {

@@ -1,4 +1,5 @@
-//! A requirement in Python: a function of the outcome that the chain calls, last of all, for every candidate that it may still accept.
+//! A requirement in Python: a function of the outcome that the chain calls, last of all, for every candidate that it
+//! may still accept.
 
 use crate::clock::now;
 use crate::errors::{Raised, RunError};
@@ -175,7 +176,8 @@ impl Asked {
 }
 
 impl Asked {
-    /// The mark in what the function answered: `(log potential, met)`, or a truth value that stands for (0, true) and (−∞, false).
+    /// The mark in what the function answered: `(log potential, met)`, or a truth value that stands for (0, true) and
+    /// (−∞, false).
     fn mark(&self, answer: &Bound<'_, PyAny>) -> PyResult<Mark> {
         let name = &self.name;
         if answer.is_instance_of::<PyBool>() || answer.get_type().name()?.to_string_lossy() == "bool" {

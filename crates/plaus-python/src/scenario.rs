@@ -14,7 +14,8 @@ const LONGEST: usize = 16 << 20;
 
 /// A scenario: a world, what must happen in it, and how it is sampled.
 ///
-/// Made by `from_file`, `from_text`, `from_dict` or `default`, which read and check it: what is wrong is raised as `ScenarioError`, all of it at once.
+/// Made by `from_file`, `from_text`, `from_dict` or `default`, which read and check it: what is wrong is raised as
+/// `ScenarioError`, all of it at once.
 /// A scenario never changes; `set` gives another one.
 #[pyclass(frozen, module = "plaus")]
 #[derive(Debug, Clone)]
@@ -38,6 +39,9 @@ impl Scenario {
         Self::read(py, self.shown.clone(), file.clone(), text.clone(), all)
     }
 }
+
+/// What a scenario is pickled as: its text, its name, what was set since.
+type Parts = (String, String, Vec<String>);
 
 #[pymethods]
 impl Scenario {
@@ -80,7 +84,8 @@ impl Scenario {
         Self::read(py, name.clone(), name, scenario.to_toml(), Vec::new())
     }
 
-    /// The same with some keys changed: `set("sigma_d=0.05")` as on the command line, or `set(sigma_d=0.05)`, or `set(**{"weights.aim": 2})`.
+    /// The same with some keys changed: `set("sigma_d=0.05")` as on the command line, or `set(sigma_d=0.05)`, or
+    /// `set(**{"weights.aim": 2})`.
     /// A key is a full dotted name or an end of it that no other key has.
     #[pyo3(signature = (*overrides, **keys))]
     fn set(&self, py: Python<'_>, overrides: Vec<String>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -92,7 +97,8 @@ impl Scenario {
         self.with(py, more)
     }
 
-    /// Every key with the value in force, defaults too, as nested dictionaries. What is wrong was raised when the scenario was made.
+    /// Every key with the value in force, defaults too, as nested dictionaries. What is wrong was raised when the
+    /// scenario was made.
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let tables: Table = self.toml().parse().map_err(|error| PyValueError::new_err(format!("{error}")))?;
         to_python(py, &Value::Table(tables))
@@ -144,7 +150,7 @@ impl Scenario {
         format!("<Scenario {}: {}{set}>", self.recipe.file, self.scene())
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String, String, Vec<String>))> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Parts)> {
         let rebuild = slf.py().import("plaus._plaus")?.getattr("_scenario")?;
         let Recipe { file, text, overrides, .. } = &slf.get().recipe;
         Ok((rebuild, (text.clone(), file.clone(), overrides.clone())))

@@ -94,7 +94,9 @@ def test_bytes_are_those_of_the_command(scenario, tmp_path):
     path = SCENARIOS / f"{scenario}.toml"
     command = [*COMMAND, "sample", path, "--out", tmp_path / "a", *how, "--set", "sampler.thin=2", "--quiet"]
     assert subprocess.run(command, check=False, capture_output=True).returncode in (0, 1)
-    plaus.sample(path, out=tmp_path / "b", seed=7, chains=3, iterations=300, warmup=100, set=["sampler.thin=2"], threads=1)
+    plaus.sample(
+        path, out=tmp_path / "b", seed=7, chains=3, iterations=300, warmup=100, set=["sampler.thin=2"], threads=1
+    )
     same_bytes(tmp_path / "a", tmp_path / "b")
 
 
@@ -173,7 +175,9 @@ def test_a_gallery_shows_itself_in_a_frame_that_sees_nothing(run, tmp_path):
     gallery = run.gallery(5)
     assert gallery.shown == 5 and gallery.distinct == len(run.solutions)
     html = gallery._repr_html_()
-    assert html.startswith('<iframe sandbox="allow-scripts allow-downloads" srcdoc="') and "allow-same-origin" not in html
+    assert (
+        html.startswith('<iframe sandbox="allow-scripts allow-downloads" srcdoc="') and "allow-same-origin" not in html
+    )
     gallery.save(tmp_path / "page.html")
     with pytest.raises(FileExistsError):
         gallery.save(tmp_path / "page.html")
@@ -184,7 +188,19 @@ def test_a_gallery_shows_itself_in_a_frame_that_sees_nothing(run, tmp_path):
 def test_exports_are_those_of_the_command(run, tmp_path):
     run.export(tmp_path / "one.glb", samples=0, fps=30)
     sample = str(run.solutions[0].sample)
-    command = [*COMMAND, "export", run.path, "--format", "glb", "--sample", sample, "--fps", "30", "--out", tmp_path / "two.glb"]
+    command = [
+        *COMMAND,
+        "export",
+        run.path,
+        "--format",
+        "glb",
+        "--sample",
+        sample,
+        "--fps",
+        "30",
+        "--out",
+        tmp_path / "two.glb",
+    ]
     subprocess.run(command, check=True, capture_output=True)
     assert (tmp_path / "one.glb").read_bytes() == (tmp_path / "two.glb").read_bytes()
     run.export(tmp_path / "events.json", samples=[0, 1])
@@ -382,7 +398,8 @@ def test_a_requirement_is_asked_by_the_chain(tmp_path):
 
 
 def test_a_requirement_has_the_law_it_should_have():
-    # The factor exp(-x²/2s²) on top of the scenario's own: the same law as the scenario with both in one, here by weights.
+    # The factor exp(-x²/2s²) on top of the scenario's own: the same law as the scenario with both in one, here by
+    # weights.
     made = short(requirement=slow_end, iterations=20_000)
     plain = short(iterations=20_000)
     x = plain.draws["rest_x"]
@@ -390,7 +407,8 @@ def test_a_requirement_has_the_law_it_should_have():
     expected = (weights * x).sum() / weights.sum()
     ours = made.diagnose()
     row = next(row for row in ours["scalars"] if row["name"] == "rest_x")
-    # Standard error of the weighted mean, with the effective sample size of the plain chain shared out over the weights.
+    # Standard error of the weighted mean, with the effective sample size of the plain chain shared out over the
+    # weights.
     plain_row = next(row for row in plain.diagnose()["scalars"] if row["name"] == "rest_x")
     share = plain_row["summary"]["ess_bulk"] / len(x)
     size = share * weights.sum() ** 2 / (weights**2).sum()
@@ -461,7 +479,10 @@ def test_an_impossible_requirement_says_so():
 
 def normal_target(**more):
     return plaus.Target(
-        lambda rng: [rng.normal(), rng.normal()], lambda x: -0.5 * float(x @ x), lambda x: -0.5 * (x[0] - 2.0) ** 2, **more
+        lambda rng: [rng.normal(), rng.normal()],
+        lambda x: -0.5 * float(x @ x),
+        lambda x: -0.5 * (x[0] - 2.0) ** 2,
+        **more,
     )
 
 
@@ -482,7 +503,9 @@ def test_moves_are_checked_and_wrong_ones_are_caught():
         name="scale",
     )
     wrong = plaus.Move(lambda x, rng: [x[0] * math.exp(rng.normal(0, 0.3)), x[1]], name="scale")
-    assert plaus.check_moves(normal_target(), [plaus.Move.walk(0.5), plaus.Move.redraw(), right], bound=0.0, samples=4000)
+    assert plaus.check_moves(
+        normal_target(), [plaus.Move.walk(0.5), plaus.Move.redraw(), right], bound=0.0, samples=4000
+    )
     report = plaus.check_moves(normal_target(), [wrong])
     assert not report and report.p < 1e-6 and "FAILED" in str(report)
 
@@ -493,7 +516,11 @@ def test_what_functions_of_a_target_raise_is_the_users():
 
     with pytest.raises(OSError, match="no start"):
         plaus.sample_target(plaus.Target(start, lambda x: 0.0), [plaus.Move.redraw()])
-    for wrong, error in [(lambda x: "high", TypeError), (lambda x: math.nan, plaus.RunError), (lambda x: 1 / 0, ZeroDivisionError)]:
+    for wrong, error in [
+        (lambda x: "high", TypeError),
+        (lambda x: math.nan, plaus.RunError),
+        (lambda x: 1 / 0, ZeroDivisionError),
+    ]:
         with pytest.raises(error):
             plaus.sample_target(plaus.Target(lambda rng: 0.0, wrong), [plaus.Move.redraw()])
     with pytest.raises(TypeError, match="a point of 2"):

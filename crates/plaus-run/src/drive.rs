@@ -21,9 +21,11 @@ pub struct Journey<'a, S: Goal> {
 /// How a drive ends.
 pub type Driven = Result<Ending, RunError<RunFileError>>;
 
-/// Drives the chains of a run. What it records are states of the scene; their log constraint may hold more than the scene's own, where the run has a requirement.
+/// Drives the chains of a run. What it records are states of the scene; their log constraint may hold more than the
+/// scene's own, where the run has a requirement.
 pub trait Drive {
-    /// What is required beyond the scenario, in a word, for the manifest; `None` where nothing is, and states are the scene's own.
+    /// What is required beyond the scenario, in a word, for the manifest; `None` where nothing is, and states are the
+    /// scene's own.
     fn requirement(&self) -> Option<String>;
 
     /// Drives the chains, and hands what they record to `sink`.

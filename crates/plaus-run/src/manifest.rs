@@ -43,7 +43,8 @@ pub struct Manifest {
     pub moves: Vec<String>,
     /// The scalars of the scene.
     pub scalars: Vec<StoredScalar>,
-    /// What was required beyond the scenario, in a word: the recorded log constraints hold its factor, and the run goes on only with it.
+    /// What was required beyond the scenario, in a word: the recorded log constraints hold its factor, and the run goes
+    /// on only with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub requirement: Option<String>,
 }

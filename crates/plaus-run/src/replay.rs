@@ -157,7 +157,8 @@ fn shown<S: Scene>(
     })
 }
 
-/// Evaluates the draw of a stored state, which must give that state's bits: otherwise other code made it. Where the run has a requirement, the log constraint
+/// Evaluates the draw of a stored state, which must give that state's bits: otherwise other code made it. Where the run
+/// has a requirement, the log constraint
 /// holds a factor that is not known here, and is taken as it was stored.
 pub(crate) fn evaluate_again<S: Scene>(
     scene: &S,

@@ -44,7 +44,8 @@ pub trait Scene:
         Ok(None)
     }
 
-    /// The world for the simulator alone, with all that is random left out: a level table of mean friction and restitution, say. `None` where motion has a
+    /// The world for the simulator alone, with all that is random left out: a level table of mean friction and
+    /// restitution, say. `None` where motion has a
     /// closed form, so that there is no simulator. A scene with one overrides this.
     ///
     /// # Errors

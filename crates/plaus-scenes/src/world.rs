@@ -18,6 +18,7 @@ pub enum Physical {
 pub struct PlainWorld {
     /// The world.
     pub world: Physical,
-    /// Where each body may start, upright and at rest, without touching another or the ground but by standing on it: centres of gravity, in m.
+    /// Where each body may start, upright and at rest, without touching another or the ground but by standing on it:
+    /// centres of gravity, in m.
     pub places: Vec<DVec3>,
 }

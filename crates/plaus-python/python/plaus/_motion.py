@@ -30,7 +30,8 @@ class Poses(NamedTuple):
 class Events(dict[str, Any]):
     """Impacts in order of time, as columns: a dictionary that data frames take as it is.
 
-    `t` (s), `body` and `other` (names), `x`, `y`, `z` (m), `nx`, `ny`, `nz` (unit normal towards `body`), `speed` (m/s, at
+    `t` (s), `body` and `other` (names), `x`, `y`, `z` (m), `nx`, `ny`, `nz` (unit normal towards `body`), `speed` (m/s,
+    at
     which the two met along the normal), `impulse` (N s). `point` and `normal` are the same as arrays (event, xyz).
     """
 
@@ -59,7 +60,8 @@ class Events(dict[str, Any]):
 
 
 class Replay:
-    """A sample, simulated again from its draw: bit for bit what the chain saw, unless another accuracy was asked for."""
+    """A sample, simulated again from its draw: bit for bit what the chain saw, unless another accuracy was asked
+    for."""
 
     def __init__(self, facts: str, motion: _plaus.Motion) -> None:
         import json
@@ -104,7 +106,8 @@ class Replay:
         return self._motion.bodies
 
     def poses(self, fps: float = 60.0, *, times: Sequence[float] | Floats | None = None) -> Poses:
-        """Poses of all bodies at `fps` frames a second from 0 on, or at `times` (s), from closed forms: exact at any time."""
+        """Poses of all bodies at `fps` frames a second from 0 on, or at `times` (s), from closed forms: exact at any
+        time."""
         at = None if times is None else [float(time) for time in times]
         moments, position, orientation = self._motion.poses(fps, at)
         return Poses(moments, self.bodies, position, orientation)

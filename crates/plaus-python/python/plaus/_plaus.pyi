@@ -70,8 +70,8 @@ class Scenario:
         """The same with some keys changed: `set("sigma_d=0.05")` as on the command line, or `set(sigma_d=0.05)`, or
         `set(**{"weights.aim": 2})`. A key is a full dotted name or an end of it that no other key has."""
     def check(self) -> dict[str, Any]:
-        """Every key with the value in force, defaults too, as nested dictionaries. What is wrong was raised when the scenario
-        was made."""
+        """Every key with the value in force, defaults too, as nested dictionaries. What is wrong was raised when the
+        scenario was made."""
     @property
     def toml(self) -> str:
         """Every key with the value in force, as the text of a scenario file."""
@@ -133,11 +133,9 @@ class Motion:
     @property
     def events(self) -> dict[str, Any]:
         """Impacts in order of time, as columns: t (s), body, other, point (m), normal, speed (m/s), impulse (N s)."""
-    def poses(
-        self, fps: float = 60.0, times: list[float] | None = None
-    ) -> list[NDArray[np.float64]]:
-        """Times (s), positions (time, body, xyz; m, y up) and unit quaternions (time, body, xyzw) at `times`, or at `fps`
-        frames a second."""
+    def poses(self, fps: float = 60.0, times: list[float] | None = None) -> list[NDArray[np.float64]]:
+        """Times (s), positions (time, body, xyz; m, y up) and unit quaternions (time, body, xyzw) at `times`, or at
+        `fps` frames a second."""
     def to_json(self) -> str:
         """The motion whole, in closed-form pieces, as JSON."""
 
@@ -184,7 +182,8 @@ def sample(
     poll: Callable[[dict[str, Any]], bool] | None,
     interval: float,
 ) -> tuple[str, float]:
-    """Samples into `folder`, or goes on with the run there where `scenario` is None; gives how it ended, and seconds."""
+    """Samples into `folder`, or goes on with the run there where `scenario` is None; gives how it ended, and
+    seconds."""
 
 def command(arguments: Sequence[str]) -> int:
     """Does what a command line says, its first word being the program's name, and gives the exit code."""

@@ -31,18 +31,20 @@ class Requirement:
     """Something more that must happen, as a function of the outcome.
 
     `function` is called with an `Outcome` and returns `(log potential, met)`: the log of a factor that the sampled
-    distribution gets (0 for no preference, `-inf` for impossible), and whether the requirement is met, so that the outcome
-    may count as a solution. `True` stands for `(0, True)`, `False` for `(-inf, False)`; but a chain must be able to start,
+    distribution gets (0 for no preference, `-inf` for impossible), and whether the requirement is met, so that the
+    outcome may count as a solution. `True` stands for `(0, True)`, `False` for `(-inf, False)`; but a chain must be
+    able to start,
     and finds its way much sooner along a slope than off a cliff.
 
-    The function must depend on the outcome alone: equal outcomes, equal answers. Then the chain stays exact, and the same
-    seed gives the same bits, whatever the number of threads.
+    The function must depend on the outcome alone: equal outcomes, equal answers. Then the chain stays exact, and the
+    same seed gives the same bits, whatever the number of threads.
 
-    `most` is a number that the log potential never exceeds, 0 unless you say otherwise: with it, simulations that cannot be
-    accepted any more still stop early, and the function is not asked about them. `None` where there is no such bound.
+    `most` is a number that the log potential never exceeds, 0 unless you say otherwise: with it, simulations that
+    cannot be accepted any more still stop early, and the function is not asked about them. `None` where there is no
+    such bound.
 
-    Chains simulate on all cores, but Python runs one call at a time: where the function is slow, they wait for each other.
-    For more, sample with other seeds in other processes. What was spent is in `cost`.
+    Chains simulate on all cores, but Python runs one call at a time: where the function is slow, they wait for each
+    other. For more, sample with other seeds in other processes. What was spent is in `cost`.
     """
 
     def __init__(self, function: Judge, *, name: str | None = None, most: float | None = 0.0) -> None:

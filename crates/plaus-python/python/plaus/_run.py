@@ -83,7 +83,8 @@ class _TemporaryFolder(_Folder):
 class Table(dict[str, Any]):
     """Columns of numbers, all equally long: a dictionary of names and read-only numpy arrays.
 
-    Data frames take it as it is: `polars.DataFrame(run.draws)`, `pandas.DataFrame(run.draws)`, `pyarrow.table(run.draws)`.
+    Data frames take it as it is: `polars.DataFrame(run.draws)`, `pandas.DataFrame(run.draws)`,
+    `pyarrow.table(run.draws)`.
     """
 
     def __init__(self, columns: dict[str, Any], units: dict[str, str]) -> None:
@@ -162,7 +163,8 @@ class Run:
         self.manifest: dict[str, Any] = json.loads(self._run.manifest())
         """What the run is: scenario, seed, plan, version, moves, numbers."""
         self.ending: str | None = _ended[0] if _ended else None
-        """How sampling ended: `complete`, `enough_solutions`, `out_of_time`, `interrupted`, `callback`; None for a run that was opened."""
+        """How sampling ended: `complete`, `enough_solutions`, `out_of_time`, `interrupted`, `callback`; None for a run
+        that was opened."""
         self.seconds: float | None = _ended[1] if _ended else None
         """Seconds that sampling took; None for a run that was opened."""
         self.requirement = _requirement
@@ -251,7 +253,9 @@ class Run:
 
     def replays(self, which: Iterable[Which] | None = None) -> list[Replay]:
         """Many samples, simulated again on all cores; by default one of each solution."""
-        chosen = [solution.sample for solution in self.solutions] if which is None else [self._sample(one) for one in which]
+        chosen = (
+            [solution.sample for solution in self.solutions] if which is None else [self._sample(one) for one in which]
+        )
         return [Replay(*made) for made in self._run.replay([(chain, draw) for chain, draw in chosen])]
 
     def poses(self, which: Which = 0, fps: float = 60.0) -> Poses:
@@ -263,7 +267,8 @@ class Run:
         return self.replay(which).events
 
     def diagnose(self, most: int | None = None) -> dict[str, Any]:
-        """What `plaus diagnose --json` says: R-hat and effective sample sizes of every number, acceptance of every move.
+        """What `plaus diagnose --json` says: R-hat and effective sample sizes of every number, acceptance of every
+        move.
 
         `most`: look at so many draws of each chain at most.
         """

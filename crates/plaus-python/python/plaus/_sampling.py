@@ -99,7 +99,7 @@ def _bar(progress: Progress) -> str:
         share = max(share, min(1.0, progress.distinct / progress.solutions_wanted))
     return (
         f'<progress value="{share:.4f}" max="1" style="width:16em;vertical-align:middle"></progress> '
-        f"<span style=\"font-variant-numeric:tabular-nums\">{progress}</span>"
+        f'<span style="font-variant-numeric:tabular-nums">{progress}</span>'
     )
 
 
@@ -175,22 +175,29 @@ def sample(
     The run is a folder, `out`, which must not exist; without it the folder is a temporary one that goes with the `Run`,
     unless `Run.save` keeps it. The same scenario, seed and version give the same bytes, here and on the command line.
 
-    - `seed`, `chains`, `iterations` (of each chain after the warm-up), `warmup`, `thin`: as in the scenario's `[sampler]`;
-      `set`: any keys, as `"sigma_d=0.05"`.
+    - `seed`, `chains`, `iterations` (of each chain after the warm-up), `warmup`, `thin`: as in the scenario's
+      `[sampler]`; `set`: any keys, as `"sigma_d=0.05"`.
     - `solutions`: stop once so many distinct satisfying solutions are recorded after the warm-up.
     - `max_time`: stop after so many seconds; `threads`: 0 is one a core, and no result depends on it.
     - `requirement`: a `Requirement`, or a function for one.
-    - `callback`: called a few times a second with a `Progress`; the run stops where it returns False. What it raises stops
-      the run, too, and is raised here.
+    - `callback`: called a few times a second with a `Progress`; the run stops where it returns False. What it raises
+      stops the run, too, and is raised here.
     - `progress`: whether to show how far it is; by default on terminals and in notebooks.
 
-    Ctrl-C stops the run and gives what was found until then (`Run.ending` is `"interrupted"`); a second one does not wait.
+    Ctrl-C stops the run and gives what was found until then (`Run.ending` is `"interrupted"`); a second one does not
+    wait.
 
-    Raises `ScenarioError` for a wrong scenario, `RunError` where the folder exists or a chain fails, and what a requirement
-    raises, with a note that says in which chain and iteration.
+    Raises `ScenarioError` for a wrong scenario, `RunError` where the folder exists or a chain fails, and what a
+    requirement raises, with a note that says in which chain and iteration.
     """
     made = _scenario_of(scenario)
-    numbers = {"seed": (seed, 0), "chains": (chains, 1), "iterations": (iterations, 1), "warmup": (warmup, 0), "thin": (thin, 1)}
+    numbers = {
+        "seed": (seed, 0),
+        "chains": (chains, 1),
+        "iterations": (iterations, 1),
+        "warmup": (warmup, 0),
+        "thin": (thin, 1),
+    }
     wanted = {key: _whole(key, value, least) for key, (value, least) in numbers.items()}
     if isinstance(set, str):
         set = [set]
@@ -221,9 +228,11 @@ def resume(
     callback: Callable[[Progress], object] | None = None,
     progress: bool | None = None,
 ) -> Run:
-    """Goes on with a run from its last checkpoint, to its planned end, or to so many `iterations` or `solutions` in all.
+    """Goes on with a run from its last checkpoint, to its planned end, or to so many `iterations` or `solutions` in
+    all.
 
-    The result has the same bytes as a run that was never interrupted. A run with a requirement needs the same one again.
+    The result has the same bytes as a run that was never interrupted. A run with a requirement needs the same one
+    again.
     """
     required = _required(requirement)
     if isinstance(run, Run):
@@ -251,4 +260,6 @@ def _scenario_of(scenario: Any) -> _plaus.Scenario:
         return _plaus.Scenario.from_dict(dict(scenario))
     if isinstance(scenario, (str, os.PathLike)):
         return _plaus.Scenario.from_file(scenario)
-    raise TypeError(f"a scenario is a plaus.Scenario, the path of a file or dictionaries, not a {type(scenario).__name__}")
+    raise TypeError(
+        f"a scenario is a plaus.Scenario, the path of a file or dictionaries, not a {type(scenario).__name__}"
+    )

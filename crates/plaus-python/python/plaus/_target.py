@@ -22,8 +22,10 @@ class Target:
 
     - `start(rng)` draws a point, from the prior itself unless you know better; with an `Rng`, so that runs repeat.
     - `log_prior(x)` is the log density of the prior at `x`, up to a constant; `-inf` where there is none.
-    - `log_density(x)` is the log of the factor on top of it, as a constraint brings it; no factor where it is not given.
-    - `met(x)` says whether `x` is a solution: `True`, `False`, or whole numbers that tell solutions of one kind from others.
+    - `log_density(x)` is the log of the factor on top of it, as a constraint brings it; no factor where it is not
+      given.
+    - `met(x)` says whether `x` is a solution: `True`, `False`, or whole numbers that tell solutions of one kind from
+      others.
 
     Points are arrays of floats of one length. Functions must depend on their arguments alone.
     """
@@ -56,8 +58,8 @@ class Move:
     """A way to propose another point.
 
     `propose(x, rng)` gives the candidate, `None` to stay, or `(candidate, log ratio)`. `log_ratio(x, y)` is
-    `log q(x | y) - log q(y | x)`, by which the way back from `y` is likelier than the way there; without it, both are taken
-    to be equally likely. `check_moves` says whether that is right.
+    `log q(x | y) - log q(y | x)`, by which the way back from `y` is likelier than the way there; without it, both are
+    taken to be equally likely. `check_moves` says whether that is right.
     """
 
     def __init__(
@@ -168,12 +170,14 @@ def check_moves(
 ) -> _plaus.CheckReport:
     """Checks moves as the scenes' own moves are checked.
 
-    Ratios are held against their reverse; then a step is made from each of `samples` exact draws, which must leave their law
-    as it is: draws of the prior, with the factor switched off, and where `bound` is given, a number that `log_density` never
+    Ratios are held against their reverse; then a step is made from each of `samples` exact draws, which must leave
+    their law as it is: draws of the prior, with the factor switched off, and where `bound` is given, a number that
+    `log_density` never
     exceeds, draws of the target by rejection as well. `target.start` must draw from the prior.
 
-    A report is true where nothing was found; its text says what was. By chance it is false with probability `false_alarm`.
-    A fault that shifts a law by a share s of its standard deviation shows from about 100 / s² samples on.
+    A report is true where nothing was found; its text says what was. By chance it is false with probability
+    `false_alarm`. A fault that shifts a law by a share s of its standard deviation shows from about 100 / s² samples
+    on.
     """
     from plaus._sampling import _whole
 

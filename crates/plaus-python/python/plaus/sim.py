@@ -8,7 +8,8 @@
     world.cuboid((0.016, 0.016, 0.016))
     throws = world.run(position=[[[0, 0, 0.1]]] * 1000, spin=numpy.random.normal(0, 20, (1000, 1, 3)))
 
-Exact and event-driven: no time step in flight, the same bits on every thread and machine. SI units throughout. Axes are as
+Exact and event-driven: no time step in flight, the same bits on every thread and machine. SI units throughout. Axes are
+as
 you build them; the worlds that come with it, `World.bins` and `World.dice`, have z up.
 """
 
@@ -59,7 +60,8 @@ class Batch:
         self.orientations: Floats | None = made.get("orientations")
         """How bodies are turned at `times`: (start, time, body, xyzw); None where no times were asked for."""
         self.events: dict[str, Any] | None = made.get("events")
-        """Impacts of all starts as columns: `start`, `t` (s), `body`, `other` (-1: what stands still), `point` (m), `normal`,
+        """Impacts of all starts as columns: `start`, `t` (s), `body`, `other` (-1: what stands still), `point` (m),
+        `normal`,
         `speed` (m/s), `impulse` (N s); None where they were not asked for."""
 
     def __len__(self) -> int:
@@ -73,8 +75,10 @@ class Batch:
 class World:
     """A world of bodies among things that stand still.
 
-    Materials are names; `law` says what happens where two of them meet. A world whose bodies are all balls, among planes,
-    meshes and caps, is run by the simulator for balls, which is faster and keeps no orientations; any other, among planes,
+    Materials are names; `law` says what happens where two of them meet. A world whose bodies are all balls, among
+    planes, meshes and caps, is run by the simulator for balls, which is faster and keeps no orientations; any other,
+    among
+    planes,
     blocks and tables, by the one for bodies that turn. `engine` (`"marbles"`, `"rigid"`) chooses where both would do.
     """
 
@@ -87,7 +91,8 @@ class World:
         events: int | None = None,
         engine: str | None = None,
     ) -> None:
-        """`gravity` in m/s²; `duration`: when a run is over at the latest, in s; `accuracy`: `draft`, `standard`, `fine` or
+        """`gravity` in m/s²; `duration`: when a run is over at the latest, in s; `accuracy`: `draft`, `standard`,
+        `fine` or
         `reference`; `events`: most events of a run, for each body."""
         if engine not in (None, "marbles", "rigid"):
             raise ValueError(f"engine is {engine!r}, but must be 'marbles' or 'rigid'")
@@ -109,7 +114,8 @@ class World:
     def bins(
         cls, marbles: int = 10, *, duration: float | None = None, accuracy: str = "standard", events: int | None = 1000
     ) -> World:
-        """Marbles of 12 mm over 7 × 5 bins of 20 mm, as in figure 10 of the paper; z up, corner at the origin, 36 mm deep."""
+        """Marbles of 12 mm over 7 × 5 bins of 20 mm, as in figure 10 of the paper; z up, corner at the origin, 36 mm
+        deep."""
         longest = 0.1 * marbles + 1.0 if duration is None else duration
         return cls._ready(_plaus.SimWorld.bins(marbles, float(longest), accuracy, events))
 
@@ -120,8 +126,8 @@ class World:
 
     @classmethod
     def from_scenario(cls, scenario: _plaus.Scenario) -> World:
-        """The world of a scenario, with all that is random in it left out: a level table of mean friction and restitution,
-        bins whose vertices stand where they should, pins on their spots. z is up.
+        """The world of a scenario, with all that is random in it left out: a level table of mean friction and
+        restitution, bins whose vertices stand where they should, pins on their spots. z is up.
 
         Raises `ValueError` for a scene that has no simulator, because its motion has a closed form.
         """
@@ -154,8 +160,8 @@ class World:
     ) -> None:
         """What happens where materials `a` and `b` meet; without names, where no other law says so.
 
-        `friction`: Coulomb's coefficient; `restitution` and `tangential` (of spheres) from 0 to 1; `rolling` and `spinning`:
-        resistance, a torque over normal force times radius.
+        `friction`: Coulomb's coefficient; `restitution` and `tangential` (of spheres) from 0 to 1; `rolling` and
+        `spinning`: resistance, a torque over normal force times radius.
         """
         self._change()
         law = dict(
@@ -178,10 +184,14 @@ class World:
         if density is None and mass is None:
             density = 1000.0
         all_of_it = {"size": [], "points": [], "rounding": 0.0, **what}
-        self._bodies.append({"kind": kind, "material": self._material(material), "density": density, "mass": mass, **all_of_it})
+        self._bodies.append(
+            {"kind": kind, "material": self._material(material), "density": density, "mass": mass, **all_of_it}
+        )
         return len(self._bodies) - 1
 
-    def ball(self, radius: float, *, density: float | None = None, mass: float | None = None, material: str = "default") -> int:
+    def ball(
+        self, radius: float, *, density: float | None = None, mass: float | None = None, material: str = "default"
+    ) -> int:
         """Adds a ball; gives its number. 1000 kg/m³ unless density (kg/m³) or mass (kg) say otherwise."""
         return self._body("ball", material, density, mass, size=[float(radius)])
 
@@ -206,8 +216,8 @@ class World:
         mass: float | None = None,
         material: str = "default",
     ) -> int:
-        """Adds the convex hull of points (m); gives its number. Its axes are its principal axes, its origin its centre of
-        gravity."""
+        """Adds the convex hull of points (m); gives its number. Its axes are its principal axes, its origin its centre
+        of gravity."""
         return self._body("hull", material, density, mass, points=_rows("points", points), rounding=float(rounding))
 
     def pin(self, *, density: float | None = None, mass: float | None = None, material: str = "default") -> int:
@@ -230,8 +240,8 @@ class World:
     def table(
         self, heights: ArrayLike, spacing: float, *, origin: Sequence[float] = (0.0, 0.0), material: str = "default"
     ) -> None:
-        """Adds a table `z = height(x, y)`: a cubic b-spline over control heights (m) on a grid, whose first index goes along
-        x; beyond the grid it goes on as at its edge. For bodies that turn."""
+        """Adds a table `z = height(x, y)`: a cubic b-spline over control heights (m) on a grid, whose first index goes
+        along x; beyond the grid it goes on as at its edge. For bodies that turn."""
         corner = [float(origin[0]), float(origin[1]), 0.0]
         self._surface("table", material, heights=_rows("heights", heights), radius=float(spacing), vectors=[corner])
 
@@ -272,8 +282,8 @@ class World:
 
     @property
     def places(self) -> Floats:
-        """Where bodies may start, upright and at rest, without touching each other: (body, xyz), in m. Empty for a world that
-        was built by hand."""
+        """Where bodies may start, upright and at rest, without touching each other: (body, xyz), in m. Empty for a
+        world that was built by hand."""
         import numpy
 
         return numpy.asarray(self._world().places, dtype=float).reshape(-1, 3)
@@ -298,12 +308,13 @@ class World:
     ) -> Batch:
         """Runs the world from many starts, until all is at rest, `until` (s), or the world's duration.
 
-        Arrays are (start, body, xyz): `position` (m) of centres of gravity, `velocity` (m/s), `spin` (rad/s, world axes);
-        `orientation` is (start, body, xyzw), `release` (start, body): when a body appears, in s. What is not given is zero,
+        Arrays are (start, body, xyz): `position` (m) of centres of gravity, `velocity` (m/s), `spin` (rad/s, world
+        axes); `orientation` is (start, body, xyzw), `release` (start, body): when a body appears, in s. What is not
+        given is zero,
         upright and at once. `times`: when poses are kept, `events`: whether impacts are. `threads`: 0 is one a core.
 
-        Raises `WorldError`, naming the start, where bodies overlap or a number is not finite; `MemoryError` where the arrays
-        do not fit.
+        Raises `WorldError`, naming the start, where bodies overlap or a number is not finite; `MemoryError` where the
+        arrays do not fit.
         """
         moments = [float(time) for time in times]
         made = self._world().run(

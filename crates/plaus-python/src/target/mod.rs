@@ -1,4 +1,5 @@
-//! A target whose prior and density are functions in Python, for toy problems: sampled by the same chains, checked by the same checks.
+//! A target whose prior and density are functions in Python, for toy problems: sampled by the same chains, checked by
+//! the same checks.
 
 mod checks;
 mod kernel;
@@ -38,13 +39,13 @@ impl Rng {
     /// Uniform between `low` and `high`, without the ends.
     #[pyo3(signature = (low = 0.0, high = 1.0))]
     fn uniform(&self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.with(|stream| open_unit(stream))
+        low + (high - low) * self.with(open_unit)
     }
 
     /// Normal with this mean and standard deviation.
     #[pyo3(signature = (mean = 0.0, sd = 1.0))]
     fn normal(&self, mean: f64, sd: f64) -> f64 {
-        mean + sd * self.with(|stream| plaus_dist::standard_normal(stream))
+        mean + sd * self.with(plaus_dist::standard_normal)
     }
 
     /// A whole number from 0 to `count` − 1, each equally likely.
@@ -135,7 +136,8 @@ fn number(made: &Bound<'_, PyAny>, what: &str) -> PyResult<f64> {
     made.extract().map_err(|_| PyTypeError::new_err(format!("{what} gave {made}: a number is expected")))
 }
 
-/// The class of solutions that an answer stands for: False or None for no solution, True for one class, whole numbers for classes of their own.
+/// The class of solutions that an answer stands for: False or None for no solution, True for one class, whole numbers
+/// for classes of their own.
 fn class(made: &Bound<'_, PyAny>) -> PyResult<Option<SolutionClass>> {
     if made.is_none() {
         return Ok(None);
