@@ -150,6 +150,7 @@ def main() -> int:
     parser.add_argument("--profile", default="release")
     parser.add_argument("--all", action="store_true", help="on all Pythons that are there")
     given = parser.parse_args()
+    given.target = given.target.resolve()
     if given.what == "write-licences":
         third_party.LIST.write_text(third_party.listing(), encoding="utf-8")
         return 0
