@@ -37,6 +37,7 @@ pub(crate) fn run() -> Result<(), Failure> {
         Step::new("licences and advisories", deny),
     ];
     all.extend(client_steps());
+    all.extend(crate::wheel::steps());
     steps::run(all)
 }
 

@@ -177,7 +177,8 @@ pub(crate) fn tempering(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
 }
 
 /// The diagnosis as JSON.
-pub(crate) fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
+#[must_use]
+pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
     let tally = &diagnosis.tally;
     let chain = |tally: &plaus_run::tally::ChainTally| {
         json!({

@@ -1,7 +1,7 @@
 //! What can go wrong with the files of a run.
 
 use crate::codec::{EncodeError, FrameError};
-use plaus_mcmc::{ModelError, RunError};
+use plaus_mcmc::{ChainError, ModelError, RunError};
 use plaus_scenes::ConfigError;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -159,6 +159,16 @@ pub enum Error {
     #[error(transparent)]
     Model(#[from] ModelError),
     /// A chain failed while sampling; the run keeps what came before.
+    #[error("chain {chain}: {source}. The run keeps the first {safe} iterations of each chain")]
+    Chain {
+        /// Which.
+        chain: u32,
+        /// How.
+        source: ChainError,
+        /// Iterations 0 up to here, exclusive, are kept.
+        safe: u64,
+    },
+    /// Sampling could not go on.
     #[error("{0}")]
     Sampling(String),
     /// What was asked for cannot be written.
@@ -175,6 +185,7 @@ impl Error {
         match error {
             RunError::Sink(source) if source.is_disk_full() => Self::DiskFull { source, safe },
             RunError::Sink(source) => Self::BrokenOff { source, safe },
+            RunError::Chain { chain, source } => Self::Chain { chain, source, safe },
             other => Self::Sampling(format!("{other}. The run keeps the first {safe} iterations of each chain")),
         }
     }

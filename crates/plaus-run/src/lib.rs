@@ -51,6 +51,7 @@ pub mod codec;
 pub mod confirm;
 pub mod diagnosis;
 pub mod disk;
+pub mod drive;
 mod error;
 pub mod export;
 pub mod folder;
@@ -71,13 +72,16 @@ mod trail;
 
 pub use confirm::Confirmation;
 pub use diagnosis::{Diagnosis, Finding};
+pub use drive::{Alone, Drive, Driven, Journey};
 pub use error::{Error, RunFileError, RunFileProblem};
 pub use folder::Folder;
 pub use gauge::Mixing;
 pub use manifest::{Manifest, Recipe};
 pub use merge::merge;
 pub use read::{Phase, Run, RunOf, RunVisitor};
-pub use sample::{More, Sampling, Unwatched, Watch, resume, sample, sample_or_go_on, sample_shard};
+pub use sample::{
+    More, Sampling, Unwatched, Watch, resume, resume_by, sample, sample_by, sample_or_go_on, sample_shard,
+};
 pub use shard::{Shard, ShardError};
 pub use solutions::Solution;
 pub use tally::{SampleId, Tally};

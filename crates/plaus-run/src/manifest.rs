@@ -48,6 +48,10 @@ pub struct Manifest {
     pub moves: Vec<String>,
     /// The scalars of the scene.
     pub scalars: Vec<StoredScalar>,
+    /// What was required beyond the scenario, in a word: the recorded log constraints hold its factor, and the run goes
+    /// on only with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub requirement: Option<String>,
 }
 
 /// The scenario of a run.
@@ -138,6 +142,7 @@ impl Recipe {
             acceptance_rule: rules.flags().into_iter().map(|(flag, on)| (flag.to_owned(), on)).collect(),
             moves: scene.moves(rules)?.names(),
             scalars: stored_scalars(scene),
+            requirement: None,
         })
     }
 }
@@ -303,6 +308,7 @@ impl Manifest {
             ("the scenario's file", self.scenario != other.scenario),
             ("how its keys were set on the command line", self.overrides != other.overrides),
             ("how often it was made longer", self.extended_from != other.extended_from),
+            ("what is required beyond the scenario", self.requirement != other.requirement),
             ("its moves, scalars or rules", Self { shard: other.shard, ..self.clone() } != *other),
         ];
         let part = parts.into_iter().find(|part| part.1).map(|(what, _)| format!("{what} differs"));
@@ -313,6 +319,18 @@ impl Manifest {
     #[must_use]
     pub fn chains(&self) -> Range<u32> {
         self.shard.map_or(0..self.plan.chains, |shard| shard.range(self.plan.chains).unwrap_or_default())
+    }
+
+    /// That the scenario alone says whether an outcome satisfies.
+    ///
+    /// # Errors
+    /// [`Error::Request`] where the run has a requirement, which only the program that gave it can ask.
+    pub fn judges_alone(&self) -> Result<(), Error> {
+        self.requirement.as_ref().map_or(Ok(()), |name| {
+            Err(Error::Request(format!(
+                "this run has a requirement, {name}, that its folder does not hold: whether another simulation meets it cannot be told"
+            )))
+        })
     }
 
     /// A number that the chains' files bear, so that files of different runs cannot be mixed up. How many chains there are plays no part: what one

@@ -2,6 +2,7 @@
 
 use crate::checkpoint::{self, Checkpoint};
 use crate::disk::{Disk, RealDisk};
+use crate::drive::{Alone, Drive, Journey};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::gauge::{Gauge, Mixing};
@@ -19,8 +20,11 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
 use std::sync::Arc;
 
+/// What is said of a requirement that is not given.
+const BY_ITS_MAKER: &str = "go on with it from the program that gave it";
+
 /// Where the chains of a scene go on from.
-type Starts<S> = Vec<Start<<S as Target>::Draw, <S as Target>::Outcome>>;
+pub(crate) type Starts<S> = Vec<Start<<S as Target>::Draw, <S as Target>::Outcome>>;
 
 /// Looks on while a run is sampled, and may stop it.
 pub trait Watch {
@@ -113,19 +117,42 @@ pub fn sample_shard(
     shard: Option<Shard>,
     sampling: Sampling<'_>,
 ) -> Result<Ending, Error> {
-    struct Begin<'a, 'b>(&'a Folder, &'a Recipe, Option<Shard>, Sampling<'b>);
-    impl Visitor for Begin<'_, '_> {
+    begin(folder, recipe, shard, sampling, &Alone)
+}
+
+/// As [`sample()`], with the chains driven by `drive`: under a requirement, say.
+///
+/// # Errors
+/// As [`sample()`], and as `drive` says.
+pub fn sample_by<D: Drive>(
+    folder: &Folder,
+    recipe: &Recipe,
+    sampling: Sampling<'_>,
+    drive: &D,
+) -> Result<Ending, Error> {
+    begin(folder, recipe, None, sampling, drive)
+}
+
+fn begin<D: Drive>(
+    folder: &Folder,
+    recipe: &Recipe,
+    shard: Option<Shard>,
+    sampling: Sampling<'_>,
+    drive: &D,
+) -> Result<Ending, Error> {
+    struct Begin<'a, 'b, D>(&'a Folder, &'a Recipe, Option<Shard>, Sampling<'b>, &'a D);
+    impl<D: Drive> Visitor for Begin<'_, '_, D> {
         type Output = Result<Ending, Error>;
         fn visit<S: Scene>(self, scene: S) -> Self::Output {
-            let Self(folder, recipe, shard, sampling) = self;
-            let manifest = piece(recipe, &scene, shard)?;
+            let Self(folder, recipe, shard, sampling, drive) = self;
+            let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
             let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
             folder.create(sampling.disk, &json)?;
             let _claim = folder.claim()?;
-            go_on(folder, &manifest, &scene, Vec::new(), sampling)
+            go_on(folder, &manifest, &Arc::new(scene), Vec::new(), sampling, drive)
         }
     }
-    recipe.scenario.world.visit(Begin(folder, recipe, shard, sampling))?
+    recipe.scenario.world.visit(Begin(folder, recipe, shard, sampling, drive))?
 }
 
 /// Samples a new run, or a piece of one, into `folder`; where that holds this very run already, goes on with it. So a job that is started again and
@@ -189,13 +216,21 @@ pub struct More {
 /// # Errors
 /// [`Error`] where the run is damaged, made by another version or being written, `more` is less than planned, or as [`sample`].
 pub fn resume(folder: &Folder, more: More, sampling: Sampling<'_>) -> Result<Ending, Error> {
-    struct GoOn<'a, 'b>(&'a Folder, Manifest, Sampling<'b>);
-    impl Visitor for GoOn<'_, '_> {
+    resume_by(folder, more, sampling, &Alone)
+}
+
+/// As [`resume`], with the chains driven as they were by [`sample_by`].
+///
+/// # Errors
+/// As [`resume`], and where `drive` is another one than the run's.
+pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, drive: &D) -> Result<Ending, Error> {
+    struct GoOn<'a, 'b, D>(&'a Folder, Manifest, Sampling<'b>, &'a D);
+    impl<D: Drive> Visitor for GoOn<'_, '_, D> {
         type Output = Result<Ending, Error>;
         fn visit<S: Scene>(self, scene: S) -> Self::Output {
-            let Self(folder, manifest, sampling) = self;
+            let Self(folder, manifest, sampling, drive) = self;
             let starts = restore(folder, &manifest, &scene, &sampling)?;
-            go_on(folder, &manifest, &scene, starts, sampling)
+            go_on(folder, &manifest, &Arc::new(scene), starts, sampling, drive)
         }
     }
     Manifest::read(folder)?; // what is no run gets no lock file
@@ -210,12 +245,18 @@ pub fn resume(folder: &Folder, more: More, sampling: Sampling<'_>) -> Result<End
         let problem = RunFileProblem::OtherVersion { made: manifest.plaus, present: VERSION };
         return Err(RunFileError::new(folder.path(), problem).into());
     }
+    if manifest.requirement != drive.requirement() {
+        return Err(Error::Request(match &manifest.requirement {
+            Some(name) => format!("this run has a requirement, {name}, that its folder does not hold: {BY_ITS_MAKER}"),
+            None => "this run has no requirement: it goes on without one".to_owned(),
+        }));
+    }
     Manifest::clear(folder, sampling.disk);
     let scenario = manifest.scenario()?;
     if extend(&mut manifest, &scenario, more)? {
         manifest.replace(folder, sampling.disk)?;
     }
-    scenario.world.visit(GoOn(folder, manifest, sampling))?
+    scenario.world.visit(GoOn(folder, manifest, sampling, drive))?
 }
 
 /// Writes `more` into the plan; says whether that changes it.
@@ -285,7 +326,7 @@ fn restore_chain<S: Scene>(
     let Checkpoint { chain, records, snapshot, .. } = checkpoint;
     let states = snapshot.replicas.iter().flat_map(|replicas| &replicas.states).chain([&snapshot.state]);
     for state in states {
-        evaluate_again(scene, state).map_err(|problem| match problem {
+        evaluate_again(scene, state, manifest.requirement.is_some()).map_err(|problem| match problem {
             Ok(problem) => RunFileError::new(folder.checkpoint(chain), problem).into(),
             Err(error) => error,
         })?;
@@ -320,12 +361,13 @@ fn cut(path: &Path, disk: &dyn Disk, bytes: u64) -> Result<(), RunFileError> {
     Ok(())
 }
 
-fn go_on<S: Scene>(
+fn go_on<S: Scene, D: Drive>(
     folder: &Folder,
     manifest: &Manifest,
-    scene: &S,
+    scene: &Arc<S>,
     starts: Starts<S>,
     sampling: Sampling<'_>,
+    drive: &D,
 ) -> Result<Ending, Error> {
     let moves = scene.moves(&manifest.scenario()?.sampler.rules)?;
     let done = starts.first().map_or(0, |start| start.snapshot.end_iteration);
@@ -335,7 +377,8 @@ fn go_on<S: Scene>(
     let Sampling { threads, disk, watch } = sampling;
     watch.begin(manifest, done);
     let (plan, pulse, run) = (manifest.plan, watch.pulse(), manifest.run_id());
-    let gauge = if watch.looks_at_mixing() { Some(gauge(folder, scene, manifest, &lengths, done)?) } else { None };
+    let looks = watch.looks_at_mixing();
+    let gauge = if looks { Some(gauge(folder, &**scene, manifest, &lengths, done)?) } else { None };
     let chains = manifest.chains();
     let place = Place { folder, disk, run, pool, first: chains.start };
     let hunt = plan.solutions.filter(|_| manifest.shard.is_some());
@@ -345,7 +388,8 @@ fn go_on<S: Scene>(
         return Ok(Ending::EnoughSolutions);
     }
     let mut sink = FolderSink::new(place, watch, gauge, lengths, done, hunt);
-    let ended = plaus_mcmc::run_some(scene, &moves, plan, chains, starts, threads, &mut sink, &pulse);
+    let journey = Journey { plan, chains, starts, threads, pulse: &pulse };
+    let ended = drive.drive(scene, &moves, journey, &mut sink);
     let finished = if matches!(ended, Err(RunError::Sink(_))) { Ok(()) } else { sink.checkpoint() };
     let safe = sink.safe();
     let ending = ended.map_err(|error| Error::of_run(error, safe))?;

@@ -141,6 +141,22 @@ pub struct Snapshot<D, O> {
     pub replicas: Option<ReplicasSnapshot<D, O>>,
 }
 
+impl<D, O> Snapshot<D, O> {
+    /// The same with other states, one for one: as a target over the same draws sees them.
+    ///
+    /// # Errors
+    /// As `look` says.
+    pub fn try_map<P, E>(
+        self,
+        mut look: impl FnMut(State<D, O>) -> Result<State<D, P>, E>,
+    ) -> Result<Snapshot<D, P>, E> {
+        let Self { end_iteration, state, counts, scales, hits, pending, replicas } = self;
+        let state = look(state)?;
+        let replicas = replicas.map(|replicas| replicas.try_map(look)).transpose()?;
+        Ok(Snapshot { end_iteration, state, counts, scales, hits, pending, replicas })
+    }
+}
+
 /// Where a chain goes on from, with the classes of solutions it has recorded (from its records).
 pub struct Start<D, O> {
     /// The snapshot.

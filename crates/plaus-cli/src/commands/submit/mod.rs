@@ -92,9 +92,7 @@ impl Args {
         let recipe = wanted.recipe()?;
         let program = match self.program {
             Some(program) => program,
-            None => std::env::current_exe().map_err(|error| {
-                Failure::Message(format!("cannot tell where plaus lies: {error}; name it by `--program`"))
-            })?,
+            None => this_program()?,
         };
         let what = Description {
             plaus: VERSION.to_owned(),
@@ -110,6 +108,18 @@ impl Args {
         };
         Job::create(&out, &recipe, what)
     }
+}
+
+/// The file of the command that runs. Within another program, Python say, that is another file, which would not know
+/// our words.
+fn this_program() -> Result<PathBuf, Failure> {
+    let ask = "name the command plaus by `--program`, e.g. `--program \"$(command -v plaus)\"`";
+    let program = std::env::current_exe()
+        .map_err(|error| Failure::Message(format!("cannot tell where plaus lies: {error}; {ask}")))?;
+    if program.file_stem().is_some_and(|name| name.to_string_lossy().starts_with("plaus")) {
+        return Ok(program);
+    }
+    Err(Failure::Message(format!("plaus runs within {} here: {ask}", program.display())))
 }
 
 /// Shows what is, or would be, submitted: files on stdout with their contents, then the commands.
