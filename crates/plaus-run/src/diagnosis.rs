@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt;
 
-/// Numbers held in memory at once while scalars are read; of longer runs, and of runs of very many chains, ranks are looked at in every so-manieth draw.
+/// Numbers held in memory at once while scalars are read; of longer runs, and of runs of very many chains, ranks are looked at in every n-th draw.
 const HELD: u64 = 1 << 25;
 /// Rank-normalised R̂ above this says that the chains disagree (Vehtari et al. 2021).
 pub const MAX_RHAT: f64 = 1.01;
@@ -109,7 +109,7 @@ impl fmt::Display for Finding {
 
 impl Diagnosis {
     /// Diagnoses the sampling phase of a run, from every draw, or, where that is more than `most` a chain or more than memory is for, from every
-    /// so-manieth. Means and standard deviations are always those of all draws.
+    /// n-th. Means and standard deviations are always those of all draws.
     ///
     /// # Errors
     /// [`RunFileError`] where the records are damaged.

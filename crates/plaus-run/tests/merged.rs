@@ -43,7 +43,7 @@ fn a_merge_that_fails_leaves_nothing() {
         std::fs::remove_dir_all(&out).unwrap();
         let before: Vec<_> = [1, 2].map(|n| bytes_of(&Folder::new(paths[0].join(n.to_string())))).into();
         let (bytes, operations) = disk.used();
-        // Every so-manieth; odd steps come to every kind of operation.
+        // Every n-th; odd steps come to every kind of operation.
         let limits = (0..bytes).step_by((bytes / FAILURES) as usize | 1).map(|bytes| (bytes, u64::MAX));
         let stops =
             (0..operations).step_by((operations / FAILURES) as usize | 1).map(|operations| (u64::MAX, operations));

@@ -23,7 +23,7 @@ pub(crate) struct Wanted {
     /// Iterations before sampling begins
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     warmup: Option<u64>,
-    /// Record every so-manieth iteration
+    /// Record only every so many iterations
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     thin: Option<u64>,
     /// Stop once so many distinct satisfying solutions are recorded after the warm-up
