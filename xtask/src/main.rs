@@ -5,10 +5,12 @@
 mod arviz;
 mod clients;
 mod command;
+mod engines;
 mod golden;
 mod registry;
 mod steps;
 mod test;
+mod wheel;
 
 use command::{Failure, cargo};
 use std::process::ExitCode;
@@ -19,6 +21,11 @@ usage: cargo xtask CHORE
   test                 everything that must pass: what CI runs
   ci                   the same
   clients              of that, only what other programs make of exports and galleries
+  engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost
+  wheel                the Python package, into target/wheel/dist
+  wheel --check        the same, tried on every Python there is, with its notebooks
+  wheel --measure      the same, with its numbers
+  wheel --licences     write the list of licences that is in it anew
   reproduce-figures [--out FOLDER] [--quick] [--only SCENE]
                        the paper's figures and claims, sampled anew, into out/figures
   plausibility [--out FOLDER] [--quick] [--only SCENE]
@@ -34,6 +41,8 @@ fn main() -> ExitCode {
     let done = match arguments.split_first() {
         Some((&("test" | "ci"), [])) => test::run(),
         Some((&"clients", [])) => test::clients(),
+        Some((&"engines", [])) => engines::run(),
+        Some((&"wheel", rest)) => wheel::run(rest),
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"plausibility", rest)) => plausibility(rest),
         Some((&"golden", rest)) => golden::run(rest),

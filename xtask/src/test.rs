@@ -33,9 +33,11 @@ pub(crate) fn run() -> Result<(), Failure> {
         Step::command("figures, quick", figures),
         Step::command("plausibility, quick", plausible),
         Step::new("ArviZ reads a run", crate::arviz::run),
+        Step::new("pieces on engines, quick", crate::engines::quick),
         Step::new("licences and advisories", deny),
     ];
     all.extend(client_steps());
+    all.extend(crate::wheel::steps());
     steps::run(all)
 }
 

@@ -24,6 +24,12 @@ impl Stopwatch {
     }
 }
 
+/// Seconds since 1970, to be compared with what another machine's clock says.
+#[allow(clippy::disallowed_methods)]
+pub(crate) fn unix_seconds() -> u64 {
+    std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |time| time.as_secs())
+}
+
 /// Reads `90`, `90s`, `1.5m`, `2h` or `500ms`; a bare number is seconds.
 pub(crate) fn parse_duration(text: &str) -> Result<Duration, String> {
     let text = text.trim();

@@ -4,7 +4,6 @@ use crate::console;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use plaus_scenes::scenario::{Problem, ScenarioError, Source};
 use std::io;
-use std::process::ExitCode;
 
 /// Problems of one scenario that are shown; the others are counted.
 const SHOWN_PROBLEMS: usize = 20;
@@ -82,14 +81,23 @@ impl Failure {
         self
     }
 
+    /// What is wrong in one line, for those who are told of it elsewhere.
+    pub(crate) fn message(&self) -> Option<String> {
+        match self {
+            Self::Scenario(error) => error.problems.first().map(|problem| problem.message.clone()),
+            Self::Message(message) => Some(message.clone()),
+            Self::ReaderGone => None,
+        }
+    }
+
     /// Tells the user; gives the exit code.
-    pub(crate) fn report(&self) -> ExitCode {
+    pub(crate) fn report(&self) -> u8 {
         match self {
             Self::Scenario(error) => console::note_line(&render(error, console::is_coloured())),
             Self::Message(message) => console::note_line(&format!("error: {message}")),
-            Self::ReaderGone => return ExitCode::SUCCESS,
+            Self::ReaderGone => return 0,
         }
-        ExitCode::from(2)
+        2
     }
 }
 

@@ -29,6 +29,18 @@ pub(crate) fn asked() -> bool {
     ASKED.get().is_some_and(|asked| asked.load(Ordering::SeqCst))
 }
 
+/// Asks a process that was started here for a checkpoint and an end. Where there are no signals, it has got Ctrl-C as we did.
+#[cfg(unix)]
+pub(crate) fn pass_on(process: u32) {
+    let process = i32::try_from(process).ok().and_then(rustix::process::Pid::from_raw);
+    // It may have ended meanwhile.
+    let _ = process.map(|process| rustix::process::kill_process(process, rustix::process::Signal::TERM));
+}
+
+/// Asks a process that was started here for a checkpoint and an end. Where there are no signals, it has got Ctrl-C as we did.
+#[cfg(not(unix))]
+pub(crate) fn pass_on(_: u32) {}
+
 #[cfg(unix)]
 fn signals() -> Vec<i32> {
     let mut signals = vec![signal::SIGINT, signal::SIGTERM];

@@ -6,7 +6,8 @@ use plaus_run::replay::Replay;
 use serde_json::{Map, Value, json};
 
 /// Name and facts of a sample.
-pub(crate) fn of(manifest: &Manifest, replay: &Replay) -> Label {
+#[must_use]
+pub fn of(manifest: &Manifest, replay: &Replay) -> Label {
     let scalars: Map<String, Value> = replay.scalars.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
     let facts = json!({
         "plaus": manifest.plaus,

@@ -32,7 +32,14 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
         manifest.scene,
         manifest.scenario.file,
         plan.seed,
-        if plan.chains == 1 { "1 chain".to_owned() } else { format!("{} chains", plan.chains) },
+        if let Some(shard) = manifest.shard {
+            let chains = manifest.chains();
+            format!("piece {shard}: chains {} to {}", chains.start, chains.end.saturating_sub(1))
+        } else if plan.chains == 1 {
+            "1 chain".to_owned()
+        } else {
+            format!("{} chains", plan.chains)
+        },
         grouped(plan.iterations),
         grouped(plan.warmup),
     )
@@ -87,7 +94,7 @@ pub(crate) fn move_table(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
     let few = tally.chains.len() <= 8;
     let mut rows = vec![vec!["move".to_owned(), "tried".to_owned(), "accepted".to_owned()]];
     if few {
-        rows[0].extend((0..tally.chains.len()).map(|chain| format!("chain {chain}")));
+        rows[0].extend(tally.chains.iter().map(|one| format!("chain {}", one.chain)));
     }
     for (index, (name, count)) in manifest.moves.iter().zip(&tally.counts).enumerate() {
         let mut row = vec![format!("  {name}"), grouped(count.made()), percent(count.acceptance())];
@@ -109,7 +116,7 @@ pub(crate) fn scale_table(diagnosis: &Diagnosis) -> String {
     let shown = if chains.len() <= 8 { chains.as_slice() } else { &[] };
     let title = if first.scales[0].frozen { "scales, kept since the warm-up" } else { "scales, being adapted" };
     let mut rows = vec![vec![title.to_owned(), "goal".to_owned(), "accepted".to_owned()]];
-    rows[0].extend((0..shown.len()).map(|chain| format!("chain {chain}")));
+    rows[0].extend(shown.iter().map(|one| format!("chain {}", one.chain)));
     for (index, scale) in first.scales.iter().enumerate() {
         let all = || chains.iter().filter_map(|chain| chain.scales.get(index));
         let (tried, accepted) = (all().map(|one| one.tried).sum::<u64>(), all().map(|one| one.accepted).sum::<u64>());
@@ -170,11 +177,12 @@ pub(crate) fn tempering(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
 }
 
 /// The diagnosis as JSON.
-pub(crate) fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
+#[must_use]
+pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
     let tally = &diagnosis.tally;
-    let chain = |(chain, tally): (usize, &plaus_run::tally::ChainTally)| {
+    let chain = |tally: &plaus_run::tally::ChainTally| {
         json!({
-            "chain": chain,
+            "chain": tally.chain,
             "hits": tally.hits.count,
             "first_hit": tally.hits.first,
             "satisfying_draws": tally.satisfying_draws,
@@ -199,7 +207,7 @@ pub(crate) fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
         "best_sample": tally.best().map(|sample| sample.to_string()),
         "acceptance": acceptance(&manifest.moves, &tally.counts),
         "moves": manifest.moves.iter().zip(&tally.counts).map(|(name, count)| (name.clone(), json!(count))).collect::<Value>(),
-        "chains": tally.chains.iter().enumerate().map(chain).collect::<Vec<_>>(),
+        "chains": tally.chains.iter().map(chain).collect::<Vec<_>>(),
         "findings": diagnosis.findings,
         "healthy": diagnosis.is_healthy(),
     })

@@ -55,6 +55,7 @@ pub mod moves;
 pub mod record;
 pub mod redraw;
 pub mod replicas;
+pub mod required;
 pub mod run;
 pub mod solutions;
 pub mod target;
@@ -68,8 +69,10 @@ pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
 pub use record::{Block, Entry};
 pub use redraw::Redraw;
 pub use replicas::{Climb, Course, Replicas, ReplicasSnapshot, RungStatistics, Tempering, TopStep};
+pub use required::{Judged, Mark, Required, Requirement};
 pub use run::{
-    ChainPulse, Control, Ending, Plan, PlanError, Progress, Pulse, RunError, Sink, Snapshot, Start, run, run_watched,
+    ChainPulse, Control, Ending, Plan, PlanError, Progress, Pulse, RunError, Sink, Snapshot, Start, run, run_some,
+    run_watched,
 };
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};

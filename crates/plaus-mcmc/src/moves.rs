@@ -212,6 +212,12 @@ impl<T: Target> Mixture<T> {
         Self { moves: (0..).zip(&self.moves).map(kernel).collect(), cumulative: self.cumulative.clone() }
     }
 
+    /// The same probabilities for moves of another target, one for one.
+    pub(crate) fn map_all<U: Target>(&self, raise: impl Fn(Arc<dyn Move<T>>) -> Box<dyn Move<U>>) -> Mixture<U> {
+        let moves = self.moves.iter().map(|kernel| Arc::from(raise(Arc::clone(kernel)))).collect();
+        Mixture { moves, cumulative: self.cumulative.clone() }
+    }
+
     /// The moves, to be shared.
     pub(crate) fn shared(&self) -> impl Iterator<Item = (f64, Arc<dyn Move<T>>)> {
         (0..).zip(&self.moves).map(|(id, kernel)| (self.get(MoveId(id)).0, Arc::clone(kernel)))

@@ -52,6 +52,19 @@ impl<D: Clone, O: Clone> Block<D, O> {
     }
 }
 
+impl<D, O> Block<D, O> {
+    /// The same draws with other states, one for one.
+    #[must_use]
+    pub fn map<P>(self, mut look: impl FnMut(State<D, O>) -> State<D, P>) -> Block<D, P> {
+        let Self { first_iteration, end_iteration, entries } = self;
+        let entry = |Entry { draws, accepted, by, class, state }| {
+            let state = look(state);
+            Entry { draws, accepted, by, class, state }
+        };
+        Block { first_iteration, end_iteration, entries: entries.into_iter().map(entry).collect() }
+    }
+}
+
 /// The iterations that are recorded: every `thin`-th from 0 on.
 #[must_use]
 pub fn is_recorded(iteration: u64, thin: u64) -> bool {

@@ -4,7 +4,7 @@
 //! the valid ones first; only when they are on the disk does each take its place. A run that dies while they do has some chains' new
 //! checkpoints in place and all others' beside them: [`settle`] finishes the replacement.
 
-use crate::codec::{self, Kind};
+use crate::codec::{self, FrameError, FrameProblem, Frames, Kind};
 use crate::disk::Disk;
 use crate::error::{RunFileError, RunFileProblem};
 use crate::folder::Folder;
@@ -13,6 +13,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::ErrorKind;
+use std::ops::Range;
 use std::path::Path;
 
 const KIND: Kind = Kind::new(*b"chkp", 3, "a checkpoint of a chain");
@@ -56,6 +57,57 @@ impl<D: Serialize + DeserializeOwned, O: Serialize + DeserializeOwned> Checkpoin
     }
 }
 
+/// What a stored checkpoint begins with: run, chain, bytes of records, and one past the last iteration.
+type Head = (u64, u32, u64, u64);
+
+/// A chain's checkpoint as it is stored, of which only what it begins with is looked at.
+pub(crate) struct Stored {
+    /// Length of the chain's records, in bytes.
+    pub(crate) records: u64,
+    /// One past the last iteration.
+    pub(crate) end_iteration: u64,
+    /// The file.
+    pub(crate) bytes: Vec<u8>,
+}
+
+impl Stored {
+    /// Reads a chain's checkpoint; `None` where it has none yet.
+    ///
+    /// # Errors
+    /// [`RunFileError`] where it is damaged or belongs elsewhere.
+    pub(crate) fn read(path: &Path, run: u64, chain: u32) -> Result<Option<Self>, RunFileError> {
+        let bytes = match std::fs::read(path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            bytes => bytes.map_err(RunFileError::io(path, "read"))?,
+        };
+        let damage = |source| RunFileError::new(path, RunFileProblem::Checkpoint { source });
+        let length = bytes.len() as u64;
+        let mut frames = Frames::<(), _>::new(KIND, bytes.as_slice(), length);
+        let truncated = FrameError { offset: 0, problem: FrameProblem::Truncated { needed: 1, present: 0 } };
+        let frame = frames.next_raw().unwrap_or(Err(truncated)).map_err(damage)?;
+        let whole = frame.len() as u64 == length;
+        let head = codec::head::<Head>(KIND, frame);
+        let (of, its_chain, records, end_iteration) =
+            head.map_err(|problem| damage(FrameError { offset: 0, problem }))?;
+        if (of, its_chain, whole) != (run, chain, true) {
+            let message = format!("this is no checkpoint of chain {chain} of this run");
+            return Err(RunFileError::new(path, RunFileProblem::Mixed(message)));
+        }
+        Ok(Some(Self { records, end_iteration, bytes }))
+    }
+}
+
+/// A checkpoint as it is stored.
+///
+/// # Errors
+/// [`RunFileError`] where it is too long.
+pub(crate) fn encode<D: Serialize, O: Serialize>(
+    path: &Path,
+    checkpoint: &Checkpoint<D, O>,
+) -> Result<Vec<u8>, RunFileError> {
+    codec::encode(KIND, checkpoint).map_err(|error| RunFileError::new(path, error.into()))
+}
+
 /// Puts checkpoints of all chains in place of the ones before, such that at any moment either all old or all new ones can be had.
 ///
 /// # Errors
@@ -67,7 +119,7 @@ pub fn replace<D: Serialize, O: Serialize>(
 ) -> Result<(), RunFileError> {
     let written = checkpoints.iter().try_for_each(|checkpoint| {
         let path = folder.next_checkpoint(checkpoint.chain);
-        let bytes = codec::encode(KIND, checkpoint).map_err(|error| RunFileError::new(&path, error.into()))?;
+        let bytes = encode(&path, checkpoint)?;
         disk.write(&path, &bytes).map_err(RunFileError::io(&path, "write"))
     });
     let sync = |()| disk.sync(folder.path()).map_err(RunFileError::io(folder.path(), "write"));
@@ -88,20 +140,20 @@ pub fn settle<D, O>(
     folder: &Folder,
     disk: &dyn Disk,
     run: u64,
-    chains: u32,
+    chains: Range<u32>,
 ) -> Result<Vec<Checkpoint<D, O>>, RunFileError>
 where
     D: Serialize + DeserializeOwned,
     O: Serialize + DeserializeOwned,
 {
     let read = |chain| Checkpoint::<D, O>::read(&folder.checkpoint(chain), run, chain);
-    let valid: Vec<Option<_>> = (0..chains).map(read).collect::<Result<_, _>>()?;
+    let valid: Vec<Option<_>> = chains.clone().map(read).collect::<Result<_, _>>()?;
     let end = |checkpoint: &Checkpoint<D, O>| checkpoint.snapshot.end_iteration;
     let Some(newest) = valid.iter().flatten().map(end).max() else {
         return clear(folder, disk, chains).map(|()| Vec::new());
     };
     let mut settled = Vec::new();
-    for (chain, old) in (0..chains).zip(valid) {
+    for (chain, old) in chains.clone().zip(valid) {
         if let Some(checkpoint) = old.filter(|old| end(old) == newest) {
             settled.push(checkpoint);
             continue;
@@ -124,8 +176,8 @@ fn promote(folder: &Folder, disk: &dyn Disk, chain: u32) -> Result<(), RunFileEr
 }
 
 /// Removes next checkpoints that never became valid.
-fn clear(folder: &Folder, disk: &dyn Disk, chains: u32) -> Result<(), RunFileError> {
-    for path in (0..chains).map(|chain| folder.next_checkpoint(chain)) {
+fn clear(folder: &Folder, disk: &dyn Disk, chains: Range<u32>) -> Result<(), RunFileError> {
+    for path in chains.map(|chain| folder.next_checkpoint(chain)) {
         match disk.remove(&path) {
             Err(error) if error.kind() != ErrorKind::NotFound => return Err(RunFileError::io(&path, "remove")(error)),
             _ => {}

@@ -146,12 +146,38 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
         Self { kind, input, offset: 0, end: length, buffer: Vec::new(), value: PhantomData }
     }
 
-    /// Where the next frame begins.
+    /// Where the next frame begins; after a damaged one, where that begins.
     pub fn offset(&self) -> u64 {
         self.offset
     }
 
+    /// The next frame's bytes, with its checksum found right but its value not looked at; `None` at the end. After an error it ends.
+    pub fn next_raw(&mut self) -> Option<Result<&[u8], FrameError>> {
+        if self.offset == self.end {
+            return None;
+        }
+        let offset = self.offset;
+        match self.read_raw() {
+            Ok(()) => Some(Ok(&self.buffer)),
+            Err(problem) => {
+                self.end = self.offset;
+                Some(Err(FrameError { offset, problem }))
+            }
+        }
+    }
+
     fn read(&mut self) -> Result<T, FrameProblem> {
+        self.read_raw()?;
+        let content = &self.buffer[HEADER..self.buffer.len() - TRAILER];
+        let value = decode_payload(self.kind.name, content);
+        if value.is_err() {
+            self.offset -= self.buffer.len() as u64;
+        }
+        value
+    }
+
+    /// Reads the next frame into the buffer, and checks it.
+    fn read_raw(&mut self) -> Result<(), FrameProblem> {
         let present = self.end - self.offset;
         let overhead = (HEADER + TRAILER) as u64;
         if present < overhead {
@@ -168,9 +194,8 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
         if blake3::hash(content).as_bytes() != trailer {
             return Err(FrameProblem::Checksum);
         }
-        let value = decode_payload(self.kind.name, &content[HEADER..])?;
         self.offset += overhead + length;
-        Ok(value)
+        Ok(())
     }
 
     /// Reads exactly `bytes` more into the buffer, which grows only by what is really there.
@@ -218,6 +243,18 @@ impl<T: DeserializeOwned, R: Read> Iterator for Frames<T, R> {
             FrameError { offset, problem }
         }))
     }
+}
+
+/// What a frame's value begins with, where its first fields are those of `T`. The frame is one that [`Frames::next_raw`] gave.
+///
+/// # Errors
+/// [`FrameProblem`] where it does not begin so.
+pub fn head<T: DeserializeOwned>(kind: Kind, frame: &[u8]) -> Result<T, FrameProblem> {
+    let payload = frame.get(HEADER..frame.len().saturating_sub(TRAILER)).unwrap_or_default();
+    let decoded = bincode::serde::decode_from_slice::<T, _>(payload, CONFIG);
+    decoded
+        .map(|(value, _)| value)
+        .map_err(|error| FrameProblem::Payload { name: kind.name, reason: error.to_string() })
 }
 
 fn decode_payload<T: DeserializeOwned>(name: &'static str, payload: &[u8]) -> Result<T, FrameProblem> {

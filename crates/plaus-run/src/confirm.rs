@@ -83,6 +83,7 @@ impl Confirmation {
         threads: usize,
         mut go_on: impl FnMut(usize, usize) -> bool,
     ) -> Result<Option<Self>, Error> {
+        run.run().manifest().judges_alone()?;
         let scene = at_accuracy(run.scene(), run.run().scenario().world.name(), accuracy)?;
         let found = distinct(run)?;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();

@@ -2,6 +2,7 @@
 
 use crate::error::RunFileError;
 use crate::read::{Phase, RunOf};
+use crate::streamed::Moments;
 use crate::tally::Tally;
 use plaus_mcmc::diagnose::{DiagnoseError, Summary, summarize};
 use plaus_scenes::{Role, Scalar, Scene};
@@ -9,7 +10,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt;
 
-/// Numbers held in memory at once while scalars are read.
+/// Numbers held in memory at once while scalars are read; of longer runs, and of runs of very many chains, ranks are looked at in every n-th draw.
 const HELD: u64 = 1 << 25;
 /// Rank-normalised R̂ above this says that the chains disagree (Vehtari et al. 2021).
 pub const MAX_RHAT: f64 = 1.01;
@@ -107,22 +108,26 @@ impl fmt::Display for Finding {
 }
 
 impl Diagnosis {
-    /// Diagnoses the sampling phase of a run, from every draw, or, where that is more than `most` a chain, from every so-manieth.
+    /// Diagnoses the sampling phase of a run, from every draw, or, where that is more than `most` a chain or more than memory is for, from every
+    /// n-th. Means and standard deviations are always those of all draws.
     ///
     /// # Errors
     /// [`RunFileError`] where the records are damaged.
     pub fn of<S: Scene>(run: &RunOf<'_, S>, most: Option<u64>) -> Result<Self, RunFileError> {
         let recorded = run.draws(Phase::Sampling);
-        let stride = most.map_or(1, |most| recorded.div_ceil(most.max(1)).max(1));
+        let room = (HELD / run.chains().len().max(1) as u64).max(1);
+        let stride = recorded.div_ceil(most.map_or(room, |most| most.clamp(1, room))).max(1);
         let iterations = run.iterations().saturating_sub(run.run().manifest().plan.warmup);
         let mut scalars = Vec::new();
         let all = run.scene().scalars();
-        let width = (HELD / (u64::from(run.chains()) * recorded.div_ceil(stride)).max(1)).max(1);
+        let width = (HELD / (run.chains().len() as u64 * recorded.div_ceil(stride)).max(1)).max(1);
         for from in (0..all.len()).step_by(usize::try_from(width).unwrap_or(usize::MAX)) {
             let some = &all[from..all.len().min(from.saturating_add(width as usize))];
-            let columns = columns(run, from, some.len(), stride)?;
-            let diagnose = |(scalar, chains): (&Scalar, Vec<Vec<f64>>)| diagnose(scalar, &chains, iterations);
-            scalars.par_extend(some.par_iter().zip(columns).map(diagnose));
+            let (columns, moments) = streamed(run, from, some.len(), stride)?;
+            let diagnose = |((scalar, chains), moments): ((&Scalar, Vec<Vec<f64>>), Moments)| {
+                diagnose(scalar, &chains, iterations, (stride > 1).then_some(moments))
+            };
+            scalars.par_extend(some.par_iter().zip(columns).zip(moments).map(diagnose));
         }
         scalars.sort_by_key(|scalar: &ScalarDiagnosis| scalar.scalar.role != Role::Draw);
         let tally = Tally::of(run)?;
@@ -147,32 +152,55 @@ pub fn columns<S: Scene>(
     count: usize,
     stride: u64,
 ) -> Result<Vec<Vec<Vec<f64>>>, RunFileError> {
+    Ok(streamed(run, from, count, stride)?.0)
+}
+
+/// Per scalar, per chain, per draw.
+type Columns = Vec<Vec<Vec<f64>>>;
+
+/// As [`columns`], with the moments of all draws of each scalar where only some draws are asked for.
+fn streamed<S: Scene>(
+    run: &RunOf<'_, S>,
+    from: usize,
+    count: usize,
+    stride: u64,
+) -> Result<(Columns, Vec<Moments>), RunFileError> {
     let width = run.scene().scalars().len();
-    let chain = |chain| -> Result<Vec<Vec<f64>>, RunFileError> {
-        let mut columns = vec![Vec::new(); count];
+    let chain = |chain| -> Result<(Vec<Vec<f64>>, Vec<Moments>), RunFileError> {
+        let (mut columns, mut moments) = (vec![Vec::new(); count], vec![Moments::default(); count]);
         let mut values = vec![0.0; width];
         run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
             let times = (stretch.draw + stretch.draws).div_ceil(stride) - stretch.draw.div_ceil(stride);
-            if times > 0 {
+            if times > 0 || stride > 1 {
                 run.scene().write_scalars(&stretch.entry.state, &mut values);
                 for (column, &value) in columns.iter_mut().zip(&values[from..]) {
                     column.extend(std::iter::repeat_n(value, times as usize));
                 }
             }
+            if stride > 1 {
+                let noted = moments.iter_mut().zip(&values[from..]);
+                noted.for_each(|(moments, &value)| moments.note(value, stretch.draws));
+            }
             Ok(())
         })?;
-        Ok(columns)
+        Ok((columns, moments))
     };
-    let chains: Vec<Vec<Vec<f64>>> = (0..run.chains()).into_par_iter().map(chain).collect::<Result<_, _>>()?;
-    let mut scalars: Vec<Vec<Vec<f64>>> = vec![Vec::new(); count];
-    for chain in chains {
+    let chains: Vec<(Vec<Vec<f64>>, Vec<Moments>)> =
+        run.chains().into_par_iter().map(chain).collect::<Result<_, _>>()?;
+    let (mut scalars, mut all): (Columns, _) = (vec![Vec::new(); count], vec![Moments::default(); count]);
+    for (chain, moments) in chains {
         scalars.iter_mut().zip(chain).for_each(|(scalar, column)| scalar.push(column));
+        all.iter_mut().zip(&moments).for_each(|(all, moments)| all.join(moments));
     }
-    Ok(scalars)
+    Ok((scalars, all))
 }
 
-fn diagnose(scalar: &Scalar, chains: &[Vec<f64>], iterations: u64) -> ScalarDiagnosis {
-    let summary: Result<Summary, DiagnoseError> = summarize(chains);
+/// `all`: moments of all draws, where `chains` holds only some.
+fn diagnose(scalar: &Scalar, chains: &[Vec<f64>], iterations: u64, all: Option<Moments>) -> ScalarDiagnosis {
+    let mut summary: Result<Summary, DiagnoseError> = summarize(chains);
+    if let (Ok(summary), Some(all)) = (&mut summary, all) {
+        (summary.mean, summary.sd) = (all.mean(), all.sd().unwrap_or(0.0));
+    }
     let thousands = iterations as f64 * chains.len() as f64 / 1000.0;
     let ess_per_1000 = summary.as_ref().ok().map(|summary| summary.ess_bulk / thousands);
     let trouble = summary.as_ref().err().map(ToString::to_string);

@@ -1,7 +1,7 @@
 //! What can go wrong with the files of a run.
 
 use crate::codec::{EncodeError, FrameError};
-use plaus_mcmc::{ModelError, RunError};
+use plaus_mcmc::{ChainError, ModelError, RunError};
 use plaus_scenes::ConfigError;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -50,6 +50,12 @@ pub enum RunFileProblem {
         "the manifest cannot be read: {0}. Without it the records of the chains cannot be read either; the same scenario, seed and version of plaus sample the same run again"
     )]
     Manifest(String),
+    /// The folder holds something else than what is to be gone on with.
+    #[error("holds another run: {0}; choose another name")]
+    OtherRun(String),
+    /// Pieces that make no whole.
+    #[error("{0}")]
+    Pieces(String),
     /// Another version of plaus made the run.
     #[error("made by plaus {made}, this is {present}, which may sample other values: resume it with plaus {made}")]
     OtherVersion {
@@ -153,6 +159,16 @@ pub enum Error {
     #[error(transparent)]
     Model(#[from] ModelError),
     /// A chain failed while sampling; the run keeps what came before.
+    #[error("chain {chain}: {source}. The run keeps the first {safe} iterations of each chain")]
+    Chain {
+        /// Which.
+        chain: u32,
+        /// How.
+        source: ChainError,
+        /// Iterations 0 up to here, exclusive, are kept.
+        safe: u64,
+    },
+    /// Sampling could not go on.
     #[error("{0}")]
     Sampling(String),
     /// What was asked for cannot be written.
@@ -169,6 +185,7 @@ impl Error {
         match error {
             RunError::Sink(source) if source.is_disk_full() => Self::DiskFull { source, safe },
             RunError::Sink(source) => Self::BrokenOff { source, safe },
+            RunError::Chain { chain, source } => Self::Chain { chain, source, safe },
             other => Self::Sampling(format!("{other}. The run keeps the first {safe} iterations of each chain")),
         }
     }

@@ -50,6 +50,17 @@ impl Folder {
         self.0.join("confirmed.json")
     }
 
+    /// How far a piece is, for those who look on: neither needed nor believed by whoever reads the run.
+    #[must_use]
+    pub fn progress(&self) -> PathBuf {
+        self.0.join("progress.json")
+    }
+
+    /// Where a piece that hunts for solutions could be cut: one frame a round.
+    pub(crate) fn trail(&self) -> PathBuf {
+        self.0.join("trail")
+    }
+
     /// Always there and always empty; whoever writes the run holds a lock on it.
     #[must_use]
     pub fn lock(&self) -> PathBuf {
@@ -61,19 +72,28 @@ impl Folder {
     /// # Errors
     /// [`RunFileError`] where something of that name exists, or the disk refuses.
     pub fn create(&self, disk: &dyn Disk, manifest: &[u8]) -> Result<(), RunFileError> {
-        if fs::symlink_metadata(&self.0).is_ok() {
-            return Err(RunFileError::new(&self.0, RunFileProblem::Exists));
-        }
+        self.make(disk, |draft| draft.fill(disk, manifest).map_err(|error| RunFileError::new(&self.0, error.problem)))
+    }
+
+    /// Makes a run that `fill` fills under another name, in one step: it exists wholly or not at all.
+    ///
+    /// # Errors
+    /// As [`Folder::create`], and as `fill`.
+    pub(crate) fn make<E: From<RunFileError>>(
+        &self,
+        disk: &dyn Disk,
+        fill: impl FnOnce(&Self) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.refuse_to_replace()?;
         let parent = parent_of(&self.0);
         fs::create_dir_all(&parent).map_err(RunFileError::io(&parent, "make the folder"))?;
         clear_drafts(&self.0);
         let draft = Self(draft_of(&self.0));
         // A draft that is there already is another process's: not ours to fill, nor to remove.
         disk.create_folder(&draft.0).map_err(RunFileError::io(&draft.0, "make the folder"))?;
-        let filled = draft.fill(disk, manifest).map_err(|error| RunFileError::new(&self.0, error.problem));
-        let made = filled.and_then(|()| {
+        let made = fill(&draft).and_then(|()| {
             let done = disk.rename(&draft.0, &self.0);
-            done.and_then(|()| disk.sync(&parent)).map_err(RunFileError::io(&self.0, "make the run"))
+            Ok(done.and_then(|()| disk.sync(&parent)).map_err(RunFileError::io(&self.0, "make the run"))?)
         });
         if made.is_err() {
             let _ = fs::remove_dir_all(&draft.0); // best effort: the first error is the one to report
@@ -81,7 +101,19 @@ impl Folder {
         made
     }
 
-    fn fill(&self, disk: &dyn Disk, manifest: &[u8]) -> Result<(), RunFileError> {
+    /// Nothing is overwritten.
+    ///
+    /// # Errors
+    /// [`RunFileProblem::Exists`] where something of that name exists.
+    pub(crate) fn refuse_to_replace(&self) -> Result<(), RunFileError> {
+        match fs::symlink_metadata(&self.0) {
+            Ok(_) => Err(RunFileError::new(&self.0, RunFileProblem::Exists)),
+            Err(_) => Ok(()),
+        }
+    }
+
+    /// Writes what every run has.
+    pub(crate) fn fill(&self, disk: &dyn Disk, manifest: &[u8]) -> Result<(), RunFileError> {
         for (path, bytes) in [(self.lock(), &b""[..]), (self.manifest(), manifest)] {
             disk.write(&path, bytes).map_err(RunFileError::io(&path, "write"))?;
         }
@@ -129,7 +161,9 @@ fn clear_drafts(path: &Path) {
         let draft = entry.file_name().to_string_lossy().into_owned();
         let process = draft.strip_prefix(&format!(".{name}.")).and_then(|rest| rest.strip_suffix(".draft"));
         let Some(process) = process.and_then(|text| text.parse::<u32>().ok()) else { continue };
-        let ours = |name: &std::ffi::OsStr| name == "lock" || name == "manifest.json";
+        let ours = |name: &std::ffi::OsStr| {
+            name == "lock" || name == "manifest.json" || name.to_string_lossy().starts_with("chain-")
+        };
         let files = fs::read_dir(entry.path()).map(|files| files.flatten().all(|file| ours(&file.file_name())));
         if !Path::new("/proc").join(process.to_string()).exists() && files.unwrap_or(false) {
             let _ = fs::remove_dir_all(entry.path()); // best effort: it is in nobody's way

@@ -6,6 +6,7 @@ use plaus_mcmc::diagnose::summarize;
 use plaus_mcmc::{Block, Plan};
 use plaus_scenes::{Role, Scene};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::path::Path;
 
 /// Most values kept of a chain and outcome: where there are more, every other is dropped, and from then on only half as many come in.
@@ -35,17 +36,20 @@ pub(crate) struct Gauge<'a, S: Scene> {
     first: u64,
     thin: u64,
     scalars: Vec<f64>,
+    /// Number of the first chain.
+    lowest: u32,
 }
 
 impl<'a, S: Scene> Gauge<'a, S> {
     /// Of no draws yet.
-    pub(crate) fn new(scene: &'a S, plan: &Plan) -> Self {
+    pub(crate) fn new(scene: &'a S, plan: &Plan, chains: Range<u32>) -> Self {
         let all = scene.scalars();
         let scalars = vec![0.0; all.len()];
         let outcomes = all.into_iter().enumerate().filter(|(_, scalar)| scalar.role == Role::Outcome);
         let outcomes: Vec<_> = outcomes.take(OUTCOMES).map(|(number, scalar)| (scalar.name, number)).collect();
-        let values = vec![vec![Vec::new(); plan.chains as usize]; outcomes.len()];
-        Self { scene, outcomes, values, shift: 0, first: plan.warmup.div_ceil(plan.thin), thin: plan.thin, scalars }
+        let values = vec![vec![Vec::new(); chains.len()]; outcomes.len()];
+        let (first, lowest) = (plan.warmup.div_ceil(plan.thin), chains.start);
+        Self { scene, outcomes, values, shift: 0, first, thin: plan.thin, scalars, lowest }
     }
 
     /// Takes in what a chain recorded before the run went on; all chains go equally far.
@@ -73,7 +77,8 @@ impl<'a, S: Scene> Gauge<'a, S> {
             }
             self.scene.write_scalars(&entry.state, &mut self.scalars);
             for ((_, number), chains) in self.outcomes.iter().zip(&mut self.values) {
-                chains[chain as usize].extend(std::iter::repeat_n(self.scalars[*number], times as usize));
+                chains[(chain - self.lowest) as usize]
+                    .extend(std::iter::repeat_n(self.scalars[*number], times as usize));
             }
         }
     }

@@ -40,6 +40,7 @@
 //! | `chain-00000.checkpoint` | where the chain can go on from: one frame, replaced |
 //! | `confirmed.json` | made on demand: which distinct solutions hold at another accuracy |
 //! | `lock` | empty; locked by the process that writes |
+//! | `trail`, `progress.json` | of a [piece](shard) only: where it could be cut, if it looks for solutions; how far it is, for those who look on |
 //!
 //! The bytes of a folder follow from scenario, seed, plan and version: not from the clock, the number of threads, or how often the run was killed and
 //! resumed. Records are written first, checkpoints after; a checkpoint says how long the records were, and what lies beyond that is cut off
@@ -50,26 +51,37 @@ pub mod codec;
 pub mod confirm;
 pub mod diagnosis;
 pub mod disk;
+pub mod drive;
 mod error;
 pub mod export;
 pub mod folder;
 mod gauge;
 pub mod manifest;
+pub mod merge;
 pub mod read;
 pub mod records;
 pub mod replay;
 pub mod sample;
+pub mod shard;
+mod siblings;
 mod sink;
 pub mod solutions;
+mod streamed;
 pub mod tally;
+mod trail;
 
 pub use confirm::Confirmation;
 pub use diagnosis::{Diagnosis, Finding};
+pub use drive::{Alone, Drive, Driven, Journey};
 pub use error::{Error, RunFileError, RunFileProblem};
 pub use folder::Folder;
 pub use gauge::Mixing;
 pub use manifest::{Manifest, Recipe};
+pub use merge::merge;
 pub use read::{Phase, Run, RunOf, RunVisitor};
-pub use sample::{More, Sampling, Unwatched, Watch, resume, sample};
+pub use sample::{
+    More, Sampling, Unwatched, Watch, resume, resume_by, sample, sample_by, sample_or_go_on, sample_shard,
+};
+pub use shard::{Shard, ShardError};
 pub use solutions::Solution;
 pub use tally::{SampleId, Tally};

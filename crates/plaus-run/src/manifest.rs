@@ -3,15 +3,17 @@
 use crate::disk::Disk;
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
+use crate::shard::Shard;
 use plaus_mcmc::Plan;
 use plaus_scenes::{Role, Scenario, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
+use std::ops::Range;
 
 /// Version of the folder's format.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 /// Version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Longest manifest that is read, in bytes.
@@ -27,6 +29,9 @@ pub struct Manifest {
     pub plaus: String,
     /// The scene's name.
     pub scene: String,
+    /// Which of the plan's chains the folder holds; not there where it holds all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<Shard>,
     /// The scenario.
     pub scenario: StoredScenario,
     /// Keys set on the command line, as `key=value`.
@@ -43,6 +48,10 @@ pub struct Manifest {
     pub moves: Vec<String>,
     /// The scalars of the scene.
     pub scalars: Vec<StoredScalar>,
+    /// What was required beyond the scenario, in a word: the recorded log constraints hold its factor, and the run goes
+    /// on only with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub requirement: Option<String>,
 }
 
 /// The scenario of a run.
@@ -124,6 +133,7 @@ impl Recipe {
         Ok(Manifest {
             plaus: VERSION.to_owned(),
             scene: self.scenario.world.name().to_owned(),
+            shard: None,
             scenario,
             overrides: self.overrides.clone(),
             plan: self.plan(),
@@ -132,6 +142,7 @@ impl Recipe {
             acceptance_rule: rules.flags().into_iter().map(|(flag, on)| (flag.to_owned(), on)).collect(),
             moves: scene.moves(rules)?.names(),
             scalars: stored_scalars(scene),
+            requirement: None,
         })
     }
 }
@@ -150,6 +161,25 @@ fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
         rungs: sampler.tempering.rungs,
         swap_every: sampler.tempering.swap_every,
         adapt: scenario.adapts(),
+    }
+}
+
+/// The first key of two scenarios in force whose values differ, with both; one is a line of the other's form, as both were written by one program.
+fn different_key(here: &str, there: &str) -> Option<String> {
+    let mut table = String::new();
+    let mut lines = (here.lines(), there.lines());
+    loop {
+        let (ours, theirs) = match (lines.0.next(), lines.1.next()) {
+            (None, None) => return None,
+            (ours, theirs) => (ours.unwrap_or("nothing"), theirs.unwrap_or("nothing")),
+        };
+        if ours != theirs {
+            let within = if table.is_empty() { String::new() } else { format!(" in {table}") };
+            return Some(format!("it has `{ours}`{within}, not `{theirs}`"));
+        }
+        if ours.starts_with('[') {
+            table = ours.to_owned();
+        }
     }
 }
 
@@ -255,15 +285,67 @@ impl Manifest {
             return Err(Error::StoredScenario("it plans other iterations than the run".to_owned()));
         }
         planned.iterations = self.plan.iterations;
-        if planned != self.plan || self.scene != scenario.world.name() {
+        let whole = self.shard.is_none_or(|shard| shard.range(self.plan.chains).is_ok());
+        if planned != self.plan || self.scene != scenario.world.name() || !whole {
             return Err(Error::StoredScenario("it is not the one of the run's plan".to_owned()));
         }
         Ok(scenario)
     }
 
-    /// A number that the chains' files bear, so that files of different runs cannot be mixed up.
+    /// How this run differs from `other`, where it does: version, seed, the first key of the scenario, which piece.
+    #[must_use]
+    pub fn differs_from(&self, other: &Self) -> Option<String> {
+        let shown =
+            |manifest: &Self| manifest.shard.map_or("the whole run".to_owned(), |shard| format!("piece {shard}"));
+        if self.plaus != other.plaus {
+            return Some(format!("it was made by plaus {}, not {}", self.plaus, other.plaus));
+        }
+        if let Some(difference) = different_key(&self.scenario.effective, &other.scenario.effective) {
+            return Some(difference);
+        }
+        let parts = [
+            ("its number of iterations or of solutions", self.plan != other.plan),
+            ("the scenario's file", self.scenario != other.scenario),
+            ("how its keys were set on the command line", self.overrides != other.overrides),
+            ("how often it was made longer", self.extended_from != other.extended_from),
+            ("what is required beyond the scenario", self.requirement != other.requirement),
+            ("its moves, scalars or rules", Self { shard: other.shard, ..self.clone() } != *other),
+        ];
+        let part = parts.into_iter().find(|part| part.1).map(|(what, _)| format!("{what} differs"));
+        part.or_else(|| (self.shard != other.shard).then(|| format!("it is {}, not {}", shown(self), shown(other))))
+    }
+
+    /// Numbers of the chains that the folder holds; none where the manifest is of no run.
+    #[must_use]
+    pub fn chains(&self) -> Range<u32> {
+        self.shard.map_or(0..self.plan.chains, |shard| shard.range(self.plan.chains).unwrap_or_default())
+    }
+
+    /// That the scenario alone says whether an outcome satisfies.
+    ///
+    /// # Errors
+    /// [`Error::Request`] where the run has a requirement, which only the program that gave it can ask.
+    pub fn judges_alone(&self) -> Result<(), Error> {
+        self.requirement.as_ref().map_or(Ok(()), |name| {
+            Err(Error::Request(format!(
+                "this run has a requirement, {name}, that its folder does not hold: whether another simulation meets it cannot be told"
+            )))
+        })
+    }
+
+    /// A number that the chains' files bear, so that files of different runs cannot be mixed up. How many chains there are plays no part: what one
+    /// leaves does not depend on the others.
     pub(crate) fn run_id(&self) -> u64 {
-        let hash = blake3::hash(self.scenario.effective.as_bytes());
+        let (mut hasher, mut of_sampler) = (blake3::Hasher::new(), false);
+        for line in self.scenario.effective.split_inclusive('\n') {
+            if line.starts_with('[') {
+                of_sampler = line.trim_end() == "[sampler]";
+            }
+            if !(of_sampler && line.starts_with("chains = ")) {
+                hasher.update(line.as_bytes());
+            }
+        }
+        let hash = hasher.finalize();
         hash.as_bytes()[..8].iter().fold(0, |id, &byte| id << 8 | u64::from(byte))
     }
 

@@ -122,7 +122,7 @@ impl<'a, S: Scene> RunOf<'a, S> {
             return Err(RunFileError::new(run.folder.manifest(), RunFileProblem::Differs(message)).into());
         }
         let open = if run.salvage { ChainOf::salvage } else { ChainOf::open };
-        let chains = (0..run.manifest.plan.chains).map(|chain| open(run, chain)).collect::<Result<_, _>>()?;
+        let chains = run.manifest.chains().map(|chain| open(run, chain)).collect::<Result<_, _>>()?;
         Ok(Self { run, scene, chains })
     }
 
@@ -138,16 +138,20 @@ impl<'a, S: Scene> RunOf<'a, S> {
         &self.scene
     }
 
-    /// How many chains there are.
+    /// Numbers of the chains there are: from 0, unless the run is a piece of one.
     #[must_use]
-    pub fn chains(&self) -> u32 {
-        self.run.manifest.plan.chains
+    pub fn chains(&self) -> Range<u32> {
+        self.run.manifest.chains()
+    }
+
+    fn chain(&self, chain: u32) -> Option<&ChainOf<S>> {
+        self.chains.get(chain.checked_sub(self.chains().start)? as usize)
     }
 
     /// A chain as of its checkpoint; `None` where there is none yet, or the run is read for salvage.
     #[must_use]
     pub fn snapshot(&self, chain: u32) -> Option<&Snapshot<S::Draw, S::Outcome>> {
-        self.chains.get(chain as usize)?.snapshot.as_ref()
+        self.chain(chain)?.snapshot.as_ref()
     }
 
     /// Iterations that every chain has done.
@@ -185,9 +189,10 @@ impl<'a, S: Scene> RunOf<'a, S> {
     /// # Errors
     /// [`RunFileError`] where the records cannot be opened.
     pub fn blocks(&self, chain: u32) -> Result<Blocks<S::Draw, S::Outcome>, RunFileError> {
-        let extent = self.chains.get(chain as usize).map(|chain| chain.extent);
+        let extent = self.chain(chain).map(|chain| chain.extent);
         let missing = || {
-            let message = format!("there is no chain {chain}: the chains are 0 to {}", self.chains().saturating_sub(1));
+            let Range { start, end } = self.chains();
+            let message = format!("there is no chain {chain}: the chains are {start} to {}", end.saturating_sub(1));
             RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message))
         };
         Blocks::open(&self.run.folder.records(chain), extent.ok_or_else(missing)?)

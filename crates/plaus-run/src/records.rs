@@ -129,6 +129,50 @@ impl<D: DeserializeOwned, O: DeserializeOwned> Iterator for Blocks<D, O> {
     }
 }
 
+/// What a stored block begins with: run, chain, first iteration and one past the last.
+type Head = (u64, u32, u64, u64);
+
+/// Hands on the frames of a chain's records, whose checksums, places and number of iterations were found right; what they hold is not looked at.
+///
+/// # Errors
+/// [`RunFileError`] where they are damaged or belong elsewhere, or as `take`.
+pub(crate) fn copy(
+    path: &Path,
+    extent: Extent,
+    mut take: impl FnMut(&[u8]) -> Result<(), RunFileError>,
+) -> Result<(), RunFileError> {
+    let Extent { run, chain, thin, bytes, end_iteration } = extent;
+    if bytes == 0 {
+        return Ok(());
+    }
+    let file = File::open(path).map_err(RunFileError::io(path, "read"))?;
+    let present = file.metadata().map_err(RunFileError::io(path, "read"))?.len();
+    let mut frames = Frames::<(), _>::new(KIND, BufReader::with_capacity(1 << 20, file), bytes.min(present));
+    let mut next_iteration = 0;
+    let damage = |next_iteration: u64, source| {
+        RunFileError::new(path, RunFileProblem::Records { source, intact: next_iteration.div_ceil(thin) })
+    };
+    loop {
+        let offset = frames.offset();
+        let Some(frame) = frames.next_raw() else { break };
+        let frame = frame.map_err(|source| damage(next_iteration, source))?;
+        let head = codec::head::<Head>(KIND, frame);
+        let head = head.map_err(|problem| damage(next_iteration, FrameError { offset, problem }))?;
+        if (head.0, head.1, head.2) != (run, chain, next_iteration) || head.3 <= next_iteration {
+            let message = format!("the frame at byte {offset} does not follow on");
+            return Err(RunFileError::new(path, RunFileProblem::Mixed(message)));
+        }
+        next_iteration = head.3;
+        take(frame)?;
+    }
+    let offset = frames.offset();
+    if offset < bytes || next_iteration != end_iteration {
+        let problem = FrameProblem::Truncated { needed: bytes, present: offset };
+        return Err(damage(next_iteration, FrameError { offset, problem }));
+    }
+    Ok(())
+}
+
 /// Rebuilds which classes of solutions a chain has recorded first where, after its warm-up.
 pub(crate) fn distinct<D: DeserializeOwned, O: DeserializeOwned>(
     path: &Path,

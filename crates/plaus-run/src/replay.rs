@@ -58,6 +58,7 @@ pub fn replay<S: Scene>(run: &RunOf<'_, S>, sample: SampleId) -> Result<Replay, 
 /// As [`replay`], and where the scene has no accuracy to choose.
 pub fn replay_at<S: Scene>(run: &RunOf<'_, S>, sample: SampleId, accuracy: AccuracyPreset) -> Result<Replay, Error> {
     let entry = run.sample(sample.chain, sample.draw)?;
+    run.run().manifest().judges_alone()?;
     same(run, sample, &entry.state)?;
     let scene = at_accuracy(run.scene(), run.run().scenario().world.name(), accuracy)?;
     let state = State::evaluate(&scene, entry.state.draw.clone(), &mut S::Scratch::default())?;
@@ -126,7 +127,7 @@ fn rebuild<S: Scene>(
 
 /// The state evaluated again, which must have the stored bits.
 fn same<S: Scene>(run: &RunOf<'_, S>, sample: SampleId, stored: &StateOf<S>) -> Result<StateOf<S>, Error> {
-    evaluate_again(run.scene(), stored).map_err(|problem| match problem {
+    evaluate_again(run.scene(), stored, run.run().manifest().requirement.is_some()).map_err(|problem| match problem {
         Ok(problem) => RunFileError::new(run.run().folder().records(sample.chain), problem).into(),
         Err(error) => error,
     })
@@ -156,13 +157,19 @@ fn shown<S: Scene>(
     })
 }
 
-/// Evaluates the draw of a stored state, which must give that state's bits: otherwise other code made it.
+/// Evaluates the draw of a stored state, which must give that state's bits: otherwise other code made it. Where the run
+/// has a requirement, the log constraint
+/// holds a factor that is not known here, and is taken as it was stored.
 pub(crate) fn evaluate_again<S: Scene>(
     scene: &S,
     stored: &StateOf<S>,
+    required: bool,
 ) -> Result<StateOf<S>, Result<RunFileProblem, Error>> {
-    let again =
+    let mut again =
         State::evaluate(scene, stored.draw.clone(), &mut S::Scratch::default()).map_err(|error| Err(error.into()))?;
+    if required {
+        again.log_constraint = stored.log_constraint;
+    }
     let bits = |state: &StateOf<S>| (state.log_prior.value().to_bits(), state.log_constraint.value().to_bits());
     if bits(&again) == bits(stored) && again.outcome == stored.outcome {
         return Ok(again);

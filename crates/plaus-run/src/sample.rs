@@ -2,21 +2,29 @@
 
 use crate::checkpoint::{self, Checkpoint};
 use crate::disk::{Disk, RealDisk};
+use crate::drive::{Alone, Drive, Journey};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::gauge::{Gauge, Mixing};
 use crate::manifest::{Manifest, Recipe, VERSION, stored_scalars};
 use crate::records::{self, Extent};
 use crate::replay::evaluate_again;
-use crate::sink::{FolderSink, Place};
+use crate::shard::Shard;
+use crate::siblings::Siblings;
+use crate::sink::{FolderSink, Hunt, Place};
+use crate::trail;
 use plaus_mcmc::{Control, Distinct, Ending, Progress, Pulse, RunError, Start, Target};
 use plaus_scenes::{Scenario, Scene, Visitor};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::path::Path;
 use std::sync::Arc;
 
+/// What is said of a requirement that is not given.
+const BY_ITS_MAKER: &str = "go on with it from the program that gave it";
+
 /// Where the chains of a scene go on from.
-type Starts<S> = Vec<Start<<S as Target>::Draw, <S as Target>::Outcome>>;
+pub(crate) type Starts<S> = Vec<Start<<S as Target>::Draw, <S as Target>::Outcome>>;
 
 /// Looks on while a run is sampled, and may stop it.
 pub trait Watch {
@@ -52,6 +60,11 @@ pub trait Watch {
 
     /// Called with what was found; `None` where there is too little to tell.
     fn mixing(&mut self, _mixing: Option<Mixing>) {}
+
+    /// Called again and again while another process writes the run that is to be gone on with; says whether to wait.
+    fn locked(&mut self, _folder: &Folder) -> bool {
+        false
+    }
 }
 
 /// Watches nothing: runs to the end, with a checkpoint after every round.
@@ -91,19 +104,102 @@ impl<'a> Sampling<'a> {
 /// # Errors
 /// [`Error`] where the folder exists, the scenario makes no scene, a chain fails or the disk refuses.
 pub fn sample(folder: &Folder, recipe: &Recipe, sampling: Sampling<'_>) -> Result<Ending, Error> {
-    struct Begin<'a, 'b>(&'a Folder, &'a Recipe, Sampling<'b>);
-    impl Visitor for Begin<'_, '_> {
+    sample_shard(folder, recipe, None, sampling)
+}
+
+/// As [`sample()`], only the chains of one piece; all where there is none.
+///
+/// # Errors
+/// As [`sample()`], and where there are fewer chains than pieces.
+pub fn sample_shard(
+    folder: &Folder,
+    recipe: &Recipe,
+    shard: Option<Shard>,
+    sampling: Sampling<'_>,
+) -> Result<Ending, Error> {
+    begin(folder, recipe, shard, sampling, &Alone)
+}
+
+/// As [`sample()`], with the chains driven by `drive`: under a requirement, say.
+///
+/// # Errors
+/// As [`sample()`], and as `drive` says.
+pub fn sample_by<D: Drive>(
+    folder: &Folder,
+    recipe: &Recipe,
+    sampling: Sampling<'_>,
+    drive: &D,
+) -> Result<Ending, Error> {
+    begin(folder, recipe, None, sampling, drive)
+}
+
+fn begin<D: Drive>(
+    folder: &Folder,
+    recipe: &Recipe,
+    shard: Option<Shard>,
+    sampling: Sampling<'_>,
+    drive: &D,
+) -> Result<Ending, Error> {
+    struct Begin<'a, 'b, D>(&'a Folder, &'a Recipe, Option<Shard>, Sampling<'b>, &'a D);
+    impl<D: Drive> Visitor for Begin<'_, '_, D> {
         type Output = Result<Ending, Error>;
         fn visit<S: Scene>(self, scene: S) -> Self::Output {
-            let Self(folder, recipe, sampling) = self;
-            let manifest = recipe.manifest(&scene)?;
+            let Self(folder, recipe, shard, sampling, drive) = self;
+            let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
             let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
             folder.create(sampling.disk, &json)?;
             let _claim = folder.claim()?;
-            go_on(folder, &manifest, &scene, Vec::new(), sampling)
+            go_on(folder, &manifest, &Arc::new(scene), Vec::new(), sampling, drive)
         }
     }
-    recipe.scenario.world.visit(Begin(folder, recipe, sampling))?
+    recipe.scenario.world.visit(Begin(folder, recipe, shard, sampling, drive))?
+}
+
+/// Samples a new run, or a piece of one, into `folder`; where that holds this very run already, goes on with it. So a job that is started again and
+/// again comes to its end.
+///
+/// # Errors
+/// As [`sample_shard`] and [`resume`], and where the folder holds another run.
+pub fn sample_or_go_on(
+    folder: &Folder,
+    recipe: &Recipe,
+    shard: Option<Shard>,
+    mut sampling: Sampling<'_>,
+) -> Result<Ending, Error> {
+    struct Expected<'a>(&'a Recipe, Option<Shard>);
+    impl Visitor for Expected<'_> {
+        type Output = Result<Manifest, Error>;
+        fn visit<S: Scene>(self, scene: S) -> Self::Output {
+            piece(self.0, &scene, self.1)
+        }
+    }
+    if !folder.manifest().exists() {
+        let Sampling { threads, disk, ref mut watch } = sampling;
+        let begun = sample_shard(folder, recipe, shard, Sampling { threads, disk, watch: &mut **watch });
+        // Of two processes that begin at once, one makes the run; the other goes on with it.
+        let too_late = |problem: &RunFileProblem| {
+            use RunFileProblem::{Exists, Io, Locked};
+            matches!(problem, Exists | Locked | Io { action: "make the run", .. })
+        };
+        match begun {
+            Err(Error::File(error)) if too_late(&error.problem) && folder.manifest().exists() => {}
+            begun => return begun,
+        }
+    }
+    let found = Manifest::read(folder)?;
+    let expected = recipe.scenario.world.visit(Expected(recipe, shard))??;
+    match found.differs_from(&expected) {
+        Some(difference) => Err(RunFileError::new(folder.path(), RunFileProblem::OtherRun(difference)).into()),
+        None => resume(folder, More::default(), sampling),
+    }
+}
+
+fn piece<S: Scene>(recipe: &Recipe, scene: &S, shard: Option<Shard>) -> Result<Manifest, Error> {
+    let manifest = Manifest { shard, ..recipe.manifest(scene)? };
+    if let Some(shard) = shard {
+        shard.range(manifest.plan.chains).map_err(|error| Error::Request(error.to_string()))?;
+    }
+    Ok(manifest)
 }
 
 /// What a run is asked for beyond its plan.
@@ -120,28 +216,47 @@ pub struct More {
 /// # Errors
 /// [`Error`] where the run is damaged, made by another version or being written, `more` is less than planned, or as [`sample`].
 pub fn resume(folder: &Folder, more: More, sampling: Sampling<'_>) -> Result<Ending, Error> {
-    struct GoOn<'a, 'b>(&'a Folder, Manifest, Sampling<'b>);
-    impl Visitor for GoOn<'_, '_> {
+    resume_by(folder, more, sampling, &Alone)
+}
+
+/// As [`resume`], with the chains driven as they were by [`sample_by`].
+///
+/// # Errors
+/// As [`resume`], and where `drive` is another one than the run's.
+pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, drive: &D) -> Result<Ending, Error> {
+    struct GoOn<'a, 'b, D>(&'a Folder, Manifest, Sampling<'b>, &'a D);
+    impl<D: Drive> Visitor for GoOn<'_, '_, D> {
         type Output = Result<Ending, Error>;
         fn visit<S: Scene>(self, scene: S) -> Self::Output {
-            let Self(folder, manifest, sampling) = self;
+            let Self(folder, manifest, sampling, drive) = self;
             let starts = restore(folder, &manifest, &scene, &sampling)?;
-            go_on(folder, &manifest, &scene, starts, sampling)
+            go_on(folder, &manifest, &Arc::new(scene), starts, sampling, drive)
         }
     }
     Manifest::read(folder)?; // what is no run gets no lock file
-    let _claim = folder.claim()?;
+    let _claim = loop {
+        match folder.claim() {
+            Err(error) if matches!(error.problem, RunFileProblem::Locked) && sampling.watch.locked(folder) => {}
+            claim => break claim?,
+        }
+    };
     let mut manifest = Manifest::read(folder)?; // nobody else changes it from here on
     if manifest.plaus != VERSION {
         let problem = RunFileProblem::OtherVersion { made: manifest.plaus, present: VERSION };
         return Err(RunFileError::new(folder.path(), problem).into());
+    }
+    if manifest.requirement != drive.requirement() {
+        return Err(Error::Request(match &manifest.requirement {
+            Some(name) => format!("this run has a requirement, {name}, that its folder does not hold: {BY_ITS_MAKER}"),
+            None => "this run has no requirement: it goes on without one".to_owned(),
+        }));
     }
     Manifest::clear(folder, sampling.disk);
     let scenario = manifest.scenario()?;
     if extend(&mut manifest, &scenario, more)? {
         manifest.replace(folder, sampling.disk)?;
     }
-    scenario.world.visit(GoOn(folder, manifest, sampling))?
+    scenario.world.visit(GoOn(folder, manifest, sampling, drive))?
 }
 
 /// Writes `more` into the plan; says whether that changes it.
@@ -164,6 +279,11 @@ fn extend(manifest: &mut Manifest, scenario: &Scenario, more: More) -> Result<bo
         manifest.plan.iterations = wanted;
     }
     if let Some(wanted) = more.solutions {
+        if manifest.shard.is_some() && before.solutions.is_none() {
+            let message = "a piece that was begun without `--solutions` cannot look for them: pieces have to note from their \
+                first iteration on where they could be cut; sample the pieces again";
+            return Err(Error::Request(message.to_owned()));
+        }
         if let Some(planned) = before.solutions.filter(|&planned| wanted < planned) {
             let message = format!("{planned} distinct solutions are looked for already: ask for {planned} or more");
             return Err(Error::Request(message));
@@ -185,11 +305,13 @@ fn restore<S: Scene>(
         let message = "the scene's scalars are not those of the manifest".to_owned();
         return Err(RunFileError::new(folder.manifest(), RunFileProblem::Differs(message)).into());
     }
-    let (run, chains) = (manifest.run_id(), manifest.plan.chains);
-    let checkpoints = checkpoint::settle::<S::Draw, S::Outcome>(folder, disk, run, chains)?;
+    let (run, chains) = (manifest.run_id(), manifest.chains());
+    let checkpoints = checkpoint::settle::<S::Draw, S::Outcome>(folder, disk, run, chains.clone())?;
     if checkpoints.is_empty() {
-        (0..chains).try_for_each(|chain| cut(folder, disk, chain, 0))?;
+        chains.into_iter().try_for_each(|chain| cut(&folder.records(chain), disk, 0))?;
     }
+    let done = checkpoints.first().map_or(0, |checkpoint| checkpoint.snapshot.end_iteration);
+    cut(&folder.trail(), disk, trail::length_until(&folder.trail(), run, done)?)?;
     let restore = |checkpoint| restore_chain(folder, manifest, scene, disk, checkpoint);
     sampling.pool()?.install(|| checkpoints.into_par_iter().map(restore).collect())
 }
@@ -204,7 +326,7 @@ fn restore_chain<S: Scene>(
     let Checkpoint { chain, records, snapshot, .. } = checkpoint;
     let states = snapshot.replicas.iter().flat_map(|replicas| &replicas.states).chain([&snapshot.state]);
     for state in states {
-        evaluate_again(scene, state).map_err(|problem| match problem {
+        evaluate_again(scene, state, manifest.requirement.is_some()).map_err(|problem| match problem {
             Ok(problem) => RunFileError::new(folder.checkpoint(chain), problem).into(),
             Err(error) => error,
         })?;
@@ -228,42 +350,51 @@ fn restore_chain<S: Scene>(
         let message = format!("the checkpoint is not one of {rungs} rungs");
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
     }
-    cut(folder, disk, chain, records)?;
+    cut(&path, disk, records)?;
     Ok(Start { snapshot, distinct })
 }
 
-fn cut(folder: &Folder, disk: &dyn Disk, chain: u32, bytes: u64) -> Result<(), RunFileError> {
-    let path = folder.records(chain);
-    if records::length(&path)? > bytes {
-        disk.truncate(&path, bytes).map_err(RunFileError::io(&path, "cut"))?;
+fn cut(path: &Path, disk: &dyn Disk, bytes: u64) -> Result<(), RunFileError> {
+    if records::length(path)? > bytes {
+        disk.truncate(path, bytes).map_err(RunFileError::io(path, "cut"))?;
     }
     Ok(())
 }
 
-fn go_on<S: Scene>(
+fn go_on<S: Scene, D: Drive>(
     folder: &Folder,
     manifest: &Manifest,
-    scene: &S,
+    scene: &Arc<S>,
     starts: Starts<S>,
     sampling: Sampling<'_>,
+    drive: &D,
 ) -> Result<Ending, Error> {
     let moves = scene.moves(&manifest.scenario()?.sampler.rules)?;
     let done = starts.first().map_or(0, |start| start.snapshot.end_iteration);
-    let lengths = (0..manifest.plan.chains)
-        .map(|chain| records::length(&folder.records(chain)))
-        .collect::<Result<Vec<_>, _>>()?;
+    let lengths =
+        manifest.chains().map(|chain| records::length(&folder.records(chain))).collect::<Result<Vec<_>, _>>()?;
     let pool = sampling.pool()?;
     let Sampling { threads, disk, watch } = sampling;
     watch.begin(manifest, done);
     let (plan, pulse, run) = (manifest.plan, watch.pulse(), manifest.run_id());
-    let gauge = if watch.looks_at_mixing() { Some(gauge(folder, scene, manifest, &lengths, done)?) } else { None };
-    let mut sink = FolderSink::new(Place { folder, disk, run, pool }, watch, gauge, lengths, done);
-    let ended = plaus_mcmc::run_watched(scene, &moves, plan, starts, threads, &mut sink, &pulse);
+    let looks = watch.looks_at_mixing();
+    let gauge = if looks { Some(gauge(folder, &**scene, manifest, &lengths, done)?) } else { None };
+    let chains = manifest.chains();
+    let place = Place { folder, disk, run, pool, first: chains.start };
+    let hunt = plan.solutions.filter(|_| manifest.shard.is_some());
+    let mut hunt = hunt.map(|wanted| Hunt { siblings: Siblings::new(folder, run), wanted, over: false });
+    let found: Vec<_> = starts.iter().flat_map(|start| start.distinct.firsts().iter().copied()).collect();
+    if hunt.as_mut().is_some_and(|hunt| hunt.is_over(&found, done)) {
+        return Ok(Ending::EnoughSolutions);
+    }
+    let mut sink = FolderSink::new(place, watch, gauge, lengths, done, hunt);
+    let journey = Journey { plan, chains, starts, threads, pulse: &pulse };
+    let ended = drive.drive(scene, &moves, journey, &mut sink);
     let finished = if matches!(ended, Err(RunError::Sink(_))) { Ok(()) } else { sink.checkpoint() };
     let safe = sink.safe();
     let ending = ended.map_err(|error| Error::of_run(error, safe))?;
     finished.map_err(|error| Error::of_run(RunError::Sink(error), safe))?;
-    Ok(ending)
+    Ok(if sink.is_past_the_end() { Ending::EnoughSolutions } else { ending })
 }
 
 /// A gauge that has seen what is recorded already.
@@ -274,8 +405,8 @@ fn gauge<'a, S: Scene>(
     lengths: &[u64],
     end_iteration: u64,
 ) -> Result<Gauge<'a, S>, RunFileError> {
-    let mut gauge = Gauge::new(scene, &manifest.plan);
-    for (chain, &bytes) in (0..).zip(lengths).filter(|_| end_iteration > manifest.plan.warmup) {
+    let mut gauge = Gauge::new(scene, &manifest.plan, manifest.chains());
+    for (chain, &bytes) in manifest.chains().zip(lengths).filter(|_| end_iteration > manifest.plan.warmup) {
         let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes, end_iteration };
         gauge.read(&folder.records(chain), extent)?;
     }

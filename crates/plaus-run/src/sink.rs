@@ -7,7 +7,9 @@ use crate::folder::Folder;
 use crate::gauge::Gauge;
 use crate::records;
 use crate::sample::Watch;
-use plaus_mcmc::{Block, Control, Progress, Sink, Snapshot, Target};
+use crate::siblings::Siblings;
+use crate::trail;
+use plaus_mcmc::{Block, Control, FirstOfClass, Progress, Sink, Snapshot, Target};
 use plaus_scenes::Scene;
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -18,8 +20,18 @@ pub(crate) struct Place<'a> {
     pub(crate) disk: &'a dyn Disk,
     /// The number that the run's files bear.
     pub(crate) run: u64,
+    /// Number of the first chain.
+    pub(crate) first: u32,
     /// Threads that encode.
     pub(crate) pool: ThreadPool,
+}
+
+impl Hunt {
+    /// Whether a piece that has done the iterations `0 .. done`, and found `ours` first, is past the end of the run.
+    pub(crate) fn is_over(&mut self, ours: &[FirstOfClass], done: u64) -> bool {
+        self.over = self.siblings.end(ours, self.wanted).is_some_and(|end| end < done);
+        self.over
+    }
 }
 
 type BlockOf<S> = Block<<S as Target>::Draw, <S as Target>::Outcome>;
@@ -39,6 +51,17 @@ pub(crate) struct FolderSink<'a, S: Scene> {
     snapshots: Vec<SnapshotOf<S>>,
     /// Iterations the last checkpoint covers.
     safe: u64,
+    /// Iterations that were done before this round.
+    before: u64,
+    hunt: Option<Hunt>,
+}
+
+/// A hunt for distinct solutions that other pieces take part in.
+pub(crate) struct Hunt {
+    pub(crate) siblings: Siblings,
+    pub(crate) wanted: u64,
+    /// Whether the piece is past the end of the run.
+    pub(crate) over: bool,
 }
 
 impl<'a, S: Scene> FolderSink<'a, S> {
@@ -49,8 +72,15 @@ impl<'a, S: Scene> FolderSink<'a, S> {
         gauge: Option<Gauge<'a, S>>,
         lengths: Vec<u64>,
         safe: u64,
+        hunt: Option<Hunt>,
     ) -> Self {
-        Self { place, watch, gauge, lengths, blocks: Vec::new(), snapshots: Vec::new(), safe }
+        let (blocks, snapshots) = (Vec::new(), Vec::new());
+        Self { place, watch, gauge, lengths, blocks, snapshots, safe, before: safe, hunt }
+    }
+
+    /// Whether other pieces have found so much that this one need not go on.
+    pub(crate) fn is_past_the_end(&self) -> bool {
+        self.hunt.as_ref().is_some_and(|hunt| hunt.over)
     }
 
     /// Iterations that a resumed run would keep.
@@ -64,25 +94,37 @@ impl<'a, S: Scene> FolderSink<'a, S> {
         else {
             return Ok(());
         };
-        let Place { folder, disk, run, .. } = self.place;
-        let chains = || (0..).zip(&self.lengths);
+        let Place { folder, disk, first, .. } = self.place;
+        let chains = || (first..).zip(&self.lengths);
         for (chain, _) in chains() {
             let path = folder.records(chain);
             disk.sync(&path).map_err(RunFileError::io(&path, "write"))?;
         }
-        let snapshots = self.snapshots.iter().cloned();
-        let checkpoints: Vec<_> = chains()
-            .zip(snapshots)
-            .map(|((chain, &records), snapshot)| Checkpoint { run, chain, records, snapshot })
-            .collect();
-        checkpoint::replace(folder, disk, &checkpoints)?;
+        if self.hunt.is_some() {
+            disk.sync(&folder.trail()).map_err(RunFileError::io(&folder.trail(), "write"))?;
+        }
+        checkpoint::replace(folder, disk, &self.checkpoints())?;
         self.safe = end;
         self.watch.checkpoint_done();
         Ok(())
     }
 
+    /// All chains as of the last round.
+    fn checkpoints(&self) -> Vec<Checkpoint<S::Draw, S::Outcome>> {
+        let run = self.place.run;
+        let chains = (self.place.first..).zip(&self.lengths).zip(self.snapshots.iter().cloned());
+        chains.map(|((chain, &records), snapshot)| Checkpoint { run, chain, records, snapshot }).collect()
+    }
+
+    fn write_trail(&mut self, progress: &Progress<'_>) -> Result<(), RunFileError> {
+        let firsts = progress.distinct.firsts().iter().filter(|first| first.iteration >= self.before);
+        let firsts = firsts.copied().collect();
+        self.before = progress.end_iteration;
+        trail::append(self.place.folder, self.place.disk, self.place.run, firsts, self.checkpoints())
+    }
+
     fn write_blocks(&mut self) -> Result<(), RunFileError> {
-        let Place { folder, disk, run, ref pool } = self.place;
+        let Place { folder, disk, run, first, ref pool } = self.place;
         let encode = |(chain, block): (u32, BlockOf<S>)| {
             let bytes = records::encode(run, chain, &block);
             bytes.map(|bytes| (chain, bytes)).map_err(|error| RunFileError::new(folder.records(chain), error.into()))
@@ -92,7 +134,7 @@ impl<'a, S: Scene> FolderSink<'a, S> {
         for (chain, frame) in frames {
             let path = folder.records(chain);
             disk.append(&path, &frame).map_err(RunFileError::io(&path, "write"))?;
-            self.lengths[chain as usize] += frame.len() as u64;
+            self.lengths[(chain - first) as usize] += frame.len() as u64;
         }
         Ok(())
     }
@@ -102,7 +144,7 @@ impl<S: Scene> Sink<S::Draw, S::Outcome> for FolderSink<'_, S> {
     type Error = RunFileError;
 
     fn block(&mut self, chain: u32, block: BlockOf<S>, snapshot: &SnapshotOf<S>) -> Result<(), RunFileError> {
-        match self.snapshots.get_mut(chain as usize) {
+        match self.snapshots.get_mut((chain - self.place.first) as usize) {
             Some(last) => last.clone_from(snapshot),
             None => self.snapshots.push(snapshot.clone()),
         }
@@ -115,8 +157,14 @@ impl<S: Scene> Sink<S::Draw, S::Outcome> for FolderSink<'_, S> {
 
     fn round(&mut self, progress: &Progress<'_>) -> Result<Control, RunFileError> {
         self.write_blocks()?;
+        if self.hunt.is_some() {
+            self.write_trail(progress)?;
+        }
         if self.watch.checkpoint_due() {
             self.checkpoint()?;
+            if let Some(hunt) = &mut self.hunt {
+                hunt.is_over(progress.distinct.firsts(), progress.end_iteration);
+            }
         }
         if let Some(gauge) = &mut self.gauge {
             gauge.thin_out();
@@ -125,6 +173,7 @@ impl<S: Scene> Sink<S::Draw, S::Outcome> for FolderSink<'_, S> {
                 self.watch.mixing(mixing);
             }
         }
-        Ok(self.watch.round(progress))
+        let control = self.watch.round(progress);
+        Ok(if self.is_past_the_end() { Control::Stop } else { control })
     }
 }

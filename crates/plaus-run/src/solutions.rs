@@ -26,7 +26,7 @@ pub struct Solution {
 /// [`RunFileError`] where the records are damaged.
 pub fn distinct<S: Scene>(run: &RunOf<'_, S>) -> Result<Vec<Solution>, RunFileError> {
     let parts: Vec<BTreeMap<SolutionClass, Solution>> =
-        (0..run.chains()).into_par_iter().map(|chain| of_chain(run, chain)).collect::<Result<_, _>>()?;
+        run.chains().into_par_iter().map(|chain| of_chain(run, chain)).collect::<Result<_, _>>()?;
     let mut all: Vec<(SolutionClass, Solution)> = parts.into_iter().flatten().collect();
     all.sort_by_key(|(class, solution)| (*class, solution.iteration, solution.sample));
     all.dedup_by_key(|(class, _)| *class);

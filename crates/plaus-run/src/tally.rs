@@ -34,6 +34,8 @@ impl std::str::FromStr for SampleId {
 /// What one chain's records add up to.
 #[derive(Debug, Clone, Serialize)]
 pub struct ChainTally {
+    /// Its number.
+    pub chain: u32,
     /// Satisfying iterations, the first of them too.
     pub hits: Hits,
     /// How often each move ended how.
@@ -136,7 +138,7 @@ impl Tally {
     /// [`RunFileError`] where they are damaged.
     pub fn of<S: Scene>(run: &RunOf<'_, S>) -> Result<Self, RunFileError> {
         let parts: Vec<(ChainTally, Distinct)> =
-            (0..run.chains()).into_par_iter().map(|chain| tally(run, chain)).collect::<Result<_, _>>()?;
+            run.chains().into_par_iter().map(|chain| tally(run, chain)).collect::<Result<_, _>>()?;
         let mut firsts: Vec<FirstOfClass> =
             parts.iter().flat_map(|(_, distinct)| distinct.firsts().iter().copied()).collect();
         firsts.sort_unstable();
@@ -171,9 +173,25 @@ impl Tally {
     }
 }
 
+/// Which classes of solutions a chain has recorded first where, after its warm-up.
+///
+/// # Errors
+/// [`RunFileError`] where its records are damaged.
+pub(crate) fn firsts<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<Distinct, RunFileError> {
+    let mut distinct = Distinct::default();
+    run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
+        if let Some(class) = stretch.entry.class {
+            distinct.note(FirstOfClass { iteration: run.iteration_of(Phase::Sampling, stretch.draw), chain, class });
+        }
+        Ok(())
+    })?;
+    Ok(distinct)
+}
+
 fn tally<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<(ChainTally, Distinct), RunFileError> {
     let snapshot = run.snapshot(chain);
     let mut tally = ChainTally {
+        chain,
         hits: snapshot.map(|snapshot| snapshot.hits).unwrap_or_default(),
         counts: snapshot.map(|snapshot| snapshot.counts.clone()).unwrap_or_default(),
         satisfying_draws: 0,

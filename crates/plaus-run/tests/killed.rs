@@ -6,7 +6,8 @@ mod common;
 
 use common::{FailingDisk, adapting, bytes_of, recipe, tempered};
 use plaus_run::disk::{Disk, RealDisk};
-use plaus_run::{Error, Folder, More, Recipe, Run, RunOf, RunVisitor, Sampling, Unwatched, Watch, resume, sample};
+use plaus_run::{Error, Folder, More, Recipe, Run, RunOf, RunVisitor, Sampling, Shard, Unwatched};
+use plaus_run::{Watch, resume, sample, sample_shard};
 use plaus_scenes::Scene;
 
 /// Asks for checkpoints only now and then, as the clock would.
@@ -23,7 +24,17 @@ impl Watch for Seldom {
 }
 
 fn sample_on(disk: &dyn Disk, folder: &Folder, recipe: &Recipe, watch: &mut dyn Watch) -> Result<(), Error> {
-    sample(folder, recipe, Sampling { threads: 1, disk, watch }).map(|_| ())
+    piece_on(disk, folder, recipe, None, watch)
+}
+
+fn piece_on(
+    disk: &dyn Disk,
+    folder: &Folder,
+    recipe: &Recipe,
+    shard: Option<Shard>,
+    watch: &mut dyn Watch,
+) -> Result<(), Error> {
+    sample_shard(folder, recipe, shard, Sampling { threads: 1, disk, watch }).map(|_| ())
 }
 
 /// Numbers of bytes, and of operations, after which a process dies, spread over a run: so many of each.
@@ -37,13 +48,17 @@ fn shortened(mut recipe: Recipe) -> Recipe {
 }
 
 fn killed_everywhere(recipe: Recipe, crash: bool) {
+    piece_killed_everywhere(recipe, None, crash);
+}
+
+fn piece_killed_everywhere(recipe: Recipe, shard: Option<Shard>, crash: bool) {
     let recipe = &shortened(recipe);
     // Makes nothing durable, which would take most of the time and shows only where the power fails.
     let peaceful = FailingDisk::new(u64::MAX, u64::MAX, crash);
     let place = tempfile::tempdir().unwrap();
     let whole = Folder::new(place.path().join("whole"));
     let disk = FailingDisk::new(u64::MAX, u64::MAX, crash);
-    sample_on(&disk, &whole, recipe, &mut Unwatched).unwrap();
+    piece_on(&disk, &whole, recipe, shard, &mut Unwatched).unwrap();
     let expected = bytes_of(&whole);
     let (bytes, operations) = disk.used();
     assert!(bytes > 2_000 && operations > 300, "{bytes} bytes in {operations} operations prove little");
@@ -52,10 +67,11 @@ fn killed_everywhere(recipe: Recipe, crash: bool) {
     let limits = (0..bytes).step_by(step(bytes)).map(|bytes| (bytes, u64::MAX));
     let stops = (0..operations).step_by(step(operations)).map(|operations| (u64::MAX, operations));
     for (index, (bytes, operations)) in limits.chain(stops).enumerate() {
-        let folder = Folder::new(place.path().join(format!("run{index}")));
+        // In a folder of its own: pieces look at those beside them.
+        let folder = Folder::new(place.path().join(format!("run{index}")).join("piece"));
         let failing = FailingDisk::new(bytes, operations, crash);
         let first: &mut dyn Watch = if index % 2 == 0 { &mut Unwatched } else { &mut Seldom(0) };
-        if sample_on(&failing, &folder, recipe, first).is_ok() {
+        if piece_on(&failing, &folder, recipe, shard, first).is_ok() {
             continue;
         }
         // Die again while going on, then go on in peace.
@@ -64,7 +80,7 @@ fn killed_everywhere(recipe: Recipe, crash: bool) {
             let _ = resume(&folder, More::default(), Sampling { threads: 2, disk: &again, watch: &mut Seldom(0) });
             resume(&folder, More::default(), Sampling { threads: 1, disk: &peaceful, watch: &mut Unwatched }).unwrap();
         } else {
-            sample_on(&peaceful, &folder, recipe, &mut Unwatched).unwrap();
+            piece_on(&peaceful, &folder, recipe, shard, &mut Unwatched).unwrap();
         }
         assert_eq!(bytes_of(&folder), expected, "after {bytes} bytes or {operations} operations");
         std::fs::remove_dir_all(folder.path()).unwrap();
@@ -121,6 +137,14 @@ fn a_longer_run_keeps_its_scales() {
 #[test]
 fn a_process_killed_anywhere_finds_the_same_solutions() {
     killed_everywhere(recipe(Some(30)), true);
+}
+
+#[test]
+fn a_piece_killed_anywhere_loses_nothing_final() {
+    let second = Shard::new(2, 2).ok();
+    piece_killed_everywhere(recipe(None), second, true);
+    piece_killed_everywhere(tempered(Some(30)), second, true);
+    piece_killed_everywhere(recipe(Some(30)), second, false);
 }
 
 #[test]

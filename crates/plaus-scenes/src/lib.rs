@@ -35,6 +35,7 @@ pub mod scene;
 pub mod spelling;
 mod walk;
 mod way;
+pub mod world;
 
 pub use accuracy::AccuracyPreset;
 pub use animation::Animation;
@@ -42,3 +43,4 @@ pub use registry::{Visitor, World};
 pub use rules::Rules;
 pub use scenario::Scenario;
 pub use scene::{ConfigError, Role, Scalar, Scene};
+pub use world::{Physical, PlainWorld};

@@ -3,6 +3,7 @@
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::rules::Rules;
+use crate::world::PlainWorld;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateOf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -11,7 +12,7 @@ use serde::de::DeserializeOwned;
 ///
 /// Adding a scene takes its own folder, one line in [`crate::registry`] and a scenario file.
 pub trait Scene:
-    Goal<Draw: Serialize + DeserializeOwned, Outcome: Serialize + DeserializeOwned + PartialEq> + Sized + Send
+    Goal<Draw: Serialize + DeserializeOwned, Outcome: Serialize + DeserializeOwned + PartialEq> + Sized + Send + 'static
 {
     /// Whether the scales of its moves are adapted in the warm-up where a scenario does not say: where that was measured to be better.
     const ADAPTS: bool = false;
@@ -40,6 +41,16 @@ pub trait Scene:
     /// # Errors
     /// [`ConfigError`] where the configuration makes no world at that accuracy.
     fn at_accuracy(&self, _accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
+        Ok(None)
+    }
+
+    /// The world for the simulator alone, with all that is random left out: a level table of mean friction and
+    /// restitution, say. `None` where motion has a
+    /// closed form, so that there is no simulator. A scene with one overrides this.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the configuration makes no such world.
+    fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
         Ok(None)
     }
 }

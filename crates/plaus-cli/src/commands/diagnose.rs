@@ -66,9 +66,15 @@ impl Args {
         } else {
             let solutions = report::solutions(&diagnosis) + &report::tempering(&diagnosis, None);
             let findings: String = diagnosis.findings.iter().map(|finding| format!("  {finding}\n")).collect();
+            let some = match diagnosis.stride {
+                1 => String::new(),
+                stride => {
+                    format!("(effective draws and R-hat from one draw in {stride}, means and deviations from all)\n")
+                }
+            };
             let verdict = if diagnosis.is_healthy() { "nothing speaks against these chains\n" } else { "findings:\n" };
             console::print(&format!(
-                "{}\n{solutions}\n{}\n{}\n{}{verdict}{findings}",
+                "{}\n{solutions}\n{}{some}\n{}\n{}{verdict}{findings}",
                 report::headline(manifest),
                 report::scalar_table(&diagnosis),
                 report::move_table(manifest, &diagnosis),

@@ -7,11 +7,16 @@ mod diagnose;
 mod explain;
 mod export;
 mod gallery;
+mod merge;
 mod new;
 mod replay;
 mod resume;
 mod sample;
 mod schema;
+mod shards;
+mod status;
+mod submit;
+mod wanted;
 
 use crate::failure::{Failure, Outcome};
 use clap::Subcommand;
@@ -27,6 +32,12 @@ pub(crate) enum Command {
     Sample(sample::Args),
     /// Go on with an interrupted run from its last checkpoint, or make it longer.
     Resume(resume::Args),
+    /// Put the pieces of a run together: byte for byte the run that one machine would have made.
+    Merge(merge::Args),
+    /// Write the job that samples a run in pieces on many machines, and submit it.
+    Submit(submit::Args),
+    /// Say how far the pieces of a run are.
+    Status(status::Args),
     /// Say whether the chains of a run have converged: R-hat, effective sample sizes, acceptance.
     Diagnose(diagnose::Args),
     /// Write the draws of a run as a table or for ArviZ, or samples as animations: glTF, USD, poses, impacts.
@@ -51,6 +62,9 @@ impl Command {
             Self::Check(args) => args.run(),
             Self::Sample(args) => args.run(),
             Self::Resume(args) => args.run(),
+            Self::Merge(args) => args.run(),
+            Self::Submit(args) => args.run(),
+            Self::Status(args) => args.run(),
             Self::Diagnose(args) => args.run(),
             Self::Export(args) => args.run(),
             Self::Gallery(args) => args.run(),

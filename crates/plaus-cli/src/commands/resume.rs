@@ -28,6 +28,6 @@ impl Args {
             plaus_run::confirm::possible(Run::open(&folder)?.scenario(), ACCURACY)?;
         }
         let more = More { iterations: self.iterations, solutions: self.solutions };
-        self.watching.watch(&folder, |sampling| Ok(plaus_run::resume(&folder, more, sampling)?))
+        self.watching.watch(&folder, false, |sampling| Ok(plaus_run::resume(&folder, more, sampling)?))
     }
 }

@@ -1,13 +1,14 @@
 //! `plaus sample`, and what it shares with `plaus resume`.
 
 use super::confirm::{self, ACCURACY};
+use super::shards;
+use super::wanted::Wanted;
 use crate::clock::{in_words, parse_duration};
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
-use crate::scenario_file;
 use crate::table::{grouped, rate};
 use plaus_mcmc::{Ending, Plan};
 use plaus_run::{Diagnosis, Error, Folder, Manifest, Run, Sampling};
@@ -22,32 +23,18 @@ const SUMMARISED: u64 = 400_000;
 /// What to sample, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Scenario file (TOML); `plaus new` writes one
-    scenario: PathBuf,
-    /// Folder to make for the run; must not exist
+    #[command(flatten)]
+    wanted: Wanted,
+    /// Folder to make for the run; must not exist. With `--shard`, `{shard}` as its last part stands for the number of the piece
     #[arg(long, value_name = "RUN")]
     out: PathBuf,
-    /// Seed of all randomness
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
-    seed: Option<u64>,
-    /// Number of independent chains
-    #[arg(long, value_name = "C", allow_negative_numbers = true)]
-    chains: Option<u64>,
-    /// Iterations of each chain after the warm-up
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    iterations: Option<u64>,
-    /// Iterations before sampling begins
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    warmup: Option<u64>,
-    /// Record every so-manieth iteration
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    thin: Option<u64>,
-    /// Stop once so many distinct satisfying solutions are recorded after the warm-up
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
-    solutions: Option<u64>,
-    /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    overrides: Vec<String>,
+    /// Sample only one piece of the run's chains, e.g. 3/16; `task/16` takes the number from HQ_TASK_ID or SLURM_ARRAY_TASK_ID.
+    /// `plaus merge` makes the whole of all
+    #[arg(long, value_name = "PIECE/PIECES", allow_hyphen_values = true)]
+    shard: Option<String>,
+    /// Where RUN holds this very run already, go on with it; while another process writes it, wait
+    #[arg(long = "continue")]
+    go_on: bool,
     #[command(flatten)]
     watching: Watching,
 }
@@ -76,30 +63,20 @@ pub(crate) struct Watching {
 }
 
 impl Args {
-    pub(super) fn run(mut self) -> Result<Outcome, Failure> {
-        let flags = [
-            ("seed", self.seed),
-            ("chains", self.chains),
-            ("iterations", self.iterations),
-            ("warmup", self.warmup),
-            ("thin", self.thin),
-        ];
-        let given = flags.into_iter().filter_map(|(key, value)| {
-            let value = value?;
-            Some((format!("sampler.{key}={value}"), format!("--{key} {value}")))
-        });
-        let given: Vec<(String, String)> = given.collect();
-        self.overrides.extend(given.iter().map(|(key, _)| key.clone()));
-        let recipe = scenario_file::read(&self.scenario, self.overrides, self.solutions);
-        let recipe = recipe.map_err(|failure| failure.naming(&given))?;
+    pub(super) fn run(self) -> Result<Outcome, Failure> {
+        let Wanted { scenario, .. } = &self.wanted;
+        let scenario = scenario.clone();
+        let recipe = self.wanted.recipe()?;
         if self.watching.confirm {
             plaus_run::confirm::possible(&recipe.scenario, ACCURACY)?;
         }
-        let folder = Folder::new(&self.out);
-        self.watching.watch(&folder, |sampling| {
-            plaus_run::sample(&folder, &recipe, sampling).map_err(|error| match error {
+        let shard = self.shard.as_deref().map(shards::named).transpose()?;
+        let folder = Folder::new(shards::folder(&self.out, shard));
+        let sample = if self.go_on { plaus_run::sample_or_go_on } else { plaus_run::sample_shard };
+        self.watching.watch(&folder, self.go_on, |sampling| {
+            sample(&folder, &recipe, shard, sampling).map_err(|error| match error {
                 Error::Config(error) => {
-                    ScenarioError::locate(&self.scenario.display().to_string(), &recipe.text, &error).into()
+                    ScenarioError::locate(&scenario.display().to_string(), &recipe.text, &error).into()
                 }
                 other => other.into(),
             })
@@ -121,12 +98,15 @@ impl Watching {
     pub(super) fn watch(
         &self,
         folder: &Folder,
+        waits: bool,
         sampling: impl FnOnce(Sampling<'_>) -> Result<Ending, Failure>,
     ) -> Result<Outcome, Failure> {
         interrupt::listen()?;
-        let monitor = Monitor::new(self.style(), self.verbose, self.max_time);
+        let monitor = Monitor::new(self.style(), self.verbose, self.max_time, folder);
         let opening = |manifest: &Manifest, done| self.open(folder, manifest, done);
-        let ended = monitor.over(|| sampling(Sampling::new(self.threads, &mut Rounds::new(&monitor, &opening))));
+        let mut rounds = Rounds::new(&monitor, &opening, waits);
+        let ended = monitor.over(|| sampling(Sampling::new(self.threads, &mut rounds)));
+        monitor.signal_end(ended.as_ref());
         self.sum_up(folder, &monitor, ended?)
     }
 
@@ -179,7 +159,7 @@ impl Watching {
         }
         let run = Run::open(folder)?;
         let plan = run.manifest().plan;
-        let diagnosis = report::diagnose(&run, Some(SUMMARISED / u64::from(plan.chains)))?;
+        let diagnosis = report::diagnose(&run, Some(SUMMARISED / run.manifest().chains().len().max(1) as u64))?;
         let confirmed = if self.confirm {
             let Some(list) = confirm::confirm(&run, self.threads, !self.json && !self.quiet)? else {
                 console::note_line(&format!(
@@ -206,6 +186,9 @@ impl Watching {
         } else if !self.quiet {
             console::print(&summary(&run, &diagnosis, monitor, ending))?;
         }
+        if run.manifest().shard.is_some() {
+            return self.end_of_piece(&run, ending);
+        }
         let missing = plan.solutions.filter(|&wanted| diagnosis.tally.distinct < wanted);
         if let Some(wanted) = missing {
             let found = diagnosis.tally.distinct;
@@ -229,6 +212,21 @@ impl Watching {
         let holds = confirmed.is_none_or(|list| list.held > 0);
         let satisfied = diagnosis.tally.is_satisfied() && missing.is_none() && holds;
         Ok(if satisfied { Outcome::Done } else { Outcome::Unsatisfied })
+    }
+}
+
+impl Watching {
+    /// A piece that came to its end is as it should be, whatever it found: that is asked of the whole.
+    fn end_of_piece(&self, run: &Run, ending: Ending) -> Result<Outcome, Failure> {
+        let path = quoted(run.folder().path());
+        if ending == Ending::Stopped {
+            console::note_line(&format!("this piece is not finished; go on: plaus resume {path}"));
+            return Ok(Outcome::Unsatisfied);
+        }
+        if !self.quiet {
+            console::note_line("this is one piece; when all are there: plaus merge PIECES --out RUN");
+        }
+        Ok(Outcome::Done)
     }
 }
 

@@ -2,15 +2,19 @@
 //!
 //! A thread of its own looks at the chains' [`Pulse`] while they work, so that something is seen from the first second on, however long a round takes.
 
+mod beacon;
 mod view;
 
+pub(crate) use beacon::{LONGEST as LONGEST_SILENCE, Signal, State, host, read as read_signal};
 pub(crate) use view::acceptance;
 
 use crate::clock::Stopwatch;
 use crate::console;
+use crate::failure::Failure;
 use crate::interrupt;
-use plaus_mcmc::{ChainPulse, Control, Progress, Pulse};
-use plaus_run::{Manifest, Mixing, Watch};
+use beacon::Beacon;
+use plaus_mcmc::{ChainPulse, Control, Ending, Progress, Pulse};
+use plaus_run::{Folder, Manifest, Mixing, Watch};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
@@ -60,6 +64,7 @@ impl Speed {
 
 /// The watch of a run.
 pub(crate) struct Monitor {
+    folder: Folder,
     style: Style,
     verbose: bool,
     limit: Option<Duration>,
@@ -83,11 +88,13 @@ struct Board {
     /// Lines on the terminal that the next drawing replaces.
     drawn: usize,
     stop: Option<Stop>,
+    /// Where the run is a piece.
+    beacon: Option<Beacon>,
 }
 
 impl Monitor {
-    /// A watch that stops the run after `limit`.
-    pub(crate) fn new(style: Style, verbose: bool, limit: Option<Duration>) -> Self {
+    /// A watch of the run in `folder` that stops it after `limit`.
+    pub(crate) fn new(style: Style, verbose: bool, limit: Option<Duration>, folder: &Folder) -> Self {
         let board = Board {
             clock: Stopwatch::start(),
             took: None,
@@ -98,8 +105,10 @@ impl Monitor {
             shown: None,
             drawn: 0,
             stop: None,
+            beacon: None,
         };
-        Self { style, verbose, limit, pulse: Arc::default(), board: Mutex::new(board), over: Condvar::new() }
+        let folder = folder.clone();
+        Self { folder, style, verbose, limit, pulse: Arc::default(), board: Mutex::new(board), over: Condvar::new() }
     }
 
     /// Does `sampling` while a thread looks on; then takes away what was drawn, so that what follows stands in its place.
@@ -153,6 +162,7 @@ impl Monitor {
             if board.manifest.is_some() {
                 self.check(&mut board);
                 self.show(&mut board);
+                self.signal(&mut board);
             }
             board = self.over.wait_timeout(board, TICK).unwrap_or_else(PoisonError::into_inner).0;
         }
@@ -201,6 +211,30 @@ impl Monitor {
             }
         }
         board.shown = Some(Stopwatch::start());
+    }
+
+    /// Tells who looks at pieces from elsewhere how far this one is.
+    fn signal(&self, board: &mut Board) {
+        let seconds = board.seconds();
+        let Some(mut beacon) = board.beacon.take_if(|beacon| beacon.is_due(seconds)) else { return };
+        let chains = self.pulse.chains();
+        let speed = board.speed(&chains).per_second;
+        beacon.send(State::Running, &chains, self.pulse.distinct(), (seconds, speed), None);
+        board.beacon = Some(beacon);
+    }
+
+    /// The last that is told: how the sampling ended.
+    pub(crate) fn signal_end(&self, ended: Result<&Ending, &Failure>) {
+        let mut board = self.board();
+        let chains = self.pulse.chains();
+        let (seconds, speed) = (board.seconds(), board.speed(&chains).per_second);
+        let Some(beacon) = &mut board.beacon else { return };
+        let (state, why) = match ended {
+            Ok(Ending::Stopped) => (State::Stopped, None),
+            Ok(_) => (State::Done, None),
+            Err(failure) => (State::Failed, failure.message()),
+        };
+        beacon.send(state, &chains, self.pulse.distinct(), (seconds, speed), why);
     }
 
     fn finish(&self) {
@@ -255,13 +289,19 @@ pub(crate) struct Rounds<'a> {
     mixing_pause: f64,
     /// Said once it is known what is sampled.
     opening: &'a dyn Fn(&Manifest, u64),
+    /// Whether to wait for another process that writes the run.
+    waits: bool,
+    waiting: bool,
+    is_piece: bool,
 }
 
 impl<'a> Rounds<'a> {
     /// `opening` is called before the first round.
-    pub(crate) fn new(monitor: &'a Monitor, opening: &'a dyn Fn(&Manifest, u64)) -> Self {
+    pub(crate) fn new(monitor: &'a Monitor, opening: &'a dyn Fn(&Manifest, u64), waits: bool) -> Self {
         let now = Stopwatch::start();
-        Self { monitor, checkpoint: now, pause: 0.2, writing: None, mixing: now, mixing_pause: 0.5, opening }
+        let (writing, mixing, mixing_pause) = (None, now, 0.5);
+        let (waiting, is_piece) = (false, false);
+        Self { monitor, checkpoint: now, pause: 0.2, writing, mixing, mixing_pause, opening, waits, waiting, is_piece }
     }
 }
 
@@ -273,6 +313,8 @@ impl Watch for Rounds<'_> {
         board.clock = self.checkpoint;
         (board.begun_at, board.done) = (done, done);
         board.manifest = Some(Arc::new(manifest.clone()));
+        board.beacon = Beacon::of(manifest, &self.monitor.folder);
+        self.is_piece = manifest.shard.is_some();
     }
 
     fn round(&mut self, progress: &Progress<'_>) -> Control {
@@ -292,12 +334,28 @@ impl Watch for Rounds<'_> {
     fn checkpoint_done(&mut self) {
         if let Some(writing) = self.writing.take() {
             self.pause = (20.0 * writing.seconds()).max(1.0);
+            if self.is_piece {
+                // Many pieces share a disk: what one loses when it is killed is at most this part of what it has, and at most a minute.
+                self.pause = self.pause.max((self.monitor.seconds() / 20.0).min(60.0));
+            }
         }
         self.checkpoint = Stopwatch::start();
     }
 
     fn pulse(&self) -> Arc<Pulse> {
         Arc::clone(&self.monitor.pulse)
+    }
+
+    fn locked(&mut self, folder: &Folder) -> bool {
+        if self.waits && !self.waiting {
+            console::note_line(&format!(
+                "{}: another process writes it; waiting for it to end",
+                folder.path().display()
+            ));
+        }
+        self.waiting = self.waits;
+        thread::sleep(TICK);
+        self.waits && !interrupt::asked()
     }
 
     fn looks_at_mixing(&self) -> bool {

@@ -77,13 +77,14 @@ impl View<'_> {
 
     /// A column a chain: how fast it is, what it hits, what it accepts of each move.
     pub(super) fn chain_lines(&self) -> Vec<String> {
+        let first = self.manifest.chains().start as usize;
         let shown = self.chains.len().min(SHOWN_CHAINS);
         let row = |name: &str, cell: &dyn Fn(usize) -> String| -> Vec<String> {
             std::iter::once(name.to_owned()).chain((0..shown).map(cell)).collect()
         };
         let hits = |chain: usize| percent(self.chains[chain].hits as f64 / self.chains[chain].iterations as f64);
         let mut rows = vec![
-            row("", &|chain| format!("chain {chain}")),
+            row("", &|chain| format!("chain {}", first + chain)),
             row("  iterations", &|chain| grouped(self.chains[chain].iterations)),
             row("  hits", &hits),
             vec!["  accepted:".to_owned()],
@@ -104,11 +105,11 @@ impl View<'_> {
 
     /// The same for programs.
     pub(super) fn json(&self) -> Value {
-        let moves = &self.manifest.moves;
+        let (moves, first) = (&self.manifest.moves, self.manifest.chains().start as usize);
         let chain = |(index, now): (usize, &ChainPulse)| {
             let before = self.standing.chains.get(index);
             json!({
-                "chain": index,
+                "chain": index + first,
                 "iterations": now.iterations,
                 "iterations_per_second": self.speed.per_second / self.chains.len() as f64,
                 "hits": now.hits,

@@ -38,6 +38,18 @@ impl<D, O> ReplicasSnapshot<D, O> {
         &self.climb
     }
 
+    /// The same with other states, one for one.
+    ///
+    /// # Errors
+    /// As `look` says.
+    pub fn try_map<P, E>(
+        self,
+        look: impl FnMut(State<D, O>) -> Result<State<D, P>, E>,
+    ) -> Result<ReplicasSnapshot<D, P>, E> {
+        let Self { states, counts, scales, climb } = self;
+        Ok(ReplicasSnapshot { states: states.into_iter().map(look).collect::<Result<_, _>>()?, counts, scales, climb })
+    }
+
     /// Whether all its parts speak of `rungs` rungs, with this many moves at all but the first.
     #[must_use]
     pub fn fits(&self, rungs: u32, moves: usize) -> bool {

@@ -24,6 +24,7 @@ use hunt::Hunt;
 use plaus_dist::Seed;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 use worker::{Job, Made, Worker};
 
 /// How long, how often, from which seed.
@@ -63,10 +64,13 @@ impl Plan {
         Tempering { rungs: self.rungs, swap_every: self.swap_every, warmup: self.warmup }
     }
 
-    fn check<D, O>(&self, starts: &[Start<D, O>]) -> Result<(), PlanError> {
-        let (chains, rungs) = (u64::from(self.chains), u64::from(self.rungs));
+    fn check<D, O>(&self, some: &Range<u32>, starts: &[Start<D, O>]) -> Result<(), PlanError> {
+        if some.end > self.chains || (some.is_empty() && self.chains > 0) {
+            return Err(PlanError::Chains { some: some.clone(), chains: self.chains });
+        }
+        let rungs = u64::from(self.rungs);
         let sizes = [
-            ("chains", chains),
+            ("chains", u64::from(self.chains)),
             ("thin", self.thin),
             ("block", self.block),
             ("rungs", rungs),
@@ -82,8 +86,8 @@ impl Plan {
         }
         let aligned = starts.windows(2).all(|pair| pair[0].snapshot.end_iteration == pair[1].snapshot.end_iteration);
         let begun = starts.iter().all(|start| start.snapshot.end_iteration > 0);
-        if !starts.is_empty() && (starts.len() != self.chains as usize || !aligned || !begun) {
-            return Err(PlanError::Starts { chains: self.chains, found: starts.len() });
+        if !starts.is_empty() && (starts.len() != some.len() || !aligned || !begun) {
+            return Err(PlanError::Starts { chains: some.len() as u32, found: starts.len() });
         }
         Ok(())
     }
@@ -98,12 +102,20 @@ pub enum PlanError {
     /// The last iteration is no 48-bit number: streams would repeat.
     #[error("{0} iterations are more than the 2^48 that have random numbers of their own")]
     TooLong(u64),
+    /// Chains that the plan does not have, or none.
+    #[error("chains {} to {} are none of the plan's {chains}", .some.start, .some.end)]
+    Chains {
+        /// Chains that were to be run.
+        some: Range<u32>,
+        /// Chains of the plan.
+        chains: u32,
+    },
     /// Starts for another number of chains, or not all at the same iteration.
     #[error(
         "{found} starts for {chains} chains, or not all at the same iteration: they are not the snapshots of one run"
     )]
     Starts {
-        /// Chains of the plan.
+        /// Chains that were to be run.
         chains: u32,
         /// Starts given.
         found: usize,
@@ -127,6 +139,22 @@ pub struct Snapshot<D, O> {
     pub pending: (u32, Option<MoveId>),
     /// Where all rungs are; `None` where there is one.
     pub replicas: Option<ReplicasSnapshot<D, O>>,
+}
+
+impl<D, O> Snapshot<D, O> {
+    /// The same with other states, one for one: as a target over the same draws sees them.
+    ///
+    /// # Errors
+    /// As `look` says.
+    pub fn try_map<P, E>(
+        self,
+        mut look: impl FnMut(State<D, O>) -> Result<State<D, P>, E>,
+    ) -> Result<Snapshot<D, P>, E> {
+        let Self { end_iteration, state, counts, scales, hits, pending, replicas } = self;
+        let state = look(state)?;
+        let replicas = replicas.map(|replicas| replicas.try_map(look)).transpose()?;
+        Ok(Snapshot { end_iteration, state, counts, scales, hits, pending, replicas })
+    }
 }
 
 /// Where a chain goes on from, with the classes of solutions it has recorded (from its records).
@@ -238,10 +266,29 @@ pub fn run_watched<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     sink: &mut S,
     pulse: &Pulse,
 ) -> Result<Ending, RunError<S::Error>> {
-    plan.check(&starts)?;
+    run_some(target, moves, plan, 0..plan.chains, starts, threads, sink, pulse)
+}
+
+/// As [`run_watched()`], only the chains `some` of the plan's: they leave the same bits as they do among all. Distinct solutions, and the demand
+/// for them, are those of these chains together.
+///
+/// # Errors
+/// As [`run()`], and where `some` are none of the plan's chains.
+#[allow(clippy::too_many_arguments, reason = "each is a thing of its own, and there is one caller a layer up")]
+pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
+    target: &T,
+    moves: &Mixture<T>,
+    plan: Plan,
+    some: Range<u32>,
+    starts: Vec<Start<T::Draw, T::Outcome>>,
+    threads: usize,
+    sink: &mut S,
+    pulse: &Pulse,
+) -> Result<Ending, RunError<S::Error>> {
+    plan.check(&some, &starts)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let fresh = Mixture::of(Box::new(Redraw));
-    let mut fleet = Fleet::new(Job { target, moves, fresh: &fresh, plan }, starts, pulse);
+    let mut fleet = Fleet::new(Job { target, moves, fresh: &fresh, plan, first: some.start }, some, starts, pulse);
     while fleet.done < plan.end() && !fleet.has_enough() {
         let round = pool.install(|| fleet.round());
         let made = round.map_err(|Failed { chain, source }| RunError::Chain { chain, source })?;
@@ -279,18 +326,18 @@ struct Fleet<'a, T: Target> {
 type MadeOf<T> = Made<<T as Target>::Draw, <T as Target>::Outcome>;
 
 impl<'a, T: Goal> Fleet<'a, T> {
-    fn new(job: Job<'a, T>, starts: Vec<Start<T::Draw, T::Outcome>>, pulse: &'a Pulse) -> Self {
+    fn new(job: Job<'a, T>, some: Range<u32>, starts: Vec<Start<T::Draw, T::Outcome>>, pulse: &'a Pulse) -> Self {
         let workers: Vec<_> = if starts.is_empty() {
-            (0..job.plan.chains).map(Worker::new).collect()
+            some.map(Worker::new).collect()
         } else {
-            (0..).zip(starts).map(|(index, start)| Worker::resume(&job, index, start)).collect()
+            some.zip(starts).map(|(index, start)| Worker::resume(&job, index, start)).collect()
         };
         let firsts = workers.iter().flat_map(|worker| worker.books.distinct.firsts().iter().copied()).collect();
         let done = workers.first().map_or(0, |worker| worker.books.end_iteration);
         let mut fleet = Self { job, workers, pulse, distinct: Distinct::default(), done };
         fleet.merge(firsts);
         pulse.begin(fleet.workers.len());
-        fleet.workers.iter().for_each(|worker| worker.show(pulse));
+        fleet.workers.iter().for_each(|worker| worker.show(&fleet.job, pulse));
         fleet
     }
 
@@ -322,7 +369,8 @@ impl<'a, T: Goal> Fleet<'a, T> {
             self.workers.par_iter_mut().zip(before).zip(&mut made).for_each(redo);
         }
         pulse.set_distinct(self.distinct.count());
-        let failures = (0..).zip(&mut made).filter_map(|(chain, made)| Some((chain, made.failure.take()?)));
+        let failures =
+            (self.job.first..).zip(&mut made).filter_map(|(chain, made)| Some((chain, made.failure.take()?)));
         if let Some((chain, source)) = failures.min_by_key(|(chain, failure)| (failure.iteration(), *chain)) {
             return Err(Failed { chain, source });
         }

@@ -15,6 +15,8 @@ pub(super) struct Job<'a, T: Target> {
     pub(super) moves: &'a Mixture<T>,
     pub(super) fresh: &'a Mixture<T>,
     pub(super) plan: Plan,
+    /// The first of the chains that are run: the pulse counts from it.
+    pub(super) first: u32,
 }
 
 impl<'a, T: Target> Job<'a, T> {
@@ -91,7 +93,7 @@ impl<'a, T: Goal> Worker<'a, T> {
         if replicas.is_none() && end > 0 {
             let started = Replicas::start(job.course(), job.plan.seed, books.index)?.adapting(job.adapts_until());
             books.class = job.target.class(started.top().state());
-            books.note::<T>(plan, 0, started.top(), made, hunt);
+            books.note::<T>(job, 0, started.top(), made, hunt);
             *replicas = Some(started);
         }
         let Some(replicas) = replicas else { return Ok(()) };
@@ -110,7 +112,7 @@ impl<'a, T: Goal> Worker<'a, T> {
                         books.class = job.target.class(chain.state());
                         books.pending = (books.pending.0.saturating_add(1), Some(step.move_id));
                     }
-                    books.note::<T>(plan, books.end_iteration, chain, made, hunt);
+                    books.note::<T>(job, books.end_iteration, chain, made, hunt);
                 }
             })?;
         }
@@ -118,8 +120,8 @@ impl<'a, T: Goal> Worker<'a, T> {
     }
 
     /// Shows how far it is.
-    pub(super) fn show(&self, pulse: &Pulse) {
-        pulse.set_chain(self.books.index, self.books.end_iteration, self.books.hits.count);
+    pub(super) fn show(&self, job: &Job<'a, T>, pulse: &Pulse) {
+        pulse.set_chain(self.books.index - job.first, self.books.end_iteration, self.books.hits.count);
     }
 
     pub(super) fn counts(&self) -> &[MoveCounts] {
@@ -151,15 +153,16 @@ impl Books {
     #[inline]
     fn note<T: Target>(
         &mut self,
-        plan: &Plan,
+        job: &Job<'_, T>,
         iteration: u64,
         chain: &Chain<'_, T>,
         made: &mut Made<T::Draw, T::Outcome>,
         hunt: &Hunt<'_>,
     ) {
+        let plan = &job.plan;
         self.end_iteration = iteration + 1;
         self.hits.count(iteration, self.class.is_some());
-        hunt.pulse.set_chain(self.index, self.end_iteration, self.hits.count);
+        hunt.pulse.set_chain(self.index - job.first, self.end_iteration, self.hits.count);
         if !is_recorded(iteration, plan.thin) {
             return;
         }

@@ -32,7 +32,7 @@ pub fn write<S: Scene>(run: &RunOf<'_, S>, out: &mut dyn Write) -> Result<(), Er
     writeln!(out, "{HEAD}{}", names.join(",")).map_err(Error::Output)?;
     let mut values = vec![0.0; scalars.len()];
     let mut rest = String::new();
-    for chain in 0..run.chains() {
+    for chain in run.chains() {
         run.walk(chain, Phase::Sampling, |stretch| -> Result<(), Error> {
             run.scene().write_scalars(&stretch.entry.state, &mut values);
             rest.clear();

@@ -72,17 +72,18 @@ pub fn write<S: Scene>(run: &RunOf<'_, S>, out: &Path) -> Result<(), Error> {
     }
     let mut nodes = Map::new();
     for (phase, prefix) in [(Phase::Sampling, ""), (Phase::Warmup, "warmup_")] {
-        let shape = [u64::from(run.chains()), run.draws(phase)];
+        let shape = [run.chains().len() as u64, run.draws(phase)];
         if shape[1] == 0 {
             continue;
         }
         let scalars = run.scene().scalars().iter().map(|scalar| of_scalar(scalar, &shape)).collect();
         let groups = [("posterior", scalars), ("sample_stats", sample_stats(&shape))];
         for (name, arrays) in &groups {
-            write_group(out, &format!("{prefix}{name}"), arrays, &shape, &mut nodes)?;
+            let first = u64::from(run.chains().start);
+            write_group(out, &format!("{prefix}{name}"), arrays, &shape, first, &mut nodes)?;
         }
         let names = groups.map(|(group, arrays)| (format!("{prefix}{group}"), arrays));
-        (0..run.chains()).try_for_each(|chain| write_chain(run, phase, chain, out, &names))?;
+        (0..).zip(run.chains()).try_for_each(|at| write_chain(run, phase, at, out, &names))?;
     }
     let consolidated = json!({ "kind": "inline", "must_understand": false, "metadata": nodes });
     let root = json!({
@@ -128,6 +129,7 @@ fn write_group(
     group: &str,
     arrays: &[Array],
     shape: &[u64],
+    first_chain: u64,
     nodes: &mut Map<String, Value>,
 ) -> Result<(), Error> {
     let metadata = json!({ "zarr_format": 3, "node_type": "group", "attributes": {} });
@@ -139,7 +141,8 @@ fn write_group(
         let mut index = Array::new(*dimension, "int64", json!(0), &[length], json!({}));
         index.dimensions = dimensions;
         write_array(out, group, &index, nodes)?;
-        let numbers: Vec<u8> = (0..length).flat_map(u64::to_le_bytes).collect();
+        let from = if *dimension == "chain" { first_chain } else { 0 };
+        let numbers: Vec<u8> = (from..from + length).flat_map(u64::to_le_bytes).collect();
         write_bytes(&out.join(group).join(dimension).join("c").join("0"), &numbers)?;
     }
     arrays.iter().try_for_each(|array| write_array(out, group, array, nodes))
@@ -158,10 +161,10 @@ fn write_array(out: &Path, group: &str, array: &Array, nodes: &mut Map<String, V
 struct Chunks(Vec<BufWriter<File>>);
 
 impl Chunks {
-    fn create(out: &Path, groups: &[(String, Vec<Array>)], chain: u32) -> Result<Self, Error> {
+    fn create(out: &Path, groups: &[(String, Vec<Array>)], index: u32) -> Result<Self, Error> {
         let mut files = Vec::new();
         for (group, array) in groups.iter().flat_map(|(group, arrays)| arrays.iter().map(move |array| (group, array))) {
-            let folder = out.join(group).join(&array.name).join("c").join(chain.to_string());
+            let folder = out.join(group).join(&array.name).join("c").join(index.to_string());
             make(&folder)?;
             files.push(BufWriter::new(File::create(folder.join("0")).map_err(Error::Output)?));
         }
@@ -177,11 +180,11 @@ impl Chunks {
 fn write_chain<S: Scene>(
     run: &RunOf<'_, S>,
     phase: Phase,
-    chain: u32,
+    (index, chain): (u32, u32),
     out: &Path,
     groups: &[(String, Vec<Array>)],
 ) -> Result<(), Error> {
-    let mut chunks = Chunks::create(out, groups, chain)?;
+    let mut chunks = Chunks::create(out, groups, index)?;
     let thin = run.run().manifest().plan.thin as f64;
     let mut values = vec![0.0; run.scene().scalars().len()];
     run.walk(chain, phase, |stretch: StretchOf<'_, S>| -> Result<(), Error> {

@@ -59,7 +59,7 @@ impl RunVisitor for AllDraws {
             });
             walked.map(|()| draws).map_err(|error| error.to_string())
         };
-        (0..run.chains()).map(chain).collect()
+        run.chains().map(chain).collect()
     }
 }
 

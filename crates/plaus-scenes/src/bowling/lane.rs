@@ -4,6 +4,7 @@ use super::config::{Config, Delivery, Rewarded};
 use super::draw::Shot;
 use super::rack::Rack;
 use super::release::Quantity;
+use crate::world::{Physical, PlainWorld};
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
 use plaus_mcmc::ModelError;
@@ -171,6 +172,14 @@ impl Lane {
         let mut places: Vec<DVec3> = pins.map(|(pin, offset)| place(*pin, offset)).collect();
         places.sort_by(|a, b| a.y.total_cmp(&b.y));
         places
+    }
+
+    /// The lane with the ball of its alley, and a place for it and for each pin: at the foul line, and on their spots.
+    pub(super) fn plain_world(&self) -> Result<PlainWorld, WorldError> {
+        let up = DVec3::new(0.0, 0.0, self.pin.balance());
+        let ball = DVec3::new(0.0, -LENGTH, self.alley.ball_radius);
+        let places = std::iter::once(ball).chain(self.pins.iter().map(|&pin| Alley::spot(pin) + up)).collect();
+        Ok(PlainWorld { world: Physical::Rigid(Box::new(self.alley.world_of(&self.pin)?)), places })
     }
 
     /// The world of a draw, and where everything starts: the ball so far in m before the head pin's spot.

@@ -21,6 +21,7 @@ use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene};
+use crate::world::PlainWorld;
 use lane::{Lane, Pins};
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
@@ -215,5 +216,9 @@ impl Scene for Bowling {
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         Self::new(&Config { accuracy, ..self.config.clone() }).map(Some)
+    }
+
+    fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
+        self.lane.plain_world().map(Some).map_err(ModelError::new)
     }
 }

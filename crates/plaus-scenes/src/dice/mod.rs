@@ -37,6 +37,7 @@ use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene};
+use crate::world::PlainWorld;
 use plan::{Demand, Plan};
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
@@ -266,5 +267,9 @@ impl Scene for Dice {
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         Self::new(&Config { accuracy, ..self.config.clone() }).map(Some)
+    }
+
+    fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
+        self.plan.plain_world(self.config.dice as usize).map(Some)
     }
 }

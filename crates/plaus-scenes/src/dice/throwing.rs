@@ -6,16 +6,21 @@ use super::plan::Plan;
 use super::settle::{Fall, Falls};
 use super::surface::{MATERIAL, Touched};
 use super::{Dice, Rest};
+use crate::world::{Physical, PlainWorld};
 use glam::DVec3;
 use plaus_dist::LogPotential;
 use plaus_mcmc::{ModelError, Simulated, StateOf};
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidScratch, RigidWorld, Start, Turning};
+use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
 use plaus_sim::trace::{Observer, Trace};
 use plaus_sim::{Outcome, Scratch, WorldError};
 
 /// Standard gravity, m/s².
 pub(super) const GRAVITY: f64 = 9.806_65;
+
+/// Height in m of a hand that throws.
+const HAND: f64 = 0.1;
 
 /// Points of a die's skin that are looked at over bumps are this far apart, over the grid's spacing.
 const SKIN: f64 = 1.0;
@@ -156,6 +161,15 @@ pub(super) struct Recorded {
 }
 
 impl Plan {
+    /// The dice above a level table of mean friction and restitution.
+    pub(super) fn plain_world(&self, dice: usize) -> Result<PlainWorld, ModelError> {
+        let table = Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL).map(Part::Plane);
+        let world = Physical::Rigid(Box::new(self.world(dice, table)?));
+        // Farther apart than they are long, however they are turned.
+        let apart = 2.5 * self.cuboid.half().length();
+        Ok(PlainWorld { world, places: (0..dice).map(|die| DVec3::new(apart * die as f64, 0.0, HAND)).collect() })
+    }
+
     /// A world of dice on a table.
     fn world(&self, dice: usize, table: Result<Part, WorldError>) -> Result<Rigid, ModelError> {
         let body = BodySpec::solid(Shape::Cuboid(self.cuboid), self.density, MATERIAL);

@@ -4,6 +4,7 @@ use super::config::{Config, Order, Vertices};
 use super::draw::Drops;
 use super::word::Word;
 use crate::scene::ConfigError;
+use crate::world::{Physical, PlainWorld};
 use glam::DVec3;
 use plaus_dist::math;
 use plaus_sim::marbles::{Marble, MarbleSpec, MarbleWorld, Marbles, Phase, Start};
@@ -91,6 +92,19 @@ impl Arena {
             gravity: DVec3::new(0.0, 0.0, -GRAVITY),
             accuracy: self.accuracy,
             duration: self.duration,
+        })
+    }
+
+    /// The same, with a place for each ball: above the middle of a bin of its own.
+    pub(super) fn plain_world(&self, balls: usize) -> Result<PlainWorld, WorldError> {
+        let Bins { side, drop, .. } = self.bins;
+        let over = |bin: usize| {
+            let (column, row) = (bin % self.columns, bin / self.columns);
+            DVec3::new((column as f64 + 0.5) * side, (row as f64 + 0.5) * side, drop)
+        };
+        Ok(PlainWorld {
+            world: Physical::Marbles(Box::new(self.world(balls)?)),
+            places: (0..balls).map(over).collect(),
         })
     }
 

@@ -23,6 +23,7 @@ use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene};
+use crate::world::PlainWorld;
 use arena::Arena;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream, math};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
@@ -216,5 +217,10 @@ impl Scene for Spelling {
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         Self::new(&Config { accuracy, ..self.config.clone() }).map(|scene| Some(scene.with_savings(self.savings)))
+    }
+
+    fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
+        let balls = arena::balls(&self.config, &self.word).map_err(ModelError::new)?;
+        self.arena.plain_world(balls).map(Some).map_err(ModelError::new)
     }
 }

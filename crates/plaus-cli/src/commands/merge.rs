@@ -1,0 +1,82 @@
+//! `plaus merge`
+
+use super::sample::quoted;
+use crate::clock::{Stopwatch, in_words};
+use crate::console;
+use crate::failure::{Failure, Outcome};
+use crate::interrupt;
+use crate::table::grouped;
+use plaus_run::Folder;
+use plaus_run::disk::RealDisk;
+use plaus_run::merge::{MergePulse, Merging, merge};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+/// How often it is looked whether there is something to show, or a reason to stop.
+const TICK: Duration = Duration::from_millis(20);
+/// Seconds between two lines of progress.
+const EVERY: f64 = 2.0;
+
+/// Which pieces, and where to.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Pieces of a run, or folders of some; they stay as they are
+    #[arg(required = true, value_name = "PIECES")]
+    pieces: Vec<PathBuf>,
+    /// Folder to make for the whole run; must not exist
+    #[arg(long, value_name = "RUN")]
+    out: PathBuf,
+    /// Threads; 0 is one a core. Results never depend on it
+    #[arg(long, value_name = "T", default_value_t = 0)]
+    threads: usize,
+    /// Show no progress
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+impl Args {
+    pub(super) fn run(self) -> Result<Outcome, Failure> {
+        interrupt::listen()?;
+        let (clock, pulse, over) = (Stopwatch::start(), MergePulse::default(), AtomicBool::new(false));
+        let merged = thread::scope(|scope| {
+            scope.spawn(|| self.look_on(&pulse, &over));
+            let merging = Merging { threads: self.threads, disk: &RealDisk, pulse: &pulse };
+            let merged = merge(&self.pieces, &Folder::new(&self.out), merging);
+            over.store(true, Ordering::Relaxed);
+            merged
+        });
+        if merged.is_err() && interrupt::asked() {
+            console::note_line("interrupted: nothing was made, and the pieces are as they were");
+            return Ok(Outcome::Interrupted);
+        }
+        let merged = merged?;
+        if !self.quiet {
+            let (pieces, chains, took) = (merged.pieces, merged.chains, in_words(clock.seconds()));
+            let megabytes = merged.bytes.div_ceil(1_000_000);
+            let out = quoted(&self.out);
+            console::note_line(&format!(
+                "merged {pieces} pieces: {chains} chains, {} MB of records, in {took}\n\nnext:\n  plaus diagnose {out}",
+                grouped(megabytes)
+            ));
+        }
+        Ok(Outcome::Done)
+    }
+
+    fn look_on(&self, pulse: &MergePulse, over: &AtomicBool) {
+        let mut shown = Stopwatch::start();
+        while !over.load(Ordering::Relaxed) {
+            if interrupt::asked() {
+                pulse.stop();
+            }
+            if !self.quiet && shown.seconds() >= EVERY {
+                shown = Stopwatch::start();
+                let (bytes, written) = pulse.bytes();
+                let (written, bytes) = (grouped(written / 1_000_000), grouped(bytes / 1_000_000));
+                console::note_line(&format!("{} pieces  {written} of {bytes} MB", grouped(pulse.pieces())));
+            }
+            thread::sleep(TICK);
+        }
+    }
+}

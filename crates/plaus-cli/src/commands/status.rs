@@ -1,0 +1,236 @@
+//! `plaus status`: how far pieces are, from the small files that they write. Nothing is asked over a network.
+
+use super::submit::Job;
+use crate::clock::{in_words, unix_seconds};
+use crate::console;
+use crate::failure::{Failure, Outcome};
+use crate::progress::{LONGEST_SILENCE, Signal, State, host, read_signal};
+use crate::table::{grouped, lay_out, percent, rate};
+use plaus_run::{Folder, Shard};
+use serde::Serialize;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Pieces that are shown one by one, unless all are asked for.
+const SHOWN: usize = 20;
+
+/// Which job.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Folder of a job that `plaus submit` made, or folders of pieces
+    #[arg(required = true, value_name = "JOB")]
+    jobs: Vec<PathBuf>,
+    /// Show every piece
+    #[arg(short, long)]
+    all: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// How a piece stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Standing {
+    /// Nothing is there yet.
+    Waiting,
+    /// At work.
+    Running,
+    /// At its end.
+    Done,
+    /// Stopped with a checkpoint: interrupted, or out of time.
+    Stopped,
+    /// Broken off, and it could say why.
+    Failed,
+    /// Said nothing for longer than a piece at work does, and nobody writes it: it was killed.
+    Died,
+}
+
+impl Standing {
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Running => "running",
+            Self::Done => "done",
+            Self::Stopped => "stopped",
+            Self::Failed => "failed",
+            Self::Died => "died",
+        }
+    }
+}
+
+/// A piece.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct PieceStatus {
+    pub(crate) standing: Standing,
+    pub(crate) folder: PathBuf,
+    pub(crate) signal: Option<Signal>,
+    /// Seconds since it last said something.
+    pub(crate) silent: Option<u64>,
+}
+
+impl PieceStatus {
+    /// Looks at a piece.
+    pub(crate) fn of(folder: &Folder) -> Self {
+        let signal = read_signal(folder);
+        let silent = signal.as_ref().map(|signal| unix_seconds().saturating_sub(signal.time));
+        let standing = match &signal {
+            // Locks may not be seen from another machine; what it said lately is.
+            _ if folder.is_being_written() => Standing::Running,
+            None if folder.manifest().exists() => Standing::Died,
+            None => Standing::Waiting,
+            Some(signal) => match signal.state {
+                State::Done => Standing::Done,
+                State::Stopped => Standing::Stopped,
+                State::Failed => Standing::Failed,
+                State::Running if signal.host == host() => Standing::Died,
+                State::Running if silent.is_some_and(|silent| silent as f64 > 3.0 * LONGEST_SILENCE) => Standing::Died,
+                State::Running => Standing::Running,
+            },
+        };
+        Self { standing, folder: folder.path().to_owned(), signal, silent }
+    }
+}
+
+/// All pieces of a job.
+pub(crate) fn of_job(job: &Job) -> Vec<(Shard, PieceStatus)> {
+    job.pieces().map(|shard| (shard, PieceStatus::of(&job.piece(shard)))).collect()
+}
+
+/// How many of a job's pieces stand how, in a line.
+pub(crate) fn in_a_line(job: &Job) -> String {
+    Summary::of(&of_job(job).into_iter().map(|(_, piece)| piece).collect::<Vec<_>>()).in_words()
+}
+
+/// All pieces together.
+#[derive(Debug, Serialize)]
+struct Summary {
+    pieces: usize,
+    standings: BTreeMap<&'static str, usize>,
+    /// Share of the iterations that are done.
+    share: f64,
+    iterations_per_second: f64,
+    /// Seconds until the last of those at work ends, at its speed.
+    eta_seconds: Option<f64>,
+}
+
+impl Summary {
+    fn of(pieces: &[PieceStatus]) -> Self {
+        let mut standings = BTreeMap::new();
+        for piece in pieces {
+            *standings.entry(piece.standing.in_words()).or_insert(0) += 1;
+        }
+        // Pieces that have not said anything are taken to be as long as the others.
+        let share_of = |piece: &PieceStatus| match (&piece.signal, piece.standing) {
+            (_, Standing::Done) => 1.0,
+            (Some(signal), _) => signal.iteration as f64 / signal.end.max(1) as f64,
+            (None, _) => 0.0,
+        };
+        let running = || pieces.iter().filter(|piece| piece.standing == Standing::Running);
+        let running = || running().filter_map(|piece| piece.signal.as_ref());
+        let left = |signal: &Signal| {
+            let left = signal.end.saturating_sub(signal.iteration) * u64::from(signal.chains);
+            left as f64 / signal.iterations_per_second
+        };
+        Self {
+            pieces: pieces.len(),
+            standings,
+            share: pieces.iter().map(share_of).sum::<f64>() / pieces.len().max(1) as f64,
+            iterations_per_second: running().map(|signal| signal.iterations_per_second).fold(0.0, |sum, one| sum + one),
+            eta_seconds: running().map(left).filter(|left| left.is_finite()).reduce(f64::max),
+        }
+    }
+
+    fn in_words(&self) -> String {
+        let counts: Vec<String> = self.standings.iter().map(|(name, count)| format!("{count} {name}")).collect();
+        let eta = self.eta_seconds.map(|eta| format!("  those at work end in {}", in_words(eta))).unwrap_or_default();
+        format!(
+            "{} pieces: {}  {} of the iterations  {}{eta}",
+            self.pieces,
+            counts.join(", "),
+            percent(self.share),
+            rate(self.iterations_per_second)
+        )
+    }
+}
+
+impl Args {
+    pub(super) fn run(self) -> Result<Outcome, Failure> {
+        let mut pieces: Vec<PieceStatus> = Vec::new();
+        let mut merged = None;
+        for path in &self.jobs {
+            if let Some(job) = Job::open(path)? {
+                pieces.extend(of_job(&job).into_iter().map(|(_, piece)| piece));
+                let run = job.merged();
+                merged = Some(run.manifest().exists().then(|| run.path().to_owned()));
+            } else if !path.is_dir() {
+                let message = format!("{}: there is no job here, and no piece of a run", path.display());
+                return Err(Failure::Message(message));
+            } else {
+                pieces.extend(plaus_run::merge::folders_at(path)?.iter().map(PieceStatus::of));
+            }
+        }
+        let summary = Summary::of(&pieces);
+        if self.json {
+            console::print_line(
+                &json!({ "summary": summary, "pieces": pieces, "merged": merged.flatten() }).to_string(),
+            )?;
+        } else {
+            console::print(&self.table(&pieces, &summary))?;
+            match merged {
+                Some(Some(run)) => console::print_line(&format!("merged: {}", run.display()))?,
+                Some(None) => console::print_line("not merged yet")?,
+                None => {}
+            }
+        }
+        let all_done = pieces.iter().all(|piece| piece.standing == Standing::Done);
+        Ok(if all_done { Outcome::Done } else { Outcome::Unsatisfied })
+    }
+
+    fn table(&self, pieces: &[PieceStatus], summary: &Summary) -> String {
+        // Those with something to tell come first.
+        let rank = |piece: &PieceStatus| match piece.standing {
+            Standing::Failed => 0,
+            Standing::Died => 1,
+            Standing::Stopped => 2,
+            Standing::Running => 3,
+            Standing::Waiting => 4,
+            Standing::Done => 5,
+        };
+        let mut order: Vec<&PieceStatus> = pieces.iter().collect();
+        if !self.all && pieces.len() > SHOWN {
+            order.sort_by_key(|piece| rank(piece));
+            order.truncate(SHOWN);
+        }
+        let mut rows = vec![["piece", "", "iteration", "of", "", "distinct", "said"].map(str::to_owned).to_vec()];
+        rows.extend(order.iter().map(|piece| row(piece)));
+        let mut text = lay_out(&rows);
+        if order.len() < pieces.len() {
+            text += &format!("and {} more pieces (`--all`)\n", pieces.len() - order.len());
+        }
+        for piece in &order {
+            if let Some(why) = piece.signal.as_ref().and_then(|signal| signal.why.as_ref()) {
+                text += &format!("{}: {why}\n", piece.folder.display());
+            }
+        }
+        text + &format!("\n{}\n", summary.in_words())
+    }
+}
+
+fn row(piece: &PieceStatus) -> Vec<String> {
+    let standing = piece.standing.in_words().to_owned();
+    let Some(signal) = &piece.signal else {
+        let name = piece.folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        return vec![name, standing];
+    };
+    vec![
+        format!("{}/{}", signal.piece, signal.of),
+        standing,
+        grouped(signal.iteration),
+        grouped(signal.end),
+        rate(signal.iterations_per_second),
+        grouped(signal.distinct),
+        format!("{} ago", in_words(piece.silent.unwrap_or(0) as f64)),
+    ]
+}

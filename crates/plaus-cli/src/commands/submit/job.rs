@@ -1,0 +1,160 @@
+//! The folder of a job: everything that its pieces need, on a disk that all machines share.
+//!
+//! | path | what |
+//! | --- | --- |
+//! | `job.json` | which run, in how many pieces, on which engine |
+//! | `scenario/NAME.toml` | the scenario file, as it was |
+//! | `submit/` | what the engine is given |
+//! | `pieces/3` | a piece: a run of its own |
+//! | `logs/` | what the tasks printed |
+//! | `run` | the whole run, once it is merged |
+
+use crate::commands::shards::PLACE;
+use crate::failure::Failure;
+use plaus_run::manifest::VERSION;
+use plaus_run::{Folder, Recipe, Shard};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Who runs the pieces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Engine {
+    /// Slurm: a job array, and a job that depends on it.
+    Slurm,
+    /// HyperQueue: a job file of tasks.
+    Hyperqueue,
+    /// Open Job Description, as AWS Deadline Cloud and `openjd` run it: a template.
+    Openjd,
+    /// Processes on this machine.
+    Local,
+}
+
+/// What `job.json` holds.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Description {
+    /// Version of plaus that wrote it, and that its pieces must have.
+    pub(super) plaus: String,
+    pub(super) engine: Engine,
+    pub(super) pieces: u32,
+    pub(super) chains: u32,
+    /// Name of the scenario file in the job's folder `scenario`.
+    pub(super) scenario: String,
+    pub(super) overrides: Vec<String>,
+    pub(super) solutions: Option<u64>,
+    /// Threads of each piece.
+    pub(super) threads: usize,
+    /// The program, where it lies on all machines.
+    pub(super) program: String,
+    /// What the engine's own command is given besides.
+    pub(super) options: Vec<String>,
+}
+
+/// A job with its folder.
+pub(crate) struct Job {
+    path: PathBuf,
+    pub(super) what: Description,
+}
+
+/// A path as the text that scripts hold; tasks start in folders of their own, so it is absolute.
+pub(super) fn text_of(path: &Path) -> Result<String, Failure> {
+    let absolute = std::path::absolute(path).map_err(|error| refuse(path, &error))?;
+    let text = absolute.to_str().map(str::to_owned);
+    text.ok_or_else(|| refuse(path, &"its name is no UTF-8 text, which the files of engines have to be"))
+}
+
+fn refuse(path: &Path, why: &dyn std::fmt::Display) -> Failure {
+    Failure::Message(format!("{}: {why}", path.display()))
+}
+
+impl Job {
+    /// Makes the folder of a job, and writes what does not depend on the engine.
+    pub(super) fn create(path: &Path, recipe: &Recipe, what: Description) -> Result<Self, Failure> {
+        Shard::new(1, what.pieces)
+            .and_then(|first| first.range(what.chains))
+            .map_err(|error| Failure::Message(format!("--shards {}: {error}", what.pieces)))?;
+        text_of(path)?;
+        let job = Self { path: std::path::absolute(path).map_err(|error| refuse(path, &error))?, what };
+        if let Some(parent) = job.path.parent() {
+            fs::create_dir_all(parent).map_err(|error| refuse(parent, &error))?;
+        }
+        fs::create_dir(&job.path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::AlreadyExists => refuse(path, &"exists already; choose another name"),
+            _ => refuse(path, &error),
+        })?;
+        for folder in ["scenario", "submit", "pieces", "logs"] {
+            fs::create_dir(job.path.join(folder)).map_err(|error| refuse(path, &error))?;
+        }
+        let json = serde_json::to_string_pretty(&job.what).map_err(|error| refuse(path, &error))?;
+        job.write(&Path::new("scenario").join(&job.what.scenario), &recipe.text)?;
+        job.write(Path::new("job.json"), &format!("{json}\n"))?;
+        Ok(job)
+    }
+
+    /// Opens the folder of a job; `None` where it is none.
+    pub(crate) fn open(path: &Path) -> Result<Option<Self>, Failure> {
+        let file = path.join("job.json");
+        let json = match fs::read(&file) {
+            Err(error) if matches!(error.kind(), std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory) => {
+                return Ok(None);
+            }
+            json => json.map_err(|error| refuse(&file, &error))?,
+        };
+        let what: Description = serde_json::from_slice(&json).map_err(|error| refuse(&file, &error))?;
+        Shard::new(1, what.pieces).map_err(|error| refuse(&file, &error))?;
+        if what.plaus != VERSION {
+            let why =
+                format!("made by plaus {}, this is {VERSION}: its pieces would not be the same run's", what.plaus);
+            return Err(refuse(path, &why));
+        }
+        Ok(Some(Self { path: std::path::absolute(path).map_err(|error| refuse(path, &error))?, what }))
+    }
+
+    /// Its folder.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The folder of the whole run.
+    pub(crate) fn merged(&self) -> Folder {
+        Folder::new(self.path.join("run"))
+    }
+
+    /// The folder of a piece.
+    pub(crate) fn piece(&self, shard: Shard) -> Folder {
+        Folder::new(self.path.join("pieces").join(shard.piece().to_string()))
+    }
+
+    /// Its pieces.
+    pub(crate) fn pieces(&self) -> impl Iterator<Item = Shard> {
+        Shard::all(self.what.pieces)
+    }
+
+    /// Writes a file of its folder.
+    pub(super) fn write(&self, name: &Path, text: &str) -> Result<PathBuf, Failure> {
+        let path = self.path.join(name);
+        fs::write(&path, text).map_err(|error| refuse(&path, &error))?;
+        Ok(path)
+    }
+
+    /// The command of a piece, one argument each; `piece` is its number, or what stands for it.
+    pub(super) fn piece_command(&self, piece: &str) -> Result<Vec<String>, Failure> {
+        let Description { pieces, scenario, overrides, solutions, threads, program, .. } = &self.what;
+        let scenario = text_of(&self.path.join("scenario").join(scenario))?;
+        let out = text_of(&self.path.join("pieces").join(PLACE))?;
+        let mut words = vec![program.clone(), "sample".to_owned(), scenario];
+        words.extend(overrides.iter().map(|set| format!("--set={set}")));
+        words.extend(solutions.map(|wanted| format!("--solutions={wanted}")));
+        words.extend([format!("--shard={piece}/{pieces}"), format!("--out={out}"), "--continue".to_owned()]);
+        words.extend([format!("--threads={threads}"), "--quiet".to_owned()]);
+        Ok(words)
+    }
+
+    /// The command that makes the whole of the pieces, one argument each.
+    pub(super) fn merge_command(&self) -> Result<Vec<String>, Failure> {
+        let (pieces, out) = (text_of(&self.path.join("pieces"))?, text_of(self.merged().path())?);
+        Ok(vec![self.what.program.clone(), "merge".to_owned(), pieces, format!("--out={out}"), "--quiet".to_owned()])
+    }
+}

@@ -1,0 +1,174 @@
+//! `plaus submit`
+
+mod engines;
+mod job;
+mod local;
+
+pub(crate) use job::Job;
+use job::{Description, Engine};
+
+use super::status::{self, Standing};
+use super::wanted::Wanted;
+use crate::console;
+use crate::failure::{Failure, Outcome};
+use engines::in_shell;
+use plaus_run::manifest::VERSION;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Which run, in how many pieces, on which engine.
+#[derive(clap::Args)]
+#[command(args_conflicts_with_subcommands = true)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    wanted: Option<Wanted>,
+    /// Engine that runs the pieces
+    #[arg(long, value_name = "ENGINE", required_unless_present = "again")]
+    to: Option<Engine>,
+    /// Pieces to cut the run into: at most as many as it has chains
+    #[arg(long, value_name = "N", required_unless_present = "again", value_parser = clap::value_parser!(u32).range(1..))]
+    shards: Option<u32>,
+    /// Folder to make for the job, on a disk that all machines share; must not exist
+    #[arg(long, value_name = "JOB", required_unless_present = "again")]
+    out: Option<PathBuf>,
+    /// Submit those pieces of a job that are not finished and not at work: they go on from their checkpoints
+    #[arg(long, value_name = "JOB", conflicts_with_all = ["scenario", "to", "shards", "out", "program"])]
+    again: Option<PathBuf>,
+    /// Submit it. Without this, the job is only written and shown
+    #[arg(long)]
+    go: bool,
+    /// Threads of each piece
+    #[arg(long, value_name = "T", default_value_t = 1)]
+    threads: u16,
+    /// Where `plaus` lies on the machines that run the pieces; where it lies here unless given
+    #[arg(long, value_name = "PATH")]
+    program: Option<PathBuf>,
+    /// What the engine's own command is given besides, e.g. `-- --partition=long --time=24:00:00`
+    #[arg(last = true, value_name = "OPTIONS")]
+    options: Vec<String>,
+}
+
+impl Args {
+    pub(super) fn run(self) -> Result<Outcome, Failure> {
+        let go = self.go;
+        let job = match &self.again {
+            Some(path) => Job::open(path)?.ok_or_else(|| {
+                Failure::Message(format!("{}: there is no job here: it has no job.json", path.display()))
+            })?,
+            None => self.create()?,
+        };
+        let wanted: Vec<u32> = status::of_job(&job)
+            .into_iter()
+            .filter(|(_, standing)| !matches!(standing.standing, Standing::Done | Standing::Running))
+            .map(|(shard, _)| shard.piece())
+            .collect();
+        if job.merged().path().exists() {
+            console::note_line(&format!("this job is done: {}", job.merged().path().display()));
+            return Ok(Outcome::Done);
+        }
+        let commands = engines::write(&job, &wanted)?;
+        show(&job, &wanted, &commands)?;
+        match (go, job.what.engine) {
+            (false, _) => {
+                let again = in_shell(&["--again".to_owned(), job.path().display().to_string()]);
+                console::note_line(&format!("\nnothing is submitted yet; submit it: plaus submit {again} --go"));
+                Ok(Outcome::Done)
+            }
+            (true, Engine::Local) => local::run(&job, &wanted),
+            (true, _) => submit(&commands),
+        }
+    }
+
+    fn create(self) -> Result<Job, Failure> {
+        let missing = || Failure::Message("name a scenario, or a job with `--again`".to_owned());
+        let (Some(wanted), Some(engine), Some(pieces), Some(out)) = (self.wanted, self.to, self.shards, self.out)
+        else {
+            return Err(missing());
+        };
+        if engine == Engine::Hyperqueue && job::text_of(&out)?.contains("%{") {
+            let out = out.display();
+            return Err(Failure::Message(format!("{out}: HyperQueue replaces `%{{…}}` in names; choose another")));
+        }
+        let recipe = wanted.recipe()?;
+        let program = match self.program {
+            Some(program) => program,
+            None => this_program()?,
+        };
+        let what = Description {
+            plaus: VERSION.to_owned(),
+            engine,
+            pieces,
+            chains: recipe.scenario.sampler.chains,
+            scenario: recipe.file.clone(),
+            overrides: recipe.overrides.clone(),
+            solutions: recipe.solutions,
+            threads: usize::from(self.threads),
+            program: job::text_of(&program)?,
+            options: self.options,
+        };
+        Job::create(&out, &recipe, what)
+    }
+}
+
+/// The file of the command that runs. Within another program, Python say, that is another file, which would not know
+/// our words.
+fn this_program() -> Result<PathBuf, Failure> {
+    let ask = "name the command plaus by `--program`, e.g. `--program \"$(command -v plaus)\"`";
+    let program = std::env::current_exe()
+        .map_err(|error| Failure::Message(format!("cannot tell where plaus lies: {error}; {ask}")))?;
+    if program.file_stem().is_some_and(|name| name.to_string_lossy().starts_with("plaus")) {
+        return Ok(program);
+    }
+    Err(Failure::Message(format!("plaus runs within {} here: {ask}", program.display())))
+}
+
+/// Shows what is, or would be, submitted: files on stdout with their contents, then the commands.
+fn show(job: &Job, wanted: &[u32], commands: &[Vec<String>]) -> Result<(), Failure> {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(job.path().join("submit"))
+        .map(|entries| entries.flatten().map(|entry| entry.path()).collect())
+        .unwrap_or_default();
+    files.sort();
+    for file in files {
+        console::print(&excerpt(&file))?;
+    }
+    let pieces = engines::ranges(wanted);
+    console::print_line(&format!("# pieces {pieces} of {}, then merge", job.what.pieces))?;
+    commands.iter().try_for_each(|command| console::print_line(&in_shell(command)))
+}
+
+/// Lines of a file that are shown.
+const SHOWN_LINES: usize = 40;
+
+fn excerpt(path: &Path) -> String {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let lines = text.lines().count();
+    let shown: String = text.lines().take(SHOWN_LINES).map(|line| format!("{line}\n")).collect();
+    let more = if lines > SHOWN_LINES { format!("# and {} more lines\n", lines - SHOWN_LINES) } else { String::new() };
+    format!("# {}\n{shown}{more}\n", path.display())
+}
+
+/// Runs the commands that submit, without a shell.
+fn submit(commands: &[Vec<String>]) -> Result<Outcome, Failure> {
+    let mut before = String::new();
+    for command in commands {
+        let words: Vec<String> = command.iter().map(|word| filled(word, &before)).collect();
+        let Some((program, arguments)) = words.split_first() else { continue };
+        let output = Command::new(program).args(arguments).stderr(Stdio::inherit()).output();
+        let output = output.map_err(|error| Failure::Message(format!("cannot run `{program}`: {error}")))?;
+        let said = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        if !output.status.success() {
+            return Err(Failure::Message(format!("`{}` failed ({}): {said}", in_shell(&words), output.status)));
+        }
+        console::note_line(&said);
+        // Slurm says `NUMBER` or `NUMBER;CLUSTER`.
+        before = said.split(';').next().unwrap_or_default().to_owned();
+    }
+    Ok(Outcome::Done)
+}
+
+fn filled(word: &str, before: &str) -> String {
+    match word.strip_prefix("--dependency=") {
+        Some(_) if word.ends_with(engines::PIECES) => word.replace(engines::PIECES, before),
+        _ => word.to_owned(),
+    }
+}

@@ -1,0 +1,56 @@
+//! Which run is wanted: a scenario, and what the command line says of it. `plaus sample` and `plaus submit` share it,
+//! so that they mean the same run.
+
+use crate::failure::Failure;
+use crate::scenario_file;
+use plaus_run::Recipe;
+use std::path::PathBuf;
+
+/// What to sample.
+#[derive(clap::Args)]
+pub(crate) struct Wanted {
+    /// Scenario file (TOML); `plaus new` writes one
+    pub(super) scenario: PathBuf,
+    /// Seed of all randomness
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    seed: Option<u64>,
+    /// Number of independent chains
+    #[arg(long, value_name = "C", allow_negative_numbers = true)]
+    chains: Option<u64>,
+    /// Iterations of each chain after the warm-up
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    iterations: Option<u64>,
+    /// Iterations before sampling begins
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    warmup: Option<u64>,
+    /// Record only every so many iterations
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    thin: Option<u64>,
+    /// Stop once so many distinct satisfying solutions are recorded after the warm-up
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    solutions: Option<u64>,
+    /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    overrides: Vec<String>,
+}
+
+impl Wanted {
+    /// Reads the scenario, with all that the command line says in force.
+    pub(super) fn recipe(self) -> Result<Recipe, Failure> {
+        let flags = [
+            ("seed", self.seed),
+            ("chains", self.chains),
+            ("iterations", self.iterations),
+            ("warmup", self.warmup),
+            ("thin", self.thin),
+        ];
+        let given = flags.into_iter().filter_map(|(key, value)| {
+            let value = value?;
+            Some((format!("sampler.{key}={value}"), format!("--{key} {value}")))
+        });
+        let given: Vec<(String, String)> = given.collect();
+        let overrides = [self.overrides, given.iter().map(|(key, _)| key.clone()).collect()].concat();
+        let recipe = scenario_file::read(&self.scenario, overrides, self.solutions);
+        recipe.map_err(|failure| failure.naming(&given))
+    }
+}

@@ -1,0 +1,76 @@
+//! The command `plaus`, as a library: what other programs that bring it along call.
+//!
+//! ```
+//! // As at a terminal, with what it prints.
+//! assert_eq!(plaus_cli::run(["plaus", "explain", "sigma_d"]), 0);
+//! // In silence, with what is wrong as text.
+//! let wrong = plaus_cli::call(["diagnose", "no/such/run"]).unwrap_err();
+//! assert!(wrong.contains("there is no such run"), "{wrong}");
+//! ```
+//!
+//! Data goes to stdout, progress and errors to stderr. Exit codes: 0 done, 1 no satisfying sample or failed
+//! diagnostics, 2 a wrong scenario, command
+//! line or run, 130 interrupted with a checkpoint.
+
+mod clock;
+mod commands;
+mod console;
+mod failure;
+mod interrupt;
+mod label;
+mod plots;
+mod progress;
+mod report;
+mod scenario_file;
+mod svg;
+mod table;
+
+pub use label::of as label_of;
+pub use report::to_json as diagnosis_to_json;
+
+use clap::Parser;
+use failure::{Failure, Outcome};
+use std::ffi::OsString;
+
+/// Samples many plausible animations of one scenario.
+#[derive(Parser)]
+#[command(name = "plaus", version, about, max_term_width = 100, arg_required_else_help = true)]
+#[command(after_help = "Start: `plaus new ball2d ball.toml`, then `plaus sample ball.toml --out run`.\n\
+    Exit codes: 0 done; 1 no satisfying sample, or failed diagnostics; 2 wrong scenario, command line or run; 130 interrupted, \
+    with a checkpoint.")]
+struct Cli {
+    #[command(subcommand)]
+    command: commands::Command,
+}
+
+/// Does what a command line says, its first word being the program's name, and gives the exit code.
+pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
+    let command = match Cli::try_parse_from(arguments) {
+        Ok(Cli { command }) => command,
+        Err(error) => {
+            let _ = error.print(); // nobody is left to be told that it cannot be said
+            return error.exit_code() as u8;
+        }
+    };
+    match command.run() {
+        Ok(Outcome::Done) => 0,
+        Ok(Outcome::Unsatisfied) => 1,
+        Ok(Outcome::Interrupted) => interrupt::EXIT,
+        Err(failure) => failure.report(),
+    }
+}
+
+/// Does what a command line without the program's name says, and gives what is wrong as text instead of printing it.
+///
+/// # Errors
+/// What the command would print on stderr before it ends with exit code 2.
+pub fn call<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> Result<(), String> {
+    let words = arguments.into_iter().map(Into::into);
+    let all = std::iter::once(OsString::from("plaus")).chain(words);
+    let Cli { command } = Cli::try_parse_from(all).map_err(|error| error.to_string())?;
+    match command.run() {
+        Ok(_) | Err(Failure::ReaderGone) => Ok(()),
+        Err(Failure::Message(message)) => Err(message),
+        Err(Failure::Scenario(error)) => Err(error.to_string()),
+    }
+}

@@ -1,0 +1,282 @@
+//! A target that something more is asked of: `p_w · p_c · p_r`, where a [`Requirement`] judges the state that the
+//! target made.
+//!
+//! The target's own moves propose for it ([`Required::moves`]), its simulation still stops early, and the requirement
+//! is asked last, only where
+//! its answer can change the decision. So what is dear to judge, a function of a script for one, is judged seldom, and
+//! the chain stays exact.
+
+use crate::adapt::Scale;
+use crate::chain::ChainError;
+use crate::moves::{Mixture, Move, Path, Proposal};
+use crate::record::Block;
+use crate::run::{Control, Ending, Plan, Progress, Pulse, RunError, Sink, Snapshot, Start, run_some};
+use crate::target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
+use plaus_dist::{LogDensity, LogPotential, LogRatio, Stream};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What a requirement says of a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mark {
+    /// Log of the factor it brings to the target, up to a constant.
+    pub log: LogPotential,
+    /// Whether it is met: a state that satisfies its target's constraint is a solution only where it is.
+    pub met: bool,
+}
+
+/// Something more that is asked of a target's states. It must be a function of the state alone: the same state, the
+/// same mark.
+pub trait Requirement<T: Target>: Sync {
+    /// The largest log potential there is, or anything above; `None` where there is no such bound, and then no
+    /// simulation stops early.
+    fn most(&self) -> Option<LogPotential>;
+
+    /// Judges a state.
+    ///
+    /// # Errors
+    /// [`ModelError`] where it cannot.
+    fn judge(&self, target: &T, state: &StateOf<T>) -> Result<Mark, ModelError>;
+}
+
+/// An outcome with the whole state of the target it came from, and its mark.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged<D, O> {
+    /// The state as the target alone has it.
+    pub seen: State<D, O>,
+    /// What the requirement says of it.
+    pub mark: Mark,
+}
+
+/// The judged state of a target.
+type JudgedOf<T> = Judged<<T as Target>::Draw, <T as Target>::Outcome>;
+
+/// Where the chains of a target go on from.
+type StartsOf<T> = Vec<Start<<T as Target>::Draw, <T as Target>::Outcome>>;
+
+/// A target under a requirement.
+#[derive(Debug)]
+pub struct Required<'a, T, R> {
+    target: &'a T,
+    requirement: R,
+}
+
+impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
+    /// `target` under `requirement`.
+    pub fn new(target: &'a T, requirement: R) -> Self {
+        Self { target, requirement }
+    }
+
+    /// The target's moves, with their probabilities, as moves of this one.
+    #[must_use]
+    pub fn moves(moves: &Mixture<T>) -> Mixture<Self>
+    where
+        T: 'static,
+    {
+        moves.map_all(|kernel| Box::new(Raised::<T>(kernel)))
+    }
+
+    /// Judges a state of the target.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the requirement fails, or its log potential exceeds what it said is the most.
+    pub fn judge(&self, seen: StateOf<T>) -> Result<State<T::Draw, JudgedOf<T>>, ModelError> {
+        let mark = self.requirement.judge(self.target, &seen)?;
+        if let Some(most) = self.requirement.most().filter(|most| mark.log > *most) {
+            let (found, most) = (mark.log.value(), most.value());
+            return Err(ModelError::new(format!(
+                "a requirement's log potential {found} exceeds the most it said, {most}"
+            )));
+        }
+        let (draw, log_prior) = (seen.draw.clone(), seen.log_prior);
+        let log_constraint = seen.log_constraint + mark.log;
+        Ok(State { draw, outcome: Judged { seen, mark }, log_prior, log_constraint })
+    }
+
+    /// A start of the target's chain, as [`Plain`] left it, as a start of this one's: every state is judged again.
+    fn restore(&self, start: Start<T::Draw, T::Outcome>) -> Result<Start<T::Draw, JudgedOf<T>>, ModelError> {
+        let Start { snapshot, distinct } = start;
+        let snapshot = snapshot.try_map(|recorded| {
+            let own = self.target.log_constraint(&recorded.outcome)?;
+            let wanted = recorded.log_constraint;
+            let again = self.judge(State { log_constraint: own, ..recorded })?;
+            if again.log_constraint == wanted {
+                return Ok(again);
+            }
+            let (was, is) = (wanted.value(), again.log_constraint.value());
+            Err(ModelError::new(format!(
+                "the requirement is another one: a stored state has log potential {was}, judged again it has {is}"
+            )))
+        })?;
+        Ok(Start { snapshot, distinct })
+    }
+
+    /// What the target's own constraint must exceed where this one's must exceed `floor`. Rounding is monotone: own ≤
+    /// `seen` ≤ floor − most
+    /// gives own + log ≤ floor, also in floating point.
+    fn floor_seen(&self, floor: LogPotential) -> Result<LogPotential, ModelError> {
+        let Some(most) = self.requirement.most() else { return Ok(LogPotential::ZERO) };
+        if most == LogPotential::ONE || floor.is_zero() {
+            return Ok(floor);
+        }
+        let seen = (floor.value() - most.value()).next_down();
+        Ok(LogPotential::new(seen.min(f64::MAX))?)
+    }
+}
+
+impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
+    type Draw = T::Draw;
+    type Outcome = Judged<T::Draw, T::Outcome>;
+    type Scratch = T::Scratch;
+
+    fn start(&self, stream: &mut Stream) -> T::Draw {
+        self.target.start(stream)
+    }
+
+    fn log_prior(&self, draw: &T::Draw) -> Result<LogDensity, ModelError> {
+        self.target.log_prior(draw)
+    }
+
+    fn simulate(
+        &self,
+        draw: &T::Draw,
+        current: Option<&StateOf<Self>>,
+        floor: LogPotential,
+        scratch: &mut T::Scratch,
+    ) -> Result<Simulated<Self::Outcome>, ModelError> {
+        let seen_floor = self.floor_seen(floor)?;
+        let current = current.map(|state| &state.outcome.seen);
+        let Simulated::Complete(outcome) = self.target.simulate(draw, current, seen_floor, scratch)? else {
+            return Ok(Simulated::CannotExceedFloor);
+        };
+        let log_constraint = self.target.log_constraint(&outcome)?;
+        if log_constraint <= seen_floor && !floor.is_zero() {
+            return Ok(Simulated::CannotExceedFloor);
+        }
+        let log_prior = self.target.log_prior(draw)?;
+        let seen = State { draw: draw.clone(), outcome, log_prior, log_constraint };
+        self.judge(seen).map(|state| Simulated::Complete(state.outcome))
+    }
+
+    fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError> {
+        Ok(outcome.seen.log_constraint + outcome.mark.log)
+    }
+
+    fn settle(&self, accepted: bool, scratch: &mut T::Scratch) {
+        self.target.settle(accepted, scratch);
+    }
+}
+
+impl<T: Goal, R: Requirement<T>> Goal for Required<'_, T, R> {
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+        if state.outcome.mark.met { self.target.class(&state.outcome.seen) } else { None }
+    }
+}
+
+/// A move of the target, as one of the target under a requirement.
+struct Raised<T: Target>(Arc<dyn Move<T>>);
+
+impl<'a, T: Target + 'static, R: Requirement<T>> Move<Required<'a, T, R>> for Raised<T> {
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    fn propose(
+        &self,
+        target: &Required<'a, T, R>,
+        current: &StateOf<Required<'a, T, R>>,
+        candidate: &mut T::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        self.0.propose(target.target, &current.outcome.seen, candidate, stream)
+    }
+
+    fn log_ratio(
+        &self,
+        target: &Required<'a, T, R>,
+        from: &StateOf<Required<'a, T, R>>,
+        to: &StateOf<Required<'a, T, R>>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio(target.target, &from.outcome.seen, &to.outcome.seen, path)
+    }
+
+    fn reverse(&self, path: Path) -> Path {
+        self.0.reverse(path)
+    }
+
+    fn log_ratio_after(
+        &self,
+        target: &Required<'a, T, R>,
+        current: &StateOf<Required<'a, T, R>>,
+        candidate: &StateOf<Required<'a, T, R>>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio_after(target.target, &current.outcome.seen, &candidate.outcome.seen, path)
+    }
+
+    fn scales(&self) -> Vec<Scale> {
+        self.0.scales()
+    }
+
+    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<Required<'a, T, R>>>> {
+        Some(Box::new(Raised::<T>(Arc::from(self.0.at_scales(values)?))))
+    }
+
+    fn scale_of(&self, path: Path) -> Option<usize> {
+        self.0.scale_of(path)
+    }
+}
+
+/// As [`run_some`](crate::run_some()), of the target that `required` is about, with its `moves`, to a sink of
+/// that target: what is recorded are its states, with
+/// the log constraint of both. The plan comes with which of its chains to run, and where they go on from, as such a run
+/// left them.
+///
+/// # Errors
+/// As [`run()`](crate::run()); also where a stored state is judged otherwise than when it was made.
+pub fn run<T: Goal + 'static, R: Requirement<T>, K: Sink<T::Draw, T::Outcome>>(
+    required: &Required<'_, T, R>,
+    moves: &Mixture<T>,
+    (plan, some, starts): (Plan, Range<u32>, StartsOf<T>),
+    threads: usize,
+    sink: &mut K,
+    pulse: &Pulse,
+) -> Result<Ending, RunError<K::Error>> {
+    let moves = Required::<T, R>::moves(moves);
+    let restored = (some.start..).zip(starts).map(|(chain, start)| {
+        let iteration = start.snapshot.end_iteration;
+        let failed = |source| RunError::Chain { chain, source: ChainError::Model { iteration, step: None, source } };
+        required.restore(start).map_err(failed)
+    });
+    let restored = restored.collect::<Result<Vec<_>, _>>()?;
+    run_some(required, &moves, plan, some, restored, threads, &mut Plain(sink), pulse)
+}
+
+/// Hands what a chain under a requirement leaves behind to a sink of the target: states without their marks, but with
+/// the log constraint of both.
+struct Plain<'s, K>(&'s mut K);
+
+/// A state without its mark, but with the log constraint of both.
+fn plain<D, O>(state: State<D, Judged<D, O>>) -> State<D, O> {
+    let State { draw, outcome, log_prior, log_constraint } = state;
+    State { draw, outcome: outcome.seen.outcome, log_prior, log_constraint }
+}
+
+impl<D: Clone, O: Clone, K: Sink<D, O>> Sink<D, Judged<D, O>> for Plain<'_, K> {
+    type Error = K::Error;
+
+    fn block(
+        &mut self,
+        chain: u32,
+        block: Block<D, Judged<D, O>>,
+        snapshot: &Snapshot<D, Judged<D, O>>,
+    ) -> Result<(), K::Error> {
+        let snapshot = snapshot.clone().try_map(|state| Ok(plain(state)))?;
+        self.0.block(chain, block.map(plain), &snapshot)
+    }
+
+    fn round(&mut self, progress: &Progress<'_>) -> Result<Control, K::Error> {
+        self.0.round(progress)
+    }
+}

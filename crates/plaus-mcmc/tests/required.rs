@@ -1,0 +1,99 @@
+//! A target under a requirement: it keeps the law it should have, and is asked seldom. Wrong twins: a requirement that
+//! does not answer for the state alone, and one
+//! that exceeds what it said is the most.
+
+// Helpers outside of `#[test]` functions panic as tests do.
+#![allow(clippy::unwrap_used)]
+
+mod toys;
+
+use plaus_dist::{LogPotential, Seed};
+use plaus_mcmc::check::{OneStep, OneStepReport, Statistic, one_step, rejection};
+use plaus_mcmc::{Chain, Goal, Judged, Mark, Mixture, ModelError, Required, Requirement, State, StateOf};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use toys::ring::{Redraw, Ring, Walk};
+
+const PLAN: OneStep = OneStep { seed: Seed(21), samples: 40_000, steps: 1, cells: 16, false_alarm: 1e-6 };
+
+/// Prefers places beyond the fifth, by a factor e; counts how often it is asked.
+#[derive(Default)]
+struct Beyond {
+    most: Option<f64>,
+    asked: AtomicU64,
+    /// The wrong twin answers by how often it was asked.
+    fickle: bool,
+}
+
+impl Requirement<Ring> for &Beyond {
+    fn most(&self) -> Option<LogPotential> {
+        self.most.map(|most| LogPotential::new(most).unwrap())
+    }
+
+    fn judge(&self, _: &Ring, state: &StateOf<Ring>) -> Result<Mark, ModelError> {
+        let asked = self.asked.fetch_add(1, Relaxed);
+        let met = state.draw > 5;
+        let log = if self.fickle { (asked % 2) as f64 } else { f64::from(u8::from(met)) };
+        Ok(Mark { log: LogPotential::new(log)?, met })
+    }
+}
+
+fn mixture() -> Mixture<Ring> {
+    Mixture::new(vec![(0.5, Box::new(Walk) as _), (0.5, Box::new(Redraw { symmetric: false }) as _)]).unwrap()
+}
+
+fn stepped(beyond: &Beyond) -> OneStepReport {
+    let ring = Ring::of_nine(1.0);
+    let required = Required::new(&ring, beyond);
+    let moves = Required::moves(&mixture());
+    let place = Statistic::new("place", |state: &State<usize, Judged<usize, usize>>| state.draw as f64);
+    let bound = LogPotential::new(2.0).unwrap();
+    one_step(&required, &moves, rejection(&required, bound), &[place], PLAN).unwrap()
+}
+
+#[test]
+fn a_step_leaves_the_law_of_both_as_it_is() {
+    for most in [None, Some(1.0), Some(1.5)] {
+        let report = stepped(&Beyond { most, ..Beyond::default() });
+        assert!(report.passed(), "{report}");
+    }
+    let fickle = stepped(&Beyond { fickle: true, ..Beyond::default() });
+    assert!(!fickle.passed(), "{fickle}");
+}
+
+/// Places and whether they satisfy, and how often the requirement was asked.
+fn walked(beyond: &Beyond) -> (Vec<(usize, bool)>, u64) {
+    let ring = Ring::of_nine(1.0);
+    let required = Required::new(&ring, beyond);
+    let moves = Required::moves(&mixture());
+    let mut chain = Chain::start(&required, &moves, Seed(4).chain(0)).unwrap();
+    let mut seen = Vec::new();
+    for _ in 0..5000 {
+        chain.step().unwrap();
+        seen.push((chain.state().draw, required.class(chain.state()).is_some()));
+    }
+    (seen, beyond.asked.load(Relaxed))
+}
+
+#[test]
+fn who_says_what_is_the_most_is_asked_less_often_and_nothing_else_changes() {
+    let (plain, often) = walked(&Beyond::default());
+    let (saving, seldom) = walked(&Beyond { most: Some(1.0), ..Beyond::default() });
+    assert_eq!(plain, saving);
+    assert!(seldom < often, "{seldom} calls, {often} without a bound");
+    assert!(plain.iter().all(|&(place, satisfied)| satisfied == (place > 5 && place.is_multiple_of(2))));
+    assert!(plain.iter().any(|state| state.1));
+}
+
+#[test]
+fn more_than_the_most_is_an_error() {
+    let ring = Ring::of_nine(1.0);
+    let beyond = Beyond { most: Some(0.5), ..Beyond::default() };
+    let required = Required::new(&ring, &beyond);
+    let moves = Required::moves(&mixture());
+    let walk = || -> Result<(), plaus_mcmc::ChainError> {
+        let mut chain = Chain::start(&required, &moves, Seed(4).chain(0))?;
+        (0..5000).try_for_each(|_| chain.step().map(drop))
+    };
+    let error = walk().unwrap_err().to_string();
+    assert!(error.contains("log potential 1 exceeds the most it said, 0.5"), "{error}");
+}

@@ -1,0 +1,68 @@
+"""Tell a physical world what must happen, and get many different plausible ways in which it could.
+
+    import plaus
+
+    strikes = plaus.sample(plaus.Scenario.default("bowling"), solutions=12)
+    strikes.gallery()
+
+A `Scenario` says what must happen; `sample` draws animations from the distribution of all that fit, by Markov chain
+Monte Carlo, and gives a `Run`: its draws as arrays, its solutions, their motion and impacts, a page that plays them.
+A `Requirement` asks for what no scenario file can say, by a function of yours. `plaus.sim` is the simulator alone.
+
+Lengths are metres, times seconds, angles radians unless a name says otherwise (`offset_mm`); y points up in motions.
+"""
+
+from plaus._plaus import (
+    CheckReport,
+    Outcome,
+    Problem,
+    Rng,
+    RunError,
+    Scenario,
+    ScenarioError,
+    WorldError,
+    __version__,
+)
+from plaus._motion import Events, Poses, Replay
+from plaus._requirement import Requirement
+from plaus._run import Gallery, Run, Sample, Solution, Table
+from plaus._sampling import Progress, resume, sample
+from plaus._target import Move, Target, TargetRun, check_moves, sample_target
+
+__all__ = [
+    "CheckReport",
+    "Events",
+    "Gallery",
+    "Move",
+    "Outcome",
+    "Poses",
+    "Problem",
+    "Progress",
+    "Replay",
+    "Requirement",
+    "Rng",
+    "Run",
+    "RunError",
+    "Sample",
+    "Scenario",
+    "ScenarioError",
+    "Solution",
+    "Table",
+    "Target",
+    "TargetRun",
+    "WorldError",
+    "__version__",
+    "check_moves",
+    "resume",
+    "sample",
+    "sample_target",
+]
+
+
+def __getattr__(name: str) -> object:
+    # The simulator is loaded when it is first asked for: `import plaus` stays quick.
+    if name == "sim":
+        import importlib
+
+        return importlib.import_module("plaus.sim")
+    raise AttributeError(f"module 'plaus' has no attribute {name!r}")

@@ -1,0 +1,58 @@
+//! The extension module behind the Python package `plaus`: what Python calls, and nothing that Python can say as well.
+//!
+//! The package itself, with its documentation, is in `python/plaus`.
+
+mod arrays;
+mod clock;
+mod errors;
+mod motion;
+mod requirement;
+mod run;
+mod sampling;
+mod scenario;
+mod sim;
+mod target;
+
+use pyo3::prelude::*;
+
+/// Compiled parts of `plaus`. Use the package.
+#[pymodule]
+mod _plaus {
+    use super::*;
+    use pyo3::exceptions::PyValueError;
+    use std::ffi::OsString;
+
+    #[pymodule_export]
+    use crate::errors::{Problem, RunError, ScenarioError, WorldError};
+    #[pymodule_export]
+    use crate::motion::Motion;
+    #[pymodule_export]
+    use crate::requirement::{Asked, Outcome};
+    #[pymodule_export]
+    use crate::run::RunFolder;
+    #[pymodule_export]
+    use crate::sampling::sample;
+    #[pymodule_export]
+    use crate::scenario::{_scenario, Scenario};
+
+    #[pymodule_export]
+    use crate::sim::SimWorld;
+    #[pymodule_export]
+    use crate::target::{CheckReport, Functions, Kernel, Rng, check, sample_target};
+
+    #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "the name in Python")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+
+    /// Does what a command line says, its first word being the program's name, and gives the exit code.
+    #[pyfunction]
+    fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+        py.detach(|| plaus_cli::run(arguments))
+    }
+
+    /// Does what a command line without the program's name says; what is wrong is raised.
+    #[pyfunction]
+    fn call(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<()> {
+        py.detach(|| plaus_cli::call(arguments)).map_err(PyValueError::new_err)
+    }
+}

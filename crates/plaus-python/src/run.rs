@@ -1,0 +1,269 @@
+//! Runs, read back.
+
+use crate::arrays::frozen;
+use crate::errors::{RunError, of_run, room, volume};
+use crate::motion::Motion;
+use plaus_gallery::Options;
+use plaus_run::replay::{Replay, replay, replay_at, replay_each};
+use plaus_run::{Diagnosis, Error, Folder, Phase, RunFileProblem, RunOf, RunVisitor, SampleId, solutions};
+use plaus_scenes::{AccuracyPreset, Role, Scalar, Scene};
+use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use serde_json::json;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A run in a folder.
+#[pyclass(frozen, module = "plaus._plaus")]
+pub(crate) struct RunFolder {
+    run: plaus_run::Run,
+}
+
+/// Does `work` without Python's lock, on threads of its own: those of a process that forked are not there in the child.
+pub(crate) fn apart<T: Send>(py: Python<'_>, threads: usize, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| RunError::new_err(format!("cannot start worker threads: {error}")))?;
+    Ok(py.detach(|| pool.install(work)))
+}
+
+impl RunFolder {
+    fn visit<V>(&self, py: Python<'_>, visitor: V) -> PyResult<V::Made>
+    where
+        V: Look + Send,
+        V::Made: Send,
+    {
+        struct Visit<V>(V);
+        impl<V: Look> RunVisitor for Visit<V> {
+            type Output = Result<V::Made, Error>;
+            fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+                self.0.look(&run)
+            }
+        }
+        let made = apart(py, 0, || self.run.visit(Visit(visitor)).and_then(|made| made))?;
+        made.map_err(|error| of_run(py, &error))
+    }
+}
+
+/// Something to find out about a run.
+trait Look {
+    type Made;
+    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error>;
+}
+
+/// Draws of the warm-up and of the sampling phase that each chain has, and iterations done.
+struct Size;
+
+impl Look for Size {
+    type Made = (u64, u64, u64);
+    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
+        Ok((run.draws(Phase::Warmup), run.draws(Phase::Sampling), run.iterations()))
+    }
+}
+
+/// All draws of a phase, a column a number.
+struct Columns(Phase);
+
+struct Table {
+    scalars: Vec<Scalar>,
+    chains: usize,
+    draws: usize,
+    /// Of the scalars, then log p, then the accepted share.
+    numbers: Vec<Vec<f64>>,
+    satisfied: Vec<bool>,
+}
+
+impl Look for Columns {
+    type Made = PyResult<Table>;
+    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
+        let scalars = run.scene().scalars();
+        let (chains, draws) = (run.chains().len(), run.draws(self.0) as usize);
+        let rooms = || -> PyResult<_> {
+            let count = volume(&[chains, draws])?;
+            let numbers: Vec<Vec<f64>> = (0..scalars.len() + 2).map(|_| room(0.0, count)).collect::<PyResult<_>>()?;
+            Ok((numbers, room(false, count)?))
+        };
+        let (mut numbers, mut satisfied) = match rooms() {
+            Ok(rooms) => rooms,
+            Err(error) => return Ok(Err(error)),
+        };
+        if draws > 0 {
+            let mut parts: Vec<(Vec<&mut [f64]>, &mut [bool])> =
+                satisfied.chunks_mut(draws).map(|part| (Vec::new(), part)).collect();
+            for column in &mut numbers {
+                column.chunks_mut(draws).zip(&mut parts).for_each(|(chunk, part)| part.0.push(chunk));
+            }
+            run.chains().into_par_iter().zip(parts).try_for_each(|(chain, part)| self.fill(run, chain, part))?;
+        }
+        Ok(Ok(Table { scalars, chains, draws, numbers, satisfied }))
+    }
+}
+
+impl Columns {
+    fn fill<S: Scene>(
+        &self,
+        run: &RunOf<'_, S>,
+        chain: u32,
+        (mut numbers, satisfied): (Vec<&mut [f64]>, &mut [bool]),
+    ) -> Result<(), Error> {
+        let thin = run.run().manifest().plan.thin as f64;
+        let count = numbers.len() - 2;
+        let mut values = vec![0.0; count];
+        run.walk(chain, self.0, |stretch| -> Result<(), Error> {
+            run.scene().write_scalars(&stretch.entry.state, &mut values);
+            let first = stretch.draw as usize;
+            let span = first..first + stretch.draws as usize;
+            for (column, &value) in numbers.iter_mut().zip(&values) {
+                column[span.clone()].fill(value);
+            }
+            numbers[count][span.clone()].fill(stretch.entry.state.log_p().value());
+            // As in an export: the first draw of a stretch is where something was accepted; a swap comes on top.
+            numbers[count + 1][first] = (f64::from(stretch.accepted) / thin).min(1.0);
+            satisfied[span].fill(stretch.entry.class.is_some());
+            Ok(())
+        })
+    }
+}
+
+struct Solutions;
+
+impl Look for Solutions {
+    type Made = Vec<(u32, u64, u64, f64)>;
+    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
+        let found = solutions::distinct(run)?;
+        Ok(found.iter().map(|one| (one.sample.chain, one.sample.draw, one.iteration, one.log_p)).collect())
+    }
+}
+
+/// Samples simulated again, each as it was or at another accuracy.
+struct Replays(Vec<SampleId>, Option<AccuracyPreset>);
+
+impl Look for Replays {
+    type Made = Vec<Replay>;
+    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
+        match (self.1, self.0.as_slice()) {
+            (Some(accuracy), all) => all.iter().map(|&sample| replay_at(run, sample, accuracy)).collect(),
+            (None, &[one]) => Ok(vec![replay(run, one)?]),
+            (None, all) => replay_each(run, all, |replay| replay),
+        }
+    }
+}
+
+struct Page(Options);
+
+impl Look for Page {
+    type Made = plaus_gallery::Gallery;
+    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
+        plaus_gallery::gallery(run, &self.0)
+    }
+}
+
+struct Diagnose(Option<u64>);
+
+impl Look for Diagnose {
+    type Made = Diagnosis;
+    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
+        Ok(Diagnosis::of(run, self.0)?)
+    }
+}
+
+fn phase(warmup: bool) -> Phase {
+    if warmup { Phase::Warmup } else { Phase::Sampling }
+}
+
+/// A column: name, unit, role, and an array (chain, draw).
+type Column<'py> = (String, &'static str, &'static str, Bound<'py, PyAny>);
+
+#[pymethods]
+impl RunFolder {
+    #[new]
+    #[pyo3(signature = (path, salvage = false))]
+    fn open(py: Python<'_>, path: PathBuf, salvage: bool) -> PyResult<Self> {
+        let run = plaus_run::Run::open(&Folder::new(path)).map_err(|error| match &error {
+            Error::File(file) if matches!(file.problem, RunFileProblem::Missing) => {
+                PyFileNotFoundError::new_err(error.to_string())
+            }
+            _ => of_run(py, &error),
+        })?;
+        Ok(Self { run: if salvage { run.salvaged() } else { run } })
+    }
+
+    /// What the run is, as JSON.
+    fn manifest(&self) -> PyResult<String> {
+        serde_json::to_string(self.run.manifest()).map_err(|error| RunError::new_err(error.to_string()))
+    }
+
+    /// Draws of the warm-up and of the sampling phase that each chain has, and iterations done.
+    fn size(&self, py: Python<'_>) -> PyResult<(u64, u64, u64)> {
+        self.visit(py, Size)
+    }
+
+    /// Numbers of the chains that the folder holds: the first, and one past the last.
+    fn chains(&self) -> (u32, u32) {
+        let chains = self.run.manifest().chains();
+        (chains.start, chains.end)
+    }
+
+    fn is_being_written(&self) -> bool {
+        self.run.folder().is_being_written()
+    }
+
+    /// Columns of a phase: the scene's numbers, then `lp`, `acceptance_rate` and `satisfied`.
+    fn columns<'py>(&self, py: Python<'py>, warmup: bool) -> PyResult<Vec<Column<'py>>> {
+        let Table { scalars, chains, draws, numbers, satisfied } = self.visit(py, Columns(phase(warmup)))??;
+        let role = |role| match role {
+            Role::Draw => "draw",
+            Role::Outcome => "outcome",
+        };
+        let own = scalars.into_iter().map(|scalar| (scalar.name, scalar.unit, role(scalar.role)));
+        let more = ["lp", "acceptance_rate"].map(|name| (name.to_owned(), "", "stat"));
+        let mut columns: Vec<Column<'py>> = Vec::new();
+        for ((name, unit, role), values) in own.chain(more).zip(numbers) {
+            columns.push((name, unit, role, frozen(py, [chains, draws], values)?));
+        }
+        columns.push(("satisfied".to_owned(), "", "stat", frozen(py, [chains, draws], satisfied)?));
+        Ok(columns)
+    }
+
+    /// The first draw of each distinct solution: chain, draw, iteration, log p.
+    fn solutions(&self, py: Python<'_>) -> PyResult<Vec<(u32, u64, u64, f64)>> {
+        self.visit(py, Solutions)
+    }
+
+    /// What is known of samples that are simulated again, as JSON, and their motions.
+    #[pyo3(signature = (samples, accuracy = None))]
+    fn replay(
+        &self,
+        py: Python<'_>,
+        samples: Vec<(u32, u64)>,
+        accuracy: Option<String>,
+    ) -> PyResult<Vec<(String, Motion)>> {
+        let samples = samples.into_iter().map(|(chain, draw)| SampleId { chain, draw }).collect();
+        let replays = self.visit(py, Replays(samples, accuracy.map(|name| preset(&name)).transpose()?))?;
+        let manifest = self.run.manifest();
+        let show = |replay: Replay| {
+            let facts = plaus_cli::label_of(manifest, &replay).facts;
+            (json!(facts).to_string(), Motion(Arc::new(replay.animation)))
+        };
+        Ok(replays.into_iter().map(show).collect())
+    }
+
+    /// A page that plays solutions, how many it shows, and how many there are.
+    fn gallery(&self, py: Python<'_>, count: usize) -> PyResult<(String, usize, usize)> {
+        let options = Options { count, run: self.run.folder().path().display().to_string() };
+        let made = self.visit(py, Page(options))?;
+        Ok((made.html, made.shown, made.distinct))
+    }
+
+    /// What `plaus diagnose --json` says.
+    #[pyo3(signature = (most = None))]
+    fn diagnose(&self, py: Python<'_>, most: Option<u64>) -> PyResult<String> {
+        let diagnosis = self.visit(py, Diagnose(most))?;
+        Ok(plaus_cli::diagnosis_to_json(self.run.manifest(), &diagnosis).to_string())
+    }
+}
+
+/// A preset of accuracy by name.
+fn preset(name: &str) -> PyResult<AccuracyPreset> {
+    name.parse().map_err(PyValueError::new_err)
+}

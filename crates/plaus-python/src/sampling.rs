@@ -1,0 +1,261 @@
+//! Sampling in threads of its own, while Python waits without its lock, looks at how far it is, and can stop it.
+
+use crate::clock::now;
+use crate::errors::{RunError, of_run};
+use crate::requirement::{Asked, ByPython};
+use crate::scenario::Scenario;
+use plaus_mcmc::{Control, Ending, Plan, Progress, Pulse};
+use plaus_run::disk::{Disk, RealDisk};
+use plaus_run::{Folder, Manifest, More, Recipe, Sampling, Watch};
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+use std::{io, panic, thread};
+
+/// How often it is looked whether there is a reason to stop.
+const TICK: Duration = Duration::from_millis(50);
+
+/// What is known of a run while it goes on.
+#[derive(Default)]
+struct Board {
+    pulse: Arc<Pulse>,
+    /// The plan, and iterations of each chain that were done before.
+    plan: Mutex<Option<(Plan, u64)>>,
+}
+
+/// Makes a run durable about once a second.
+struct Watching {
+    board: Arc<Board>,
+    checkpoint: f64,
+    pause: f64,
+    writing: Option<f64>,
+}
+
+impl Watch for Watching {
+    fn begin(&mut self, manifest: &Manifest, done: u64) {
+        self.checkpoint = now();
+        *self.board.plan.lock().unwrap_or_else(PoisonError::into_inner) = Some((manifest.plan, done));
+    }
+
+    fn round(&mut self, _: &Progress<'_>) -> Control {
+        if self.board.pulse.is_stopped() { Control::Stop } else { Control::Continue }
+    }
+
+    fn checkpoint_due(&mut self) -> bool {
+        let due = now() - self.checkpoint >= self.pause;
+        self.writing = due.then(now);
+        due
+    }
+
+    fn checkpoint_done(&mut self) {
+        if let Some(begun) = self.writing.take() {
+            self.pause = (20.0 * (now() - begun)).max(1.0);
+        }
+        self.checkpoint = now();
+    }
+
+    fn pulse(&self) -> Arc<Pulse> {
+        Arc::clone(&self.board.pulse)
+    }
+}
+
+/// A disk for runs that end with the program: nothing waits until it is safe from a power cut.
+struct Fleeting;
+
+impl Disk for Fleeting {
+    fn append(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        RealDisk.append(path, bytes)
+    }
+
+    fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        std::fs::write(path, bytes)
+    }
+
+    fn sync(&self, _: &Path) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        RealDisk.rename(from, to)
+    }
+
+    fn truncate(&self, path: &Path, length: u64) -> io::Result<()> {
+        RealDisk.truncate(path, length)
+    }
+
+    fn remove(&self, path: &Path) -> io::Result<()> {
+        RealDisk.remove(path)
+    }
+
+    fn create_folder(&self, path: &Path) -> io::Result<()> {
+        RealDisk.create_folder(path)
+    }
+}
+
+/// What to do.
+enum Task {
+    Sample(Recipe),
+    Resume(More),
+}
+
+struct Job {
+    task: Task,
+    folder: Folder,
+    threads: usize,
+    fleeting: bool,
+    asked: Option<Arc<Py<Asked>>>,
+    board: Arc<Board>,
+}
+
+impl Job {
+    fn run(self) -> Result<Ending, plaus_run::Error> {
+        let Self { task, folder, threads, fleeting, asked, board } = self;
+        let mut watch = Watching { board, checkpoint: now(), pause: 0.2, writing: None };
+        let disk: &dyn Disk = if fleeting { &Fleeting } else { &RealDisk };
+        let sampling = Sampling { threads, disk, watch: &mut watch };
+        match (task, asked) {
+            (Task::Sample(recipe), None) => plaus_run::sample(&folder, &recipe, sampling),
+            (Task::Sample(recipe), Some(asked)) => plaus_run::sample_by(&folder, &recipe, sampling, &ByPython(asked)),
+            (Task::Resume(more), None) => plaus_run::resume(&folder, more, sampling),
+            (Task::Resume(more), Some(asked)) => plaus_run::resume_by(&folder, more, sampling, &ByPython(asked)),
+        }
+    }
+}
+
+/// What came of a job: none where its thread panicked.
+type Done = Option<Result<Ending, plaus_run::Error>>;
+
+/// Why a run ended before its plan said.
+#[derive(Default)]
+struct Stop {
+    why: Option<&'static str>,
+    raised: Option<PyErr>,
+}
+
+impl Stop {
+    fn because(&mut self, why: &'static str, pulse: &Pulse) {
+        self.why.get_or_insert(why);
+        pulse.stop();
+    }
+}
+
+/// Waits for a job, looking now and then whether it is to stop.
+struct Wait<'py> {
+    py: Python<'py>,
+    board: Arc<Board>,
+    max_time: Option<f64>,
+    poll: Option<Bound<'py, PyAny>>,
+    interval: f64,
+}
+
+impl Wait<'_> {
+    fn over(&self, done: Receiver<Done>) -> PyResult<(Ending, Stop, f64)> {
+        let done = Mutex::new(done);
+        let (mut stop, begun, mut shown) = (Stop::default(), now(), f64::NEG_INFINITY);
+        loop {
+            let wait = || done.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(TICK);
+            match self.py.detach(wait) {
+                Ok(Some(Ok(ending))) => return Ok((ending, stop, now() - begun)),
+                Ok(Some(Err(error))) => return Err(stop.raised.unwrap_or_else(|| of_run(self.py, &error))),
+                Ok(None) | Err(RecvTimeoutError::Disconnected) => {
+                    let message = "plaus panicked while sampling: a bug of plaus; its message is on the standard error";
+                    return Err(RunError::new_err(message));
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if let Err(error) = self.py.check_signals() {
+                // The first asks for an end at the last round; the second does not wait for it.
+                if stop.why == Some("interrupted") || !error.is_instance_of::<PyKeyboardInterrupt>(self.py) {
+                    self.board.pulse.stop();
+                    return Err(error);
+                }
+                stop.because("interrupted", &self.board.pulse);
+            }
+            if self.max_time.is_some_and(|most| now() - begun >= most) {
+                stop.because("out_of_time", &self.board.pulse);
+            }
+            if stop.why.is_none() && now() - shown >= self.interval {
+                shown = now();
+                self.show(now() - begun, &mut stop);
+            }
+        }
+    }
+
+    fn show(&self, seconds: f64, stop: &mut Stop) {
+        let Some(poll) = &self.poll else { return };
+        let plan = *self.board.plan.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some((plan, before)) = plan else { return };
+        let chains = self.board.pulse.chains();
+        let ask = || -> PyResult<bool> {
+            let state = PyDict::new(self.py);
+            state.set_item("seconds", seconds)?;
+            state.set_item("warmup", plan.warmup)?;
+            state.set_item("iterations_planned", plan.end())?;
+            state.set_item("iterations_before", before)?;
+            state.set_item("solutions_wanted", plan.solutions)?;
+            state.set_item("distinct", self.board.pulse.distinct())?;
+            state.set_item("iterations", chains.iter().map(|chain| chain.iterations).collect::<Vec<_>>())?;
+            state.set_item("satisfied", chains.iter().map(|chain| chain.hits).collect::<Vec<_>>())?;
+            let answer = poll.call1((state,))?;
+            Ok(answer.is_none() || answer.is_truthy()?)
+        };
+        match ask() {
+            Ok(true) => {}
+            Ok(false) => stop.because("callback", &self.board.pulse),
+            Err(error) => {
+                stop.because("callback", &self.board.pulse);
+                stop.raised = Some(error);
+            }
+        }
+    }
+}
+
+/// Samples into `folder`, or goes on with the run there where `scenario` is None; gives how it ended, and seconds.
+#[pyfunction]
+#[pyo3(signature = (scenario, folder, *, overrides, solutions, iterations, threads, fleeting, max_time, asked, poll, interval))]
+#[allow(clippy::too_many_arguments, reason = "named in Python, which is the only caller")]
+pub(crate) fn sample<'py>(
+    py: Python<'py>,
+    scenario: Option<&Bound<'py, Scenario>>,
+    folder: PathBuf,
+    overrides: Vec<String>,
+    solutions: Option<u64>,
+    iterations: Option<u64>,
+    threads: usize,
+    fleeting: bool,
+    max_time: Option<f64>,
+    asked: Option<Py<Asked>>,
+    poll: Option<Bound<'py, PyAny>>,
+    interval: f64,
+) -> PyResult<(&'static str, f64)> {
+    let task = match scenario {
+        Some(scenario) => Task::Sample(Recipe { solutions, ..scenario.get().with(py, overrides)?.recipe }),
+        None => Task::Resume(More { iterations, solutions }),
+    };
+    let board = Arc::new(Board::default());
+    let asked = asked.map(Arc::new);
+    let job = Job { task, folder: Folder::new(folder), threads, fleeting, asked, board: Arc::clone(&board) };
+    let (tell, done) = sync_channel::<Done>(1);
+    let work = move || {
+        let made = panic::catch_unwind(panic::AssertUnwindSafe(|| job.run())).ok();
+        // Nobody listens any more where a second Ctrl-C came.
+        let _ = tell.send(made);
+    };
+    let spawned = thread::Builder::new().name("plaus".to_owned()).spawn(work);
+    spawned.map_err(|error| RunError::new_err(format!("cannot start a thread: {error}")))?;
+    let wait = Wait { py, board, max_time, poll, interval };
+    let (ending, stop, seconds) = wait.over(done)?;
+    if let Some(error) = stop.raised {
+        return Err(error);
+    }
+    let ending = match (ending, stop.why) {
+        (Ending::Complete, _) => "complete",
+        (Ending::EnoughSolutions, _) => "enough_solutions",
+        (Ending::Stopped, why) => why.unwrap_or("stopped"),
+    };
+    Ok((ending, seconds))
+}

@@ -1,0 +1,224 @@
+//! Scenarios: from a file, a text or a dictionary.
+
+use crate::errors::{ScenarioError, of_scenario};
+use plaus_run::Recipe;
+use plaus_scenes::scenario::ScenarioError as Wrong;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use std::path::PathBuf;
+use toml::{Table, Value};
+
+/// Longest scenario that is read, in bytes.
+const LONGEST: usize = 16 << 20;
+
+/// A scenario: a world, what must happen in it, and how it is sampled.
+///
+/// Made by `from_file`, `from_text`, `from_dict` or `default`, which read and check it: what is wrong is raised as
+/// `ScenarioError`, all of it at once.
+/// A scenario never changes; `set` gives another one.
+#[pyclass(frozen, module = "plaus")]
+#[derive(Debug, Clone)]
+pub(crate) struct Scenario {
+    pub(crate) recipe: Recipe,
+    /// What it is called in messages.
+    shown: String,
+}
+
+impl Scenario {
+    fn read(py: Python<'_>, shown: String, file: String, text: String, overrides: Vec<String>) -> PyResult<Self> {
+        let read = plaus_scenes::Scenario::read(&shown, &text, &overrides);
+        let scenario = read.map_err(|error| of_scenario(py, &error))?;
+        Ok(Self { recipe: Recipe { scenario, file, text, overrides, solutions: None }, shown })
+    }
+
+    /// The same with more overrides, in their order.
+    pub(crate) fn with(&self, py: Python<'_>, more: Vec<String>) -> PyResult<Self> {
+        let Recipe { file, text, overrides, .. } = &self.recipe;
+        let all = overrides.iter().cloned().chain(more).collect();
+        Self::read(py, self.shown.clone(), file.clone(), text.clone(), all)
+    }
+}
+
+/// What a scenario is pickled as: its text, its name, what was set since.
+type Parts = (String, String, Vec<String>);
+
+#[pymethods]
+impl Scenario {
+    /// Reads a scenario file (TOML).
+    #[staticmethod]
+    fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let shown = path.display().to_string();
+        let bytes = std::fs::read(&path)?;
+        if bytes.len() > LONGEST {
+            return Err(PyValueError::new_err(format!("{shown}: longer than {LONGEST} bytes, which no scenario is")));
+        }
+        let text = Wrong::decode(&shown, bytes).map_err(|error| of_scenario(py, &error))?;
+        let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        Self::read(py, shown, file, text, Vec::new())
+    }
+
+    /// Reads the text of a scenario file; `name` is what it is called in messages and in runs.
+    #[staticmethod]
+    #[pyo3(signature = (text, name = "scenario.toml"))]
+    fn from_text(py: Python<'_>, text: String, name: &str) -> PyResult<Self> {
+        Self::read(py, name.to_owned(), name.to_owned(), text, Vec::new())
+    }
+
+    /// A scenario from nested dictionaries, as the tables of a file are: `{"world": {"ball2d": {"target": 2}}}`.
+    #[staticmethod]
+    #[pyo3(signature = (tables, name = "scenario.toml"))]
+    fn from_dict(py: Python<'_>, tables: &Bound<'_, PyDict>, name: &str) -> PyResult<Self> {
+        let text = toml::to_string(&table(tables, "")?)
+            .map_err(|error| PyValueError::new_err(format!("the dictionary cannot be written as TOML: {error}")))?;
+        Self::read(py, name.to_owned(), name.to_owned(), text, Vec::new())
+    }
+
+    /// The scenario of a scene (`ball2d`, `bowling`, `dice`, `spelling`) with all settings at their defaults.
+    #[staticmethod]
+    fn default(py: Python<'_>, scene: &str) -> PyResult<Self> {
+        let known = plaus_scenes::registry::NAMES.join(", ");
+        let none = || ScenarioError::new_err(format!("there is no scene `{scene}`: the scenes are {known}"));
+        let scenario = plaus_scenes::Scenario::default_of(scene).ok_or_else(none)?;
+        let name = format!("{scene}.toml");
+        Self::read(py, name.clone(), name, scenario.to_toml(), Vec::new())
+    }
+
+    /// The same with some keys changed: `set("sigma_d=0.05")` as on the command line, or `set(sigma_d=0.05)`, or
+    /// `set(**{"weights.aim": 2})`.
+    /// A key is a full dotted name or an end of it that no other key has.
+    #[pyo3(signature = (*overrides, **keys))]
+    fn set(&self, py: Python<'_>, overrides: Vec<String>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        let mut more = overrides;
+        for (key, value) in keys.into_iter().flatten() {
+            let key: String = key.extract()?;
+            more.push(format!("{key}={}", self::value(&value, &key)?));
+        }
+        self.with(py, more)
+    }
+
+    /// Every key with the value in force, defaults too, as nested dictionaries. What is wrong was raised when the
+    /// scenario was made.
+    fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let tables: Table = self.toml().parse().map_err(|error| PyValueError::new_err(format!("{error}")))?;
+        to_python(py, &Value::Table(tables))
+    }
+
+    /// Every key with the value in force, as the text of a scenario file.
+    #[getter]
+    fn toml(&self) -> String {
+        self.recipe.scenario.to_toml()
+    }
+
+    /// The scene's name.
+    #[getter]
+    fn scene(&self) -> &'static str {
+        self.recipe.scenario.world.name()
+    }
+
+    /// The text that it was read from, without what was set since.
+    #[getter]
+    fn text(&self) -> &str {
+        &self.recipe.text
+    }
+
+    /// What the text is called.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.recipe.file
+    }
+
+    /// Keys set since, as `key=value`.
+    #[getter]
+    fn overrides(&self) -> Vec<String> {
+        self.recipe.overrides.clone()
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Self>().is_ok_and(|other| other.get().recipe.scenario == self.recipe.scenario)
+    }
+
+    fn __hash__(&self) -> u64 {
+        // FNV-1a over the whole text: equal scenarios have equal texts.
+        self.toml()
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    }
+
+    fn __repr__(&self) -> String {
+        let set: String = self.recipe.overrides.iter().map(|said| format!(", {said}")).collect();
+        format!("<Scenario {}: {}{set}>", self.recipe.file, self.scene())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Parts)> {
+        let rebuild = slf.py().import("plaus._plaus")?.getattr("_scenario")?;
+        let Recipe { file, text, overrides, .. } = &slf.get().recipe;
+        Ok((rebuild, (text.clone(), file.clone(), overrides.clone())))
+    }
+}
+
+/// A scenario as it was pickled.
+#[pyfunction]
+pub(crate) fn _scenario(py: Python<'_>, text: String, name: String, overrides: Vec<String>) -> PyResult<Scenario> {
+    Scenario::read(py, name.clone(), name, text, overrides)
+}
+
+fn table(tables: &Bound<'_, PyDict>, within: &str) -> PyResult<Table> {
+    let mut made = Table::new();
+    for (key, item) in tables {
+        let key: String = key.extract().map_err(|_| PyTypeError::new_err(format!("{within}: keys are strings")))?;
+        let path = if within.is_empty() { key.clone() } else { format!("{within}.{key}") };
+        made.insert(key, value(&item, &path)?);
+    }
+    Ok(made)
+}
+
+/// A TOML value of a Python one; `path` is where it stands.
+fn value(item: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
+    if item.is_instance_of::<PyBool>() {
+        Ok(Value::Boolean(item.extract()?))
+    } else if item.is_instance_of::<PyInt>() {
+        item.extract().map(Value::Integer)
+    } else if item.is_instance_of::<PyFloat>() {
+        item.extract().map(Value::Float)
+    } else if item.is_instance_of::<PyString>() {
+        item.extract().map(Value::String)
+    } else if let Ok(tables) = item.cast::<PyDict>() {
+        table(tables, path).map(Value::Table)
+    } else if item.is_instance_of::<PyList>() || item.is_instance_of::<PyTuple>() {
+        let items = item.try_iter()?.enumerate();
+        let items = items.map(|(index, item)| value(&item?, &format!("{path}[{index}]"))).collect::<PyResult<_>>();
+        items.map(Value::Array)
+    } else if let Ok(number) = item.call_method0("__index__") {
+        number.extract().map(Value::Integer) // numpy's whole numbers
+    } else if let Ok(number) = item.call_method0("__float__") {
+        number.extract().map(Value::Float)
+    } else {
+        let kind = item.get_type().name()?.to_string();
+        Err(PyTypeError::new_err(format!(
+            "{path}: a {kind} is no value of a scenario: numbers, strings, booleans, lists, dictionaries are"
+        )))
+    }
+}
+
+/// A Python value of a TOML one.
+fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match value {
+        Value::String(text) => PyString::new(py, text).into_any(),
+        Value::Integer(number) => number.into_pyobject(py)?.into_any(),
+        Value::Float(number) => PyFloat::new(py, *number).into_any(),
+        Value::Boolean(flag) => PyBool::new(py, *flag).to_owned().into_any(),
+        Value::Datetime(time) => PyString::new(py, &time.to_string()).into_any(),
+        Value::Array(items) => {
+            let items: Vec<_> = items.iter().map(|item| to_python(py, item)).collect::<PyResult<_>>()?;
+            PyList::new(py, items)?.into_any()
+        }
+        Value::Table(tables) => {
+            let made = PyDict::new(py);
+            for (key, item) in tables {
+                made.set_item(key, to_python(py, item)?)?;
+            }
+            made.into_any()
+        }
+    })
+}

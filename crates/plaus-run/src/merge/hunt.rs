@@ -1,0 +1,153 @@
+//! Pieces that look for distinct solutions together.
+//!
+//! A run that looks for K solutions ends at the first iteration by which its chains together have recorded K. No piece
+//! knows that iteration: each goes on until its own chains and those of the pieces beside it, as far as it knows, have
+//! K, which is never before it. So where the run ends follows from what all pieces recorded, not from who was faster.
+//! There they are cut: at the last end of a block before it that all have in their trails; what is left, less than a
+//! block, is sampled again.
+
+use super::pieces::{Piece, Pieces};
+use super::{Merging, copy_chain, refuse, seal, write};
+use crate::checkpoint;
+use crate::error::{Error, RunFileError};
+use crate::folder::Folder;
+use crate::read::{Run, RunOf, RunVisitor};
+use crate::sample::{More, Sampling, Unwatched, resume};
+use crate::{tally, trail};
+use plaus_mcmc::{Distinct, Ending, FirstOfClass};
+use plaus_scenes::Scene;
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// The iteration that recorded the last demanded solution; `None` where none were demanded, or the pieces went to the
+/// end of the plan without.
+///
+/// # Errors
+/// [`Error`] where a piece has to go on before that is known.
+pub(super) fn end(pieces: &Pieces, pool: &ThreadPool) -> Result<Option<u64>, Error> {
+    let Some(wanted) = pieces.manifest.plan.solutions else { return Ok(None) };
+    let ends = pieces.all.iter().map(|piece| done(pieces, piece)).collect::<Result<Vec<u64>, Error>>()?;
+    let least = ends.iter().copied().min().unwrap_or(0);
+    let mut firsts: Vec<FirstOfClass> = Vec::new();
+    for piece in &pieces.all {
+        let found = pool.install(|| Run::open(&piece.folder)?.visit(Firsts))??;
+        firsts.extend(found.into_iter().filter(|first| first.iteration < least));
+    }
+    firsts.sort_unstable();
+    let mut distinct = Distinct::default();
+    for first in firsts {
+        distinct.note(first);
+    }
+    let last = usize::try_from(wanted).ok().and_then(|wanted| distinct.firsts().get(wanted.checked_sub(1)?));
+    if last.is_none() && least < pieces.manifest.plan.end() {
+        let behind = pieces.all.iter().zip(&ends).find(|(_, end)| **end == least);
+        return Err(behind.map_or_else(
+            || Error::Request("there are no pieces to merge".to_owned()),
+            |(piece, _)| {
+                let found = distinct.count();
+                let what = format!(
+                    "by iteration {least}, as far as this piece is, all pieces together have {found} of the {wanted} distinct \
+                     solutions: `plaus resume` goes on with it"
+                );
+                refuse(&piece.folder, what)
+            },
+        ));
+    }
+    Ok(last.map(|first| first.iteration))
+}
+
+/// Iterations that all chains of a piece have done.
+fn done(pieces: &Pieces, piece: &Piece) -> Result<u64, Error> {
+    let ends =
+        piece.chains.clone().map(|chain| Ok(pieces.checkpoint(piece, chain)?.map_or(0, |one| one.end_iteration)));
+    let ends = ends.collect::<Result<BTreeSet<u64>, Error>>()?;
+    match (ends.first(), ends.last()) {
+        (Some(first), Some(last)) if first == last => Ok(*first),
+        (first, last) => Err(pieces.unfinished(piece, first.copied().unwrap_or(0), last.copied().unwrap_or(0).max(1))),
+    }
+}
+
+/// What each chain of a run found first where.
+struct Firsts;
+
+impl RunVisitor for Firsts {
+    type Output = Result<Vec<FirstOfClass>, RunFileError>;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+        let chain = |chain| tally::firsts(&run, chain).map(|distinct| distinct.firsts().to_vec());
+        let found: Vec<Vec<FirstOfClass>> = run.chains().into_par_iter().map(chain).collect::<Result<_, _>>()?;
+        Ok(found.into_iter().flatten().collect())
+    }
+}
+
+/// Makes the run that ends once iteration `last` is recorded; gives the bytes of records that were copied.
+pub(super) fn merge(
+    pieces: &Pieces,
+    last: u64,
+    out: &Folder,
+    merging: &Merging<'_>,
+    pool: &ThreadPool,
+) -> Result<u64, Error> {
+    let cut = common_round(pieces, last)?;
+    let mut bytes = 0;
+    out.make(merging.disk, |draft| -> Result<(), Error> {
+        for piece in pieces.all.iter().filter(|_| cut > 0) {
+            merging.pulse.go_on()?;
+            let run = Run::open(&piece.folder)?;
+            bytes += pool.install(|| run.visit(Cut { pieces, piece, cut, draft, merging }))??;
+        }
+        seal(pieces, draft, merging.disk)?;
+        let sampling = Sampling { threads: merging.threads, disk: merging.disk, watch: &mut Unwatched };
+        match resume(draft, More::default(), sampling)? {
+            Ending::EnoughSolutions => Ok(()),
+            ending => Err(Error::Sampling(format!(
+                "the pieces' last block was sampled again, and ended otherwise: {ending:?}"
+            ))),
+        }
+    })?;
+    Ok(bytes)
+}
+
+/// The last round that ends at iteration `last` or before, and that all pieces have in their trails; 0 where there is
+/// none.
+fn common_round(pieces: &Pieces, last: u64) -> Result<u64, Error> {
+    let mut common: Option<BTreeSet<u64>> = None;
+    for piece in &pieces.all {
+        let rounds = trail::rounds(&piece.folder.trail(), pieces.run)?;
+        let ends: BTreeSet<u64> = rounds.into_iter().map(|round| round.0).filter(|&end| end <= last).collect();
+        common = Some(match common {
+            Some(before) => &before & &ends,
+            None => ends,
+        });
+    }
+    Ok(common.and_then(|ends| ends.last().copied()).unwrap_or(0))
+}
+
+/// Copies the chains of a piece up to a round.
+struct Cut<'a> {
+    pieces: &'a Pieces,
+    piece: &'a Piece,
+    cut: u64,
+    draft: &'a Folder,
+    merging: &'a Merging<'a>,
+}
+
+impl RunVisitor for Cut<'_> {
+    type Output = Result<u64, Error>;
+    fn visit<S: Scene>(self, _: RunOf<'_, S>) -> Self::Output {
+        let Self { pieces, piece, cut, draft, merging } = self;
+        let path = piece.folder.trail();
+        let rounds = trail::rounds(&path, pieces.run)?;
+        let Some(&(_, begin, end)) = rounds.iter().find(|round| round.0 == cut) else {
+            return Err(refuse(&piece.folder, format!("its trail has no round that ends at iteration {cut}")));
+        };
+        let checkpoints = trail::read::<S::Draw, S::Outcome>(&path, begin, end)?;
+        let copy = |one: &checkpoint::Checkpoint<S::Draw, S::Outcome>| -> Result<u64, Error> {
+            copy_chain(pieces, piece, one.chain, (one.records, one.snapshot.end_iteration), draft, merging)?;
+            let bytes = checkpoint::encode(&draft.checkpoint(one.chain), one)?;
+            write(draft, merging.disk, one.chain, &bytes)?;
+            Ok(one.records)
+        };
+        checkpoints.par_iter().map(copy).try_reduce(|| 0, |a, b| Ok(a + b))
+    }
+}

@@ -1,0 +1,159 @@
+//! The run that one machine would have made, from pieces that several made.
+//!
+//! The files of a chain have the same bytes in a piece and in the whole, so they are copied, each frame with its
+//! checksum found right; memory stays flat. Pieces that look for distinct solutions are cut where the run ends, see
+//! `hunt`.
+
+mod hunt;
+mod pieces;
+
+use crate::checkpoint::Stored;
+use crate::disk::Disk;
+use crate::error::{Error, RunFileError, RunFileProblem};
+use crate::folder::Folder;
+use crate::records::{self, Extent};
+pub use pieces::folders_at;
+use pieces::{Piece, Pieces};
+use rayon::prelude::*;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+
+/// Bytes that are gathered before they are written.
+const AT_A_TIME: usize = 4 << 20;
+
+/// How far a merge is, for other threads, and a request to stop it.
+#[derive(Debug, Default)]
+pub struct MergePulse {
+    pieces: AtomicU64,
+    bytes: AtomicU64,
+    written: AtomicU64,
+    stopped: AtomicBool,
+}
+
+impl MergePulse {
+    /// Pieces that were found.
+    pub fn pieces(&self) -> u64 {
+        self.pieces.load(Relaxed)
+    }
+
+    /// Bytes of records to copy, and those that were.
+    pub fn bytes(&self) -> (u64, u64) {
+        (self.bytes.load(Relaxed), self.written.load(Relaxed))
+    }
+
+    /// Asks the merge to give up. Nothing is left of it.
+    pub fn stop(&self) {
+        self.stopped.store(true, Relaxed);
+    }
+
+    fn go_on(&self) -> Result<(), Error> {
+        if self.stopped.load(Relaxed) {
+            return Err(Error::Request("interrupted: nothing was made, and the pieces are as they were".to_owned()));
+        }
+        Ok(())
+    }
+}
+
+/// How to merge, beside what.
+pub struct Merging<'a> {
+    /// Threads; 0 is one a core. Never changes results.
+    pub threads: usize,
+    /// Where to write.
+    pub disk: &'a dyn Disk,
+    /// Who looks on.
+    pub pulse: &'a MergePulse,
+}
+
+/// What was merged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Merged {
+    /// Pieces.
+    pub pieces: usize,
+    /// Chains.
+    pub chains: u32,
+    /// Bytes of records.
+    pub bytes: u64,
+}
+
+/// Makes the run `out` from pieces: each path is one, or a folder of some. The pieces stay as they are.
+///
+/// # Errors
+/// [`Error`], naming the piece, where one is missing, there twice, unfinished, damaged, being written, or of another
+/// run; where `out` exists; or where the disk refuses. Nothing is made then.
+pub fn merge(paths: &[PathBuf], out: &Folder, merging: Merging<'_>) -> Result<Merged, Error> {
+    out.refuse_to_replace()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(merging.threads).build();
+    let pool = pool.map_err(|error| Error::Sampling(format!("cannot start worker threads: {error}")))?;
+    let pieces = pool.install(|| Pieces::find(paths, &merging))?;
+    let bytes = match hunt::end(&pieces, &pool)? {
+        Some(last) => hunt::merge(&pieces, last, out, &merging, &pool)?,
+        None => pool.install(|| copy(&pieces, out, &merging))?,
+    };
+    Ok(Merged { pieces: pieces.all.len(), chains: pieces.manifest.plan.chains, bytes })
+}
+
+/// Puts finished pieces side by side; gives the bytes of records.
+fn copy(pieces: &Pieces, out: &Folder, merging: &Merging<'_>) -> Result<u64, Error> {
+    let (end, pulse) = (pieces.manifest.plan.end(), merging.pulse);
+    let chains: Vec<(&Piece, u32)> = pieces.chains().collect();
+    let total = chains.par_iter().map(|(piece, chain)| pieces.finished(piece, *chain, end));
+    let total = total.try_reduce(|| 0, |a, b| Ok(a + b))?;
+    pulse.bytes.store(total, Relaxed);
+    out.make(merging.disk, |draft| -> Result<(), Error> {
+        chains.par_iter().try_for_each(|&(piece, chain)| {
+            pulse.go_on()?;
+            let stored = pieces.checkpoint(piece, chain)?;
+            let Some(Stored { records, end_iteration, bytes }) = stored else {
+                return Err(pieces.unfinished(piece, 0, end));
+            };
+            copy_chain(pieces, piece, chain, (records, end_iteration), draft, merging)?;
+            Ok(write(draft, merging.disk, chain, &bytes)?)
+        })?;
+        seal(pieces, draft, merging.disk)
+    })?;
+    Ok(total)
+}
+
+/// Copies a chain's records up to so many bytes, which end at that iteration.
+fn copy_chain(
+    pieces: &Pieces,
+    piece: &Piece,
+    chain: u32,
+    (bytes, end_iteration): (u64, u64),
+    draft: &Folder,
+    merging: &Merging<'_>,
+) -> Result<(), Error> {
+    let (from, to) = (piece.folder.records(chain), draft.records(chain));
+    let extent = Extent { run: pieces.run, chain, thin: pieces.manifest.plan.thin, bytes, end_iteration };
+    let mut gathered = Vec::with_capacity(AT_A_TIME.min(bytes as usize) + (1 << 16));
+    let flush = |gathered: &mut Vec<u8>| -> Result<(), RunFileError> {
+        merging.disk.append(&to, gathered).map_err(RunFileError::io(&to, "write"))?;
+        merging.pulse.written.fetch_add(gathered.len() as u64, Relaxed);
+        gathered.clear();
+        Ok(())
+    };
+    records::copy(&from, extent, |frame| {
+        gathered.extend_from_slice(frame);
+        if gathered.len() >= AT_A_TIME { flush(&mut gathered) } else { Ok(()) }
+    })?;
+    flush(&mut gathered)?;
+    Ok(())
+}
+
+/// Makes a chain's records durable, and writes its checkpoint.
+fn write(draft: &Folder, disk: &dyn Disk, chain: u32, checkpoint: &[u8]) -> Result<(), RunFileError> {
+    let (records, path) = (draft.records(chain), draft.checkpoint(chain));
+    disk.sync(&records).map_err(RunFileError::io(&records, "write"))?;
+    disk.write(&path, checkpoint).map_err(RunFileError::io(&path, "write"))
+}
+
+/// Writes what makes the folder a run.
+fn seal(pieces: &Pieces, draft: &Folder, disk: &dyn Disk) -> Result<(), Error> {
+    let json = pieces.manifest.to_json().map_err(|problem| RunFileError::new(draft.manifest(), problem))?;
+    Ok(draft.fill(disk, &json)?)
+}
+
+/// Says that a piece is no part of the run.
+fn refuse(piece: &Folder, what: String) -> Error {
+    RunFileError::new(piece.path(), RunFileProblem::Pieces(what)).into()
+}

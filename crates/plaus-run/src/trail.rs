@@ -1,0 +1,128 @@
+//! Where a piece could be cut: checkpoints of all its chains after every round, one frame a round, appended.
+//!
+//! Pieces that look for distinct solutions each go further than the run will: where it ends follows from all of them
+//! together. A merge cuts each piece at the last end of a block before that, which all have, and makes the rest anew.
+//! What was found first is noted too: for the pieces beside, see `siblings`.
+
+use crate::checkpoint::Checkpoint;
+use crate::codec::{self, Frames, Kind};
+use crate::disk::Disk;
+use crate::error::{RunFileError, RunFileProblem};
+use crate::folder::Folder;
+use plaus_mcmc::FirstOfClass;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{BufReader, ErrorKind, Seek, SeekFrom};
+use std::path::Path;
+
+const KIND: Kind = Kind::new(*b"trai", 1, "a trail of checkpoints");
+
+/// What a frame begins with: the run, and one past the last iteration.
+type Head = (u64, u64);
+
+/// What it goes on with: solutions that none of the piece's chains had recorded before this round.
+type News = (u64, u64, Vec<FirstOfClass>);
+
+#[derive(Serialize, Deserialize)]
+struct Stored<D, O> {
+    run: u64,
+    end_iteration: u64,
+    firsts: Vec<FirstOfClass>,
+    checkpoints: Vec<Checkpoint<D, O>>,
+}
+
+/// Adds a round.
+pub(crate) fn append<D: Serialize, O: Serialize>(
+    folder: &Folder,
+    disk: &dyn Disk,
+    run: u64,
+    firsts: Vec<FirstOfClass>,
+    checkpoints: Vec<Checkpoint<D, O>>,
+) -> Result<(), RunFileError> {
+    let Some(first) = checkpoints.first() else { return Ok(()) };
+    let path = folder.trail();
+    let stored = Stored { run, end_iteration: first.snapshot.end_iteration, firsts, checkpoints };
+    let frame = codec::encode(KIND, &stored).map_err(|error| RunFileError::new(&path, error.into()))?;
+    disk.append(&path, &frame).map_err(RunFileError::io(&path, "write"))
+}
+
+/// Iterations that the rounds end at, from the first on, with where each round's frame begins and ends in the file.
+/// None where there is no trail.
+///
+/// # Errors
+/// [`RunFileError`] where the file is another run's. What is damaged ends it: a trail may end in the middle of a frame.
+pub(crate) fn rounds(path: &Path, run: u64) -> Result<Vec<(u64, u64, u64)>, RunFileError> {
+    let mut rounds = Vec::new();
+    walk::<Head>(path, run, 0, |(of, end_iteration), begin, end| {
+        rounds.push((end_iteration, begin, end));
+        of
+    })?;
+    Ok(rounds)
+}
+
+/// What rounds found whose frames begin at byte `from` or after it, and where they end.
+///
+/// # Errors
+/// As [`rounds`].
+pub(crate) fn firsts_from(path: &Path, run: u64, from: u64) -> Result<(Vec<FirstOfClass>, u64), RunFileError> {
+    let (mut firsts, mut until) = (Vec::new(), from);
+    walk::<News>(path, run, from, |(of, _, news), _, end| {
+        firsts.extend(news);
+        until = end;
+        of
+    })?;
+    Ok((firsts, until))
+}
+
+/// Shows `look` what each frame from byte `from` on begins with, and where it lies; `look` gives the run it is of.
+fn walk<T: DeserializeOwned>(
+    path: &Path,
+    run: u64,
+    from: u64,
+    mut look: impl FnMut(T, u64, u64) -> u64,
+) -> Result<(), RunFileError> {
+    let mut file = match File::open(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        file => file.map_err(RunFileError::io(path, "read"))?,
+    };
+    let length = file.metadata().map_err(RunFileError::io(path, "read"))?.len();
+    file.seek(SeekFrom::Start(from)).map_err(RunFileError::io(path, "read"))?;
+    let input = BufReader::with_capacity(1 << 16, file);
+    let mut frames = Frames::<(), _>::new(KIND, input, length.saturating_sub(from));
+    loop {
+        let begin = from + frames.offset();
+        let Some(Ok(frame)) = frames.next_raw() else { return Ok(()) };
+        let Ok(head) = codec::head::<T>(KIND, frame) else { return Ok(()) };
+        if look(head, begin, from + frames.offset()) != run {
+            return Err(RunFileError::new(path, RunFileProblem::Mixed("this trail belongs to another run".into())));
+        }
+    }
+}
+
+/// Bytes of the rounds that end at `iteration` or before.
+///
+/// # Errors
+/// As [`rounds`].
+pub(crate) fn length_until(path: &Path, run: u64, iteration: u64) -> Result<u64, RunFileError> {
+    let rounds = rounds(path, run)?;
+    Ok(rounds.iter().take_while(|round| round.0 <= iteration).last().map_or(0, |round| round.2))
+}
+
+/// The checkpoints of all chains after the round whose frame lies at the bytes from `begin` to `end`.
+///
+/// # Errors
+/// [`RunFileError`] where the frame is damaged.
+pub(crate) fn read<D, O>(path: &Path, begin: u64, end: u64) -> Result<Vec<Checkpoint<D, O>>, RunFileError>
+where
+    D: Serialize + DeserializeOwned,
+    O: Serialize + DeserializeOwned,
+{
+    let mut file = File::open(path).map_err(RunFileError::io(path, "read"))?;
+    file.seek(SeekFrom::Start(begin)).map_err(RunFileError::io(path, "read"))?;
+    let mut frames = Frames::<Stored<D, O>, _>::new(KIND, file, end - begin);
+    match frames.next() {
+        Some(Ok(stored)) => Ok(stored.checkpoints),
+        _ => Err(RunFileError::new(path, RunFileProblem::Mixed("the trail changed while it was read".into()))),
+    }
+}

@@ -1,0 +1,24 @@
+//! A scene's world for the simulator alone, with nothing random in it.
+
+use glam::DVec3;
+use plaus_sim::marbles::Marbles;
+use plaus_sim::rigid::Rigid;
+
+/// A world of either kind.
+#[derive(Debug, Clone)]
+pub enum Physical {
+    /// Balls without orientation.
+    Marbles(Box<Marbles>),
+    /// Bodies that turn.
+    Rigid(Box<Rigid>),
+}
+
+/// A world with a place for each of its bodies. z points up.
+#[derive(Debug, Clone)]
+pub struct PlainWorld {
+    /// The world.
+    pub world: Physical,
+    /// Where each body may start, upright and at rest, without touching another or the ground but by standing on it:
+    /// centres of gravity, in m.
+    pub places: Vec<DVec3>,
+}

@@ -1,0 +1,173 @@
+#!/usr/bin/env python3
+"""Builds the Python package as a wheel, and tries it as a user has it: installed, in an environment of its own.
+
+Exit codes: 0 all is well, 1 it is not, 77 packages could not be installed.
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import third_party
+from environment import NO_REGISTRY, PATIENCE, environment
+
+ROOT = third_party.ROOT
+PACKAGE = third_party.PACKAGE
+# Largest wheel, in bytes.
+LARGEST = 10_000_000
+MATURIN = ["maturin==1.16.0"]
+# The newest that go together on Python 3.11; what the notebooks use among them.
+TRIED_WITH = [
+    "arviz==0.23.4",
+    "ipykernel==7.4.0",
+    "matplotlib==3.11.2",
+    "nbclient==0.11.0",
+    "numpy==2.4.6",
+    "polars==2.1.0",
+    "pytest==9.2.0",
+    "xarray==2026.9.0",
+]
+# On other Pythons: enough to sample and simulate.
+TRIED_WITH_LITTLE = ["numpy", "pytest"]
+PYTHONS = ["python3.12", "python3.13", "python3.14"]
+
+
+def run(words: list, **how) -> int:
+    """Shows a command and runs it: its exit code."""
+    print("$", *map(str, words), flush=True)
+    return subprocess.run([str(word) for word in words], **how).returncode
+
+
+def build(target: Path, profile: str) -> int:
+    """Makes the wheel, in `target`/wheel/dist."""
+    python = environment(target / "wheel" / "maturin", MATURIN)
+    dist = target / "wheel" / "dist"
+    shutil.rmtree(dist, ignore_errors=True)
+    words = [python.with_name("maturin"), "build", "--locked", "--profile", profile, "--out", dist]
+    words += ["--manifest-path", PACKAGE / "Cargo.toml", "--interpreter", sys.executable, "--target-dir", target]
+    if profile == "release":
+        words.append("--strip")
+    if run(words, cwd=ROOT) != 0:
+        print("maturin failed")
+        return 1
+    [wheel] = dist.glob("*.whl")
+    size = wheel.stat().st_size
+    print(f"{wheel.relative_to(ROOT) if wheel.is_relative_to(ROOT) else wheel}: {size / 1e6:.1f} MB")
+    if profile == "release" and size > LARGEST:
+        print(f"larger than {LARGEST / 1e6:.0f} MB")
+        return 1
+    names = zipfile.ZipFile(wheel).namelist()
+    wanted = ["plaus/py.typed", "plaus/_plaus.pyi", "plaus/__init__.py"]
+    missing = [name for name in wanted if name not in names]
+    missing += [name for name in ("THIRD-PARTY.txt", "LICENSE-MIT") if not any(each.endswith(name) for each in names)]
+    if missing or "-cp311-abi3-" not in wheel.name:
+        print(f"missing in the wheel: {missing}, or no abi3 wheel: {wheel.name}")
+        return 1
+    return 0
+
+
+def bare(python: Path) -> dict[str, str]:
+    """Surroundings without a Rust toolchain: of folders on the PATH only those that have neither cargo nor rustc."""
+    folders = [str(python.parent), *os.environ.get("PATH", "").split(os.pathsep)]
+    has_rust = lambda folder: any(shutil.which(tool, path=folder) for tool in ("cargo", "rustc"))
+    kept = [folder for folder in folders if folder and not has_rust(folder)]
+    gone = ("CARGO", "RUSTUP", "PYTHONPATH")
+    rest = {key: value for key, value in os.environ.items() if not key.startswith(gone)}
+    return {**rest, "PATH": os.pathsep.join(kept), "PLAUS_SCENARIOS": str(ROOT / "scenarios")}
+
+
+def install(python: Path, wheel: Path) -> int:
+    """Puts the wheel into an environment, in place of any before."""
+    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *PATIENCE]
+    return run([*pip, "--force-reinstall", "--no-deps", wheel])
+
+
+def tests(python: Path, target: Path, command: Path | None) -> int:
+    """The package's tests, on an installed wheel."""
+    around = bare(python)
+    if command is not None:
+        around["PLAUS_COMMAND"] = str(command)
+    words = [python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", PACKAGE / "tests" / "test_plaus.py"]
+    # Not where the sources are: what is imported is what was installed.
+    return run(words, cwd=target / "wheel", env=around)
+
+
+def notebooks(python: Path, target: Path) -> int:
+    """Every notebook, cell by cell."""
+    return run(
+        [python, ROOT / "xtask/python/notebooks.py", PACKAGE / "examples"], cwd=target / "wheel", env=bare(python)
+    )
+
+
+def other_pythons() -> list[str]:
+    """Further Pythons that can be run here."""
+    found = []
+    for name in PYTHONS:
+        path = shutil.which(name)
+        # A shim may be there without a Python behind it.
+        if path and subprocess.run([path, "-c", ""], capture_output=True).returncode == 0:
+            found.append(path)
+    return found
+
+
+def check(target: Path, all_of_them: bool) -> int:
+    """Tests and notebooks on the Python that runs this, and tests on all others that are there."""
+    [wheel] = (target / "wheel" / "dist").glob("*.whl")
+    python = environment(target / "wheel" / "tried", TRIED_WITH)
+    command = target / "release" / "plaus"
+    command = command if command.exists() else None
+    for step in (
+        lambda: install(python, wheel),
+        lambda: tests(python, target, command),
+        lambda: notebooks(python, target),
+    ):
+        if step() != 0:
+            return 1
+    for other in other_pythons() if all_of_them else []:
+        fresh = target / "wheel" / Path(other).name
+        print(f"{other}: an environment made for this", flush=True)
+        shutil.rmtree(fresh, ignore_errors=True)
+        if subprocess.run([other, "-m", "venv", fresh]).returncode != 0:
+            print(f"{other} makes no environment")
+            continue
+        own = fresh / "bin" / "python"
+        pip = [own, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *PATIENCE, *TRIED_WITH_LITTLE]
+        if run(pip) != 0:
+            return NO_REGISTRY
+        if install(own, wheel) != 0 or tests(own, target, command) != 0:
+            return 1
+    return 0
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=["build", "check", "licences", "write-licences", "measure"])
+    parser.add_argument("--target", type=Path, required=True, help="the folder that cargo builds into")
+    parser.add_argument("--profile", default="release")
+    parser.add_argument("--all", action="store_true", help="on all Pythons that are there")
+    given = parser.parse_args()
+    given.target = given.target.resolve()
+    if given.what == "write-licences":
+        third_party.LIST.write_text(third_party.listing(), encoding="utf-8")
+        return 0
+    if given.what == "licences":
+        wrong = third_party.problems()
+        print("\n".join(wrong) or "every crate in the wheel is listed with its licence")
+        return 1 if wrong else 0
+    if given.what == "build":
+        return build(given.target, given.profile)
+    if given.what == "measure":
+        python = given.target / "wheel" / "tried" / "bin" / "python"
+        words = [python, ROOT / "xtask/python/measure_wheel.py", "--command", given.target / "release" / "plaus"]
+        return run(
+            [*words, "--examples", given.target / "release" / "examples"], cwd=given.target / "wheel", env=bare(python)
+        )
+    return check(given.target, given.all)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,47 @@
+//! Pieces on engines that exist: HyperQueue and OpenJD from PyPI, Slurm where it is installed.
+
+use crate::command::{Command, Failure, built, cargo, root, target};
+use crate::registry;
+use crate::steps::{self, Done, Step};
+
+const SCENARIO: &str = "scenarios/ball2d.toml";
+/// Seconds of the runs whose speeds are compared.
+const SPEED: &str = "60";
+/// Pieces of the merges that are measured.
+const PIECES: [&str; 3] = ["100", "1000", "10000"];
+
+/// What needs nothing but PyPI, and takes less than a minute.
+pub(crate) fn quick() -> Result<Done, Failure> {
+    check(&["--quick", "hyperqueue", "openjd"])
+}
+
+/// All of it, with what it costs.
+pub(crate) fn run() -> Result<(), Failure> {
+    let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
+    let all = || check(&["--speed", SPEED, "hyperqueue", "openjd", "slurm"]);
+    steps::run(vec![
+        Step::command("plaus in release", release),
+        Step::new("pieces on every engine", all),
+        Step::new("many pieces merged", merges),
+    ])
+}
+
+fn check(more: &[&str]) -> Result<Done, Failure> {
+    let script = Command::new("python3").args(["xtask/python/check_engines.py"]);
+    let script = script.args(["--venv"]).args([target().join("engines-venv")]);
+    let script = script.args(["--work"]).args([target().join("engines")]);
+    let script = script.args(["--plaus"]).args([built("release", "plaus")]);
+    let script = script.args(["--scenario"]).args([root().join(SCENARIO)]).args(more);
+    println!("$ {}", script.shown());
+    registry::outcome(script.status()?, "pieces on an engine are not what one machine makes")
+}
+
+fn merges() -> Result<Done, Failure> {
+    for pieces in PIECES {
+        let script = Command::new("python3").args(["xtask/python/measure_merge.py", "--pieces", pieces]);
+        let script = script.args(["--work"]).args([target().join("engines")]);
+        let script = script.args(["--plaus"]).args([built("release", "plaus")]);
+        script.args(["--scenario"]).args([root().join(SCENARIO)]).shown_and_run()?;
+    }
+    Ok(Done::Passed)
+}

@@ -1,0 +1,65 @@
+//! The Python package: built as a wheel, and tried as a user has it.
+
+use crate::command::{Command, Failure, cargo, target};
+use crate::registry;
+use crate::steps::{self, Done, Step};
+
+/// `cargo xtask wheel [--check | --measure | --licences]`.
+pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
+    let build = || Step::new("the wheel", build);
+    match arguments {
+        [] => steps::run(vec![build()]),
+        ["--check"] => steps::run(vec![plaus(), Step::new("licences in the wheel", licences), build(), all_pythons()]),
+        ["--measure"] => steps::run(vec![plaus(), examples(), build(), Step::new("tried", check), measure()]),
+        ["--licences"] => script("write-licences").shown_and_run(),
+        _ => Err(Failure("cargo xtask wheel [--check | --measure | --licences]".to_owned())),
+    }
+}
+
+/// What of it belongs to everything that must pass.
+pub(crate) fn steps() -> Vec<Step> {
+    vec![
+        Step::new("licences in the wheel", licences),
+        Step::new("the wheel", build),
+        Step::new("the wheel in an environment of its own, and notebooks", check),
+    ]
+}
+
+fn script(what: &str) -> Command {
+    Command::new("python3").args(["xtask/python/wheel.py", what, "--target"]).args([target()])
+}
+
+fn plaus() -> Step {
+    Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"]))
+}
+
+fn examples() -> Step {
+    let words = ["build", "--release", "--package", "plaus-sim", "--example", "drops", "--example", "die"];
+    Step::command("what the simulator is compared with", cargo(&words))
+}
+
+fn build() -> Result<Done, Failure> {
+    outcome(script("build"), "the wheel cannot be built")
+}
+
+fn licences() -> Result<Done, Failure> {
+    outcome(script("licences"), "licences are missing in the wheel")
+}
+
+fn check() -> Result<Done, Failure> {
+    outcome(script("check"), "the wheel does not do what it should")
+}
+
+fn all_pythons() -> Step {
+    let all = || outcome(script("check").args(["--all"]), "the wheel does not do what it should");
+    Step::new("the wheel on every Python there is, and notebooks", all)
+}
+
+fn measure() -> Step {
+    Step::new("numbers", || outcome(script("measure"), "numbers cannot be taken"))
+}
+
+fn outcome(command: Command, wrong: &str) -> Result<Done, Failure> {
+    println!("$ {}", command.shown());
+    registry::outcome(command.status()?, wrong)
+}
