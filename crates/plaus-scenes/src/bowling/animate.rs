@@ -73,7 +73,7 @@ fn pieces(world: &Rigid, index: usize, motions: &[Turning], begin: f64, ratio: f
         let spin = if moves { body.spin } else { DVec3::ZERO };
         // A free top precesses about its angular momentum, here over its moment about the other axes, while it spins about its own axis.
         let axis = body.turn * DVec3::Z;
-        let own = if body.phase == Phase::Flight { spin.dot(axis) * (1.0 - ratio) } else { 0.0 };
+        let own = if matches!(body.phase, Phase::Flight | Phase::Step) { spin.dot(axis) * (1.0 - ratio) } else { 0.0 };
         let turn = Turn { orientation: (UPRIGHT * body.turn).normalize(), spin: upright(spin - axis * own), own };
         let piece = Piece::ballistic(start, upright(body.path.x), upright(v), upright(a)).turning(turn);
         // Of motions that begin at one time the last is the one that is made.

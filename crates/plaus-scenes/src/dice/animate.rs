@@ -74,7 +74,7 @@ fn pieces(scene: &Dice, draw: &Draw, world: &Rigid, (body, die): (usize, usize),
     for (k, motion) in motions.iter().enumerate() {
         add(motion);
         let until = motions.get(k + 1).map_or(motion.path.t, |next| next.path.t);
-        if wobbles && motion.phase == Phase::Flight {
+        if wobbles && matches!(motion.phase, Phase::Flight | Phase::Step) {
             let parts = ((until - motion.path.t) / WOBBLE).ceil().min(1e5) as u32;
             for part in 1..parts {
                 let time = motion.path.t + (until - motion.path.t) * f64::from(part) / f64::from(parts);
