@@ -42,10 +42,15 @@ def run(words: list, **how) -> int:
     return subprocess.run([str(word) for word in words], **how).returncode
 
 
+def dist_of(target: Path, profile: str) -> Path:
+    """Where the wheel lies: one to give away, or one that is only tried, not optimised."""
+    return target / "wheel" / ("dist" if profile == "release" else f"dist-{profile}")
+
+
 def build(target: Path, profile: str) -> int:
-    """Makes the wheel, in `target`/wheel/dist."""
+    """Makes the wheel, in `target`/wheel/dist where it is one to give away."""
     python = environment(target / "wheel" / "maturin", MATURIN)
-    dist = target / "wheel" / "dist"
+    dist = dist_of(target, profile)
     shutil.rmtree(dist, ignore_errors=True)
     words = [python.with_name("maturin"), "build", "--locked", "--profile", profile, "--out", dist]
     words += ["--manifest-path", PACKAGE / "Cargo.toml", "--interpreter", sys.executable, "--target-dir", target]
@@ -114,16 +119,16 @@ def other_pythons() -> list[str]:
     return found
 
 
-def check(target: Path, all_of_them: bool) -> int:
+def check(target: Path, profile: str, with_notebooks: bool, all_of_them: bool) -> int:
     """Tests and notebooks on the Python that runs this, and tests on all others that are there."""
-    [wheel] = (target / "wheel" / "dist").glob("*.whl")
+    [wheel] = dist_of(target, profile).glob("*.whl")
     python = environment(target / "wheel" / "tried", TRIED_WITH)
     command = target / "release" / "plaus"
     command = command if command.exists() else None
     for step in (
         lambda: install(python, wheel),
         lambda: tests(python, target, command),
-        lambda: notebooks(python, target),
+        lambda: notebooks(python, target) if with_notebooks else 0,
     ):
         if step() != 0:
             return 1
@@ -149,6 +154,7 @@ def main() -> int:
     parser.add_argument("--target", type=Path, required=True, help="the folder that cargo builds into")
     parser.add_argument("--profile", default="release")
     parser.add_argument("--all", action="store_true", help="on all Pythons that are there")
+    parser.add_argument("--no-notebooks", action="store_true", help="only the tests")
     given = parser.parse_args()
     given.target = given.target.resolve()
     if given.what == "write-licences":
@@ -166,7 +172,7 @@ def main() -> int:
         return run(
             [*words, "--examples", given.target / "release" / "examples"], cwd=given.target / "wheel", env=bare(python)
         )
-    return check(given.target, given.all)
+    return check(given.target, given.profile, not given.no_notebooks, given.all)
 
 
 if __name__ == "__main__":

@@ -219,6 +219,31 @@ def test_a_run_can_be_kept_opened_and_gone_on_with(tmp_path):
     assert opened.draw_count == 1500 and opened.ending is None and opened.scenario.scene == "ball2d"
 
 
+def test_a_piece_has_the_chains_that_it_has_in_the_whole(tmp_path):
+    how = ["--chains", "4", "--iterations", "500", "--warmup", "100", "--quiet"]
+    path = SCENARIOS / "ball2d.toml"
+    for shard in ["1/2", "2/2"]:
+        command = [*COMMAND, "sample", path, *how, "--shard", shard, "--out", tmp_path / "pieces" / shard[0]]
+        assert subprocess.run(command, check=False, capture_output=True).returncode in (0, 1)
+    piece = plaus.Run(tmp_path / "pieces" / "2")
+    assert piece.chains == 2 and sorted(set(piece.draws["chain"])) == [2, 3]
+    whole = plaus.sample(path, chains=4, iterations=500, warmup=100, out=tmp_path / "whole", progress=False)
+    assert np.array_equal(piece.draws["rest_x"], whole.draws["rest_x"][1000:])
+    subprocess.run([*COMMAND, "merge", tmp_path / "pieces", "--out", tmp_path / "merged"], check=True)
+    same_bytes(tmp_path / "whole", tmp_path / "merged")
+    pytest.importorskip("xarray")
+    assert list(piece.to_datatree()["posterior"]["chain"].values) == [2, 3]
+
+
+def test_a_job_is_not_submitted_to_python(tmp_path):
+    words = ["submit", str(SCENARIOS / "ball2d.toml"), "--to", "local", "--shards", "2", "--out", str(tmp_path / "job")]
+    command = [pathlib.Path(sys.executable).with_name("plaus"), *words]
+    made = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert made.returncode == 2 and "--program" in made.stderr, made.stderr
+    named = subprocess.run([*command, "--program", command[0]], check=False, capture_output=True, text=True)
+    assert named.returncode == 0, named.stderr
+
+
 def test_a_temporary_run_goes_with_its_object():
     made = short(iterations=50)
     path = made.path
