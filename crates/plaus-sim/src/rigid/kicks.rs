@@ -68,6 +68,11 @@ impl RigidScratch {
             c.target = (world.pair_goal(both, t.gap, h) - t.gap) / h;
             c.bias = t.mean_velocity(&after, &begin, &end, h) - c.velocity(&self.members);
         }
+        if self.holds {
+            for c in &mut self.contacts {
+                c.target = c.target.min(0.0);
+            }
+        }
     }
 
     /// Learns from where the drift leads how the mean velocities at the contacts differ from those at its start. Whether that is not near enough to what they were to be.

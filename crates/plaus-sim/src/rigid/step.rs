@@ -36,6 +36,8 @@ pub struct RigidScratch {
     pub(super) contacts: Vec<Contact>,
     /// The same with the impulses of a step's first kick.
     pub(super) firsts: Vec<Contact>,
+    /// Whether overlaps are left as they are.
+    pub(super) holds: bool,
     pub(super) solver: Solver,
 }
 
@@ -133,6 +135,7 @@ pub(super) fn settle(
         return;
     }
     let mut is_forced = true;
+    scratch.holds = false;
     for _ in 0..SHORTENINGS {
         let step = scratch.drift(world, h);
         match scratch.returns().or_else(|| scratch.misses(world, h)).or_else(|| scratch.climbs(world)) {
@@ -151,7 +154,11 @@ pub(super) fn settle(
         }
     }
     if !is_forced {
-        return scratch.write(world, bodies, 2.0 * h);
+        // What bodies are in each other is left as it is: pushing them apart brought the energy.
+        scratch.holds = true;
+        let step = scratch.drift(world, h);
+        scratch.second_kick(world, &step);
+        return scratch.write(world, bodies, h);
     }
     // Bounces too fast for any step: they count as lasting.
     scratch.loads.clear();
