@@ -7,7 +7,6 @@ mod laws;
 use glam::{DMat3, DQuat, DVec3};
 use laws::record::{Moment, Record, record};
 use laws::worlds::{M, in_space, on_floor};
-use plaus_dist::math;
 use plaus_sim::resolve::{ContactMatrix, stronge_impulse};
 use plaus_sim::rigid::{BodySpec, Start};
 use plaus_sim::shape::{Cuboid, Shape};

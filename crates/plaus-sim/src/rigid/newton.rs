@@ -6,6 +6,8 @@
 //! redundant contacts, stacks and mass ratios of a million converge in a few rounds where Gauss–Seidel needs thousands. The matrix is sparse: a block for a body and for each pair in
 //! contact, eliminated in order of least degree.
 
+#![allow(clippy::needless_range_loop, reason = "rows and columns of matrices go by their numbers")]
+
 use super::solve::{Contact, Member};
 use glam::{DMat3, DVec3};
 
