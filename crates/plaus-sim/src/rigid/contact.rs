@@ -29,14 +29,16 @@ impl Touch {
     }
 }
 
+/// The matrix that takes the cross product with a vector from the left.
+#[inline]
+pub(crate) fn cross(r: DVec3) -> DMat3 {
+    DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0))
+}
+
 /// Velocity change at `arm` per impulse there, in world axes.
 #[inline]
 pub(crate) fn response(inverse_mass: f64, inverse_inertia: &DMat3, arm: DVec3) -> DMat3 {
-    let cross = DMat3::from_cols(
-        DVec3::new(0.0, arm.z, -arm.y),
-        DVec3::new(-arm.z, 0.0, arm.x),
-        DVec3::new(arm.y, -arm.x, 0.0),
-    );
+    let cross = cross(arm);
     DMat3::from_diagonal(DVec3::splat(inverse_mass)) - cross * *inverse_inertia * cross
 }
 
@@ -231,7 +233,7 @@ impl Rigid {
         let Some(first) = first.filter(Point::is_struck) else { return false };
         let mut points = vec![first];
         self.for_known_touches(index, body, &pose, |t| {
-            if t.surface() != first.surface() {
+            if (t.part, t.point) != (part, point) {
                 points.extend(self.point_on_part(&t, index, &pose, hurried, &members[0]));
             }
         });

@@ -5,7 +5,7 @@ use super::slip::{Asked, Slip, WEDGED};
 use glam::{DMat3, DVec3};
 
 /// A body while its contacts are solved.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Member {
     pub(crate) inverse_mass: f64,
     pub(crate) inverse_inertia: DMat3,

@@ -12,7 +12,6 @@ use super::solve::{Contact, Enough, Member, Solver, solve};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::resolve::{ContactMatrix, stronge_impulse};
-use crate::scenery::Surface;
 use glam::{DMat3, DVec3};
 
 /// One of the points at which an impact may be.
@@ -40,13 +39,6 @@ impl Point {
         let restitution = if lasting { 0.0 } else { law.restitution };
         let least = if lasting { LEFT * settles } else { 0.0 };
         Self { contact, restitution, least, approach, lasting, other }
-    }
-
-    pub(super) fn surface(&self) -> Surface {
-        match self.other {
-            Other::Surface(surface) => surface,
-            Other::Body(_) => Surface::Part { part: u16::MAX, point: u16::MAX },
-        }
     }
 
     /// Tells of the impulse, if it was struck.
