@@ -66,7 +66,7 @@ fn pieces(world: &Rigid, index: usize, motions: &[Turning], begin: f64, ratio: f
     let first = motions.partition_point(|motion| motion.path.t <= begin).saturating_sub(1);
     let mut pieces: Vec<Piece> = Vec::with_capacity(motions.len() - first);
     for motion in &motions[first..] {
-        let body = world.at(index, motion, motion.path.t.max(begin));
+        let body = world.on_its_way(index, motion, motion.path.t.max(begin));
         let moves = !matches!(body.phase, Phase::Rest | Phase::Waiting | Phase::Gone);
         let start = body.path.t - begin;
         let [v, a] = if moves { [body.path.v, body.path.a] } else { [DVec3::ZERO; 2] };

@@ -78,7 +78,7 @@ fn pieces(scene: &Dice, draw: &Draw, world: &Rigid, (body, die): (usize, usize),
             let parts = ((until - motion.path.t) / WOBBLE).ceil().min(1e5) as u32;
             for part in 1..parts {
                 let time = motion.path.t + (until - motion.path.t) * f64::from(part) / f64::from(parts);
-                add(&world.at(body, motion, time));
+                add(&world.on_its_way(body, motion, time));
             }
         }
     }

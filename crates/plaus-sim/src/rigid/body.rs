@@ -301,4 +301,17 @@ impl Rigid {
         moved.advance(&self.specs[index], self.gravity, time);
         moved
     }
+
+    /// A body on its way at any time within its current motion, for pictures of it: like [`Rigid::at`], but within a step it goes on along the step, with the velocities of its drift. Those that
+    /// [`Rigid::at`] gives there are what it would have if the step ended.
+    #[must_use]
+    pub fn on_its_way(&self, index: usize, body: &Turning, time: f64) -> Turning {
+        if body.phase != Phase::Step {
+            return self.at(index, body, time);
+        }
+        let mut moved = body.clone();
+        (moved.path.x, moved.path.t) = (body.path.after(time - body.path.t), time);
+        (moved.turn, moved.spin) = drift(&self.specs[index].inertia, body.turn, body.spin, time - body.path.t);
+        moved
+    }
 }
