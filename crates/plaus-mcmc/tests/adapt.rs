@@ -1,7 +1,5 @@
 //! Scales adapted in the warm-up: they come to what is wanted, stay from then on, and leave the target as it is; a twin that adapts for ever does not.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 use plaus_dist::{
     Density, Gaussian, LogDensity, LogPotential, LogRatio, Purpose, Sample, Seed, Stream, math, open_unit,
 };

@@ -2,9 +2,7 @@
 //! measure area in another unit, a move that forgets what its ratio owes to the outcome.
 
 // Helpers outside of `#[test]` functions panic and print as tests do.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod toys;
+#![allow(clippy::print_stdout)]
 
 use plaus_dist::{LogPotential, Seed};
 use plaus_mcmc::check::{
@@ -14,9 +12,9 @@ use plaus_mcmc::check::{
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, Move, Redraw, StateOf, Tempered};
 use std::sync::Arc;
-use toys::balls::{Balls, Drops, active, filled};
-use toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle, Ways};
-use toys::remembering::Remembering;
+use crate::toys::balls::{Balls, Drops, active, filled};
+use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle, Ways};
+use crate::toys::remembering::Remembering;
 
 const CHANGE_ALL: ChangeAll = ChangeAll { symmetric: false };
 const REDROP: Redrop = Redrop { fault: Fault::None };

@@ -1,9 +1,7 @@
 //! The checks on a ring of places, a walk around it and a fresh draw; wrong twins: a redraw taken for symmetric, a chain that ignores −∞ priors.
 
 // Helpers outside of `#[test]` functions panic and print as tests do.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
-
-mod toys;
+#![allow(clippy::print_stdout)]
 
 use plaus_dist::{LogPotential, LogRatio, Seed, Stream};
 use plaus_mcmc::check::{
@@ -12,8 +10,8 @@ use plaus_mcmc::check::{
 };
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, State, StateOf, Target, Tempered};
-use toys::IgnoresForbidden;
-use toys::ring::{Redraw, Ring, Walk};
+use crate::toys::IgnoresForbidden;
+use crate::toys::ring::{Redraw, Ring, Walk};
 
 const RIGHT: Redraw = Redraw { symmetric: false };
 const SYMMETRIC: Redraw = Redraw { symmetric: true };

@@ -1,16 +1,13 @@
 //! One chain: choosing moves, verdicts, and what happens when a model fails.
 
 // Helpers outside of `#[test]` functions panic as tests do.
-#![allow(clippy::unwrap_used)]
-
-mod toys;
 
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
 use plaus_mcmc::{
     Block, Chain, ChainError, Control, Ending, Goal, Mixture, MixtureError, ModelError, Move, MoveId, Path, Plan,
     Progress, Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, State, StateOf, Target, Verdict, run,
 };
-use toys::ring::{Redraw, Ring, Walk};
+use crate::toys::ring::{Redraw, Ring, Walk};
 
 /// Counts up from its start; some numbers are forbidden or break the model.
 #[derive(Clone, Copy)]

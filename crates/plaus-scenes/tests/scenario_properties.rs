@@ -1,10 +1,6 @@
 //! Whatever a scenario file holds: no panic, and either a scenario within all ranges or problems with a place.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod common;
-
-use common::{BALL2D, Leaf, leaves};
+use crate::common::{BALL2D, Leaf, leaves};
 use plaus_scenes::Scenario;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{Problem, ScenarioError, Source, template};

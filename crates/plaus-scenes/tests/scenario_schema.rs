@@ -1,10 +1,6 @@
 //! The schema is enforced as it stands, and what is derived from it agrees with the code.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod common;
-
-use common::{BALL2D, Leaf, leaves};
+use crate::common::{BALL2D, Leaf, leaves};
 use plaus_scenes::Scenario;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{self, explain, keys, template};

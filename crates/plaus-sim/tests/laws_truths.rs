@@ -1,17 +1,11 @@
 //! Presets against truths of another make: the finer, the nearer. Many tosses, and how near: the example `truths`.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-#[path = "common/laws/mod.rs"]
-mod laws;
-#[path = "common/small_steps/mod.rs"]
-mod small_steps;
 
 use glam::{DMat3, DVec3};
-use laws::worlds::Dice;
+use crate::laws::worlds::Dice;
 use plaus_sim::resolve::{ContactMatrix, stronge_impulse};
 use plaus_sim::{Accuracy, Preset};
-use small_steps::impact::impulse;
-use small_steps::tosses::{Toss, smooth, wild};
+use crate::small_steps::impact::impulse;
+use crate::small_steps::tosses::{Toss, smooth, wild};
 
 /// Length of the truth's steps in s: what is unknown of it then is far below what presets are off.
 const STEP: f64 = 1e-3;
