@@ -6,6 +6,7 @@ mod arviz;
 mod clients;
 mod command;
 mod engines;
+mod examples;
 mod golden;
 mod registry;
 mod steps;
@@ -18,9 +19,10 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 usage: cargo xtask CHORE
 
-  test                 everything that must pass: what CI runs
-  ci                   the same
-  clients              of that, only what other programs make of exports and galleries
+  test                 everything that must pass of the code
+  test --quick         of that, what says within a minute or so whether a change is sound
+  clients              figures, and what other programs make of runs, exports and galleries
+  ci                   both: what CI runs
   engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost
   wheel                the Python package, into target/wheel/dist
   wheel --check        the same, tried on every Python there is, with its notebooks
@@ -39,7 +41,9 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match arguments.split_first() {
-        Some((&("test" | "ci"), [])) => test::run(),
+        Some((&"test", [])) => test::run(),
+        Some((&"test", ["--quick"])) => test::quick(),
+        Some((&"ci", [])) => test::ci(),
         Some((&"clients", [])) => test::clients(),
         Some((&"engines", [])) => engines::run(),
         Some((&"wheel", rest)) => wheel::run(rest),

@@ -4,6 +4,9 @@
 // Helpers outside of `#[test]` functions panic and print as tests do.
 #![allow(clippy::print_stdout)]
 
+use crate::toys::balls::{Balls, Drops, active, filled};
+use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle, Ways};
+use crate::toys::remembering::Remembering;
 use plaus_dist::{LogPotential, Seed};
 use plaus_mcmc::check::{
     Balance, BalanceReport, Enumerable, OneStep, OneStepReport, PriorOnly, Ratios, Statistic, balance, early_exit,
@@ -12,9 +15,6 @@ use plaus_mcmc::check::{
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, Move, Redraw, StateOf, Tempered};
 use std::sync::Arc;
-use crate::toys::balls::{Balls, Drops, active, filled};
-use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle, Ways};
-use crate::toys::remembering::Remembering;
 
 const CHANGE_ALL: ChangeAll = ChangeAll { symmetric: false };
 const REDROP: Redrop = Redrop { fault: Fault::None };

@@ -3,6 +3,8 @@
 // Helpers outside of `#[test]` functions panic and print as tests do.
 #![allow(clippy::print_stdout)]
 
+use crate::toys::IgnoresForbidden;
+use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{LogPotential, LogRatio, Seed, Stream};
 use plaus_mcmc::check::{
     Balance, BalanceReport, Branch, CheckError, Enumerable, LogP, OneStep, OneStepReport, PriorOnly, Ratios, Statistic,
@@ -10,8 +12,6 @@ use plaus_mcmc::check::{
 };
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, State, StateOf, Target, Tempered};
-use crate::toys::IgnoresForbidden;
-use crate::toys::ring::{Redraw, Ring, Walk};
 
 const RIGHT: Redraw = Redraw { symmetric: false };
 const SYMMETRIC: Redraw = Redraw { symmetric: true };

@@ -4,11 +4,11 @@
 // Helpers outside of `#[test]` functions panic and print as tests do.
 #![allow(clippy::print_stdout)]
 
+use crate::toys::vertices::{ChangeAll, Fresh, RedrawOne, Vertices, WalkOne, radius};
 use plaus_dist::{LogPotential, Seed, math};
 use plaus_mcmc::check::{OneStep, OneStepReport, PriorOnly, Ratios, Statistic, one_step, prior, ratios, rejection};
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, Move, StateOf};
-use crate::toys::vertices::{ChangeAll, Fresh, RedrawOne, Vertices, WalkOne, radius};
 
 type Kernel = fn() -> Box<dyn Move<Vertices>>;
 

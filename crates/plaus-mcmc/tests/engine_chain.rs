@@ -2,12 +2,12 @@
 
 // Helpers outside of `#[test]` functions panic as tests do.
 
+use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
 use plaus_mcmc::{
     Block, Chain, ChainError, Control, Ending, Goal, Mixture, MixtureError, ModelError, Move, MoveId, Path, Plan,
     Progress, Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, State, StateOf, Target, Verdict, run,
 };
-use crate::toys::ring::{Redraw, Ring, Walk};
 
 /// Counts up from its start; some numbers are forbidden or break the model.
 #[derive(Clone, Copy)]

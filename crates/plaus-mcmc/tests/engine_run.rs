@@ -2,6 +2,8 @@
 
 // Helpers outside of `#[test]` functions panic as tests do.
 
+use crate::toys::balls::{Balls, Drops};
+use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
 use plaus_dist::{LogRatio, Seed, Stream};
 use plaus_mcmc::{
     Block, Chain, ChainPulse, Control, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture, ModelError, Move,
@@ -10,8 +12,6 @@ use plaus_mcmc::{
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use crate::toys::balls::{Balls, Drops};
-use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
 
 type Loads = Vec<u32>;
 type S = StateOf<Balls>;

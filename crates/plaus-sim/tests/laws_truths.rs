@@ -1,11 +1,11 @@
 //! Presets against truths of another make: the finer, the nearer. Many tosses, and how near: the example `truths`.
 
-use glam::{DMat3, DVec3};
 use crate::laws::worlds::Dice;
-use plaus_sim::resolve::{ContactMatrix, stronge_impulse};
-use plaus_sim::{Accuracy, Preset};
 use crate::small_steps::impact::impulse;
 use crate::small_steps::tosses::{Toss, smooth, wild};
+use glam::{DMat3, DVec3};
+use plaus_sim::resolve::{ContactMatrix, stronge_impulse};
+use plaus_sim::{Accuracy, Preset};
 
 /// Length of the truth's steps in s: what is unknown of it then is far below what presets are off.
 const STEP: f64 = 1e-3;

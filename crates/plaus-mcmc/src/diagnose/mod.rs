@@ -48,8 +48,9 @@
 //! * Each chain constant, but not the same constant: R̂ is `Some(+∞)`, ESS about half a draw per chain.
 //! * One chain: R̂ is `None` (it compares chains); everything else is defined.
 //!
-//! The Fourier transforms come from `realfft`, which picks vector instructions by the machine it runs on: the last bits of ESS, MCSE and
-//! autocorrelations may differ between machines. They are for reading: nothing that must be reproducible may depend on them.
+//! The Fourier transforms come from `realfft` without its vector instructions, which it would pick by the machine it
+//! runs on. Their sines are the platform's, so the last bits of ESS, MCSE and autocorrelations may still differ between
+//! platforms. They are for reading: nothing that must be reproducible may depend on them.
 
 mod autocorrelation;
 mod chains;
