@@ -30,6 +30,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ),
     ("plaus-figures", &["plaus-dist", "plaus-export", "plaus-mcmc", "plaus-scenes"]),
     ("plaus-tradeoff", &["plaus-dist", "plaus-figures", "plaus-mcmc", "plaus-scenes", "plaus-sim"]),
+    ("plaus-benches", &[]),
     ("plaus-tests", &["plaus-dist"]),
     ("xtask", &[]),
 ];

@@ -51,7 +51,7 @@ fn main() -> ExitCode {
         Some((&"plausibility", rest)) => plausibility(rest),
         Some((&"golden", rest)) => golden::run(rest),
         Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),
-        Some((&"bench", rest)) => cargo(&["bench"]).args(rest).run(),
+        Some((&"bench", rest)) => cargo(&["bench", "--package", "plaus-benches"]).args(rest).run(),
         Some((&("help" | "-h" | "--help"), _)) => {
             println!("{USAGE}");
             return ExitCode::SUCCESS;

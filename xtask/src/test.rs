@@ -5,10 +5,10 @@ use crate::command::{Command, Failure, built, cargo, has_subcommand, target};
 use crate::steps::{self, Done, Step};
 use crate::{clients, examples};
 
-/// All packages but the comparison with another engine, whose build takes longer than all the rest; clippy looks at our
-/// side of it. Every build in the profile `dev` begins with these words: where packages or dev-dependencies differ, cargo
+/// All packages but benches and the comparison with another engine, whose build takes longer than all the rest; clippy
+/// looks at our side of them. Every build in the profile `dev` begins with these words: where packages or dev-dependencies differ, cargo
 /// chooses other features of what they share, and builds all of it anew.
-const ALL: [&str; 3] = ["--workspace", "--exclude", "plaus-tradeoff"];
+const ALL: [&str; 5] = ["--workspace", "--exclude", "plaus-tradeoff", "--exclude", "plaus-benches"];
 
 /// What is tried in release: both packages at once, for the same reason.
 const IN_RELEASE: [&str; 5] = ["--release", "--package", "plaus-cli", "--package", "plaus-tests"];
