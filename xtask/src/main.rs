@@ -5,6 +5,7 @@
 mod arviz;
 mod clients;
 mod command;
+mod documented;
 mod engines;
 mod examples;
 mod golden;

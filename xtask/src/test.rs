@@ -3,7 +3,7 @@
 
 use crate::command::{Command, Failure, built, cargo, has_subcommand, target};
 use crate::steps::{self, Done, Step};
-use crate::{clients, examples};
+use crate::{clients, documented, examples};
 
 /// All packages but benches and the comparison with another engine, whose build takes longer than all the rest; clippy
 /// looks at our side of them. Every build in the profile `dev` begins with these words: where packages or dev-dependencies differ, cargo
@@ -63,6 +63,7 @@ fn code() -> Vec<Step> {
         Step::command("golden traces, unoptimised", cargo(&["test", "--profile", "unoptimised"]).args(golden)),
         Step::command("release", cargo(&["build"]).args(IN_RELEASE).args(["--bin", "plaus", "--test", "golden"])),
         Step::command("golden traces, release", cargo(&["test"]).args(IN_RELEASE).args(["--test", "golden"])),
+        Step::new("every command that is shown", documented::run),
         Step::command("docs", cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings")),
         Step::new("examples", examples::run),
         Step::new("licences and advisories", deny),

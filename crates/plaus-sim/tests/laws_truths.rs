@@ -15,7 +15,7 @@ fn errors(toss: &Toss) -> ([f64; 4], f64) {
     let (mut off, mut unknown) = ([0.0_f64; 4], 0.0_f64);
     for start in &toss.starts {
         let (truth, doubt, _) = toss.truth_and_doubt(start, STEP);
-        let worst = |looks: &[small_steps::tosses::Look]| {
+        let worst = |looks: &[crate::small_steps::tosses::Look]| {
             looks.iter().zip(&truth).map(|(a, b)| a.off(b, toss.length())).fold(0.0, f64::max)
         };
         unknown = unknown.max(worst(&doubt));
