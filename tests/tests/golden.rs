@@ -41,7 +41,7 @@ const CASES: &[Case] = &[
     (
         "spelling-queue",
         "spelling-hi.toml",
-        &["text=A7", "order=queue", "vertices=interior", "count=balls", "accuracy=fine"],
+        &["text=A7", "ln_lambda=5", "order=queue", "vertices=interior", "count=balls", "accuracy=fine"],
         60,
     ),
     ("dice-one", "dice-one.toml", &[], 100),

@@ -16,6 +16,7 @@ mod clock;
 mod commands;
 mod console;
 mod failure;
+mod glossary;
 mod interrupt;
 mod label;
 mod plots;

@@ -72,7 +72,7 @@ pub use replicas::{Climb, Course, Replicas, ReplicasSnapshot, RungStatistics, Te
 pub use required::{Judged, Mark, Required, Requirement};
 pub use run::{
     ChainPulse, Control, Ending, Plan, PlanError, Progress, Pulse, RunError, Sink, Snapshot, Start, run, run_some,
-    run_watched,
+    run_watched, useful_threads,
 };
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};

@@ -16,7 +16,7 @@ fn world(ln_lambda: f64, moves: Moves) -> Spelling {
         config.bitmap = "#.#".into();
         (config.columns, config.rows) = (3, 1);
         config.vertices = Vertices::Crossings;
-        (config.ln_lambda, config.moves) = (ln_lambda, moves);
+        (config.ln_lambda, config.moves) = (Some(ln_lambda), moves);
         config.sigma_mm = 0.4;
     })
 }
@@ -47,7 +47,7 @@ const VALUES: [Value; 13] = [
 /// Mean of each value under the target, by importance sampling, with its standard error (delta method for a ratio of means).
 fn by_weights(scene: &Spelling, draws: &[Letters]) -> Vec<(f64, f64)> {
     let weights: Vec<f64> =
-        draws.iter().map(|state| math::exp(scene.config().ln_lambda * scene.filled(&state.outcome) as f64)).collect();
+        draws.iter().map(|state| math::exp(scene.ln_lambda() * scene.filled(&state.outcome) as f64)).collect();
     let total: f64 = weights.iter().sum();
     let mean = |value: fn(&Spelling, &Letters) -> f64| {
         let mean = draws.iter().zip(&weights).map(|(state, weight)| weight * value(scene, state)).sum::<f64>() / total;

@@ -25,7 +25,7 @@ fn a_chain_has_the_bits_of_its_plain_twin() {
         config.sigma_mm = 0.3;
     };
     agrees_with_its_twin(&scene(often), 2, 500);
-    agrees_with_its_twin(&scene(|config| (config.text, config.letters) = ("ACM".into(), Letters::Tall)), 3, 100);
+    agrees_with_its_twin(&scene(|config| (config.text, config.letters) = (Some("ACM".into()), Letters::Tall)), 3, 100);
 }
 
 #[test]

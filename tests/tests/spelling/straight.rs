@@ -81,7 +81,7 @@ pub(crate) fn small(ln_lambda: f64) -> Spelling {
     scene(|config| {
         config.bitmap = "##.\n.##".into();
         config.vertices = Vertices::Interior;
-        config.ln_lambda = ln_lambda;
+        config.ln_lambda = Some(ln_lambda);
         // Large enough to make a difference.
         config.sigma_mm = 0.4;
     })

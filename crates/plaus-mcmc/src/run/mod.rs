@@ -237,8 +237,8 @@ pub enum RunError<E> {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Runs, or goes on with, the chains of `plan` on `threads` threads (0: one a core). `starts` is empty, or holds one start a chain, all at the same
-/// iteration.
+/// Runs, or goes on with, the chains of `plan` on `threads` threads (0: one a core; never more than there are replicas of
+/// chains, see [`useful_threads`]). `starts` is empty, or holds one start a chain, all at the same iteration.
 ///
 /// # Errors
 /// [`RunError`] where the plan makes no run, or a chain or the sink fails. Everything the sink received before stays valid.
@@ -286,7 +286,7 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     pulse: &Pulse,
 ) -> Result<Ending, RunError<S::Error>> {
     plan.check(&some, &starts)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(useful_threads(threads, &plan, &some)).build()?;
     let fresh = Mixture::of(Box::new(Redraw));
     let mut fleet = Fleet::new(Job { target, moves, fresh: &fresh, plan, first: some.start }, some, starts, pulse);
     while fleet.done < plan.end() && !fleet.has_enough() {
@@ -304,6 +304,12 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
         }
     }
     Ok(if fleet.has_enough() { Ending::EnoughSolutions } else { Ending::Complete })
+}
+
+/// As many of `threads` as the chains `some` of a plan can keep busy: one a replica. 0, which is one a core, stays.
+#[must_use]
+pub fn useful_threads(threads: usize, plan: &Plan, some: &Range<u32>) -> usize {
+    threads.min(some.len().max(1).saturating_mul(plan.rungs.max(1) as usize))
 }
 
 /// Which chain failed, and how.

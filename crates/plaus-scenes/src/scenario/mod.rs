@@ -12,7 +12,9 @@ mod tree;
 mod value;
 
 pub use keys::{KeyDoc, explain, keys, template};
-pub use problem::{Problem, ScenarioError, Source};
+pub use nearest::nearest;
+pub use overrides::NoKey;
+pub use problem::{Problem, SHOWN, ScenarioError, Source};
 pub use schema::schema;
 
 use crate::registry::{Visitor, World};
@@ -104,7 +106,9 @@ impl Scenario {
     /// Reads a scenario: a file called `name` with the contents `text`, and `key=value` strings that override it, in order.
     ///
     /// An override's key is a full dotted name (`world.ball2d.sigma_d`) or an end of it that no other key of the file's world has
-    /// (`sigma_d`, `weights.aim`). Its value is TOML, else a bare string: `moves=paper`. Tables that the file lacks are made.
+    /// (`sigma_d`, `weights.aim`). Places in lists are counted from 0: `constraints[0].rest_at.x_mm`; where only one table
+    /// of the list has the key, the place may be left out: `rest_at.x_mm`. The value is TOML, else a bare string:
+    /// `moves=paper`. Tables that the file lacks are made.
     ///
     /// # Errors
     /// [`ScenarioError`] with all that is wrong, each in its place. Only where the text is no TOML is nothing else looked at, and what one

@@ -1,6 +1,7 @@
 //! Scenario keys of the balls that spell.
 
 use crate::accuracy::AccuracyPreset;
+use plaus_dist::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,10 +17,12 @@ pub const MOST_ROWS: u32 = 16;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// The word: letters A to Z, digits, spaces and `.-+!?=*` of a small built-in font. Case does not matter.
-    pub text: String,
-    /// A picture in place of a word: one line a row of bins, where `#`, `X`, `x`, `1` or `*` is a bin to fill and `.`, `_`, `0`, `-` or a space one
-    /// to leave empty. Empty: `text` counts.
+    /// The word: letters A to Z, digits, spaces and `.-+!?=*` of a small built-in font. Case does not matter. Unset: HI,
+    /// where there is no `bitmap` either. Both together are refused.
+    #[schemars(extend("x-example" = "HI"))]
+    pub text: Option<String>,
+    /// A picture in place of a word: one line a row of bins, where `#`, `X`, `x`, `1` or `*` is a bin to fill and `.`,
+    /// `_`, `0`, `-` or a space one to leave empty. Empty: no picture.
     pub bitmap: String,
     /// Which font.
     pub letters: Letters,
@@ -32,10 +35,11 @@ pub struct Config {
     /// Balls at most, of which each may be dropped or not. 0: as many as there are bins to fill, as in the paper; fewer can't spell the word.
     #[schemars(range(min = 0, max = 1024))]
     pub balls: u32,
-    /// ln λ, the reward in nats for each filled bin. The paper's: 5 for HI, 7.25 for ACM. The more bins, the more ways there are to fill a few less, and
-    /// the larger it must be.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat"))]
-    pub ln_lambda: f64,
+    /// ln λ, the reward in nats for each filled bin. The more bins, the more ways there are to fill a few less, and the
+    /// larger it must be. Unset: 5 + 2.25 ln(N/10) / ln 3 for N bins to fill, which is the paper's 5 for HI and 7.25
+    /// for ACM.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat", "x-example" = 5.0))]
+    pub ln_lambda: Option<f64>,
     /// What is counted.
     pub count: Count,
     /// Standard deviation of each coordinate of a partition vertex's offset. Offsets beyond 8 of it, or beyond 9/20 of the partitions' thickness, have
@@ -84,13 +88,13 @@ pub struct Config {
 impl Default for Config {
     fn default() -> Self {
         Self {
-            text: "HI".into(),
+            text: None,
             bitmap: String::new(),
             letters: Letters::default(),
             columns: 0,
             rows: 0,
             balls: 0,
-            ln_lambda: 5.0,
+            ln_lambda: None,
             count: Count::default(),
             sigma_mm: 0.1,
             vertices: Vertices::default(),
@@ -110,6 +114,13 @@ impl Default for Config {
             steps: Steps::default(),
         }
     }
+}
+
+/// ln λ where a scenario does not say: the power law through the paper's two choices, λ = e⁵ for 10 bins and e^7.25 for 30;
+/// never below 0.
+#[must_use]
+pub fn usual_ln_lambda(bins: usize) -> f64 {
+    (5.0 + 2.25 * math::ln(bins as f64 / 10.0) / math::ln(3.0)).max(0.0)
 }
 
 /// A built-in font.

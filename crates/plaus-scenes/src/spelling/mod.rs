@@ -13,6 +13,7 @@ mod word;
 
 pub use config::{
     Config, Contact, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Moves, Order, Steps, Vertices, Weights,
+    usual_ln_lambda,
 };
 pub use draw::{Drops, Prior};
 pub use moves::{BirthDeath, ChangeAll, ChangeBall, ChangeVertices, RedrawVertices, Redrop, Swap, Toggle};
@@ -61,7 +62,8 @@ impl Spelling {
         let word = Word::new(config)?;
         let balls = arena::balls(config, &word)?;
         let arena = Arena::new(config, &word, balls)?;
-        let goal = Gibbs::from_ln_lambda(config.ln_lambda).map_err(|error| blame("ln_lambda")(&error))?;
+        let ln_lambda = config.ln_lambda.unwrap_or_else(|| usual_ln_lambda(word.designated().len()));
+        let goal = Gibbs::from_ln_lambda(ln_lambda).map_err(|error| blame("ln_lambda")(&error))?;
         let offsets = (arena.vertices().len(), config.sigma_mm, arena::longest_offset(config));
         let prior =
             Prior::new(offsets, balls, arena::rectangle(config, &word)?).map_err(|error| blame("sigma_mm")(&error))?;
@@ -79,6 +81,12 @@ impl Spelling {
     #[must_use]
     pub fn config(&self) -> &Config {
         &self.config
+    }
+
+    /// ln λ: the configuration's, or what is usual for so many bins.
+    #[must_use]
+    pub fn ln_lambda(&self) -> f64 {
+        self.goal.ln_lambda()
     }
 
     /// Which bins are to be filled.

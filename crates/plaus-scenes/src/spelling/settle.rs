@@ -280,7 +280,7 @@ mod tests {
     /// bound: one draw in a hundred may differ, and hardly any does.
     #[test]
     fn groups_end_as_all_at_once() {
-        let acm = Config { text: "ACM".into(), letters: Letters::Tall, ..Config::default() };
+        let acm = Config { text: Some("ACM".into()), letters: Letters::Tall, ..Config::default() };
         for (config, draws) in [(Config::default(), 300), (acm, 30)] {
             let scene = Spelling::new(&config).unwrap();
             let (mut work, mut together) = (Work::default(), Work::default());

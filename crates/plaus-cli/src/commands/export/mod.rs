@@ -31,7 +31,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum)]
     format: Format,
     /// File or folder to make; `-` writes csv, poses and events to standard output
-    #[arg(long, value_name = "PATH")]
+    #[arg(long, alias = "output", value_name = "PATH")]
     out: PathBuf,
     /// A sample to animate, its chain and its draw, as in the table, e.g. 0:17; may be given several times
     #[arg(long, value_name = "CHAIN:DRAW")]
@@ -82,6 +82,22 @@ impl Format {
     fn is_animation(self) -> bool {
         !matches!(self, Self::Csv | Self::Zarr)
     }
+
+    /// What a program would take a file of this name for, and this format is not.
+    fn contradicts(self, out: &Path) -> Option<(String, &'static str)> {
+        let end = out.extension()?.to_str()?.to_ascii_lowercase();
+        let (holds, fits) = match end.as_str() {
+            "glb" => ("binary glTF, which --format glb writes", self == Self::Glb),
+            "gltf" => ("glTF as text: --format glb writes it as one binary file, .glb", false),
+            "usda" => ("USD as text, which --format usda writes", self == Self::Usda),
+            "usd" | "usdc" | "usdz" => ("USD in another form: --format usda writes it as text, .usda", false),
+            "csv" => ("a table: --format csv, poses or events", !matches!(self, Self::Zarr | Self::Glb | Self::Usda)),
+            "json" => ("JSON, which --format events writes", self == Self::Events),
+            "zarr" => ("draws for ArviZ, which --format zarr writes", self == Self::Zarr),
+            _ => return None,
+        };
+        (!fits).then_some((end, holds))
+    }
 }
 
 impl RunVisitor for &Args {
@@ -107,6 +123,7 @@ impl Args {
         let mut run = Run::open(&Folder::new(&self.run))?;
         if self.salvage {
             run = run.salvaged();
+            console::note_line(&run.visit(super::Salvage)?);
         } else if run.folder().is_being_written() {
             console::note_line("note: the run is being written; this exports it as of its last checkpoint");
         }
@@ -114,7 +131,11 @@ impl Args {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         let written = run.visit(&self)?;
-        written.map_err(|error| Failure::from(error).about(&self.out.display().to_string()))?;
+        let out = self.out.display().to_string();
+        written.map_err(|error| Failure::from(error).about(&out))?;
+        if self.out != Path::new("-") {
+            console::note_line(&format!("wrote {out}"));
+        }
         Ok(Outcome::Done)
     }
 
@@ -125,6 +146,11 @@ impl Args {
         if self.format.is_animation() && !chosen {
             let message = "an animation needs a sample: --sample CHAIN:DRAW, --all-distinct, or --confirmed";
             return Err(Failure::Message(message.to_owned()));
+        }
+        if let Some((end, holds)) = self.format.contradicts(&self.out) {
+            let message =
+                format!("{}: a file that ends in .{end} holds {holds}; choose another name", self.out.display());
+            return Err(Failure::Message(message));
         }
         if !self.format.is_animation() && (chosen || timed) {
             let message = "--sample, --all-distinct, --confirmed, --fps and --time-range go with glb, usda, poses and events: csv and zarr hold all draws";
