@@ -66,7 +66,7 @@ fn code() -> Vec<Step> {
         Step::new("every command that is shown", documented::run),
         Step::command("docs", cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings")),
         Step::new("examples", examples::run),
-        Step::new("licences and advisories", deny),
+        Step::new("advisories", deny),
         crate::wheel::licences(),
     ]
 }
@@ -92,7 +92,7 @@ fn with_clients() -> Vec<Step> {
     all
 }
 
-/// Checks `deny.toml` where the tool is there: building it takes longer than all the rest.
+/// Advisories, where the tool is there: building it takes longer than all the rest. Licences are tested without it.
 fn deny() -> Result<Done, Failure> {
     if !has_subcommand("deny") {
         return Ok(Done::Skipped("cargo-deny is not installed here (`cargo install cargo-deny`)".to_owned()));
