@@ -55,7 +55,7 @@ fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
             if name != "target" && name != "node_modules" && !name.starts_with('.') && name != "out" {
                 found.extend(files(&path, ending));
             }
-        } else if name.ends_with(ending) {
+        } else if path.to_string_lossy().replace('\\', "/").ends_with(ending) {
             found.push(path);
         }
     }
@@ -144,4 +144,22 @@ fn every_path_named_in_architecture_exists() {
     let missing: Vec<&str> =
         paths.filter(|path| !path.contains(['<', '*', '{']) && !root().join(path).exists()).collect();
     assert!(missing.is_empty(), "named in ARCHITECTURE.md, but not there: {missing:?}");
+}
+
+/// A file that the one program of a crate's tests does not name would never run.
+#[test]
+fn every_file_of_tests_is_part_of_the_program() {
+    let mut left_out = Vec::new();
+    for program in files(&root().join("crates"), "tests/all.rs") {
+        let text = std::fs::read_to_string(&program).unwrap();
+        for entry in std::fs::read_dir(program.parent().unwrap()).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            let is_test = path.extension().is_some_and(|end| end == "rs") && name != "all";
+            if is_test && !text.contains(&format!("mod {name};")) {
+                left_out.push(shown(&path));
+            }
+        }
+    }
+    assert!(left_out.is_empty(), "not named in all.rs beside them: {left_out:?}");
 }

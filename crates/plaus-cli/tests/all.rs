@@ -8,6 +8,7 @@ mod adapting;
 mod animations;
 mod bad_input;
 mod every_format;
+mod first_hour;
 #[cfg(unix)]
 mod jobs;
 mod mutated;
