@@ -1,5 +1,6 @@
-//! Golden traces: short chains, iteration by iteration, bit for bit. They hold on every machine, compiler and optimisation level; a mismatch means that runs
-//! of earlier versions no longer have the same bits. `cargo xtask golden --bless` makes them anew.
+//! Golden traces: short chains, iteration by iteration, bit for bit. They hold on every machine, compiler and
+//! optimisation level; a mismatch means that runs of earlier versions no longer have the same bits.
+//! `cargo xtask golden --bless` makes them anew.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

@@ -38,6 +38,21 @@ const EDGES: &[(&str, &[&str])] = &[
 /// Crates that only one of our packages, or one file, may name.
 const ONLY_IN: &[(&str, &str)] = &[("bincode", "crates/plaus-run/src/codec.rs")];
 
+/// Columns of a line, in sources and docs: what rustfmt is set to.
+const WIDEST: usize = 120;
+
+/// Where lines are longer still, of before this was held: none is to be added, and each that is wrapped leaves.
+const STILL_WIDE: [&str; 8] = [
+    "crates/plaus-sim/",
+    "crates/plaus-run/",
+    "crates/plaus-export/",
+    "crates/plaus-python/",
+    "crates/plaus-gallery/",
+    "crates/plaus-scenes/src/animation",
+    "xtask/figures/",
+    "xtask/tradeoff/",
+];
+
 /// Longest source file, in lines: what one can still hold in the head.
 const LONGEST: usize = 450;
 
@@ -162,4 +177,24 @@ fn every_file_of_tests_is_part_of_the_program() {
         }
     }
     assert!(left_out.is_empty(), "not named in all.rs beside them: {left_out:?}");
+}
+
+/// Rows of tables cannot be broken, nor can what stands in code between quotes: rustfmt leaves it.
+#[test]
+fn lines_are_of_a_width_to_read() {
+    let mut wide = Vec::new();
+    for path in [files(&root(), ".rs"), files(&root(), ".md"), files(&root(), ".toml")].concat() {
+        let name = shown(&path);
+        if STILL_WIDE.iter().any(|start| name.starts_with(start)) {
+            continue;
+        }
+        for (number, line) in (1..).zip(std::fs::read_to_string(&path).unwrap().lines()) {
+            let words = line.trim_start_matches(['/', '!', '#', ' ']);
+            let unbroken = words.starts_with('|') || words.contains("](") || line.contains('"');
+            if line.chars().count() > WIDEST && !unbroken {
+                wide.push(format!("{name}:{number}"));
+            }
+        }
+    }
+    assert!(wide.is_empty(), "more than {WIDEST} columns: {}", wide.join(", "));
 }

@@ -67,7 +67,8 @@ fn outcome(command: &str) -> Outcome {
     OTHERS.iter().find(|(start, _)| command.starts_with(start)).map_or(Outcome::Done, |(_, outcome)| *outcome)
 }
 
-/// The words after `plaus`. Whole runs are for users: here a run of another scene than `ball2d` ends with its first solution.
+/// The words after `plaus`. Whole runs are for users: here a run of another scene than `ball2d` ends with its first
+/// solution.
 fn shortened(command: &str) -> Vec<String> {
     let mut words: Vec<String> = command.split_whitespace().skip(1).map(str::to_owned).collect();
     if words[0] != "sample" || words.iter().any(|word| word.contains("ball2d")) {

@@ -6,8 +6,8 @@ use crate::steps::{self, Done, Step};
 use crate::{clients, documented, examples};
 
 /// All packages but benches and the comparison with another engine, whose build takes longer than all the rest; clippy
-/// looks at our side of them. Every build in the profile `dev` begins with these words: where packages or dev-dependencies differ, cargo
-/// chooses other features of what they share, and builds all of it anew.
+/// looks at our side of them. Every build in the profile `dev` begins with these words: where packages or
+/// dev-dependencies differ, cargo chooses other features of what they share, and builds all of it anew.
 const ALL: [&str; 5] = ["--workspace", "--exclude", "plaus-tradeoff", "--exclude", "plaus-benches"];
 
 /// What is tried in release: both packages at once, for the same reason.
@@ -18,7 +18,8 @@ pub(crate) fn run() -> Result<(), Failure> {
     steps::run(code())
 }
 
-/// What says within a minute or so whether a change is sound: all but the long tests, other profiles, and other programs.
+/// What says within a minute or so whether a change is sound: all but the long tests, other profiles, and other
+/// programs.
 pub(crate) fn quick() -> Result<(), Failure> {
     // The extension for Python has no tests, and cargo would build it all the same.
     let words = ["--exclude", "plaus-python", "--lib", "--bins", "--test", "golden", "--test", "tidy"];

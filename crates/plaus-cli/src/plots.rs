@@ -1,4 +1,5 @@
-//! Pictures of a run's mixing as SVG: of each scalar the trace, the autocorrelation and the ranks of every chain; of each move how often it was accepted.
+//! Pictures of a run's mixing as SVG: of each scalar the trace, the autocorrelation and the ranks of every chain; of
+//! each move how often it was accepted.
 
 use crate::svg::{Frame, PANEL, Svg};
 use plaus_mcmc::MoveCounts;

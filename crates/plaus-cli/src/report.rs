@@ -111,7 +111,8 @@ pub(crate) fn move_table(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
     lay_out(&rows)
 }
 
-/// What scales were adapted to, with the share accepted at each, per chain where there are few; nothing for chains that adapt none.
+/// What scales were adapted to, with the share accepted at each, per chain where there are few; nothing for chains that
+/// adapt none.
 pub(crate) fn scale_table(diagnosis: &Diagnosis) -> String {
     let chains = &diagnosis.tally.chains;
     let Some(first) = chains.first().filter(|chain| !chain.scales.is_empty()) else { return String::new() };
@@ -154,7 +155,8 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     )
 }
 
-/// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are not tempered.
+/// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are
+/// not tempered.
 pub(crate) fn tempering(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
     let all: Vec<_> = diagnosis.tally.chains.iter().filter_map(|chain| chain.tempering.as_ref()).collect();
     if all.is_empty() {

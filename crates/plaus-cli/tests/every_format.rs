@@ -1,4 +1,5 @@
-//! Every way out of a run, where the run, the sample or the output is not as it should be: a clear error, nothing left behind, nothing overwritten.
+//! Every way out of a run, where the run, the sample or the output is not as it should be: a clear error, nothing left
+//! behind, nothing overwritten.
 
 use crate::common::Place;
 use std::path::Path;

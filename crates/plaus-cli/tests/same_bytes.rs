@@ -1,4 +1,5 @@
-//! A run's folder has the same bytes whatever the number of threads, and however often the process was killed or interrupted.
+//! A run's folder has the same bytes whatever the number of threads, and however often the process was killed or
+//! interrupted.
 
 use crate::common::{Ended, Place};
 use std::process::{Child, Command, Stdio};

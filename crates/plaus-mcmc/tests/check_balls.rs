@@ -1,5 +1,6 @@
-//! The checks on balls that are dropped or not. Wrong twins: a change-all taken for symmetric, toggles that forget the balls they leave alone, toggles that
-//! measure area in another unit, a move that forgets what its ratio owes to the outcome.
+//! The checks on balls that are dropped or not. Wrong twins: a change-all taken for symmetric, toggles that forget the
+//! balls they leave alone, toggles that measure area in another unit, a move that forgets what its ratio owes to the
+//! outcome.
 
 // Helpers outside of `#[test]` functions panic and print as tests do.
 #![allow(clippy::print_stdout)]
@@ -161,7 +162,8 @@ fn early_stops_change_nothing_unless_they_are_wrong() {
     assert!(!wrong.passed(), "{wrong}");
 }
 
-/// A bound of a later part that is too low lets simulations stop that would have been accepted: the twin parts from its plain chain.
+/// A bound of a later part that is too low lets simulations stop that would have been accepted: the twin parts from its
+/// plain chain.
 #[test]
 fn a_bound_that_is_too_low_is_caught() {
     let low = early_exit(&Balls::anywhere(6, 4, AREA, 2.0), mixture(Fault::Bound), Seed(5), 20_000).unwrap();
@@ -169,7 +171,8 @@ fn a_bound_that_is_too_low_is_caught() {
     assert!(!low.passed(), "{low}");
 }
 
-/// What stops early when tempered is what would not have been accepted: the floor is translated without losing a rounding.
+/// What stops early when tempered is what would not have been accepted: the floor is translated without losing a
+/// rounding.
 #[test]
 fn early_stops_survive_tempering() {
     let balls: &'static Balls = Box::leak(Box::new(Balls::anywhere(6, 4, AREA, 2.0)));

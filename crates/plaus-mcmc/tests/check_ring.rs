@@ -1,4 +1,5 @@
-//! The checks on a ring of places, a walk around it and a fresh draw; wrong twins: a redraw taken for symmetric, a chain that ignores −∞ priors.
+//! The checks on a ring of places, a walk around it and a fresh draw; wrong twins: a redraw taken for symmetric, a
+//! chain that ignores −∞ priors.
 
 // Helpers outside of `#[test]` functions panic and print as tests do.
 #![allow(clippy::print_stdout)]

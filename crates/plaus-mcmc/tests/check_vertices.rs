@@ -1,5 +1,5 @@
-//! The checks on continuous offsets. Wrong twins: a change-all taken for symmetric, fresh offsets in a random direction with a Gaussian length, both together
-//! (the paper's change-all).
+//! The checks on continuous offsets. Wrong twins: a change-all taken for symmetric, fresh offsets in a random direction
+//! with a Gaussian length, both together (the paper's change-all).
 
 // Helpers outside of `#[test]` functions panic and print as tests do.
 #![allow(clippy::print_stdout)]

@@ -329,8 +329,8 @@ fn a_long_chain_has_the_law_of_the_target() {
     let total: f64 = (0..9).map(weight).sum();
     for (place, count) in visits.iter().enumerate() {
         let share = weight(place) / total;
-        // An independence sampler whose weights are at most e apart has a relaxation time of at most e: ESS above 200,000 / (2e) = 36,000;
-        // six standard deviations.
+        // An independence sampler whose weights are at most e apart has a relaxation time of at most e: ESS above
+        // 200,000 / (2e) = 36,000; six standard deviations.
         let margin = 6.0 * (share * (1.0 - share) / 36_000.0).sqrt();
         assert!((f64::from(*count) / f64::from(iterations) - share).abs() <= margin, "{visits:?}");
     }

@@ -1,4 +1,5 @@
-//! Bad scenario files: each problem is found where it stands, with its key, the allowed range and the nearest known name.
+//! Bad scenario files: each problem is found where it stands, with its key, the allowed range and the nearest known
+//! name.
 
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{Problem, ScenarioError, Source};
@@ -271,7 +272,8 @@ fn overrides_take_full_names_and_unique_ends() {
         let overrides: Vec<String> = overrides.iter().map(|said| (*said).to_owned()).collect();
         Scenario::read("good.toml", text, &overrides).unwrap_or_else(|error| panic!("{error}"))
     };
-    // The last word counts, also over what is wrong in the file; tables are made; words need no quotes; tables are replaced whole.
+    // The last word counts, also over what is wrong in the file; tables are made; words need no quotes; tables are
+    // replaced whole.
     let mended = "world.ball2d.sigma_theta_deg=10";
     let read = read(&[
         mended,

@@ -21,7 +21,8 @@ fn refused(leaf: &Leaf, value: &str) {
     assert!(!doc.range.is_empty() && error.problems[0].message.contains(&doc.range), "{error} lacks {}", doc.range);
 }
 
-/// Nothing is wrong with the value by itself. What it may not go together with at their defaults (a ball larger than a bin) is said in other words.
+/// Nothing is wrong with the value by itself. What it may not go together with at their defaults (a ball larger than a
+/// bin) is said in other words.
 fn taken(leaf: &Leaf, value: &str) {
     if let Err(error) = with(&leaf.key, value) {
         let of_the_scene = error.problems.len() == 1 && !error.problems[0].key.starts_with("world.ball2d.");
@@ -30,8 +31,8 @@ fn taken(leaf: &Leaf, value: &str) {
     }
 }
 
-/// Every key of `keys()` is in the schema and the other way round; every number has both ends; each end is enforced to the last bit, and
-/// the scene takes what the schema allows.
+/// Every key of `keys()` is in the schema and the other way round; every number has both ends; each end is enforced to
+/// the last bit, and the scene takes what the schema allows.
 #[test]
 fn every_range_is_enforced_to_the_last_bit() {
     let leaves = leaves();

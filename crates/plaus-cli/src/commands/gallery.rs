@@ -20,13 +20,13 @@ pub(crate) struct Args {
     /// The page to make: one HTML file that needs nothing else
     #[arg(long, alias = "output", value_name = "FILE.html")]
     out: PathBuf,
-    /// Most solutions to show; they are chosen so that they differ as much as can be
+    /// Maximum number of solutions to show; they are chosen to differ as much as possible
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=5000))]
     count: u32,
     /// Replace what is there, if `plaus gallery` made it
     #[arg(long)]
     force: bool,
-    /// Read a damaged run up to its first damage
+    /// Read a damaged run as far as it is intact, and say what is lost
     #[arg(long)]
     salvage: bool,
 }

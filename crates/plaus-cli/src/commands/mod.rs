@@ -57,9 +57,9 @@ pub(crate) enum Command {
     Check(check::Args),
     /// Sample a scenario into a run folder.
     Sample(sample::Args),
-    /// Go on with an interrupted run from its last checkpoint, or make it longer.
+    /// Continue an interrupted run from its last checkpoint, or make it longer.
     Resume(resume::Args),
-    /// Put the pieces of a run together: byte for byte the run that one machine would have made.
+    /// Merge the pieces of a run into the run that one machine would have made, byte for byte.
     Merge(merge::Args),
     /// Write the job that samples a run in pieces on many machines, and submit it.
     Submit(submit::Args),

@@ -28,14 +28,15 @@ const SHOWN_SCALARS: usize = 16;
 pub(crate) struct Args {
     #[command(flatten)]
     wanted: Wanted,
-    /// Folder to make for the run; must not exist. With `--shard`, `{shard}` as its last part stands for the number of the piece
+    /// Folder to make for the run; must not exist. With `--shard`, `{shard}` as its last part stands for the number of
+    /// the piece
     #[arg(long, alias = "output", value_name = "RUN")]
     out: PathBuf,
-    /// Sample only one piece of the run's chains, e.g. 3/16; `task/16` takes the number from HQ_TASK_ID or SLURM_ARRAY_TASK_ID.
-    /// `plaus merge` makes the whole of all
+    /// Sample only one piece of the run's chains, e.g. 3/16; `task/16` takes the number from HQ_TASK_ID or
+    /// SLURM_ARRAY_TASK_ID. `plaus merge` makes the whole of all
     #[arg(long, value_name = "PIECE/PIECES", allow_hyphen_values = true)]
     shard: Option<String>,
-    /// Where RUN holds this very run already, go on with it; while another process writes it, wait
+    /// If RUN already holds this run, go on with it; wait while another process writes it
     #[arg(long = "continue")]
     go_on: bool,
     #[command(flatten)]
@@ -45,7 +46,7 @@ pub(crate) struct Args {
 /// How a run is watched.
 #[derive(clap::Args)]
 pub(crate) struct Watching {
-    /// Threads; 0 is one a core. At most one a core and one a chain are used. Results never depend on it
+    /// Number of threads; 0: one per core. Never more than there are cores or chains. Results do not depend on it
     #[arg(long, value_name = "T", default_value_t = 0, allow_negative_numbers = true)]
     threads: usize,
     /// Stop after this time, e.g. 60s, 1.5m or 2h; the run can be resumed
@@ -136,7 +137,8 @@ impl Watching {
                 "plan": manifest.plan,
                 "iteration": done,
             });
-            let _ = console::print_line(&begin.to_string()); // where the reader has gone, the end of the run will say so
+            // Where the reader has gone, the end of the run will say so.
+            let _ = console::print_line(&begin.to_string());
         } else if self.quiet {
             console::note_line(&format!("seed {}", manifest.plan.seed));
         } else {

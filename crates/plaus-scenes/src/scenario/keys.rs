@@ -15,7 +15,8 @@ pub struct KeyDoc {
     pub key: String,
     /// The kind of value, with its article: "a number", "an integer", "a boolean", "a word", "a table".
     pub kind: String,
-    /// The default, as TOML; "unset" for a key that may be left out and then means something of its own; empty for tables.
+    /// The default, as TOML; "unset" for a key that may be left out and then means something of its own; empty for
+    /// tables.
     pub default: String,
     /// Allowed values, in words, e.g. "above 0 and at most 90"; empty where anything of the kind goes.
     pub range: String,
@@ -92,7 +93,8 @@ fn default(shape: &Shape) -> Option<String> {
     })
 }
 
-/// A commented scenario file: every key with its default, its meaning, unit and range. Reading it gives the scene's default scenario.
+/// A commented scenario file: every key with its default, its meaning, unit and range. Reading it gives the scene's
+/// default scenario.
 #[must_use]
 pub fn template(scene: &str) -> Option<String> {
     let given = Scenario::default_of(scene)?;

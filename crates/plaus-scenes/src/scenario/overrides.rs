@@ -110,7 +110,8 @@ fn default_items(shape: &Shape, key: &str) -> Vec<Tree> {
     }
 }
 
-/// The key that `name` stands for: its full dotted name, or an end of it that no other of `keys` has. Full names may be any of `all`.
+/// The key that `name` stands for: its full dotted name, or an end of it that no other of `keys` has. Full names may be
+/// any of `all`.
 ///
 /// # Errors
 /// [`NoKey`].
@@ -173,8 +174,8 @@ fn value_of(value: &str, said: &str) -> Tree {
     }
 }
 
-/// Puts `value` at the dotted `key` of `tree`, which stands at `path`. Something other than a table in the way stays: it is
-/// wrong itself, and will be reported.
+/// Puts `value` at the dotted `key` of `tree`, which stands at `path`. Something other than a table in the way stays:
+/// it is wrong itself, and will be reported.
 fn insert(tree: &mut Tree, shape: &Shape, key: &str, path: &str, value: Tree, said: &str) -> Result<(), Box<Problem>> {
     let Data::Table(entries) = &mut tree.data else { return Ok(()) };
     let (first, rest) = key.split_once('.').map_or((key, None), |(first, rest)| (first, Some(rest)));

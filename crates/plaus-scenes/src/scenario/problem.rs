@@ -10,8 +10,8 @@ pub const SHOWN: usize = 20;
 
 /// A scenario that cannot be sampled: every problem found in it, in the order of the file.
 ///
-/// [`Display`](fmt::Display) gives one line a problem: `file:line:column: key: message; help`; after [`SHOWN`] of them it
-/// says how many more there are.
+/// [`Display`](fmt::Display) gives one line a problem: `file:line:column: key: message; help`; after [`SHOWN`] of them
+/// it says how many more there are.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScenarioError {
     /// What the file is called.
@@ -113,7 +113,8 @@ impl Problem {
 }
 
 impl ScenarioError {
-    /// Gives each problem its line and column, and puts them in order: those of the file, those of what it lacks, those of overrides.
+    /// Gives each problem its line and column, and puts them in order: those of the file, those of what it lacks, those
+    /// of overrides.
     pub(super) fn new(name: &str, text: &str, mut problems: Vec<Problem>) -> Self {
         let start = |problem: &Problem| problem.span.as_ref().map_or(usize::MAX, |span| span.start);
         problems.sort_by(|a, b| a.source.cmp(&b.source).then(start(a).cmp(&start(b))));

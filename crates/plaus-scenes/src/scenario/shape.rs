@@ -1,4 +1,5 @@
-//! The schema as the rest of this folder uses it: typed, its references resolved, its keys in the order of their definition.
+//! The schema as the rest of this folder uses it: typed, its references resolved, its keys in the order of their
+//! definition.
 
 use super::bounds::Bounds;
 use super::schema::schema;
@@ -123,7 +124,8 @@ impl Shape {
         })
     }
 
-    /// All dotted keys in lists: `constraints[]`, `constraints[].rest_at`, …. Of a choice that `tree` has made, only what it chose.
+    /// All dotted keys in lists: `constraints[]`, `constraints[].rest_at`, …. Of a choice that `tree` has made, only
+    /// what it chose.
     pub(super) fn paths_in_lists(&self, tree: Option<&Tree>) -> Vec<String> {
         let lists = self.paths(tree).into_iter().filter_map(|key| Some((self.at(&key)?.item()?, key)));
         let inside = |(item, key): (&Self, String)| {
@@ -151,7 +153,8 @@ impl Shape {
         paths
     }
 
-    /// The allowed values in words, without the unit: "above 0 and at most 90", "\"mixed\" or \"paper\""; empty where anything goes.
+    /// The allowed values in words, without the unit: "above 0 and at most 90", "\"mixed\" or \"paper\""; empty where
+    /// anything goes.
     pub(super) fn range(&self) -> String {
         match &self.kind {
             Kind::Integer(bounds) => bounds.words(),

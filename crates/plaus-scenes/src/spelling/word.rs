@@ -18,7 +18,8 @@ impl Word {
     /// The word or picture of a configuration, in the middle of its grid.
     ///
     /// # Errors
-    /// [`ConfigError`] for a character that the font lacks, a picture or word that does not fit, or one without any bin to fill.
+    /// [`ConfigError`] for a character that the font lacks, a picture or word that does not fit, or one without any bin
+    /// to fill.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let blame = |key: &str, message: String| Err(ConfigError::new(format!("world.spelling.{key}"), message));
         let (key, picture) = match (&config.text, config.bitmap.as_str()) {

@@ -14,14 +14,17 @@ use std::path::{Path, PathBuf};
 /// Which run, in which format, where to.
 #[derive(clap::Args)]
 #[command(
-    after_long_help = "csv: one row per chain and draw of the sampling phase, with columns chain, draw (from 0), log_p, satisfied (true or \
-    false), then one per scalar of the scene. For ball2d: rest_x in ball diameters D, theta_1 ... in degrees.\n\
-    zarr: a Zarr v3 folder for ArviZ: az.from_zarr(PATH) (1.x), or az.from_datatree(xarray.open_datatree(PATH, engine=\"zarr\")) (0.23).\n\
-    glb: animated glTF 2.0 with a key at every impact, and beside it PATH.import for Godot. usda: USD as text. One sample makes a file, \
-    several make a folder.\n\
-    poses: one row per sample, body and key: chain, draw, t (s), body, x, y, z (m, y up), a unit quaternion, and whether it is at an impact.\n\
-    events: one row per impact: chain, draw, t (s), the pair, point (m), normal, speed of approach (m/s), impulse (N s; 0 where the scene has \
-    no masses). As JSON where PATH ends in .json.\n\
+    after_long_help = "csv: one row per chain and draw of the sampling phase, with columns chain, draw (from 0), log_p, \
+    satisfied (true or false), then one per scalar of the scene. \
+    For ball2d: rest_x in ball diameters D, theta_1 ... in degrees.\n\
+    zarr: a Zarr v3 folder for ArviZ: az.from_zarr(PATH) (1.x), or \
+    az.from_datatree(xarray.open_datatree(PATH, engine=\"zarr\")) (0.23).\n\
+    glb: animated glTF 2.0 with a key at every impact, and beside it PATH.import for Godot. usda: USD as text. \
+    One sample makes a file, several make a folder.\n\
+    poses: one row per sample, body and key: chain, draw, t (s), body, x, y, z (m, y up), a unit quaternion, \
+    and whether it is at an impact.\n\
+    events: one row per impact: chain, draw, t (s), the pair, point (m), normal, speed of approach (m/s), \
+    impulse (N s; 0 where the scene has no masses). As JSON where PATH ends in .json.\n\
     Times count from the beginning of --time-range."
 )]
 pub(crate) struct Args {
@@ -51,7 +54,7 @@ pub(crate) struct Args {
     /// Replace what is there, if such an export made it
     #[arg(long)]
     force: bool,
-    /// Read a damaged run up to its first damage
+    /// Read a damaged run as far as it is intact, and say what is lost
     #[arg(long)]
     salvage: bool,
 }
