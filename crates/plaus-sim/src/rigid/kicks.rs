@@ -124,7 +124,11 @@ impl RigidScratch {
                 let ab = *ab;
                 let [p, q] = ab.map(|k| &self.places[k]);
                 let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
-                (self.pair_contact(world, ab, after.arms_to_middle(&p.end, &q.end), after.normal), after.gap, world.pair_gap([p.body, q.body]))
+                (
+                    self.pair_contact(world, ab, after.arms_to_middle(&p.end, &q.end), after.normal),
+                    after.gap,
+                    world.pair_gap([p.body, q.body]),
+                )
             };
             if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
                 next.hold_slip(old.slip_direction());

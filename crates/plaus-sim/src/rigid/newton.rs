@@ -84,6 +84,12 @@ struct Projected {
 }
 
 impl Projected {
+    /// Whether friction has turned round since `before`: the slip went through none then, and the contact is tried without slip, or rounds might go to and fro for ever.
+    fn reverses(&self, before: &Self, c: &Contact) -> bool {
+        let (Some(was), Some(is)) = (before.sliding, self.sliding) else { return false };
+        was.dot(is) < 0.0 && c.held_slip.is_none_or(|s| is != -s)
+    }
+
     /// A number that tells which of several contacts are open, stick or slide.
     fn mixed_into(&self, states: u64) -> u64 {
         let state = if self.stiffness == DMat3::ZERO { 1 } else { 2 + u64::from(self.sliding.is_some()) };
@@ -138,8 +144,7 @@ impl Newton {
         let mut went = [0; LONGEST_CYCLE];
         for _ in 0..MOST_ROUNDS {
             let mut states = 0;
-            for (c, p) in contacts.iter().zip(&mut self.projected) {
-                *p = coulomb(c, c.wrong(members), p.sliding);
+            for p in &self.projected {
                 states = p.mixed_into(states);
             }
             if states != went[0] && went[1..].contains(&states) {
@@ -156,7 +161,12 @@ impl Newton {
                 break;
             }
             self.impulses.clear();
-            self.impulses.extend(contacts.iter().map(|c| coulomb(c, c.wrong(members), None).impulse));
+            for (c, p) in contacts.iter().zip(&mut self.projected) {
+                let wrong = c.wrong(members);
+                let lawful = coulomb(c, wrong);
+                self.impulses.push(lawful.impulse);
+                *p = if lawful.reverses(p, c) { sticking(c, wrong) } else { lawful };
+            }
             if let Some(change) = self.take_impulses(contacts, members, enough) {
                 if change * COMPLIANCE <= enough {
                     return true;
@@ -260,7 +270,7 @@ impl Newton {
         self.starts.clear();
         self.starts.extend(members.iter().map(|m| [m.v, m.w]));
         self.projected.clear();
-        self.projected.extend(contacts.iter().map(|c| coulomb(c, c.wrong(members), None)));
+        self.projected.extend(contacts.iter().map(|c| coulomb(c, c.wrong(members))));
     }
 
     fn go(&self, members: &mut [Member], part: f64) {
@@ -325,9 +335,8 @@ fn is_lawful(c: &Contact, members: &[Member], enough: f64) -> bool {
 
 const OPEN: Projected = Projected { impulse: DVec3::ZERO, stiffness: DMat3::ZERO, sliding: None };
 
-/// What Coulomb's law makes of a contact with the velocity `wrong` that is not to be. Where friction had the direction `before` and now would have the opposite one, the slip went through none: then
-/// the contact is tried without slip, or rounds might go to and fro for ever.
-fn coulomb(c: &Contact, wrong: DVec3, before: Option<DVec3>) -> Projected {
+/// What Coulomb's law makes of a contact with the velocity `wrong` that is not to be.
+fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
     let stiff = 1.0 / (COMPLIANCE * c.compliance());
     let n = c.normal;
     let trial = c.impulse - wrong * stiff;
@@ -345,11 +354,17 @@ fn coulomb(c: &Contact, wrong: DVec3, before: Option<DVec3>) -> Projected {
         // Friction against the slip as it was, as long as it goes on.
         return slides(-s, DMat3::ZERO);
     }
-    if side <= most || before.is_some_and(|b| b.dot(across) < 0.0) {
+    if side <= most {
         return Projected { impulse: trial, stiffness: DMat3::IDENTITY * stiff, sliding: None };
     }
     let t = across / side;
     slides(t, (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (most / side))
+}
+
+/// What a contact answers that sticks, whatever its friction.
+fn sticking(c: &Contact, wrong: DVec3) -> Projected {
+    let stiff = 1.0 / (COMPLIANCE * c.compliance());
+    Projected { impulse: c.impulse - wrong * stiff, stiffness: DMat3::IDENTITY * stiff, sliding: None }
 }
 
 /// The nearest point of the cone of friction.

@@ -392,7 +392,7 @@ pub(super) fn pair_contact(
     friction: f64,
 ) -> Contact {
     let (m, n) = (&members[a], &members[b]);
-    let k = response(m.inverse_mass, &m.inverse_inertia, arms[0])
-        + response(n.inverse_mass, &n.inverse_inertia, arms[1]);
+    let k =
+        response(m.inverse_mass, &m.inverse_inertia, arms[0]) + response(n.inverse_mass, &n.inverse_inertia, arms[1]);
     Contact::new(a, Some(b), arms, normal, friction, k)
 }
