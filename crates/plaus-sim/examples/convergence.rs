@@ -20,8 +20,8 @@ use plaus_sim::{Accuracy, Preset};
 use small_steps::tosses::{Look, Toss, dice, pin, smooth, wild};
 use std::error::Error;
 
-/// Cases of the table; the others of `contact_cases` have nothing that presets could be off by.
-const LEFT_OUT: [&str; 2] = ["tosses of a cube", "ball at rest, e 1"];
+/// Cases of `contact_cases` in which presets are off by nothing that could converge.
+const LEFT_OUT: [&str; 3] = ["tosses of a cube", "two cubes meet", "ball at rest, e 1"];
 
 /// Steps of the truth at first, in s; it is also run in half of these and in a quarter.
 const STEP: f64 = 4e-4;
