@@ -116,7 +116,7 @@ fn nudged(tosses: &[Toss], ends_before: &[End]) -> Result<(f64, f64)> {
 fn describe(work: &mut Work, count: usize, rows: &[Vec<String>], (off, same): (f64, f64)) {
     let mut text = table(&HEAD, rows.iter().cloned());
     text += &format!(
-        "\n{count} tosses of an acrylic cube of 10.48 cm, simulated from the published first states to rest. Friction \
+        "\n{count} tosses of a cube of 10.48 cm, simulated from the published first states to rest. Friction \
          {FRICTION}, restitution {RESTITUTION}, mass and moment of inertia are the publication's: nothing is fitted. \
          Off: distance of the centres at rest along the floor. Turned off: angle between the two orientations; 90° and \
          more where another face is up. Published velocities are means over the 1/148 s before a frame; ours are those \

@@ -11,7 +11,7 @@ use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (1200, 560);
 /// Farthest shown, in widths.
-const FAR: f64 = 1.5;
+const FAR: f64 = 1.1;
 
 const COLOURS: [RGBColor; 4] = [colour::FAINT, colour::OURS, colour::TARGET, colour::NORMAL];
 
@@ -59,8 +59,8 @@ fn shares(area: &Area<'_>, tosses: &[Toss], found: &[Vec<End>]) -> Result<()> {
             off.iter().enumerate().map(|(k, d)| (*d, share(k + 1))).filter(|p| p.0 <= FAR).collect();
         curve(&mut chart, &points, pen(colour, 1.8))?;
         let y = 0.30 - 0.07 * preset as usize as f64;
-        chart.draw_series([PathElement::new([(0.95, y), (1.05, y)], pen(colour, 2.5))])?;
-        chart.draw_series([Text::new(preset.name(), (1.08, y + 0.02), text(14.0, colour::INK))])?;
+        chart.draw_series([PathElement::new([(0.70, y), (0.77, y)], pen(colour, 2.5))])?;
+        chart.draw_series([Text::new(preset.name(), (0.79, y + 0.02), text(14.0, colour::INK))])?;
     }
     Ok(())
 }
