@@ -304,12 +304,13 @@ impl RigidScratch {
             self.contacts.push(Contact::new(*a, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k));
         }
         for ([a, b], t) in &self.pairs {
-            self.contacts.push(self.pair_contact(world, [*a, *b], t));
+            let arms = t.arms_to_middle(&self.places[*a].start, &self.places[*b].start);
+            self.contacts.push(self.pair_contact(world, [*a, *b], arms, t.normal));
         }
     }
 
-    pub(super) fn pair_contact(&self, world: &Rigid, ab: [usize; 2], t: &PairTouch) -> Contact {
-        pair_contact(&self.members, ab, t, world.pair_law(ab.map(|k| self.places[k].body)).friction)
+    pub(super) fn pair_contact(&self, world: &Rigid, ab: [usize; 2], arms: [DVec3; 2], normal: DVec3) -> Contact {
+        pair_contact(&self.members, ab, arms, normal, world.pair_law(ab.map(|k| self.places[k].body)).friction)
     }
 
     /// Rest: without velocity, flat where the ground is, and lifted out of what overlap steps have left.
@@ -371,9 +372,15 @@ impl RigidScratch {
 const LONGEST: f64 = 4.0;
 
 /// A point of contact of two members.
-pub(super) fn pair_contact(members: &[Member], [a, b]: [usize; 2], t: &PairTouch, friction: f64) -> Contact {
+pub(super) fn pair_contact(
+    members: &[Member],
+    [a, b]: [usize; 2],
+    arms: [DVec3; 2],
+    normal: DVec3,
+    friction: f64,
+) -> Contact {
     let (m, n) = (&members[a], &members[b]);
-    let k = response(m.inverse_mass, &m.inverse_inertia, t.arms[0])
-        + response(n.inverse_mass, &n.inverse_inertia, t.arms[1]);
-    Contact::new(a, Some(b), t.arms, t.normal, friction, k)
+    let k = response(m.inverse_mass, &m.inverse_inertia, arms[0])
+        + response(n.inverse_mass, &n.inverse_inertia, arms[1]);
+    Contact::new(a, Some(b), arms, normal, friction, k)
 }
