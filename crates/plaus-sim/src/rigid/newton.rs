@@ -22,13 +22,13 @@ const SOFT: f64 = 1e-2;
 /// By how much the next is stiffer, as it begins nearer to its solution. Default 0.1.
 const STIFFER: f64 = 0.1;
 
-/// The stiffest. Default 1e-4.
-const STIFFEST: f64 = 1e-4;
+/// The stiffest. Default 1e-7.
+const STIFFEST: f64 = 1e-7;
 
 /// Change of velocity over the fastest body's speed that rounding makes. Default 1e-8: ten times its own, over the compliance.
 const NOISE: f64 = 1e-8;
 
-/// Change of velocity over the fastest body's speed that may go on from shift to shift. Default 1e-5: bodies that wedge each other leave some for ever.
+/// By how much velocities may break Coulomb's law, over the fastest body's speed. Default 1e-5: bodies that wedge each other leave some for ever.
 const WEDGED: f64 = 1e-5;
 
 /// Rounds of the plain rule. Default 30: 19 of 20 problems take fewer than 12.
@@ -37,8 +37,8 @@ const MOST_ROUNDS: usize = 30;
 /// Rounds after which the same contacts slide, stick and are open again, for them to count as going to and fro. Default 4.
 const LONGEST_CYCLE: usize = 4;
 
-/// How often the shift is renewed. Default 12: each time leaves a tenth of what was missing.
-const SHIFTS: usize = 12;
+/// How often the shift is renewed. Default 8: each time leaves a tenth of what was missing.
+const SHIFTS: usize = 8;
 
 /// How much finer a convex problem is solved than the change from one shift to the next is to be. Default 0.1.
 const STAND_IN_FINER: f64 = 0.1;
@@ -71,8 +71,6 @@ pub(crate) struct Newton {
     /// Velocities at the contacts, and their changes in a round.
     lines: Vec<[DVec3; 2]>,
     impulses: Vec<DVec3>,
-    /// Velocities before the shift was renewed.
-    before: Vec<[DVec3; 2]>,
 }
 
 /// How a contact answers to a change of its velocity.
@@ -86,6 +84,12 @@ struct Projected {
 }
 
 impl Projected {
+    /// Whether friction has turned round since `before`: the slip went through none then, and the contact is tried without slip, or rounds might go to and fro for ever.
+    fn reverses(&self, before: &Self, c: &Contact) -> bool {
+        let (Some(was), Some(is)) = (before.sliding, self.sliding) else { return false };
+        was.dot(is) < 0.0 && c.held_slip.is_none_or(|s| is != -s)
+    }
+
     /// A number that tells which of several contacts are open, stick or slide.
     fn mixed_into(&self, states: u64) -> u64 {
         let state = if self.stiffness == DMat3::ZERO { 1 } else { 2 + u64::from(self.sliding.is_some()) };
@@ -101,7 +105,7 @@ pub(crate) enum Ending {
 }
 
 impl Newton {
-    /// Rounds until no body's velocity changes by more than `enough` in a last one, which is quadratic; where that fails, until it changes by no more than `coarse` from one shift to the next.
+    /// Rounds until no body's velocity changes by more than `enough` in a last one, which is quadratic; where that fails, until no velocity breaks Coulomb's law by more than `coarse`.
     /// However it ends, impulses and velocities are consistent to rounding.
     pub(crate) fn solve(
         &mut self,
@@ -123,12 +127,10 @@ impl Newton {
         }
         let mut compliance = SOFT;
         for _ in 0..SHIFTS {
-            self.before.clear();
-            self.before.extend(members.iter().map(|m| [m.v, m.w]));
             if !self.stand_in(contacts, members, compliance, STAND_IN_FINER * coarse) {
                 break;
             }
-            if compliance <= STIFFEST && members.iter().zip(&self.before).all(|(m, &b)| moved(m, b) <= coarse) {
+            if contacts.iter().all(|c| is_lawful(c, members, coarse)) {
                 return Ending::Solved;
             }
             compliance = (STIFFER * compliance).max(STIFFEST);
@@ -142,8 +144,7 @@ impl Newton {
         let mut went = [0; LONGEST_CYCLE];
         for _ in 0..MOST_ROUNDS {
             let mut states = 0;
-            for (c, p) in contacts.iter().zip(&mut self.projected) {
-                *p = coulomb(c, c.wrong(members), p.sliding);
+            for p in &self.projected {
                 states = p.mixed_into(states);
             }
             if states != went[0] && went[1..].contains(&states) {
@@ -160,7 +161,12 @@ impl Newton {
                 break;
             }
             self.impulses.clear();
-            self.impulses.extend(contacts.iter().map(|c| coulomb(c, c.wrong(members), None).impulse));
+            for (c, p) in contacts.iter().zip(&mut self.projected) {
+                let wrong = c.wrong(members);
+                let lawful = coulomb(c, wrong);
+                self.impulses.push(lawful.impulse);
+                *p = if lawful.reverses(p, c) { sticking(c, wrong) } else { lawful };
+            }
             if let Some(change) = self.take_impulses(contacts, members, enough) {
                 if change * COMPLIANCE <= enough {
                     return true;
@@ -264,7 +270,7 @@ impl Newton {
         self.starts.clear();
         self.starts.extend(members.iter().map(|m| [m.v, m.w]));
         self.projected.clear();
-        self.projected.extend(contacts.iter().map(|c| coulomb(c, c.wrong(members), None)));
+        self.projected.extend(contacts.iter().map(|c| coulomb(c, c.wrong(members))));
     }
 
     fn go(&self, members: &mut [Member], part: f64) {
@@ -317,11 +323,20 @@ fn moved(m: &Member, [v, w]: [DVec3; 2]) -> f64 {
     (m.v - v).length().max((m.w - w).length() * m.reach)
 }
 
+/// Whether a contact's impulse is, within what changes its velocity by `enough`, the one that Coulomb's law has for a contact that moves like this.
+fn is_lawful(c: &Contact, members: &[Member], enough: f64) -> bool {
+    let n = c.normal;
+    let trial = c.impulse - c.wrong(members) / c.compliance();
+    let load = trial.dot(n).max(0.0);
+    let across = trial - n * trial.dot(n);
+    let lawful = if load > 0.0 { n * load + across.clamp_length_max(c.friction * load) } else { DVec3::ZERO };
+    (lawful - c.impulse).length() * c.compliance() <= enough
+}
+
 const OPEN: Projected = Projected { impulse: DVec3::ZERO, stiffness: DMat3::ZERO, sliding: None };
 
-/// What Coulomb's law makes of a contact with the velocity `wrong` that is not to be. Where friction had the direction `before` and now would have the opposite one, the slip went through none: then
-/// the contact is tried without slip, or rounds might go to and fro for ever.
-fn coulomb(c: &Contact, wrong: DVec3, before: Option<DVec3>) -> Projected {
+/// What Coulomb's law makes of a contact with the velocity `wrong` that is not to be.
+fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
     let stiff = 1.0 / (COMPLIANCE * c.compliance());
     let n = c.normal;
     let trial = c.impulse - wrong * stiff;
@@ -339,11 +354,17 @@ fn coulomb(c: &Contact, wrong: DVec3, before: Option<DVec3>) -> Projected {
         // Friction against the slip as it was, as long as it goes on.
         return slides(-s, DMat3::ZERO);
     }
-    if side <= most || before.is_some_and(|b| b.dot(across) < 0.0) {
+    if side <= most {
         return Projected { impulse: trial, stiffness: DMat3::IDENTITY * stiff, sliding: None };
     }
     let t = across / side;
     slides(t, (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (most / side))
+}
+
+/// What a contact answers that sticks, whatever its friction.
+fn sticking(c: &Contact, wrong: DVec3) -> Projected {
+    let stiff = 1.0 / (COMPLIANCE * c.compliance());
+    Projected { impulse: c.impulse - wrong * stiff, stiffness: DMat3::IDENTITY * stiff, sliding: None }
 }
 
 /// The nearest point of the cone of friction.

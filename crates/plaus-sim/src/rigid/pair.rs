@@ -43,7 +43,7 @@ impl PairTouch {
 
     /// The arms to the point half way between the bodies: where impulses act on both at one point, the bodies keep their angular momentum.
     pub(crate) fn arms_to_middle(&self, a: &Pose, b: &Pose) -> [DVec3; 2] {
-        let half = (a.x + self.arms[0] - b.x - self.arms[1]) * 0.5;
+        let half = ((a.x + self.arms[0]) - (b.x + self.arms[1])) * 0.5;
         [self.arms[0] - half, self.arms[1] + half]
     }
 }

@@ -83,10 +83,7 @@ pub fn momentum(record: &Record, free: Free) -> [Finding; 2] {
         }
         let sum = total(&record.facts, &now, free);
         let start = *first.get_or_insert(sum);
-        let bounds = [
-            scales[0] * ROUNDINGS * seen,
-            scales[1] * ROUNDINGS * seen,
-        ];
+        let bounds = [scales[0] * ROUNDINGS * seen, scales[1] * ROUNDINGS * seen];
         for part in 0..2 {
             let off = (sum[part] - start[part]).length();
             found[part].add(off / bounds[part].max(f64::MIN_POSITIVE), off / scales[part], moment.time, *body);
