@@ -84,7 +84,7 @@ fn accuracy(arguments: &[&str]) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(Failure::new)?;
     let table = format!("{folder}/convergence.csv");
     // Seconds for a run on the wall, throws, part of a name.
-    let [seconds, throws] = if arguments.contains(&"--quick") { ["0.05", "2"] } else { ["20", "40"] };
+    let [seconds, throws] = if arguments.contains(&"--quick") { ["0.05", "2"] } else { ["20", "20"] };
     let measuring = ["run", "--release", "--package", "plaus-sim", "--example", "convergence", "--"];
     cargo(&measuring).args([seconds, throws, "", &table]).run()?;
     cargo(&["run", "--release", "--package", "plaus-figures", "--", "accuracy"]).args(arguments).run()

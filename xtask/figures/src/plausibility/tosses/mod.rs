@@ -1,8 +1,8 @@
 //! Tosses of a real cube beside the same tosses simulated: 570 that were published with their first and last states.
 //!
 //! Pfrommer, Halm and Posa, "ContactNets: Learning Discontinuous Contact Dynamics with Smooth, Implicit
-//! Representations", CoRL 2020. Width, mass, moment of inertia, friction and restitution are the authors'; nothing here
-//! is fitted to the tosses, so all of them are held out.
+//! Representations", CoRL 2020. Width, mass, moment of inertia, friction and restitution are the authors'; nothing is
+//! fitted to the tosses here.
 
 mod plot;
 mod published;
