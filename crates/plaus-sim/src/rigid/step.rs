@@ -184,6 +184,7 @@ impl RigidScratch {
                 let (i, j) = (k as usize, j as usize);
                 let (a, b) = (bodies[i].pose(), bodies[j].pose());
                 let hurried = bodies[i].is_hurried() || bodies[j].is_hurried();
+                let hurried = hurried && world.pair_law([i, j]).restitution < 1.0;
                 let limit = world.pair_settle_speed([i, j]);
                 world.for_pair_touches([i, j], [&a, &b], TOUCHING * world.pair_gap([i, j]), |touch| {
                     let slow = hurried || touch.rate(&a, &b) <= limit;
@@ -201,7 +202,9 @@ impl RigidScratch {
             let (at, before) = (self.places.len(), self.touches.len());
             world.for_known_touches(index, &bodies[index], &pose, |t| {
                 let law = world.law_at(index, t.part, pose.x + t.arm);
-                if hurried || pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law) {
+                if hurried && law.restitution < 1.0
+                    || pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law)
+                {
                     self.touches.push((at, t));
                     self.loads.push(bodies[index].load(t.surface()));
                 } else {
