@@ -37,6 +37,15 @@ pub trait Scene:
     /// [`ModelError`] where the simulation fails.
     fn animate(&self, draw: &Self::Draw) -> Result<Animation, ModelError>;
 
+    /// Bodies and impacts of [`Scene::animate`], for those who need not see what stands still. A scene in which that is
+    /// dear to build overrides this.
+    ///
+    /// # Errors
+    /// As [`Scene::animate`].
+    fn motion(&self, draw: &Self::Draw) -> Result<Animation, ModelError> {
+        self.animate(draw)
+    }
+
     /// The same world simulated at another accuracy: draws mean the same, what becomes of them may differ. `None` where
     /// motion has a closed form, exact at any accuracy, so that there is nothing to choose. A scene with a simulator
     /// overrides this.

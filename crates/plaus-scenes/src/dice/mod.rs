@@ -268,6 +268,10 @@ impl Scene for Dice {
         animate::animate(self, draw)
     }
 
+    fn motion(&self, draw: &Draw) -> Result<Animation, ModelError> {
+        animate::motion(self, draw).map(|(motion, _)| motion)
+    }
+
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         Self::new(&Config { accuracy, ..self.config.clone() }).map(Some)
     }
