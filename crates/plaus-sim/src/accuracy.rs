@@ -70,6 +70,10 @@
 //! | cube, e 0.125, µ 0.18, after 1 s | 9.6e-2 | 1.2e-1 | 2.7e-2 | 2.4e-2 | 0.5 |
 //! | cube, e 0.5, µ 0.35, after 0.2 s | 4.4e-3 | 1.8e-3 | 2.5e-4 | 9.7e-5 | 1.0 |
 //! | cube, e 0.5, µ 0.35, after 1 s | 9.5e-2 | 5.8e-2 | 9.2e-3 | 1.5e-3 | 1.2 |
+//! | cuboid, e 0.3, µ 0.3, after 0.2 s | 1.2e-2 | 1.6e-3 | 4.3e-4 | 3.0e-5 | 1.3 |
+//! | cuboid, e 0.3, µ 0.3, after 1 s | 9.7e-2 | 4.4e-2 | 3.5e-2 | 3.5e-2 | 0.1 |
+//! | die, e 0.5, µ 0.35, after 0.16 s | 4.9e-2 | 1.2e-2 | 2.2e-3 | 2.1e-4 | 1.3 |
+//! | die, e 0.5, µ 0.35, after 1 s | 1.1 | 3.7e-1 | 1.2e-1 | 2.8e-2 | 0.9 |
 //!
 //! **f32 or f64.** There is only f64. Events are ordered by their times across bodies, and an f32 holds a time of 2 s to 2e-7 s, in which a marble at 1 m/s moves by 4e-5 of its radius:
 //! contacts would be found too early or too late by more than the presets allow.
