@@ -5,7 +5,9 @@
 mod arviz;
 mod clients;
 mod command;
+mod documented;
 mod engines;
+mod examples;
 mod golden;
 mod registry;
 mod steps;
@@ -18,9 +20,10 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 usage: cargo xtask CHORE
 
-  test                 everything that must pass: what CI runs
-  ci                   the same
-  clients              of that, only what other programs make of exports and galleries
+  test                 everything that must pass of the code
+  test --quick         of that, what says within a minute or so whether a change is sound
+  clients              figures, and what other programs make of runs, exports and galleries
+  ci                   both: what CI runs
   engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost
   wheel                the Python package, into target/wheel/dist
   wheel --check        the same, tried on every Python there is, with its notebooks
@@ -29,7 +32,9 @@ usage: cargo xtask CHORE
   reproduce-figures [--out FOLDER] [--quick] [--only SCENE]
                        the paper's figures and claims, sampled anew, into out/figures
   plausibility [--out FOLDER] [--quick] [--only SCENE]
-                       dice and bowling beside what was published of real ones, into out/plausibility
+                       tosses, dice and bowling beside what was published of real ones, into out/plausibility
+  accuracy [--out FOLDER] [--quick]
+                       how far each preset is from truths of contact, into out/accuracy
   golden               compare golden traces with fresh runs
   golden --bless       make golden traces anew
   tradeoff [...]       compare with peers: cargo run --release -p plaus-tradeoff
@@ -39,15 +44,18 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match arguments.split_first() {
-        Some((&("test" | "ci"), [])) => test::run(),
+        Some((&"test", [])) => test::run(),
+        Some((&"test", ["--quick"])) => test::quick(),
+        Some((&"ci", [])) => test::ci(),
         Some((&"clients", [])) => test::clients(),
         Some((&"engines", [])) => engines::run(),
         Some((&"wheel", rest)) => wheel::run(rest),
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"plausibility", rest)) => plausibility(rest),
+        Some((&"accuracy", rest)) => accuracy(rest),
         Some((&"golden", rest)) => golden::run(rest),
         Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),
-        Some((&"bench", rest)) => cargo(&["bench"]).args(rest).run(),
+        Some((&"bench", rest)) => cargo(&["bench", "--package", "plaus-benches"]).args(rest).run(),
         Some((&("help" | "-h" | "--help"), _)) => {
             println!("{USAGE}");
             return ExitCode::SUCCESS;
@@ -73,4 +81,16 @@ fn figures(arguments: &[&str]) -> Result<(), Failure> {
 fn plausibility(arguments: &[&str]) -> Result<(), Failure> {
     let program = ["run", "--release", "--package", "plaus-figures", "--", "plausibility"];
     cargo(&program).args(arguments).run()
+}
+
+/// Measures by an example of the simulator, which leaves a table; then draws that.
+fn accuracy(arguments: &[&str]) -> Result<(), Failure> {
+    let folder = arguments.windows(2).find(|pair| pair[0] == "--out").map_or("out/accuracy", |pair| pair[1]);
+    std::fs::create_dir_all(folder).map_err(Failure::new)?;
+    let table = format!("{folder}/convergence.csv");
+    // Seconds for a run on the wall, throws, part of a name.
+    let [seconds, throws] = if arguments.contains(&"--quick") { ["0.05", "2"] } else { ["20", "20"] };
+    let measuring = ["run", "--release", "--package", "plaus-sim", "--example", "convergence", "--"];
+    cargo(&measuring).args([seconds, throws, "", &table]).run()?;
+    cargo(&["run", "--release", "--package", "plaus-figures", "--", "accuracy"]).args(arguments).run()
 }

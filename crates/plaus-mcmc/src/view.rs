@@ -6,10 +6,11 @@ use crate::target::{ModelError, StateOf, Target};
 use plaus_dist::{LogRatio, Stream};
 use std::sync::Arc;
 
-/// A target that shows another one under a different constraint, or simulates it in a different way, over the same draws and outcomes. The other
-/// one's moves propose for the view as they are: see [`lend`].
+/// A target that shows another one under a different constraint, or simulates it in a different way, over the same
+/// draws and outcomes. The other one's moves propose for the view as they are: see [`lend`].
 ///
-/// The `log_constraint` in a view's states is the view's own, also where such a state is handed to the target seen or to its moves.
+/// The `log_constraint` in a view's states is the view's own, also where such a state is handed to the target seen or
+/// to its moves.
 pub trait View: Target {
     /// The target seen.
     type Seen: Target<Draw = Self::Draw, Outcome = Self::Outcome> + 'static;

@@ -14,7 +14,8 @@ use serde::de::DeserializeOwned;
 pub trait Scene:
     Goal<Draw: Serialize + DeserializeOwned, Outcome: Serialize + DeserializeOwned + PartialEq> + Sized + Send + 'static
 {
-    /// Whether the scales of its moves are adapted in the warm-up where a scenario does not say: where that was measured to be better.
+    /// Whether the scales of its moves are adapted in the warm-up where a scenario does not say: where that was
+    /// measured to be better.
     const ADAPTS: bool = false;
 
     /// The moves this scene is sampled with, under `rules`.
@@ -23,7 +24,8 @@ pub trait Scene:
     /// [`ConfigError`] where the configured weights make no mixture.
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError>;
 
-    /// The scalars every state has, in the order of [`Scene::write_scalars`]; the same for all states of one configuration.
+    /// The scalars every state has, in the order of [`Scene::write_scalars`]; the same for all states of one
+    /// configuration.
     fn scalars(&self) -> Vec<Scalar>;
 
     /// Writes the values of [`Scene::scalars`] for `state`; `values` has as many places.
@@ -44,8 +46,9 @@ pub trait Scene:
         self.animate(draw)
     }
 
-    /// The same world simulated at another accuracy: draws mean the same, what becomes of them may differ. `None` where motion has a closed form, exact at any
-    /// accuracy, so that there is nothing to choose. A scene with a simulator overrides this.
+    /// The same world simulated at another accuracy: draws mean the same, what becomes of them may differ. `None` where
+    /// motion has a closed form, exact at any accuracy, so that there is nothing to choose. A scene with a simulator
+    /// overrides this.
     ///
     /// # Errors
     /// [`ConfigError`] where the configuration makes no world at that accuracy.

@@ -1,17 +1,11 @@
 //! Presets against truths of another make: the finer, the nearer. Many tosses, and how near: the example `truths`.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-#[path = "common/laws/mod.rs"]
-mod laws;
-#[path = "common/small_steps/mod.rs"]
-mod small_steps;
-
+use crate::laws::worlds::Dice;
+use crate::small_steps::impact::impulse;
+use crate::small_steps::tosses::{Toss, dice, pin, smooth, wild};
 use glam::{DMat3, DVec3};
-use laws::worlds::Dice;
 use plaus_sim::resolve::{ContactMatrix, stronge_impulse};
 use plaus_sim::{Accuracy, Preset};
-use small_steps::impact::impulse;
-use small_steps::tosses::{Toss, smooth, wild};
 
 /// Length of the truth's steps in s: what is unknown of it then is far below what presets are off.
 const STEP: f64 = 1e-3;
@@ -21,7 +15,7 @@ fn errors(toss: &Toss) -> ([f64; 4], f64) {
     let (mut off, mut unknown) = ([0.0_f64; 4], 0.0_f64);
     for start in &toss.starts {
         let (truth, doubt, _) = toss.truth_and_doubt(start, STEP);
-        let worst = |looks: &[small_steps::tosses::Look]| {
+        let worst = |looks: &[crate::small_steps::tosses::Look]| {
             looks.iter().zip(&truth).map(|(a, b)| a.off(b, toss.length())).fold(0.0, f64::max)
         };
         unknown = unknown.max(worst(&doubt));
@@ -68,6 +62,28 @@ fn impacts_converge_to_the_truth() {
         let bound = 0.25 * off[0].max(off[1]) + 3.0 * unknown;
         assert!(off[3] <= bound, "{}: {off:?}, truth known to {unknown:.1e}", toss.name);
     }
+}
+
+/// Bodies that touch the floor by rounded corners and by rings: a point of contact that goes round the body.
+#[test]
+fn pins_and_dice_converge_to_the_truth() {
+    let toss = pin();
+    let (off, unknown) = errors(&toss);
+    // Of the first order at least, as in other lasting contact.
+    let bound =
+        off[0].max(off[1]) * (Accuracy::preset(Preset::Reference).step / Accuracy::preset(Preset::Standard).step);
+    assert!(off[3] <= bound + 3.0 * unknown, "{off:?}, truth known to {unknown:.1e}");
+    // A body that is another is seen: a twentieth more inertia.
+    let mut heavy = toss.clone();
+    heavy.body.mass.inertia *= 1.05;
+    let [(twin, ..), (truth, ..)] = [&heavy, &toss].map(|t| t.truth_and_doubt(&toss.starts[0], STEP));
+    let far = twin.iter().zip(&truth).map(|(a, b)| a.off(b, toss.length())).fold(0.0, f64::max);
+    assert!(far > 3.0 * off[3] + 3.0 * unknown, "{far:.1e} beside {off:?}");
+    let mut toss = dice(4);
+    toss.looks = vec![0.1, 0.12];
+    let (off, unknown) = errors(&toss);
+    let bound = 0.25 * off[0].max(off[1]) + 3.0 * unknown;
+    assert!(off[3] <= bound, "{}: {off:?}, truth known to {unknown:.1e}", toss.name);
 }
 
 /// The impact law itself, by two makes: random bodies struck at random points. Nine in ten agree to a tenth of the square
