@@ -22,7 +22,7 @@ fn errors_name_the_key_and_the_limit() {
     refused(&["constraints=[{face_up={face=0}}]"], &["0 is out of range", "from 1 to 6"]);
     refused(&["constraints=[{rest_at={die=2}}]"], &["no die 2", "from 1 to 1"]);
     refused(&["constraints=[{rest_on={}}]"], &["rest_on", "rest_at"]);
-    refused(&["constraints=[{rest_at={},face_up={}}]"], &["exactly one"]);
+    refused(&["constraints=[{rest_at={},face_up={}}]"], &["each needs a table of its own"]);
     refused(&["grid_mm=0"], &["world.dice.table.grid_mm", "0 is out of range", "from 0.1"]);
     refused(&["bounce_sd=0.4"], &["world.dice.table.bounce", "spread of 0.4", "leaves [0, 1]", "at most 0.05"]);
     refused(&["table.grip=0.05", "grip_sd=0.1"], &["world.dice.table.grip", "leaves [0, ∞)"]);
