@@ -48,6 +48,7 @@ fn main() -> ExitCode {
         Some((&"test", ["--quick"])) => test::quick(),
         Some((&"ci", [])) => test::ci(),
         Some((&"clients", [])) => test::clients(),
+        Some((&"shown", [])) => test::shown(),
         Some((&"engines", [])) => engines::run(),
         Some((&"wheel", rest)) => wheel::run(rest),
         Some((&"reproduce-figures", rest)) => figures(rest),
