@@ -24,6 +24,7 @@ usage: cargo xtask CHORE
   test --quick         of that, what says within a minute or so whether a change is sound
   clients              figures, and what other programs make of runs, exports and galleries
   ci                   both: what CI runs
+  shown                every command that README, docs and scenario files show
   engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost
   wheel                the Python package, into target/wheel/dist
   wheel --check        the same, tried on every Python there is, with its notebooks

@@ -31,7 +31,7 @@ impl Touch {
 
 /// The matrix that takes the cross product with a vector from the left.
 #[inline]
-pub(crate) fn cross(r: DVec3) -> DMat3 {
+fn cross(r: DVec3) -> DMat3 {
     DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0))
 }
 

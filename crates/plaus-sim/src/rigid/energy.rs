@@ -37,7 +37,7 @@ impl RigidScratch {
                     c.push(&mut self.members, first.impulse * part);
                 }
             }
-            solve(&mut self.contacts, &mut self.members, &mut self.solver, enough, world.accuracy.sweeps);
+            solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, world.accuracy.sweeps);
             let now = self.kinetic(world) - allowed;
             if now <= 0.0 {
                 for first in firsts {

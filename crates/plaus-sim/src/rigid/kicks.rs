@@ -4,7 +4,7 @@ use super::Rigid;
 use super::body::Pose;
 use super::contact::{Touch, response};
 use super::energy::resist;
-use super::pair::PairTouch;
+use super::pair::{PairTouch, to_middle};
 use super::solve::{Contact, Enough, solve};
 use super::step::{CLOSE, KEEP, PASSES, PASSES_OF_CUBOIDS, PUSH, RigidScratch, TOUCHING};
 use crate::shape::Feeler;
@@ -35,7 +35,7 @@ impl RigidScratch {
         }
         let passes = if self.has_cuboids_in_touch() || self.is_at_ledges(world) { PASSES_OF_CUBOIDS } else { PASSES };
         for pass in 0..passes {
-            solve(&mut self.contacts, &mut self.members, &mut self.solver, enough, world.accuracy.sweeps);
+            solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, world.accuracy.sweeps);
             for (p, m) in self.places.iter_mut().zip(&self.members) {
                 p.spin = m.w;
                 (p.end, p.end_turn) = p.drifted(&world.specs[p.body], m.v, m.w, h);
@@ -125,7 +125,7 @@ impl RigidScratch {
                 let [p, q] = ab.map(|k| &self.places[k]);
                 let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
                 (
-                    self.pair_contact(world, ab, after.arms_to_middle(&p.end, &q.end), after.normal),
+                    self.pair_contact(world, ab, to_middle(after.arms, [p.end.x, q.end.x]), after.normal),
                     after.gap,
                     world.pair_gap([p.body, q.body]),
                 )
@@ -140,13 +140,11 @@ impl RigidScratch {
             }
             self.contacts[c] = next;
         }
-        solve(&mut self.contacts, &mut self.members, &mut self.solver, step.enough, world.accuracy.sweeps);
+        solve(&mut self.contacts, &mut self.members, &mut self.newton, step.enough, world.accuracy.sweeps);
         let mut firsts = std::mem::take(&mut self.firsts);
         for (first, (ab, _)) in firsts[self.touches.len()..].iter_mut().zip(&self.pairs) {
             // What is taken back of an impulse between bodies that have moved on acts on both at one point too.
-            let [a, b] = ab.map(|k| self.places[k].end.x);
-            let half = ((a + first.arms[0]) - (b + first.arms[1])) * 0.5;
-            first.arms = [first.arms[0] - half, first.arms[1] + half];
+            first.arms = to_middle(first.arms, ab.map(|k| self.places[k].end.x));
         }
         let is_kept = self.keep_energy(world, &mut firsts, step.enough);
         self.firsts = firsts;

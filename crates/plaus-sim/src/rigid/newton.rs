@@ -29,7 +29,7 @@ const STIFFEST: f64 = 1e-7;
 const NOISE: f64 = 1e-8;
 
 /// By how much velocities may break Coulomb's law, over the fastest body's speed. Default 1e-5: bodies that wedge each other leave some for ever.
-const WEDGED: f64 = 1e-5;
+const LAWLESS: f64 = 1e-5;
 
 /// Rounds of the plain rule. Default 30: 19 of 20 problems take fewer than 12.
 const MOST_ROUNDS: usize = 30;
@@ -84,6 +84,11 @@ struct Projected {
 }
 
 impl Projected {
+    /// What a contact answers that sticks.
+    fn sticking(impulse: DVec3, stiff: f64) -> Self {
+        Self { impulse, stiffness: DMat3::IDENTITY * stiff, sliding: None }
+    }
+
     /// Whether friction has turned round since `before`: the slip went through none then, and the contact is tried without slip, or rounds might go to and fro for ever.
     fn reverses(&self, before: &Self, c: &Contact) -> bool {
         let (Some(was), Some(is)) = (before.sliding, self.sliding) else { return false };
@@ -97,33 +102,20 @@ impl Projected {
     }
 }
 
-/// How it ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Ending {
-    Solved,
-    NotSolved,
-}
-
 impl Newton {
     /// Rounds until no body's velocity changes by more than `enough` in a last one, which is quadratic; where that fails, until no velocity breaks Coulomb's law by more than `coarse`.
-    /// However it ends, impulses and velocities are consistent to rounding.
-    pub(crate) fn solve(
-        &mut self,
-        contacts: &mut [Contact],
-        members: &mut [Member],
-        enough: f64,
-        coarse: f64,
-    ) -> Ending {
+    /// Whether it is solved; however it ends, impulses and velocities are consistent to rounding.
+    pub(crate) fn solve(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64, coarse: f64) -> bool {
         if members.len() > MOST_MEMBERS {
-            return Ending::NotSolved;
+            return false;
         }
         let fastest = members.iter().map(|m| m.v.length() + m.w.length() * m.reach).fold(0.0, f64::max);
-        let (enough, coarse) = (enough.max(NOISE * fastest), coarse.max(WEDGED * fastest));
+        let (enough, coarse) = (enough.max(NOISE * fastest), coarse.max(LAWLESS * fastest));
         self.blocks.order(contacts, members.len());
         self.inertia.clear();
         self.inertia.extend(members.iter().map(|m| m.inverse_inertia.inverse()));
         if self.rounds(contacts, members, enough) {
-            return Ending::Solved;
+            return true;
         }
         let mut compliance = SOFT;
         for _ in 0..SHIFTS {
@@ -131,11 +123,11 @@ impl Newton {
                 break;
             }
             if contacts.iter().all(|c| is_lawful(c, members, coarse)) {
-                return Ending::Solved;
+                return true;
             }
             compliance = (STIFFER * compliance).max(STIFFEST);
         }
-        Ending::NotSolved
+        false
     }
 
     /// Newton's rounds on Coulomb's law; whether it is solved. If not, nothing is changed.
@@ -165,7 +157,12 @@ impl Newton {
                 let wrong = c.wrong(members);
                 let lawful = coulomb(c, wrong);
                 self.impulses.push(lawful.impulse);
-                *p = if lawful.reverses(p, c) { sticking(c, wrong) } else { lawful };
+                *p = if lawful.reverses(p, c) {
+                    let stiff = stiffness(c, COMPLIANCE);
+                    Projected::sticking(c.impulse - wrong * stiff, stiff)
+                } else {
+                    lawful
+                };
             }
             if let Some(change) = self.take_impulses(contacts, members, enough) {
                 if change * COMPLIANCE <= enough {
@@ -335,9 +332,14 @@ fn is_lawful(c: &Contact, members: &[Member], enough: f64) -> bool {
 
 const OPEN: Projected = Projected { impulse: DVec3::ZERO, stiffness: DMat3::ZERO, sliding: None };
 
+/// Impulse per velocity of a contact with this compliance, over its response.
+fn stiffness(c: &Contact, compliance: f64) -> f64 {
+    1.0 / (compliance * c.compliance())
+}
+
 /// What Coulomb's law makes of a contact with the velocity `wrong` that is not to be.
 fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
-    let stiff = 1.0 / (COMPLIANCE * c.compliance());
+    let stiff = stiffness(c, COMPLIANCE);
     let n = c.normal;
     let trial = c.impulse - wrong * stiff;
     let load = trial.dot(n);
@@ -355,21 +357,15 @@ fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
         return slides(-s, DMat3::ZERO);
     }
     if side <= most {
-        return Projected { impulse: trial, stiffness: DMat3::IDENTITY * stiff, sliding: None };
+        return Projected::sticking(trial, stiff);
     }
     let t = across / side;
     slides(t, (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (most / side))
 }
 
-/// What a contact answers that sticks, whatever its friction.
-fn sticking(c: &Contact, wrong: DVec3) -> Projected {
-    let stiff = 1.0 / (COMPLIANCE * c.compliance());
-    Projected { impulse: c.impulse - wrong * stiff, stiffness: DMat3::IDENTITY * stiff, sliding: None }
-}
-
 /// The nearest point of the cone of friction.
 fn cone(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
-    let stiff = 1.0 / (compliance * c.compliance());
+    let stiff = stiffness(c, compliance);
     let (n, friction) = (c.normal, c.friction);
     let trial = c.impulse - wrong * stiff;
     let along = trial.dot(n);
@@ -379,7 +375,7 @@ fn cone(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
         return OPEN;
     }
     if side <= friction * along {
-        return Projected { impulse: trial, stiffness: DMat3::IDENTITY * stiff, sliding: None };
+        return Projected::sticking(trial, stiff);
     }
     let (t, narrow) = (across / side, 1.0 / (1.0 + friction * friction));
     let direction = n + t * friction;

@@ -65,7 +65,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     // What is carried by a corner of a pile near tipping is found slowly.
     let patience = if group.has_cuboids_in_touch() { PATIENCE } else { 1 };
     let enough = Enough::new(0.03 * limit / f64::from(patience), world.strength * h);
-    solve(&mut group.contacts, &mut group.members, &mut group.solver, enough, world.accuracy.sweeps * patience);
+    solve(&mut group.contacts, &mut group.members, &mut group.newton, enough, world.accuracy.sweeps * patience);
     group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= residual)
 }
 

@@ -1,6 +1,6 @@
 //! Impulses of lasting contacts, found together: Newton's rule, or block Gauss–Seidel whose blocks obey Coulomb's law exactly.
 
-use super::newton::{Ending, Newton};
+use super::newton::Newton;
 use super::slip::{Asked, Slip, WEDGED};
 use glam::{DMat3, DVec3};
 
@@ -270,12 +270,6 @@ impl Enough {
     }
 }
 
-/// Work space of [`solve`].
-#[derive(Debug, Default)]
-pub(crate) struct Solver {
-    newton: Newton,
-}
-
 /// How much finer Newton's rule is solved than sweeps would be: another round at most. Default 1e-3.
 const NEWTON_FINER: f64 = 1e-3;
 
@@ -287,7 +281,7 @@ const SWEEPS_AFTER: u32 = 60;
 pub(crate) fn solve(
     contacts: &mut [Contact],
     members: &mut [Member],
-    solver: &mut Solver,
+    newton: &mut Newton,
     enough: Enough,
     most: u32,
 ) -> bool {
@@ -304,7 +298,7 @@ pub(crate) fn solve(
     if contacts.is_empty() {
         return true;
     }
-    if solver.newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed) == Ending::Solved {
+    if newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed) {
         for c in contacts.iter_mut() {
             c.note_slide();
         }

@@ -8,10 +8,11 @@
 use super::body::{Momentum, Motion, NEVER, Phase, Pose, Turning};
 use super::contact::{Touch, response};
 use super::glide;
-use super::pair::PairTouch;
+use super::newton::Newton;
+use super::pair::{PairTouch, to_middle};
 use super::part::Part;
 use super::rest;
-use super::solve::{Contact, Member, Solver};
+use super::solve::{Contact, Member};
 use super::tumble::{drift, rotation};
 use super::{Rigid, Spec};
 use crate::links::Links;
@@ -38,7 +39,7 @@ pub struct RigidScratch {
     pub(super) firsts: Vec<Contact>,
     /// Whether overlaps are left as they are.
     pub(super) holds: bool,
-    pub(super) solver: Solver,
+    pub(super) newton: Newton,
 }
 
 /// A member's pose and orientation at the start and at the end of a step.
@@ -316,7 +317,7 @@ impl RigidScratch {
             self.contacts.push(Contact::new(*a, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k));
         }
         for ([a, b], t) in &self.pairs {
-            let arms = t.arms_to_middle(&self.places[*a].start, &self.places[*b].start);
+            let arms = to_middle(t.arms, [a, b].map(|k| self.places[*k].start.x));
             self.contacts.push(self.pair_contact(world, [*a, *b], arms, t.normal));
         }
     }

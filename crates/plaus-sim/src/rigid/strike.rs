@@ -8,7 +8,8 @@
 //!
 //! Several pairs of bodies are struck pair by pair, as an impact goes on from body to body: so the balls of a cradle hand it on.
 
-use super::solve::{Contact, Enough, Member, Solver, solve};
+use super::newton::Newton;
+use super::solve::{Contact, Enough, Member, solve};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::resolve::{ContactMatrix, stronge_impulse};
@@ -97,7 +98,7 @@ fn strike_at_once(points: &mut [Point], members: &mut [Member]) {
     let before: Vec<DVec3> = points.iter().map(|p| p.contact.velocity(members)).collect();
     let fastest = before.iter().map(|u| u.length()).fold(0.0, f64::max);
     let mut contacts: Vec<Contact> = points.iter().map(|p| p.contact).collect();
-    let mut solver = Solver::default();
+    let mut newton = Newton::default();
     let mut makes_energy = |part: f64, members: &mut [Member]| {
         members.copy_from_slice(&start);
         for (c, p) in contacts.iter_mut().zip(&*points) {
@@ -105,7 +106,7 @@ fn strike_at_once(points: &mut [Point], members: &mut [Member]) {
             c.impulse = DVec3::ZERO;
             c.target = if p.is_struck() { part * p.restitution * p.approach } else { 0.0 };
         }
-        solve(&mut contacts, members, &mut solver, Enough::new(SOLVED * fastest, fastest), SWEEPS);
+        solve(&mut contacts, members, &mut newton, Enough::new(SOLVED * fastest, fastest), SWEEPS);
         let (mut energy, mut scale) = (0.0, 0.0);
         for (c, u) in contacts.iter().zip(&before) {
             energy += 0.5 * c.impulse.dot(*u + c.velocity(members));
