@@ -61,7 +61,8 @@ fn draw(area: &Area<'_>, rows: &[Row]) -> Result<()> {
     }
     for (k, row) in rows.iter().enumerate() {
         let y = TOP + LINE * (k as f64 + 0.5);
-        write(area, &row.name, &text(13.0, colour::INK), HPos::Right, (NAMES - 18.0, y))?;
+        // The fonts have no µ.
+        write(area, &row.name.replace('µ', "friction"), &text(13.0, colour::INK), HPos::Right, (NAMES - 18.0, y))?;
         one(area, row, y)?;
     }
     Ok(())
