@@ -319,10 +319,21 @@ def test_what_a_callback_raises_is_raised():
         short(iterations=10_000_000, callback=broken)
 
 
+def ctrl_c_once_there_are_draws():
+    """A callback that has the process interrupted, a little after it was called: not while it runs."""
+    sent = []
+
+    def callback(progress):
+        if not sent and min(progress.iterations, default=0) > 3000:
+            sent.append(threading.Timer(0.05, lambda: os.kill(os.getpid(), signal.SIGINT)))
+            sent[0].start()
+
+    return callback
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_ctrl_c_gives_what_was_found():
-    threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-    made = short(iterations=10_000_000)
+    made = short(iterations=10_000_000, callback=ctrl_c_once_there_are_draws())
     assert made.ending == "interrupted" and made.draw_count > 0 and made.solutions
     assert made.resume(max_time=0.2, progress=False).ending == "out_of_time"
 
@@ -586,8 +597,8 @@ def test_what_a_requirement_raises_in_another_process_is_raised_here():
 def test_ctrl_c_with_processes_gives_what_was_found_and_leaves_none_behind():
     import multiprocessing
 
-    threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-    made = short(requirement=plaus.Requirement(slow_end, processes=2), iterations=10_000_000)
+    required = plaus.Requirement(slow_end, processes=2)
+    made = short(requirement=required, iterations=10_000_000, callback=ctrl_c_once_there_are_draws())
     assert made.ending == "interrupted" and made.draw_count > 0
     assert not multiprocessing.active_children()
 
