@@ -80,7 +80,7 @@ fn a_checkpoint_that_is_gone_is_named_and_the_records_are_saved() {
     let place = Place::new();
     place.ok("sample ball.toml --out run");
     std::fs::remove_file(place.path("run/chain-00002.checkpoint")).unwrap();
-    for command in ["diagnose run", "resume run --iterations 2000", "export run --format csv --out no.csv"] {
+    for command in ["diagnose run", "resume run", "export run --format csv --out no.csv"] {
         place.ends(command, 2).says(&["chain-00002.checkpoint: this checkpoint is gone", "plaus export --salvage"]);
     }
     place.ok("export run --format csv --out d.csv --salvage").says(&[

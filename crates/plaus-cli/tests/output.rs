@@ -156,7 +156,7 @@ fn a_new_scenario_is_right_and_every_key_is_explained() {
     place.ok("new ball2d new.toml").says(&["next: plaus sample new.toml --out run"]);
     assert_eq!(place.ok("new ball2d").out, std::fs::read_to_string(place.path("new.toml")).unwrap());
     place.ok("check new.toml").says(&["new.toml is valid"]);
-    place.ends("new bal2d", 2).says(&["there is no scene `bal2d`; known: ball2d"]);
+    place.ends("new bal2d", 2).says(&["there is no scene `bal2d`; did you mean `ball2d`? known: ball2d"]);
     let keys = place.ok("explain").out;
     for key in keys.lines().filter(|line| !line.starts_with(' ')) {
         assert!(place.ok(&format!("explain {key}")).out.starts_with(key));

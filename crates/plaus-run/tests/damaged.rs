@@ -138,7 +138,11 @@ fn a_missing_checkpoint_is_an_error_for_resume() {
     let (_place, folder) = with("chain-00002.checkpoint", b"");
     std::fs::remove_file(folder.checkpoint(2)).unwrap();
     let error = resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
-    assert!(error.contains("chain-00002.checkpoint") && error.contains("other chains have checkpoints"), "{error}");
+    let says = ["chain-00002.checkpoint: this checkpoint is gone", "plaus export --salvage"];
+    assert!(says.iter().all(|part| error.contains(part)), "{error}");
+    // Whoever only reads the run is told the same.
+    let read = Run::open(&folder).unwrap().visit(AllDraws(Phase::Sampling)).map(drop).unwrap_err().to_string();
+    assert_eq!(read, error);
 }
 
 #[test]

@@ -27,6 +27,10 @@ const LEFT_OUT: [&str; 3] = ["tosses of a cube", "two cubes meet", "ball at rest
 /// Steps of the truth at first, in s; it is also run in half of these and in a quarter.
 const STEP: f64 = 4e-4;
 
+/// What is not known of a wave of dominoes, relative: halving the last steps of its truth moved it by 8e-4 (the example
+/// `truths`), and the cases have it to three decimals.
+const DOMINOES: f64 = 1e-3;
+
 /// Errors below this are rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -50,7 +54,7 @@ impl Row {
         }
         let floor = ROUNDING.max(self.unknown);
         if standard <= floor {
-            return "exact".to_owned();
+            return if self.unknown > 0.0 { "≤ unknown" } else { "exact" }.to_owned();
         }
         let order = math::ln(standard / reference.max(floor)) / math::ln(steps[0] / steps[1]);
         format!("{}{order:.1}", if reference < floor { "> " } else { "" })
@@ -120,7 +124,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             truth: case.expected,
             measure: case.measure.to_owned(),
             off,
-            unknown: 0.0,
+            unknown: if case.name.starts_with("dominoes") { DOMINOES } else { 0.0 },
         })?;
     }
     for toss in smooth().iter().chain([&pin()]).filter(|t| t.name.contains(wanted)) {

@@ -34,6 +34,47 @@
 //! median (`Draft`, `Standard`, `Fine`), and 7, 5 and 2 in a hundred draws fill another number of bins than they would there; a die keeps within a twentieth of its edge for 0.3, 0.3 and 0.4 s, and one throw in
 //! two to four ends on another face or elsewhere.
 //!
+//! **Against truths that the simulator has no part in** (`cargo xtask accuracy`, `docs/accuracy.md` says what each is and what is
+//! measured): closed forms, laws, and another make of integrator in small steps. The order is that in `step`, from
+//! standard to reference.
+//!
+//! | case | draft | standard | fine | reference | order |
+//! | --- | --- | --- | --- | --- | --- |
+//! | ice, e 0.125 | 0 | 0 | 0 | 0 | exact |
+//! | ice, e 0.5 | 0 | 0 | 0 | 0 | exact |
+//! | Coulomb's bound | 0 | 0 | 0 | 0 | exact |
+//! | flat cube, e 0 | 0 | 0 | 0 | 0 | exact |
+//! | flat cube, e 0.5 | 0 | 0 | 0 | 0 | exact |
+//! | cuboid slides to rest | 6.5e-5 | 6.4e-5 | 1.0e-6 | 6.4e-7 | 1.5 |
+//! | box on 25 balls | 5.8e-6 | 6.1e-7 | 6.4e-8 | 5.0e-7 | 0.1 |
+//! | stack of 10 | 1.9e-4 | 1.9e-5 | 1.9e-6 | 1.9e-8 | 2.3 |
+//! | pyramid of 55 | cut off | 9.4e-6 | 9.4e-7 | 9.4e-9 | 2.3 |
+//! | dominoes, 0.1 h | 8.1e-3 | 8.2e-3 | 3.8e-4 | 2.7e-4 | > 0.7 |
+//! | dominoes, 0.3 h | 8.5e-5 | 1.5e-4 | 4.3e-5 | cut off | – |
+//! | dominoes, 0.5 h | 3.3e-4 | 4.1e-4 | 4.0e-4 | 4.0e-4 | ≤ unknown |
+//! | heavy on light, 1e2 | 0 | 0 | 0 | 2.7e-8 | exact |
+//! | heavy on light, 1e4 | 0 | 0 | 0 | 2.7e-8 | exact |
+//! | heavy on light, 1e6 | 0 | 0 | 0 | 2.7e-8 | exact |
+//! | heavy on light, 1e9 | 1.6 | 1.6 | 1.0 | cut off | – |
+//! | Galperin, N = 3 | 9.5e-1 | 8.6e-1 | 0 | 0 | > 9.2 |
+//! | Galperin, N = 4 | 9.9e-1 | 9.9e-1 | 8.7e-1 | 0 | > 9.2 |
+//! | cradle on a floor, e 1 | 0 | 0 | 9.8e-11 | 0 | exact |
+//! | Euler's disk | 5.3e-1 | 1.1e-1 | 1.5e-3 | 2.0e-6 | 3.6 |
+//! | coin on its rim | 2.0e-1 | 2.4e-2 | 1.0e-2 | 2.7e-3 | 0.7 |
+//! | slope too steep by 1e-6 | 2.2 | 3.9e-1 | 1.6e-1 | 7.8e-3 | 1.3 |
+//! | d4 slides and spins to rest, after 0.5 s | 2.0e-2 | 6.0e-3 | 3.3e-4 | 1.7e-5 | 1.9 |
+//! | box tips over its edge, after 0.2 s | 1.3e-2 | 8.4e-3 | 5.0e-4 | 3.0e-5 | 1.9 |
+//! | box tips, its edge slides, after 0.2 s | 1.3e-2 | 1.1e-2 | 5.4e-4 | 3.4e-5 | 1.9 |
+//! | pin falls over, after 0.2 s | 6.4e-3 | 5.0e-3 | 4.3e-4 | 1.9e-5 | 1.9 |
+//! | cube, e 0.125, µ 0.18, after 0.2 s | 2.0e-2 | 9.5e-3 | 9.2e-4 | 4.5e-5 | 1.8 |
+//! | cube, e 0.125, µ 0.18, after 1 s | 9.6e-2 | 1.2e-1 | 2.7e-2 | 2.4e-2 | 0.5 |
+//! | cube, e 0.5, µ 0.35, after 0.2 s | 4.4e-3 | 1.8e-3 | 2.5e-4 | 9.7e-5 | 1.0 |
+//! | cube, e 0.5, µ 0.35, after 1 s | 9.5e-2 | 5.8e-2 | 9.2e-3 | 1.5e-3 | 1.2 |
+//! | cuboid, e 0.3, µ 0.3, after 0.2 s | 1.2e-2 | 1.6e-3 | 4.3e-4 | 3.0e-5 | 1.3 |
+//! | cuboid, e 0.3, µ 0.3, after 1 s | 9.7e-2 | 4.4e-2 | 3.5e-2 | 3.5e-2 | 0.1 |
+//! | die, e 0.5, µ 0.35, after 0.16 s | 4.9e-2 | 1.2e-2 | 2.2e-3 | 2.1e-4 | 1.3 |
+//! | die, e 0.5, µ 0.35, after 1 s | 1.1 | 3.7e-1 | 1.2e-1 | 2.8e-2 | 0.9 |
+//!
 //! **f32 or f64.** There is only f64. Events are ordered by their times across bodies, and an f32 holds a time of 2 s to 2e-7 s, in which a marble at 1 m/s moves by 4e-5 of its radius:
 //! contacts would be found too early or too late by more than the presets allow.
 //!
