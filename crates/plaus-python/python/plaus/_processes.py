@@ -42,7 +42,7 @@ class Processes:
         self._idle: queue.SimpleQueue[Connection] = queue.SimpleQueue()
         self._all: list[tuple[Connection, Any]] = []
         with _starting, warnings.catch_warnings():
-            # What a fork leaves behind in threads of others is not used: the process only waits, and calls the function.
+            # What a fork leaves behind in threads of others is not used: a process only waits, and calls the function.
             warnings.simplefilter("ignore", DeprecationWarning)
             for _ in range(count):
                 ours, theirs = context.Pipe()
