@@ -6,6 +6,7 @@ mod arrays;
 mod clock;
 mod errors;
 mod motion;
+mod parcel;
 mod requirement;
 mod run;
 mod sampling;
@@ -26,6 +27,8 @@ mod _plaus {
     use crate::errors::{Problem, RunError, ScenarioError, WorldError};
     #[pymodule_export]
     use crate::motion::Motion;
+    #[pymodule_export]
+    use crate::parcel::Parcels;
     #[pymodule_export]
     use crate::requirement::{Asked, Outcome};
     #[pymodule_export]

@@ -4,31 +4,49 @@
 use crate::clock::now;
 use crate::errors::{Raised, RunError};
 use crate::motion::Motion;
+use crate::parcel;
 use plaus_dist::LogPotential;
 use plaus_mcmc::{Mark, Mixture, ModelError, Required, Requirement, Sink, State, StateOf};
 use plaus_run::{Drive, Driven, Journey, RunFileError};
 use plaus_scenes::{Animation, Scene};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyTuple};
+use pyo3::types::{PyBool, PyBytes, PyDict, PyTuple};
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 
 /// What a state can show of itself, whatever its scene.
 trait Shown: Send + Sync {
-    fn animate(&self) -> Result<Animation, ModelError>;
+    fn motion(&self) -> Result<Animation, ModelError>;
+
+    /// All that another process needs to make it again.
+    fn pack(&self, numbers: &Numbers) -> Result<Vec<u8>, ModelError>;
 }
 
-/// A draw and the scene that animates it.
+/// A draw and the scene that simulates it.
 struct Drawn<S: Scene> {
     scene: Arc<S>,
     draw: S::Draw,
 }
 
 impl<S: Scene> Shown for Drawn<S> {
-    fn animate(&self) -> Result<Animation, ModelError> {
-        self.scene.animate(&self.draw)
+    fn motion(&self) -> Result<Animation, ModelError> {
+        self.scene.motion(&self.draw)
     }
+
+    fn pack(&self, numbers: &Numbers) -> Result<Vec<u8>, ModelError> {
+        parcel::pack(numbers, &self.draw)
+    }
+}
+
+/// What is known of a state without simulating it again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Numbers {
+    pub(crate) values: Vec<f64>,
+    pub(crate) log_prior: f64,
+    pub(crate) log_constraint: f64,
+    pub(crate) satisfied: bool,
 }
 
 /// What came of a candidate: what a requirement judges.
@@ -38,27 +56,24 @@ impl<S: Scene> Shown for Drawn<S> {
 pub(crate) struct Outcome {
     shown: Box<dyn Shown>,
     names: Arc<[String]>,
-    values: Vec<f64>,
-    log_prior: f64,
-    log_constraint: f64,
-    satisfied: bool,
+    numbers: Numbers,
     motion: OnceLock<Motion>,
 }
 
 impl Outcome {
-    pub(crate) fn of<S: Scene>(scene: &Arc<S>, names: &Arc<[String]>, state: &StateOf<S>) -> Self {
+    fn of<S: Scene>(scene: &Arc<S>, names: &Arc<[String]>, state: &StateOf<S>) -> Self {
         let mut values = vec![0.0; names.len()];
         scene.write_scalars(state, &mut values);
         let State { draw, log_prior, log_constraint, .. } = state;
-        Self {
-            shown: Box::new(Drawn { scene: Arc::clone(scene), draw: draw.clone() }),
-            names: Arc::clone(names),
-            values,
-            log_prior: log_prior.value(),
-            log_constraint: log_constraint.value(),
-            satisfied: scene.class(state).is_some(),
-            motion: OnceLock::new(),
-        }
+        let (log_prior, log_constraint) = (log_prior.value(), log_constraint.value());
+        let numbers = Numbers { values, log_prior, log_constraint, satisfied: scene.class(state).is_some() };
+        Self::new(scene, names, numbers, draw.clone())
+    }
+
+    /// What came of `draw`.
+    pub(crate) fn new<S: Scene>(scene: &Arc<S>, names: &Arc<[String]>, numbers: Numbers, draw: S::Draw) -> Self {
+        let shown = Box::new(Drawn { scene: Arc::clone(scene), draw });
+        Self { shown, names: Arc::clone(names), numbers, motion: OnceLock::new() }
     }
 }
 
@@ -68,14 +83,14 @@ impl Outcome {
     #[getter]
     fn scalars<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let scalars = PyDict::new(py);
-        self.names.iter().zip(&self.values).try_for_each(|(name, value)| scalars.set_item(name, value))?;
+        self.names.iter().zip(&self.numbers.values).try_for_each(|(name, value)| scalars.set_item(name, value))?;
         Ok(scalars)
     }
 
     /// One of the scene's numbers: `outcome["rest_x"]`.
     fn __getitem__(&self, name: &str) -> PyResult<f64> {
         let found = self.names.iter().position(|known| known == name);
-        found.map(|index| self.values[index]).ok_or_else(|| {
+        found.map(|index| self.numbers.values[index]).ok_or_else(|| {
             let known = self.names.join(", ");
             pyo3::exceptions::PyKeyError::new_err(format!("there is no number `{name}`: there are {known}"))
         })
@@ -84,29 +99,29 @@ impl Outcome {
     /// Log prior density of the draw, up to a constant.
     #[getter]
     fn log_prior(&self) -> f64 {
-        self.log_prior
+        self.numbers.log_prior
     }
 
     /// Log constraint of the scenario alone, up to a constant.
     #[getter]
     fn log_constraint(&self) -> f64 {
-        self.log_constraint
+        self.numbers.log_constraint
     }
 
     /// Whether the scenario's own constraint is satisfied.
     #[getter]
     fn satisfied(&self) -> bool {
-        self.satisfied
+        self.numbers.satisfied
     }
 
-    /// The motion of all bodies.
+    /// The motion of all bodies, without what stands still around them.
     #[getter]
     fn motion(&self, py: Python<'_>) -> PyResult<Motion> {
         if let Some(motion) = self.motion.get() {
             return Ok(motion.clone());
         }
         // Other chains go on meanwhile.
-        let made = py.detach(|| self.shown.animate()).map_err(|error| RunError::new_err(error.to_string()))?;
+        let made = py.detach(|| self.shown.motion()).map_err(|error| RunError::new_err(error.to_string()))?;
         Ok(self.motion.get_or_init(|| Motion(Arc::new(made))).clone())
     }
 
@@ -139,10 +154,10 @@ impl Outcome {
     }
 
     fn __repr__(&self) -> String {
-        let numbers = self.names.iter().zip(&self.values).take(6);
+        let numbers = self.names.iter().zip(&self.numbers.values).take(6);
         let numbers: Vec<String> = numbers.map(|(name, value)| format!("{name}={value:.4}")).collect();
         let more = if self.names.len() > 6 { ", ..." } else { "" };
-        format!("<Outcome {}{more}, satisfied={}>", numbers.join(", "), self.satisfied)
+        format!("<Outcome {}{more}, satisfied={}>", numbers.join(", "), self.numbers.satisfied)
     }
 }
 
@@ -203,17 +218,26 @@ impl Asked {
         Ok(Mark { log, met })
     }
 
-    fn ask(&self, outcome: Outcome) -> Result<Mark, ModelError> {
+    /// Asks the function, here or in another process.
+    fn ask(&self, outcome: Outcome, others: Option<&Py<PyAny>>) -> Result<Mark, ModelError> {
         let asked = now();
+        let spent = |seconds: f64| (seconds * 1e9) as u64;
+        let pack = |others| outcome.shown.pack(&outcome.numbers).map(|parcel| (others, parcel));
+        let parcel: Option<(&Py<PyAny>, Vec<u8>)> = others.map(pack).transpose()?;
         Python::attach(|py| {
             let begun = now();
             let outcome = Py::new(py, outcome).map_err(|error| Raised::wrap(py, error, None))?;
-            let answer = self.function.bind(py).call1((&outcome,));
-            let mark = answer.and_then(|answer| self.mark(&answer));
-            let spent = |from: f64, to: f64| ((to - from) * 1e9) as u64;
+            let answered = match &parcel {
+                Some((others, parcel)) => {
+                    others.bind(py).call1((PyBytes::new(py, parcel),)).and_then(|it| it.extract())
+                }
+                None => self.function.bind(py).call1((&outcome,)).map(|answer| (now() - begun, answer)),
+            };
+            let took = answered.as_ref().map_or_else(|_| now() - begun, |(seconds, _)| *seconds);
             self.calls.fetch_add(1, Relaxed);
-            self.waited.fetch_add(spent(asked, begun), Relaxed);
-            self.nanoseconds.fetch_add(spent(begun, now()), Relaxed);
+            self.nanoseconds.fetch_add(spent(took), Relaxed);
+            self.waited.fetch_add(spent((now() - asked - took).max(0.0)), Relaxed);
+            let mark = answered.and_then(|(_, answer): (f64, Bound<'_, PyAny>)| self.mark(&answer));
             mark.map_err(|error| Raised::wrap(py, error, Some(outcome.into_any())))
         })
     }
@@ -221,7 +245,7 @@ impl Asked {
 
 /// A requirement of a known scene.
 struct OfScene<S: Scene> {
-    asked: Arc<Py<Asked>>,
+    by: ByPython,
     scene: Arc<S>,
     names: Arc<[String]>,
     most: Option<LogPotential>,
@@ -233,16 +257,23 @@ impl<S: Scene> Requirement<S> for OfScene<S> {
     }
 
     fn judge(&self, _: &S, state: &StateOf<S>) -> Result<Mark, ModelError> {
-        self.asked.get().ask(Outcome::of(&self.scene, &self.names, state))
+        let outcome = Outcome::of(&self.scene, &self.names, state);
+        self.by.asked.get().ask(outcome, self.by.others.as_deref())
     }
 }
 
 /// Drives chains under a requirement.
-pub(crate) struct ByPython(pub(crate) Arc<Py<Asked>>);
+#[derive(Clone)]
+pub(crate) struct ByPython {
+    pub(crate) asked: Arc<Py<Asked>>,
+    /// What asks the function in other processes: takes a parcel, and gives the seconds that the function took with
+    /// what it answered, or raises what it raised. None: it is called here.
+    pub(crate) others: Option<Arc<Py<PyAny>>>,
+}
 
 impl Drive for ByPython {
     fn requirement(&self) -> Option<String> {
-        Some(self.0.get().name.clone())
+        Some(self.asked.get().name.clone())
     }
 
     fn drive<S: Scene, K: Sink<S::Draw, S::Outcome, Error = RunFileError>>(
@@ -253,9 +284,8 @@ impl Drive for ByPython {
         sink: &mut K,
     ) -> Driven {
         let names = scene.scalars().into_iter().map(|scalar| scalar.name).collect();
-        let asked = Arc::clone(&self.0);
-        let most = asked.get().most;
-        let required = Required::new(&**scene, OfScene { asked, scene: Arc::clone(scene), names, most });
+        let (by, most) = (self.clone(), self.asked.get().most);
+        let required = Required::new(&**scene, OfScene { by, scene: Arc::clone(scene), names, most });
         plaus_mcmc::required::run(
             &required,
             moves,

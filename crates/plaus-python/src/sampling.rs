@@ -107,21 +107,21 @@ struct Job {
     folder: Folder,
     threads: usize,
     fleeting: bool,
-    asked: Option<Arc<Py<Asked>>>,
+    by: Option<ByPython>,
     board: Arc<Board>,
 }
 
 impl Job {
     fn run(self) -> Result<Ending, plaus_run::Error> {
-        let Self { task, folder, threads, fleeting, asked, board } = self;
+        let Self { task, folder, threads, fleeting, by, board } = self;
         let mut watch = Watching { board, checkpoint: now(), pause: 0.2, writing: None };
         let disk: &dyn Disk = if fleeting { &Fleeting } else { &RealDisk };
         let sampling = Sampling { threads, disk, watch: &mut watch };
-        match (task, asked) {
+        match (task, by) {
             (Task::Sample(recipe), None) => plaus_run::sample(&folder, &recipe, sampling),
-            (Task::Sample(recipe), Some(asked)) => plaus_run::sample_by(&folder, &recipe, sampling, &ByPython(asked)),
+            (Task::Sample(recipe), Some(by)) => plaus_run::sample_by(&folder, &recipe, sampling, &by),
             (Task::Resume(more), None) => plaus_run::resume(&folder, more, sampling),
-            (Task::Resume(more), Some(asked)) => plaus_run::resume_by(&folder, more, sampling, &ByPython(asked)),
+            (Task::Resume(more), Some(by)) => plaus_run::resume_by(&folder, more, sampling, &by),
         }
     }
 }
@@ -216,7 +216,7 @@ impl Wait<'_> {
 
 /// Samples into `folder`, or goes on with the run there where `scenario` is None; gives how it ended, and seconds.
 #[pyfunction]
-#[pyo3(signature = (scenario, folder, *, overrides, solutions, iterations, threads, fleeting, max_time, asked, poll, interval))]
+#[pyo3(signature = (scenario, folder, *, overrides, solutions, iterations, threads, fleeting, max_time, asked, others, poll, interval))]
 #[allow(clippy::too_many_arguments, reason = "named in Python, which is the only caller")]
 pub(crate) fn sample<'py>(
     py: Python<'py>,
@@ -229,6 +229,7 @@ pub(crate) fn sample<'py>(
     fleeting: bool,
     max_time: Option<f64>,
     asked: Option<Py<Asked>>,
+    others: Option<Py<PyAny>>,
     poll: Option<Bound<'py, PyAny>>,
     interval: f64,
 ) -> PyResult<(&'static str, f64)> {
@@ -237,8 +238,8 @@ pub(crate) fn sample<'py>(
         None => Task::Resume(More { iterations, solutions }),
     };
     let board = Arc::new(Board::default());
-    let asked = asked.map(Arc::new);
-    let job = Job { task, folder: Folder::new(folder), threads, fleeting, asked, board: Arc::clone(&board) };
+    let by = asked.map(|asked| ByPython { asked: Arc::new(asked), others: others.map(Arc::new) });
+    let job = Job { task, folder: Folder::new(folder), threads, fleeting, by, board: Arc::clone(&board) };
     let (tell, done) = sync_channel::<Done>(1);
     let work = move || {
         let made = panic::catch_unwind(panic::AssertUnwindSafe(|| job.run())).ok();

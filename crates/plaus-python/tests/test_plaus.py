@@ -319,10 +319,21 @@ def test_what_a_callback_raises_is_raised():
         short(iterations=10_000_000, callback=broken)
 
 
+def ctrl_c_once_there_are_draws():
+    """A callback that has the process interrupted, a little after it was called: not while it runs."""
+    sent = []
+
+    def callback(progress):
+        if not sent and min(progress.iterations, default=0) > 3000:
+            sent.append(threading.Timer(0.05, lambda: os.kill(os.getpid(), signal.SIGINT)))
+            sent[0].start()
+
+    return callback
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
 def test_ctrl_c_gives_what_was_found():
-    threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-    made = short(iterations=10_000_000)
+    made = short(iterations=10_000_000, callback=ctrl_c_once_there_are_draws())
     assert made.ending == "interrupted" and made.draw_count > 0 and made.solutions
     assert made.resume(max_time=0.2, progress=False).ending == "out_of_time"
 
@@ -497,6 +508,99 @@ def test_answers_that_are_none_are_refused(answer, error):
 def test_an_impossible_requirement_says_so():
     with pytest.raises(plaus.RunError, match="none of 10000 start draws"):
         short(requirement=lambda _: False, chains=1)
+
+
+# --- requirements in processes of their own
+
+
+def looks_at_motion(outcome):
+    """Something that needs numbers, poses at rest and impacts."""
+    log, met = slow_end(outcome)
+    assert outcome.rest["ball_0"] == outcome.motion.poses(times=[outcome.motion.duration])[1][0, 0].tolist()
+    return log, met and len(outcome.motion.events["t"]) >= 3
+
+
+def test_a_requirement_in_processes_has_the_same_bytes(tmp_path):
+    seen = []
+
+    def remembers(outcome):
+        seen.append(outcome)
+        return looks_at_motion(outcome)
+
+    required = plaus.Requirement(remembers, name="it", processes=2)
+    short(requirement=required, out=tmp_path / "a", iterations=500)
+    assert not seen, "it was called in this process"
+    assert required.cost.calls > 0 < required.cost.seconds
+    short(requirement=plaus.Requirement(looks_at_motion, name="it"), out=tmp_path / "b", iterations=500)
+    same_bytes(tmp_path / "a", tmp_path / "b")
+    made = plaus.Run(tmp_path / "a").resume(requirement=required, iterations=800, progress=False)
+    assert made.draw_count == 800
+
+
+def test_dice_reach_other_processes_with_their_tables():
+    def judge(outcome):
+        return -abs(outcome["rest_x_1"]) / 50.0 - outcome.motion.duration, True
+
+    one, two = (
+        plaus.sample(
+            SCENARIOS / "dice-one.toml",
+            requirement=plaus.Requirement(judge, processes=processes),
+            iterations=100,
+            warmup=20,
+            progress=False,
+        )
+        for processes in (0, 2)
+    )
+    assert all(np.array_equal(one.draws[name], two.draws[name]) for name in one.draws)
+
+
+def test_two_samplers_with_one_requirement_in_processes(tmp_path):
+    required = plaus.Requirement(slow_end, processes=1)
+    work = lambda seed: short(requirement=required, seed=seed, iterations=300, out=tmp_path / str(seed))
+    jobs = [threading.Thread(target=work, args=(seed,)) for seed in (1, 2)]
+    [job.start() for job in jobs]
+    [job.join() for job in jobs]
+    short(requirement=slow_end, seed=2, iterations=300, out=tmp_path / "alone")
+    same_bytes(tmp_path / "2", tmp_path / "alone")
+
+
+def test_what_a_requirement_raises_in_another_process_is_raised_here():
+    class Odd(Exception):
+        """Cannot be sent as it is: it knows its outcome by heart."""
+
+        def __init__(self, outcome, text):
+            super().__init__(text)
+
+    for raises, kind in [(lambda outcome: {}["missing"], KeyError), (lambda outcome: 1 / 0, ZeroDivisionError)]:
+        with pytest.raises(kind) as caught:
+            short(requirement=plaus.Requirement(raises, processes=2))
+        text = "".join(traceback.format_exception(caught.value))
+        assert "test_plaus.py" in text and "in <lambda>" in text and "iteration" in caught.value.__notes__[0]
+        with pytest.raises(kind):
+            raises(caught.value.plaus_given)
+
+    def odd(outcome):
+        raise Odd(outcome, "by heart")
+
+    with pytest.raises(plaus.RunError, match="Odd: by heart"):
+        short(requirement=plaus.Requirement(odd, processes=1))
+    with pytest.raises(plaus.RunError, match="has ended: exit code 3"):
+        short(requirement=plaus.Requirement(lambda outcome: os._exit(3), processes=1))
+    with pytest.raises(TypeError, match="expected"):
+        short(requirement=plaus.Requirement(lambda outcome: "yes", processes=1))
+    for wrong, error in [(-1, ValueError), (1.5, TypeError), (True, TypeError)]:
+        with pytest.raises(error, match="processes"):
+            plaus.Requirement(slow_end, processes=wrong)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+def test_ctrl_c_with_processes_gives_what_was_found_and_leaves_none_behind():
+    import multiprocessing
+
+    required = plaus.Requirement(slow_end, processes=2)
+    made = short(requirement=required, iterations=10_000_000, callback=ctrl_c_once_there_are_draws())
+    assert made.ending == "interrupted" and made.draw_count > 0
+    assert not multiprocessing.active_children()
 
 
 # --- targets

@@ -110,7 +110,7 @@ class Outcome:
         """Whether the scenario's own constraint is satisfied."""
     @property
     def motion(self) -> Motion:
-        """The motion of all bodies."""
+        """The motion of all bodies, without what stands still around them."""
     @property
     def bodies(self) -> list[str]:
         """Names of the bodies."""
@@ -120,6 +120,13 @@ class Outcome:
     @property
     def rest_orientation(self) -> dict[str, list[float]]:
         """How each body is turned at the end, by name: a unit quaternion x, y, z, w from its axes to the world's."""
+
+class Parcels:
+    """Opens outcomes that came from another process, of one scenario."""
+
+    def __init__(self, scenario: Scenario) -> None: ...
+    def open(self, parcel: bytes) -> Outcome:
+        """The outcome in a parcel."""
 
 class Motion:
     """The motion of all bodies of one sample."""
@@ -181,6 +188,7 @@ def sample(
     fleeting: bool,
     max_time: float | None,
     asked: Asked | None,
+    others: Callable[[bytes], tuple[float, object]] | None,
     poll: Callable[[dict[str, Any]], bool] | None,
     interval: float,
 ) -> tuple[str, float]:

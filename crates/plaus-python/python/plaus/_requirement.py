@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, NamedTuple, Union
 
 from plaus import _plaus
+from plaus._numbers import _whole
 
 if TYPE_CHECKING:
+    from plaus._processes import Processes
+
     Judge = Callable[[_plaus.Outcome], Union[tuple[float, bool], bool]]
 
 
@@ -19,7 +23,7 @@ class Cost(NamedTuple):
     seconds: float
     """Seconds spent in it, with the simulation of motions that it asked for."""
     waited: float
-    """Seconds that chains waited for Python, one behind the other."""
+    """Seconds that chains waited for their turn, and for answers of other processes to arrive."""
 
     @property
     def microseconds_a_call(self) -> float:
@@ -44,10 +48,15 @@ class Requirement:
     such bound.
 
     Chains simulate on all cores, but Python runs one call at a time: where the function is slow, they wait for each
-    other. For more, sample with other seeds in other processes. What was spent is in `cost`.
+    other. With `processes`, so many further processes are started for each run, and calls go to them side by side;
+    outcomes travel there and answers back, which takes about a tenth of a millisecond, so for quick functions it
+    does not pay. The draws are the same. On Linux processes are forked, elsewhere the function must be importable; what
+    it changes outside of itself stays in its process. What was spent is in `cost`.
     """
 
-    def __init__(self, function: Judge, *, name: str | None = None, most: float | None = 0.0) -> None:
+    def __init__(
+        self, function: Judge, *, name: str | None = None, most: float | None = 0.0, processes: int = 0
+    ) -> None:
         if not callable(function):
             raise TypeError(f"a requirement is a function of the outcome, not a {type(function).__name__}")
         self.function = function
@@ -56,12 +65,22 @@ class Requirement:
         """What it is called in the run's manifest and in messages."""
         self.most = most
         """What its log potential never exceeds; None where there is no bound."""
+        self.processes: int = _whole("processes", processes, 0) or 0
+        """How many processes it is asked in; 0: in the one that samples, a call at a time."""
         self._asked = _plaus.Asked(function, self.name, most)
 
     @property
     def cost(self) -> Cost:
         """What it has cost so far."""
         return Cost(*self._asked.cost)
+
+    def _asking(self, scenario: _plaus.Scenario) -> AbstractContextManager[Processes | None]:
+        """Its processes, for one run."""
+        if self.processes == 0:
+            return nullcontext()
+        from plaus._processes import Processes
+
+        return Processes(self.function, scenario, self.processes)
 
     def __call__(self, outcome: _plaus.Outcome) -> tuple[float, bool] | bool:
         """What the function says of an outcome, of one that an exception carries for example."""

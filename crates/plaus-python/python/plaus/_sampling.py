@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any
 
 from plaus import _plaus
+from plaus._numbers import _whole
 from plaus._requirement import Requirement
 from plaus._run import Run, _Folder, _TemporaryFolder
 
@@ -109,18 +111,6 @@ def _required(requirement: Requirement | Callable[..., Any] | None) -> Requireme
     return Requirement(requirement)
 
 
-def _whole(name: str, value: Any, least: int) -> int | None:
-    """A whole number as an argument, or a clear refusal."""
-    if value is None:
-        return None
-    if isinstance(value, bool) or not hasattr(value, "__index__"):
-        raise TypeError(f"{name}: a whole number is expected, not {value!r}")
-    number = int(value.__index__())
-    if number < least:
-        raise ValueError(f"{name} is {number}, but must be at least {least}")
-    return number
-
-
 def _go(
     scenario: _plaus.Scenario | None,
     folder: _Folder,
@@ -142,11 +132,25 @@ def _go(
         shown.show(now)
         return callback is None or callback(now) is not False
 
-    asked = requirement._asked if requirement is not None else None
-    try:
-        ending, seconds = _plaus.sample(
-            scenario, folder.path, fleeting=folder.fleeting, asked=asked, poll=poll, interval=_INTERVAL, **how
+    asked = None
+    others: AbstractContextManager[Any] = nullcontext()
+    if requirement is not None:
+        asked = requirement._asked
+        others = requirement._asking(
+            scenario.set(*how["overrides"]) if scenario is not None else Run(folder.path).scenario
         )
+    try:
+        with others as by:
+            ending, seconds = _plaus.sample(
+                scenario,
+                folder.path,
+                fleeting=folder.fleeting,
+                asked=asked,
+                others=by and by.ask,
+                poll=poll,
+                interval=_INTERVAL,
+                **how,
+            )
     finally:
         if os.getpid() == begun_in:
             shown.end()

@@ -143,7 +143,7 @@ def sample_target(
 
     Raises what a function of the target or of a move raises, with a note that says in which chain and iteration.
     """
-    from plaus._sampling import _whole
+    from plaus._numbers import _whole
 
     return TargetRun(
         _plaus.sample_target(
@@ -179,7 +179,7 @@ def check_moves(
     `false_alarm`. A fault that shifts a law by a share s of its standard deviation shows from about 100 / s² samples
     on.
     """
-    from plaus._sampling import _whole
+    from plaus._numbers import _whole
 
     return _plaus.check(
         target._functions,

@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Union
 
 from plaus import _plaus
-from plaus._sampling import _whole
+from plaus._numbers import _whole
 
 if TYPE_CHECKING:
     import numpy as np

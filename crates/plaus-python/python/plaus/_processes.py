@@ -1,0 +1,127 @@
+"""Other processes that a requirement is asked in, so that slow functions do not wait for each other."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import pickle
+import queue
+import signal
+import sys
+import threading
+import time
+import traceback
+import warnings
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from types import TracebackType
+from typing import Any
+
+from plaus import _plaus
+
+# Seconds that a process has for its end before it is ended.
+_PATIENCE = 5.0
+# This process's ends of all pipes: what is forked closes them, so that each process sees when its own is closed.
+_ours: set[Connection] = set()
+_starting = threading.Lock()
+
+
+class _Elsewhere(Exception):
+    """Where in another process something was raised."""
+
+    def __str__(self) -> str:
+        return f'\n"""\n{self.args[0]}"""'
+
+
+class Processes:
+    """Processes that a function is asked in; they end where the block does that they are made for."""
+
+    def __init__(self, function: Callable[[_plaus.Outcome], object], scenario: _plaus.Scenario, count: int) -> None:
+        # Where there is fork, functions of notebooks and closures go along; elsewhere they have to be importable.
+        context: Any = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
+        self._idle: queue.SimpleQueue[Connection] = queue.SimpleQueue()
+        self._all: list[tuple[Connection, Any]] = []
+        with _starting, warnings.catch_warnings():
+            # What a fork leaves behind in threads of others is not used: a process only waits, and calls the function.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            for _ in range(count):
+                ours, theirs = context.Pipe()
+                _ours.add(ours)
+                close = list(_ours) if context.get_start_method() == "fork" else []
+                process = context.Process(target=_serve, args=(theirs, close, function, scenario), daemon=True)
+                process.start()
+                theirs.close()
+                self._all.append((ours, process))
+                self._idle.put(ours)
+
+    def ask(self, parcel: bytes) -> tuple[float, object]:
+        """Has a process that is idle, or the first that will be, ask the function about an outcome: seconds that it
+        took, and its answer."""
+        connection = self._idle.get()
+        try:
+            connection.send_bytes(parcel)
+            seconds, answer, raised = connection.recv()
+        except (EOFError, OSError) as lost:
+            raise _plaus.RunError(f"a process that a requirement was asked in has ended{self._how()}") from lost
+        finally:
+            self._idle.put(connection)
+        if raised is not None:
+            error, where = raised
+            raise error from _Elsewhere(where)
+        return seconds, answer
+
+    def _how(self) -> str:
+        for _, process in self._all:
+            process.join(0.1)
+        codes = [process.exitcode for _, process in self._all if process.exitcode is not None]
+        return f": exit code {codes[0]}" if codes else ""
+
+    def __enter__(self) -> Processes:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, _: BaseException | None, __: TracebackType | None) -> None:
+        for connection, process in self._all:
+            if kind is not None:
+                process.terminate()
+            connection.close()
+            _ours.discard(connection)
+        for _, process in self._all:
+            process.join(_PATIENCE)
+            if process.is_alive():
+                process.terminate()
+                process.join()
+
+
+def _serve(
+    connection: Connection,
+    close: list[Connection],
+    function: Callable[[_plaus.Outcome], object],
+    scenario: _plaus.Scenario,
+) -> None:
+    """Answers until nobody asks any more."""
+    # Ctrl-C is for the process that samples.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for other in close:
+        other.close()
+    parcels = _plaus.Parcels(scenario)
+    while True:
+        try:
+            parcel = connection.recv_bytes()
+        except (EOFError, OSError):
+            return
+        begun = time.perf_counter()
+        try:
+            answer = function(parcels.open(parcel))
+            reply = pickle.dumps((time.perf_counter() - begun, answer, None))
+        except BaseException as error:  # whatever it is, it is the user's to see
+            reply = pickle.dumps((time.perf_counter() - begun, None, _parcelled(error)))
+        connection.send_bytes(reply)
+
+
+def _parcelled(error: BaseException) -> tuple[BaseException, str]:
+    """An exception as another process can raise it, with its traceback as text."""
+    where = "".join(traceback.format_exception(error))
+    try:
+        return pickle.loads(pickle.dumps(error)), where
+    except Exception:
+        return _plaus.RunError(f"process {os.getpid()}: {type(error).__name__}: {error}"), where
