@@ -10,9 +10,10 @@ const EDGES: &[(&str, &[&str])] = &[
     ("plaus-dist", &[]),
     ("plaus-sim", &["plaus-dist"]),
     ("plaus-mcmc", &["plaus-dist"]),
-    ("plaus-scenes", &["plaus-dist", "plaus-mcmc", "plaus-sim"]),
+    ("plaus-animation", &["plaus-dist"]),
+    ("plaus-scenes", &["plaus-animation", "plaus-dist", "plaus-mcmc", "plaus-sim"]),
     ("plaus-run", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
-    ("plaus-export", &["plaus-dist", "plaus-scenes"]),
+    ("plaus-export", &["plaus-animation", "plaus-dist"]),
     ("plaus-gallery", &["plaus-dist", "plaus-export", "plaus-run", "plaus-scenes"]),
     ("plaus-cli", &["plaus-dist", "plaus-export", "plaus-gallery", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
     (

@@ -1,6 +1,6 @@
 //! What is exported: an animation, a part of its time, and what is to be said about it.
 
-use plaus_scenes::Animation;
+use plaus_animation::Animation;
 use serde_json::{Map, Value};
 
 /// Most poses of all bodies together in one file.

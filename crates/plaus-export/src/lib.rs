@@ -3,7 +3,7 @@
 //! ```
 //! use glam::DVec3;
 //! use plaus_export::{Clip, Cut, Label, glb};
-//! use plaus_scenes::animation::{Animation, Look, Piece, Shape, Track};
+//! use plaus_animation::{Animation, Look, Piece, Shape, Track};
 //!
 //! let fall = Piece::ballistic(0.0, DVec3::Y, DVec3::ZERO, DVec3::new(0.0, -9.81, 0.0));
 //! let animation = Animation::new(0.4, vec![Track::new("ball_0", Shape::ball(0.05), Look::nth(0), vec![fall])], vec![]);

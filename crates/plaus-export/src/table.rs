@@ -70,7 +70,7 @@ pub fn write_events(out: &mut dyn Write, clip: &Clip<'_>, prefix: &str) -> io::R
 #[must_use]
 pub fn events_to_json(clip: &Clip<'_>) -> Value {
     let hits = clip.animation.impacts.iter().filter(|hit| clip.cut.holds(hit.time));
-    let object = |hit: &plaus_scenes::animation::Impact| {
+    let object = |hit: &plaus_animation::Impact| {
         json!({"t": hit.time - clip.cut.from(), "pair": [hit.body, hit.other], "point": hit.point.to_array(),
             "normal": hit.normal.to_array(), "speed": hit.speed, "impulse": hit.impulse})
     };

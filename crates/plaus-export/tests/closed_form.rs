@@ -9,7 +9,7 @@ use plaus_dist::stream::{Purpose, Seed};
 use plaus_export::keys::{Key, of_track};
 use plaus_export::{Clip, Cut, Label, glb};
 use plaus_scenes::Scene;
-use plaus_scenes::animation::Animation;
+use plaus_animation::Animation;
 use plaus_scenes::registry::{NAMES, Visitor, World};
 
 fn written(animation: &Animation, range: Option<(f64, f64)>) -> (Glb, Cut) {

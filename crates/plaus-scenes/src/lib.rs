@@ -24,7 +24,6 @@
 //! whether acceptance is exact or as the paper prints it.
 
 pub mod accuracy;
-pub mod animation;
 pub mod ball2d;
 pub mod bowling;
 pub mod dice;
@@ -38,7 +37,8 @@ mod way;
 pub mod world;
 
 pub use accuracy::AccuracyPreset;
-pub use animation::Animation;
+pub use plaus_animation as animation;
+pub use plaus_animation::Animation;
 pub use registry::{Visitor, World};
 pub use rules::Rules;
 pub use scenario::Scenario;

@@ -4,7 +4,7 @@ use gltf_json::material::{AlphaMode, PbrBaseColorFactor, PbrMetallicRoughness, S
 use gltf_json::validation::Checked::Valid;
 use gltf_json::{Index, Root};
 use plaus_dist::math::exp;
-use plaus_scenes::animation::{Colour, Look, Material};
+use plaus_animation::{Colour, Look, Material};
 
 /// Materials made so far: one a look.
 #[derive(Default)]

@@ -19,7 +19,7 @@ use gltf_json::extras::RawValue;
 use gltf_json::validation::Checked::Valid;
 use gltf_json::{Asset, Index, Mesh, Node, Root, Scene, mesh::Mode, mesh::Primitive, mesh::Semantic};
 use materials::Materials;
-use plaus_scenes::animation::{Look, Shape};
+use plaus_animation::{Look, Shape};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 

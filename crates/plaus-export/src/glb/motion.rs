@@ -9,7 +9,7 @@ use gltf_json::extras::Extras;
 use gltf_json::scene::UnitQuaternion;
 use gltf_json::validation::Checked::Valid;
 use gltf_json::{Index, Mesh, Node, accessor::Accessor};
-use plaus_scenes::animation::Track;
+use plaus_animation::Track;
 
 /// The node of a body, where the body is at `time`.
 pub(super) fn node_at(track: &Track, time: f64, mesh: Option<Index<Mesh>>) -> Node {

@@ -3,7 +3,7 @@
 use super::{Mesh, Part};
 use glam::{DVec2, DVec3};
 use plaus_dist::math::sin_cos;
-use plaus_scenes::animation::{Look, Stripe};
+use plaus_animation::{Look, Stripe};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Corners around the axis.

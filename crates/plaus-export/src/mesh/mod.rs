@@ -6,7 +6,7 @@ mod scenery;
 
 use glam::DVec3;
 use plaus_dist::math::sin_cos;
-use plaus_scenes::animation::{Form, Look, Material, Shape};
+use plaus_animation::{Form, Look, Material, Shape};
 use std::f64::consts::TAU;
 
 /// Triangles with one normal a corner; metres, counter-clockwise as seen from outside.
@@ -114,7 +114,7 @@ fn contrast(look: Look) -> Look {
 mod tests {
     use super::*;
     use glam::Vec3;
-    use plaus_scenes::animation::Stripe;
+    use plaus_animation::Stripe;
 
     fn volume(mesh: &Mesh) -> f64 {
         let corner = |index: u32| Vec3::from(mesh.positions[index as usize]).as_dvec3();

@@ -2,7 +2,7 @@
 
 use super::Mesh;
 use glam::{DQuat, DVec3};
-use plaus_scenes::animation::Form;
+use plaus_animation::Form;
 
 pub(super) fn mesh(form: &Form) -> Mesh {
     match form {

@@ -3,7 +3,7 @@
 use super::Text;
 use crate::glb::{linear, surface};
 use crate::mesh::{self, Mesh, Part};
-use plaus_scenes::animation::{Animation, Colour, Form, Look, Shape};
+use plaus_animation::{Animation, Colour, Form, Look, Shape};
 
 /// All looks of an animation, each a material.
 pub(super) struct Looks(Vec<Look>);

@@ -8,7 +8,7 @@ mod geometry;
 use crate::clip::Clip;
 use crate::keys::{of_track, orientations};
 use glam::DQuat;
-use plaus_scenes::animation::Track;
+use plaus_animation::Track;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

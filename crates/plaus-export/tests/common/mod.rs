@@ -4,7 +4,7 @@
 use glam::{DQuat, DVec3, Quat, Vec3};
 use gltf::animation::Property;
 use gltf::animation::util::ReadOutputs;
-use plaus_scenes::animation::{Animation, Impact, Look, Material, Piece, Prop, Shape, Stripe, Track, Turn};
+use plaus_animation::{Animation, Impact, Look, Material, Piece, Prop, Shape, Stripe, Track, Turn};
 
 /// A die that bounces, a pin that precesses, a ball that rolls fast.
 pub fn tumbling() -> Animation {

@@ -2,7 +2,7 @@
 //!
 //! ```
 //! use glam::DVec3;
-//! use plaus_scenes::animation::{Animation, Look, Piece, Prop, Shape, Track};
+//! use plaus_animation::{Animation, Look, Piece, Prop, Shape, Track};
 //!
 //! // A ball of 2 cm falls from 1 m for a quarter of a second.
 //! let fall = Piece::ballistic(0.0, DVec3::Y, DVec3::ZERO, DVec3::new(0.0, -9.81, 0.0));
@@ -21,7 +21,7 @@ mod motion;
 mod scenery;
 mod shape;
 
-pub(crate) use axes::{UPRIGHT, upright};
+pub use axes::{UPRIGHT, upright};
 pub use impact::Impact;
 pub use look::{Colour, Look, Material};
 pub use motion::{Piece, Track, Turn};
