@@ -47,6 +47,7 @@ pub(crate) fn clients() -> Result<(), Failure> {
     let shapes = cargo(&["build", "--package", "plaus-export", "--example", "tumbling"]);
     let mut all = vec![Step::command("plaus in release", release), Step::command("every shape", shapes)];
     all.extend(client_steps());
+    all.push(Step::new("Blender plays them", clients::blender));
     steps::run(all)
 }
 

@@ -98,6 +98,13 @@ impl Piece {
         Self::ballistic(start, position, DVec3::ZERO, DVec3::ZERO)
     }
 
+    /// Whether nothing moves.
+    #[must_use]
+    pub fn rests(&self) -> bool {
+        let Self { velocity, acceleration, turn, .. } = self;
+        *velocity == DVec3::ZERO && *acceleration == DVec3::ZERO && turn.spin == DVec3::ZERO && turn.own == 0.0
+    }
+
     /// The same, turning.
     #[must_use]
     pub fn turning(self, turn: Turn) -> Self {

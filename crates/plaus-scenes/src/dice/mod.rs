@@ -238,6 +238,9 @@ const COLUMNS: [(&str, &str, Role); 13] = [
 ];
 
 impl Scene for Dice {
+    const NUMBERED: &'static str = "die";
+    const WHOLE: &'static [&'static str] = &["face", "impacts"];
+
     const ADAPTS: bool = true;
 
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {

@@ -13,7 +13,7 @@ mod value;
 
 pub use keys::{KeyDoc, explain, keys, template};
 pub use problem::{Problem, ScenarioError, Source};
-pub use schema::schema;
+pub use schema::{SCHEMA_FILE, SCHEMA_ID, published_schema, schema};
 
 use crate::registry::{Visitor, World};
 use crate::rules::Rules;
