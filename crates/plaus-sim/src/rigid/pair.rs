@@ -40,6 +40,12 @@ impl PairTouch {
     pub(crate) fn rate(&self, a: &Pose, b: &Pose) -> f64 {
         (a.velocity(self.arms[0]) - b.velocity(self.arms[1])).dot(self.normal)
     }
+
+    /// The arms to the point half way between the bodies: where impulses act on both at one point, the bodies keep their angular momentum.
+    pub(crate) fn arms_to_middle(&self, a: &Pose, b: &Pose) -> [DVec3; 2] {
+        let half = ((a.x + self.arms[0]) - (b.x + self.arms[1])) * 0.5;
+        [self.arms[0] - half, self.arms[1] + half]
+    }
 }
 
 impl From<cuboid_pair::Meeting> for PairTouch {
@@ -231,7 +237,7 @@ impl Rigid {
         let mut members = [RigidScratch::member(s, &p.r, p.v, p.w), RigidScratch::member(t, &q.r, q.v, q.w)];
         let mut points = Vec::new();
         self.for_pair_touches(pair, [&p, &q], within, |touch| {
-            let contact = pair_contact(&members, [0, 1], &touch, law.friction);
+            let contact = pair_contact(&members, [0, 1], touch.arms_to_middle(&p, &q), touch.normal, law.friction);
             let point = Point::new(contact, -touch.rate(&p, &q), law, settles, hurried, Other::Body(pair[1]));
             // A first contact is struck however slowly; what is slow later is for the steps of lasting contact.
             points.push(Point { least: if linked && point.lasting { f64::INFINITY } else { 0.0 }, ..point });

@@ -104,12 +104,24 @@ impl Contact {
     /// Relative velocity at the contact.
     #[inline]
     pub(crate) fn velocity(&self, members: &[Member]) -> DVec3 {
-        let a = &members[self.a];
-        let u = a.v + a.w.cross(self.arms[0]);
-        match self.b {
-            Some(b) => u - (members[b].v + members[b].w.cross(self.arms[1])),
-            None => u,
-        }
+        self.relative(|k| [members[k].v, members[k].w])
+    }
+
+    /// The same of members with these velocities.
+    #[inline]
+    pub(super) fn relative(&self, of: impl Fn(usize) -> [DVec3; 2]) -> DVec3 {
+        let at = |k: usize, arm: DVec3| {
+            let [v, w] = of(k);
+            v + w.cross(arm)
+        };
+        let u = at(self.a, self.arms[0]);
+        self.b.map_or(u, |b| u - at(b, self.arms[1]))
+    }
+
+    /// What of the velocity at the contact is not to be: slip, and what the normal part differs from its target by.
+    #[inline]
+    pub(super) fn wrong(&self, members: &[Member]) -> DVec3 {
+        self.velocity(members) + self.bias - self.normal * self.target
     }
 
     #[inline]
@@ -262,12 +274,7 @@ impl Enough {
 #[derive(Debug, Default)]
 pub(crate) struct Solver {
     newton: Newton,
-    impulses: Vec<DVec3>,
-    members: Vec<Member>,
 }
-
-/// Most rounds of Newton's rule. Default 40: from the last step's impulses it takes 2 to 4.
-const NEWTON_ROUNDS: usize = 40;
 
 /// How much finer Newton's rule is solved than sweeps would be: another round at most. Default 1e-3.
 const NEWTON_FINER: f64 = 1e-3;
@@ -297,21 +304,12 @@ pub(crate) fn solve(
     if contacts.is_empty() {
         return true;
     }
-    let Solver { newton, impulses, members: backup } = solver;
-    impulses.clear();
-    impulses.extend(contacts.iter().map(|c| c.impulse));
-    backup.clear();
-    backup.extend_from_slice(members);
-    if newton.solve(contacts, members, NEWTON_FINER * enough.speed, NEWTON_ROUNDS) == Ending::Solved {
+    if solver.newton.solve(contacts, members, NEWTON_FINER * enough.speed, enough.speed) == Ending::Solved {
         for c in contacts.iter_mut() {
             c.note_slide();
         }
         return true;
     }
-    for (c, impulse) in contacts.iter_mut().zip(&*impulses) {
-        c.impulse = *impulse;
-    }
-    members.copy_from_slice(backup);
     sweep(contacts, members, enough, most.min(SWEEPS_AFTER))
 }
 

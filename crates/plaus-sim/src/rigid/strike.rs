@@ -33,9 +33,9 @@ pub(super) struct Point {
 const LEFT: f64 = 0.1;
 
 impl Point {
-    /// A point with this approach; `settles` is the rebound up to which a contact of its bodies lasts, and `hurried` whether it is to last however fast they part.
+    /// A point with this approach; `settles` is the rebound up to which a contact of its bodies lasts, and `hurried` whether it is to last however fast they part, unless nothing is lost in an impact: such impacts go on for ever, or part at last.
     pub(super) fn new(contact: Contact, approach: f64, law: &Law, settles: f64, hurried: bool, other: Other) -> Self {
-        let lasting = law.restitution * approach <= settles || hurried;
+        let lasting = law.restitution * approach <= settles || hurried && law.restitution < 1.0;
         let restitution = if lasting { 0.0 } else { law.restitution };
         let least = if lasting { LEFT * settles } else { 0.0 };
         Self { contact, restitution, least, approach, lasting, other }

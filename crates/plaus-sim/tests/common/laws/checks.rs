@@ -63,8 +63,7 @@ impl Free {
 /// Whether all bodies together keep their momentum (first finding, in parts of Σ m v) and angular momentum about the
 /// origin (second) along the free directions.
 ///
-/// Bound: the roundings of all events so far, of the largest momentum there was. Two bodies meet at points that are up
-/// to the touching gap apart, so where they do, friction may turn their angular momentum by gap × impulse.
+/// Bound: the roundings of all events so far, of the largest momentum there was.
 pub fn momentum(record: &Record, free: Free) -> [Finding; 2] {
     let mut found = [Finding::NONE; 2];
     let (fastest, n) = (record.fastest(), record.facts.len());
@@ -72,10 +71,9 @@ pub fn momentum(record: &Record, free: Free) -> [Finding; 2] {
     let far = record.moments.iter().flatten().map(|m| m.x.length()).fold(0.0, f64::max);
     let reach = record.facts.iter().map(|f| f.reach).fold(0.0, f64::max);
     let scales = [mass * fastest, mass * fastest * (reach + far)];
-    let gap = record.facts.iter().map(|f| f.size).fold(0.0, f64::max) * record.accuracy.gap * 2.0;
     let mut now: Vec<Option<Moment>> = vec![None; n];
     let mut first: Option<[DVec3; 2]> = None;
-    let (mut seen, mut pushed) = (0.0, 0.0);
+    let mut seen = 0.0;
     let all = record.in_order();
     for (k, (body, moment)) in all.iter().enumerate() {
         now[*body] = Some(*moment);
@@ -85,13 +83,7 @@ pub fn momentum(record: &Record, free: Free) -> [Finding; 2] {
         }
         let sum = total(&record.facts, &now, free);
         let start = *first.get_or_insert(sum);
-        if n > 1 {
-            pushed = record.impacts[..moment.impacts].iter().map(|i| i.impulse.length()).sum();
-        }
-        let bounds = [
-            scales[0] * ROUNDINGS * seen,
-            scales[1] * (ROUNDINGS * seen + if n > 1 { BETWEEN } else { 0.0 }) + gap * pushed,
-        ];
+        let bounds = [scales[0] * ROUNDINGS * seen, scales[1] * ROUNDINGS * seen];
         for part in 0..2 {
             let off = (sum[part] - start[part]).length();
             found[part].add(off / bounds[part].max(f64::MIN_POSITIVE), off / scales[part], moment.time, *body);
@@ -153,10 +145,6 @@ fn energy_scale(record: &Record) -> f64 {
     let high = record.moments.iter().flatten().map(|m| m.x.length()).fold(0.0, f64::max);
     mass * (fastest * fastest + g * high)
 }
-
-/// Angular momentum of two bodies that lasting contact may change, over its scale: within a step their points of contact are apart by up to a thousandth of their size (`SAG`), and so much of
-/// the lever of the step's impulses. 7e-7 was seen.
-const BETWEEN: f64 = 2e-6;
 
 /// What [`energy`] allows at the end of a record, in J.
 pub fn energy_bound(record: &Record) -> f64 {
