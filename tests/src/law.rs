@@ -2,7 +2,8 @@
 
 use plaus_dist::math;
 
-/// The largest distance between the empirical distribution function of `values` and `cdf`, in [0, 1] (Kolmogorov–Smirnov).
+/// The largest distance between the empirical distribution function of `values` and `cdf`, in [0, 1]
+/// (Kolmogorov–Smirnov).
 pub fn distance(mut values: Vec<f64>, cdf: impl Fn(f64) -> f64) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     let count = values.len() as f64;
@@ -13,8 +14,9 @@ pub fn distance(mut values: Vec<f64>, cdf: impl Fn(f64) -> f64) -> f64 {
     values.iter().enumerate().map(gap).fold(0.0, f64::max)
 }
 
-/// [`distance`] exceeds this with probability `alpha` at most, whatever the law, for a sample of `count` (Dvoretzky, Kiefer, Wolfowitz; constant by Massart, "The tight constant
-/// in the Dvoretzky–Kiefer–Wolfowitz inequality", Annals of Probability 18, 1990).
+/// [`distance`] exceeds this with probability `alpha` at most, whatever the law, for a sample of `count` (Dvoretzky,
+/// Kiefer, Wolfowitz; constant by Massart, "The tight constant in the Dvoretzky–Kiefer–Wolfowitz inequality", Annals of
+/// Probability 18, 1990).
 #[must_use]
 pub fn bound(alpha: f64, count: usize) -> f64 {
     (math::ln(2.0 / alpha) / (2.0 * count as f64)).sqrt()

@@ -1,5 +1,5 @@
-//! The 2D ball is sampled exactly: every move leaves the target as it is, wrong twins of the moves do not, and chains agree with reference values
-//! that no chain was needed for.
+//! The 2D ball is sampled exactly: every move leaves the target as it is, wrong twins of the moves do not, and chains
+//! agree with reference values that no chain was needed for.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -95,8 +95,8 @@ fn ratios_agree_with_their_reverse() {
         for kernel in [perturb(), redraw(), Box::new(Aim) as AnyMove] {
             let moves = scene.moves(&Rules::exact()).unwrap();
             let states = visited(&scene, &moves, Seed(5), 2000, 5).unwrap();
-            // The aimed angle is found to 1e-11 and its weight is one over a slope that vanishes at turning points: some 10⁴ pairs come within 1e-4
-            // of one, where 1e-11 becomes 1e-7.
+            // The aimed angle is found to 1e-11 and its weight is one over a slope that vanishes at turning points:
+            // some 10⁴ pairs come within 1e-4 of one, where 1e-11 becomes 1e-7.
             let plan = Ratios { tolerance: 1e-6, ..Ratios::default() };
             let report = ratios(&scene, kernel.as_ref(), plaus_mcmc::check::any_of(&states), plan).unwrap();
             assert!(report.passed(), "{downward:?}: {report}");
@@ -122,7 +122,8 @@ impl Move<Ball2d> for Symmetric {
     }
 }
 
-/// Aims as [`Aim`] does, but corrects for the priors of the angles alone, as if the place of rest were drawn without the Jacobian.
+/// Aims as [`Aim`] does, but corrects for the priors of the angles alone, as if the place of rest were drawn without
+/// the Jacobian.
 struct AimWithoutJacobian;
 
 impl Move<Ball2d> for AimWithoutJacobian {
@@ -177,7 +178,8 @@ fn wrong_twins_are_caught() {
     }
 }
 
-/// P(|x − target| < 0.1 D) by weighting prior draws with the constraint, with its standard error (delta method for a ratio of means).
+/// P(|x − target| < 0.1 D) by weighting prior draws with the constraint, with its standard error (delta method for a
+/// ratio of means).
 fn importance(scene: &Ball2d, draws: u64) -> (f64, f64) {
     let mut stream = Seed(77).chain(0).at(0, Purpose::START);
     let (mut sum, mut inside, mut squares) = (0.0, 0.0, [0.0; 3]);
@@ -260,7 +262,8 @@ fn chains_agree_with_rejection_in_every_angle() {
                 let by_chain = diagnose::summarize(&columns).unwrap();
                 let exact = diagnose::summarize(&[draws.iter().map(value).collect::<Vec<_>>()]).unwrap();
                 let error = math::hypot(by_chain.mcse_mean, exact.sd / (draws.len() as f64).sqrt());
-                // 50 comparisons; 5 standard errors have a two-sided false-alarm rate of 6e-7 each, and Monte Carlo errors are themselves known to 5%.
+                // 50 comparisons; 5 standard errors have a two-sided false-alarm rate of 6e-7 each, and Monte Carlo
+                // errors are themselves known to 5%.
                 let z = (by_chain.mean - exact.mean) / error;
                 assert!(z.abs() < 5.3, "{downward:?} theta_{} ^ {power}: z = {z}", angle + 1);
             }

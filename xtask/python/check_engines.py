@@ -12,6 +12,7 @@ Exit codes: 0 right, 1 wrong, 77 the packages could not be installed.
 import argparse
 import json
 import os
+import resource
 import shutil
 import signal
 import statistics
@@ -365,19 +366,26 @@ def twice_at_once(job):
         demand(path.read_bytes() == (out / path.name).read_bytes(), f"{path.name}: not the same bytes")
 
 
+def processor():
+    """Seconds on the processor of all processes that were started from here and have ended, with theirs."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
 def measure_start(job):
-    """Seconds from the start of a piece of one iteration to its end."""
-    times = []
+    """Seconds from the start of a piece of one iteration to its end, and on the processor."""
+    times, begun = [], processor()
     for index in range(21):
         words = ["sample", job.place / FILE, "--chains", "4", "--warmup", "0", "--iterations", "1", "-q"]
         begin = time.perf_counter()
         job.call(*words, "--shard", "1/4", "--out", job.place / f"start-{index}")
         times.append(time.perf_counter() - begin)
-    return statistics.median(times)
+    return statistics.median(times), (processor() - begun) / len(times)
 
 
 def measure_speed(job, python, seconds):
-    """Speed of two pieces on two workers of HyperQueue, as a share of one process of two threads; a pair of runs at a time."""
+    """Speed of two pieces on two workers of HyperQueue, as a share of one process of two threads, a pair of runs at a
+    time: by the clock, and by the processor, of which what else the machine does takes nothing away."""
     scenario = job.place / FILE
     probe, begin = 200_000, time.perf_counter()
     run = ["--chains", "2", "--thin", "100", "--warmup", "0"]
@@ -385,12 +393,13 @@ def measure_speed(job, python, seconds):
     length = int(probe * seconds / (time.perf_counter() - begin))
     shares = []
     for index in range(3):
-        begin = time.perf_counter()
+        begin, spent = time.perf_counter(), processor()
         whole = job.place / f"speed-{index}"
         job.call("sample", scenario, *run, "--iterations", length, "--threads", 2, "-q", "--out", whole)
-        alone = time.perf_counter() - begin
+        alone = (time.perf_counter() - begin, processor() - spent)
         folder = job.place / f"job-{index}"
         job.call("submit", scenario, *run, "--iterations", length, "--to", "hyperqueue", "--shards", 2, "--out", folder)
+        spent = processor()
         server = start_server([str(python), __file__, "--serve", str(job.place / f"server-{index}")], job.place)
         demand(answer(server) == "ready", "HyperQueue does not start")
         begin = time.perf_counter()
@@ -400,9 +409,16 @@ def measure_speed(job, python, seconds):
         shared = time.perf_counter() - begin
         server.stdin.close()
         server.wait()
-        shares.append(alone / shared)
-        print(f"  one process, 2 threads: {alone:.1f} s; 2 workers, merge included: {shared:.1f} s; speed {alone / shared:.3f}", flush=True)
-    return statistics.median(shares)
+        shared = (shared, processor() - spent)
+        clock, spent = (one / two for one, two in zip(alone, shared))
+        shares.append((clock, spent))
+        one, two = ([f"{time:.1f} s" for time in times] for times in (alone, shared))
+        print(
+            f"  one process, 2 threads: {one[0]}, {one[1]} of processor; 2 workers, merge and server included: {two[0]}, "
+            f"{two[1]}; speed {clock:.3f} by the clock, {spent:.3f} by the processor",
+            flush=True,
+        )
+    return [statistics.median(share) for share in zip(*shares)]
 
 
 CHECKS = {"hyperqueue": check_hyperqueue, "openjd": check_openjd, "slurm": check_slurm}
@@ -436,9 +452,11 @@ def main() -> int:
             job.refuses()
             if engine == arguments.engines[0]:
                 twice_at_once(job)
-                print(f"start of a piece to its end: {1000 * measure_start(job):.0f} ms (median of 21)", flush=True)
+                took, spent = (1000 * seconds for seconds in measure_start(job))
+                print(f"a piece of one iteration: {took:.0f} ms (median of 21), {spent:.0f} ms of processor", flush=True)
                 if arguments.speed:
-                    print(f"speed: {measure_speed(job, python, arguments.speed):.3f} (median of 3 pairs)", flush=True)
+                    clock, spent = measure_speed(job, python, arguments.speed)
+                    print(f"speed: {clock:.3f} by the clock, {spent:.3f} by the processor (medians of 3 pairs)", flush=True)
         except Wrong as wrong:
             print(f"{engine}: WRONG: {wrong}", flush=True)
             return 1

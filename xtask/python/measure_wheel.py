@@ -108,8 +108,17 @@ def requirement() -> None:
         count = made[0].iterations * made[0].chains
         return count / (time.perf_counter() - begun), count / spent
 
-    for name, function in [("none", None), ("on numbers", near), ("on motion", moving)]:
-        asked = plaus.Requirement(function) if function else None
+    def resting(outcome):
+        return -0.5 * (outcome.rest["die_1"][0] / 0.05) ** 2, True
+
+    for name, function, processes in [
+        ("none", None, 0),
+        ("on numbers", near, 0),
+        ("on poses at rest", resting, 0),
+        ("on motion", moving, 0),
+        ("on motion, 2 processes", moving, 2),
+    ]:
+        asked = plaus.Requirement(function, processes=processes) if function else None
         wall, core = rate(asked)
         cost = f", {asked.cost.calls} calls of {asked.cost.microseconds_a_call:.0f} us" if asked else ""
         found = f"{wall:,.0f} it/s, {core:,.0f} a core"
@@ -171,10 +180,12 @@ def simulator(examples: Path, rounds: int) -> None:
         f"{statistics.median(ratios):.2f}",
         "at least 0.9",
     )
-    one, all_cores = (
-        min(clocked(lambda: die.run(**starts, threads=threads)) for _ in range(rounds)) for threads in (1, 0)
-    )
-    say(f"one die, all {os.cpu_count()} cores over one", f"{one / all_cores:.2f}", "")
+    for name, world, given in [("one die", die, starts), ("ten marbles", bins, dict(position=drops, release=release))]:
+        whole = lambda threads: world.run(**given, threads=threads)
+        one, all_cores = (min(clocked(lambda: whole(threads)) for _ in range(rounds)) for threads in (1, 0))
+        spent, spent_by_all = (min(processor(lambda: whole(threads)) for _ in range(rounds)) for threads in (1, 0))
+        found = f"{one / all_cores:.2f}, {spent_by_all / spent:.2f} of its processor"
+        say(f"{name}, all {os.cpu_count()} cores over one", found, "")
 
 
 def main() -> int:

@@ -31,8 +31,8 @@ TRIED_WITH = [
     "pytest==9.2.0",
     "xarray==2026.9.0",
 ]
-# On other Pythons: enough to sample and simulate.
-TRIED_WITH_LITTLE = ["numpy", "pytest"]
+# On other Pythons, all newer: the newest there are, so ArviZ 1.
+TRIED_WITH_LITTLE = ["arviz", "numpy", "pytest", "xarray"]
 PYTHONS = ["python3.12", "python3.13", "python3.14"]
 
 
@@ -55,7 +55,8 @@ def build(target: Path, profile: str) -> int:
     words = [python.with_name("maturin"), "build", "--locked", "--profile", profile, "--out", dist]
     words += ["--manifest-path", PACKAGE / "Cargo.toml", "--interpreter", sys.executable, "--target-dir", target]
     if profile == "release":
-        words.append("--strip")
+        # Not `--strip`: that changes the profile, and all that `plaus` is built from would be built once more.
+        words += ["--", "-C", "link-arg=-s"]
     if run(words, cwd=ROOT) != 0:
         print("maturin failed")
         return 1
@@ -109,13 +110,16 @@ def notebooks(python: Path, target: Path) -> int:
 
 
 def other_pythons() -> list[str]:
-    """Further Pythons that can be run here."""
+    """Further Pythons that can be run here, on the PATH or among pyenv's: one of each version."""
+    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
     found = []
     for name in PYTHONS:
-        path = shutil.which(name)
+        on_path = shutil.which(name)
+        places = [on_path] if on_path else []
+        places += sorted(str(path) for path in root.glob(f"versions/*/bin/{name}"))
         # A shim may be there without a Python behind it.
-        if path and subprocess.run([path, "-c", ""], capture_output=True).returncode == 0:
-            found.append(path)
+        runs = (path for path in places if subprocess.run([path, "-c", ""], capture_output=True).returncode == 0)
+        found += [path for path in [next(runs, None)] if path]
     return found
 
 

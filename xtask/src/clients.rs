@@ -2,7 +2,7 @@
 
 use crate::command::{Command, Failure, built, plaus, root, target};
 use crate::registry;
-use crate::steps::Done;
+use crate::steps::{Done, Step};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -32,6 +32,17 @@ const NO_PACKAGES: &str = "npm cannot install the packages of this check (no npm
 
 fn folder() -> PathBuf {
     target().join("clients")
+}
+
+/// Needs `plaus` in release, and the example `tumbling`.
+pub(crate) fn steps() -> Vec<Step> {
+    vec![
+        Step::new("exports of every scene", export),
+        Step::new("glTF validator and three.js read them", gltf),
+        Step::new("USD reads them", usd),
+        Step::new("galleries in a browser", gallery),
+        Step::new("the committed three.js is what its script makes", bundle),
+    ]
 }
 
 /// Samples every scenario, and exports some of each in every format.
@@ -104,7 +115,7 @@ fn with_tables(ending: &str, table: &str) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// The Khronos validator and three.js read every GLB.
-pub(crate) fn gltf() -> Result<Done, Failure> {
+fn gltf() -> Result<Done, Failure> {
     let Some(node) = node()? else { return registry::absent(NO_PACKAGES) };
     let script = Command::new("node").args([node.join("check_glb.mjs")]).args(with_tables(".glb", ".between.csv")?);
     script.run()?;
@@ -114,7 +125,7 @@ pub(crate) fn gltf() -> Result<Done, Failure> {
 }
 
 /// Pixar's own library reads every USDA.
-pub(crate) fn usd() -> Result<Done, Failure> {
+fn usd() -> Result<Done, Failure> {
     let script =
         Command::new("python3").args(["xtask/python/check_usd.py", "--venv"]).args([target().join("usd-venv")]);
     let script = script.args(with_tables(".usda", ".between.csv")?);
@@ -139,7 +150,7 @@ pub(crate) fn blender() -> Result<Done, Failure> {
 }
 
 /// Chromium opens every gallery from disk, offline, and uses it.
-pub(crate) fn gallery() -> Result<Done, Failure> {
+fn gallery() -> Result<Done, Failure> {
     let Some(node) = node()? else { return registry::absent(NO_PACKAGES) };
     let temporary = folder().join("tmp");
     fs::create_dir_all(&temporary).map_err(Failure::new)?;
@@ -149,7 +160,7 @@ pub(crate) fn gallery() -> Result<Done, Failure> {
 }
 
 /// The bundle of three.js in the gallery is what its script makes of the packages it names.
-pub(crate) fn bundle() -> Result<Done, Failure> {
+fn bundle() -> Result<Done, Failure> {
     let files = ["build.mjs", "three.js", "dist/three.iife.js"];
     let Some(web) = packages("crates/plaus-gallery/web", "web", &files)? else {
         return registry::absent(NO_PACKAGES);

@@ -76,6 +76,12 @@ impl Command {
         self
     }
 
+    /// Runs in another folder than the root of the workspace.
+    pub(crate) fn within(mut self, folder: &Path) -> Self {
+        self.inner.current_dir(folder);
+        self
+    }
+
     /// The program and its arguments, as one would type them.
     pub(crate) fn shown(&self) -> &str {
         &self.shown

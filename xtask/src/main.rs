@@ -5,7 +5,9 @@
 mod arviz;
 mod clients;
 mod command;
+mod documented;
 mod engines;
+mod examples;
 mod golden;
 mod registry;
 mod steps;
@@ -18,9 +20,11 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 usage: cargo xtask CHORE
 
-  test                 everything that must pass: what CI runs
-  ci                   the same
-  clients              of that, only what other programs make of exports and galleries
+  test                 everything that must pass of the code
+  test --quick         of that, what says within a minute or so whether a change is sound
+  clients              figures, and what other programs make of runs, exports and galleries
+  blender              whether Blender plays exports as they are (installs bpy, on Python 3.11 only)
+  ci                   both: what CI runs
   engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost
   wheel                the Python package, into target/wheel/dist
   wheel --check        the same, tried on every Python there is, with its notebooks
@@ -39,15 +43,18 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match arguments.split_first() {
-        Some((&("test" | "ci"), [])) => test::run(),
+        Some((&"test", [])) => test::run(),
+        Some((&"test", ["--quick"])) => test::quick(),
+        Some((&"ci", [])) => test::ci(),
         Some((&"clients", [])) => test::clients(),
+        Some((&"blender", [])) => test::blender(),
         Some((&"engines", [])) => engines::run(),
         Some((&"wheel", rest)) => wheel::run(rest),
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"plausibility", rest)) => plausibility(rest),
         Some((&"golden", rest)) => golden::run(rest),
         Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),
-        Some((&"bench", rest)) => cargo(&["bench"]).args(rest).run(),
+        Some((&"bench", rest)) => cargo(&["bench", "--package", "plaus-benches"]).args(rest).run(),
         Some((&("help" | "-h" | "--help"), _)) => {
             println!("{USAGE}");
             return ExitCode::SUCCESS;

@@ -1,91 +1,109 @@
-//! Everything that must pass.
+//! Everything that must pass: what `cargo xtask test` checks of the code, and what `cargo xtask clients` checks with
+//! other programs. CI runs both.
 
-use crate::clients;
-use crate::command::{Command, Failure, built, cargo, has_subcommand, root, target};
+use crate::command::{Command, Failure, built, cargo, has_subcommand, target};
 use crate::steps::{self, Done, Step};
-use std::fs;
+use crate::{clients, documented, examples};
 
-/// Leaves out what is compared with: building it takes longer than all the rest, and clippy looks at our side of it.
-const PEERS: [&str; 2] = ["--exclude", "plaus-tradeoff"];
+/// All packages but benches and the comparison with another engine, whose build takes longer than all the rest; clippy
+/// looks at our side of them. Every build in the profile `dev` begins with these words: where packages or
+/// dev-dependencies differ, cargo chooses other features of what they share, and builds all of it anew.
+const ALL: [&str; 5] = ["--workspace", "--exclude", "plaus-tradeoff", "--exclude", "plaus-benches"];
 
-/// What is tried in release. Both packages at once, as in the step that builds everything.
+/// What is tried in release: both packages at once, for the same reason.
 const IN_RELEASE: [&str; 5] = ["--release", "--package", "plaus-cli", "--package", "plaus-tests"];
 
-/// Runs all of it.
+/// Checks the code.
 pub(crate) fn run() -> Result<(), Failure> {
+    steps::run(code())
+}
+
+/// What says within a minute or so whether a change is sound: all but the long tests, other profiles, and other
+/// programs.
+pub(crate) fn quick() -> Result<(), Failure> {
+    // The extension for Python has no tests, and cargo would build it all the same.
+    let words = ["--exclude", "plaus-python", "--lib", "--bins", "--test", "golden", "--test", "tidy"];
+    steps::run(vec![
+        format(),
+        clippy(),
+        Step::command("unit tests, golden traces, what no compiler checks", cargo(&["test"]).args(ALL).args(words)),
+    ])
+}
+
+/// Both the code, and what other programs make of its output.
+pub(crate) fn ci() -> Result<(), Failure> {
+    let mut all = code();
+    all.extend(with_clients());
+    steps::run(all)
+}
+
+/// Only what needs other programs: figures, ArviZ, engines, viewers, browsers.
+pub(crate) fn clients() -> Result<(), Failure> {
+    let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
+    let mut all = vec![Step::command("plaus in release", release)];
+    all.extend(with_clients());
+    steps::run(all)
+}
+
+/// Whether Blender plays exports as they are.
+pub(crate) fn blender() -> Result<(), Failure> {
+    steps::run(vec![
+        Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"])),
+        Step::command("every shape", cargo(&["build", "--package", "plaus-export", "--example", "tumbling"])),
+        Step::new("exports of every scene", clients::export),
+        Step::new("Blender plays them", clients::blender),
+    ])
+}
+
+fn format() -> Step {
+    Step::command("format", cargo(&["fmt", "--all", "--", "--check"]))
+}
+
+fn clippy() -> Step {
+    Step::command("clippy", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+}
+
+fn code() -> Vec<Step> {
     let golden = ["--package", "plaus-tests", "--test", "golden"];
-    let quick = target().join("figures-quick");
-    let figures = Command::new(built("debug", "plaus-figures")).args(["--quick", "--out"]).args([&quick]);
-    let plausible = target().join("plausibility-quick");
-    let plausible =
-        Command::new(built("debug", "plaus-figures")).args(["plausibility", "--quick", "--out"]).args([&plausible]);
-    let mut all = vec![
-        Step::command("format", cargo(&["fmt", "--all", "--", "--check"])),
-        Step::command("clippy", cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])),
-        // Everything at once: with a package at a time, cargo would build what they share anew for each choice of features.
-        Step::command("build", cargo(&["build", "--workspace", "--all-targets"]).args(PEERS)),
-        Step::command("tests", cargo(&["test", "--workspace"]).args(PEERS)),
+    vec![
+        format(),
+        clippy(),
+        // Tests and examples. What else there is, benches and the extension for Python, clippy has looked at.
+        Step::command("build", cargo(&["test"]).args(ALL).args(["--no-run"])),
+        Step::command("tests", cargo(&["test"]).args(ALL)),
         Step::command("golden traces, unoptimised", cargo(&["test", "--profile", "unoptimised"]).args(golden)),
         Step::command("release", cargo(&["build"]).args(IN_RELEASE).args(["--bin", "plaus", "--test", "golden"])),
         Step::command("golden traces, release", cargo(&["test"]).args(IN_RELEASE).args(["--test", "golden"])),
+        Step::new("every command that is shown", documented::run),
         Step::command("docs", cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings")),
-        Step::new("examples", examples),
-        Step::command("figures, quick", figures),
-        Step::command("plausibility, quick", plausible),
-        Step::new("ArviZ reads a run", crate::arviz::run),
-        Step::new("pieces on engines, quick", crate::engines::quick),
-        Step::new("licences and advisories", deny),
-    ];
-    all.extend(client_steps());
-    all.extend(crate::wheel::steps());
-    steps::run(all)
-}
-
-/// Only what other programs make of exports and galleries.
-pub(crate) fn clients() -> Result<(), Failure> {
-    let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
-    let shapes = cargo(&["build", "--package", "plaus-export", "--example", "tumbling"]);
-    let mut all = vec![Step::command("plaus in release", release), Step::command("every shape", shapes)];
-    all.extend(client_steps());
-    all.push(Step::new("Blender plays them", clients::blender));
-    steps::run(all)
-}
-
-fn client_steps() -> Vec<Step> {
-    vec![
-        Step::new("exports of every scene", clients::export),
-        Step::new("glTF validator and three.js read them", clients::gltf),
-        Step::new("USD reads them", clients::usd),
-        Step::new("galleries in a browser", clients::gallery),
-        Step::new("the committed three.js is what its script makes", clients::bundle),
+        Step::new("examples", examples::run),
+        Step::new("advisories", deny),
+        crate::wheel::licences(),
     ]
 }
 
-/// Runs every example of every crate.
-fn examples() -> Result<Done, Failure> {
-    let mut found = Vec::new();
-    let crates = fs::read_dir(root().join("crates")).map_err(Failure::new)?;
-    for package in crates {
-        let package = package.map_err(Failure::new)?;
-        let Ok(examples) = fs::read_dir(package.path().join("examples")) else { continue };
-        for example in examples {
-            let path = example.map_err(Failure::new)?.path();
-            if path.extension().is_some_and(|extension| extension == "rs") {
-                found.push(path.file_stem().unwrap_or_default().to_string_lossy().into_owned());
-            }
-        }
-    }
-    found.sort();
-    for example in &found {
-        let command = Command::new(built("debug/examples", example));
-        println!("$ {}", command.shown());
-        command.run()?;
-    }
-    println!("{} examples ran", found.len());
-    Ok(Done::Passed)
+fn with_clients() -> Vec<Step> {
+    let figures = |what: &'static str, words: &[&str]| {
+        let out = target().join(what);
+        Step::command(
+            what,
+            Command::new(built("debug", "plaus-figures")).args(words).args(["--quick", "--out"]).args([out]),
+        )
+    };
+    // A test is among them for the features of dev-dependencies.
+    let programs = ["--bin", "plaus-figures", "--example", "tumbling", "--test", "golden"];
+    let mut all = vec![
+        Step::command("what draws figures, and every shape", cargo(&["build"]).args(ALL).args(programs)),
+        figures("figures-quick", &[]),
+        figures("plausibility-quick", &["plausibility"]),
+        Step::new("ArviZ reads a run", crate::arviz::run),
+        Step::new("pieces on engines, quick", crate::engines::quick),
+    ];
+    all.extend(clients::steps());
+    all
 }
 
-/// Checks `deny.toml` where the tool is there: building it takes longer than all the rest.
+/// Advisories, where the tool is there: building it takes longer than all the rest. Licences are tested without it.
 fn deny() -> Result<Done, Failure> {
     if !has_subcommand("deny") {
         return Ok(Done::Skipped("cargo-deny is not installed here (`cargo install cargo-deny`)".to_owned()));

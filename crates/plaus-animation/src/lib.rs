@@ -1,4 +1,5 @@
-//! An animation as closed-form pieces, from which any frame rate can be drawn exactly, and all that is needed to show it.
+//! An animation as closed-form pieces, from which any frame rate can be drawn exactly, and all that is needed to show
+//! it.
 //!
 //! ```
 //! use glam::DVec3;

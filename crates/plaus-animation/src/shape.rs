@@ -31,7 +31,8 @@ pub enum Shape {
     },
     /// A body of revolution about its third axis: a bowling pin.
     Revolution {
-        /// Points (distance from the axis, height along it) from the lowest height to the highest; the body is closed at both ends.
+        /// Points (distance from the axis, height along it) from the lowest height to the highest; the body is closed
+        /// at both ends.
         profile: Vec<[f64; 2]>,
         /// Painted rings.
         stripes: Vec<Stripe>,

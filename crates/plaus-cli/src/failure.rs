@@ -68,7 +68,8 @@ impl Failure {
         }
     }
 
-    /// The same, where keys set by flags of their own are named as such: pairs of an override and the flag as it was given.
+    /// The same, where keys set by flags of their own are named as such: pairs of an override and the flag as it was
+    /// given.
     pub(crate) fn naming(mut self, flags: &[(String, String)]) -> Self {
         if let Self::Scenario(error) = &mut self {
             for problem in &mut error.problems {

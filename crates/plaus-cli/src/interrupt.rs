@@ -1,4 +1,5 @@
-//! Ctrl-C, and what schedulers send before they kill: the first asks for a checkpoint and an end, the second ends at once.
+//! Ctrl-C, and what schedulers send before they kill: the first asks for a checkpoint and an end, the second ends at
+//! once.
 
 use crate::failure::Failure;
 use signal_hook::consts::signal;
@@ -29,7 +30,8 @@ pub(crate) fn asked() -> bool {
     ASKED.get().is_some_and(|asked| asked.load(Ordering::SeqCst))
 }
 
-/// Asks a process that was started here for a checkpoint and an end. Where there are no signals, it has got Ctrl-C as we did.
+/// Asks a process that was started here for a checkpoint and an end. Where there are no signals, it has got Ctrl-C as
+/// we did.
 #[cfg(unix)]
 pub(crate) fn pass_on(process: u32) {
     let process = i32::try_from(process).ok().and_then(rustix::process::Pid::from_raw);
@@ -37,7 +39,8 @@ pub(crate) fn pass_on(process: u32) {
     let _ = process.map(|process| rustix::process::kill_process(process, rustix::process::Signal::TERM));
 }
 
-/// Asks a process that was started here for a checkpoint and an end. Where there are no signals, it has got Ctrl-C as we did.
+/// Asks a process that was started here for a checkpoint and an end. Where there are no signals, it has got Ctrl-C as
+/// we did.
 #[cfg(not(unix))]
 pub(crate) fn pass_on(_: u32) {}
 
@@ -55,7 +58,8 @@ fn signals() -> Vec<i32> {
     vec![signal::SIGINT, signal::SIGTERM]
 }
 
-/// Whether whoever started the process had it ignore a signal, as `nohup` does with the end of the terminal; `false` where that cannot be told.
+/// Whether whoever started the process had it ignore a signal, as `nohup` does with the end of the terminal; `false`
+/// where that cannot be told.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

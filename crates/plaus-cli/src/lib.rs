@@ -16,6 +16,7 @@ mod clock;
 mod commands;
 mod console;
 mod failure;
+mod glossary;
 mod interrupt;
 mod label;
 mod plots;
@@ -36,8 +37,8 @@ use std::ffi::OsString;
 #[derive(Parser)]
 #[command(name = "plaus", version, about, max_term_width = 100, arg_required_else_help = true)]
 #[command(after_help = "Start: `plaus new ball2d ball.toml`, then `plaus sample ball.toml --out run`.\n\
-    Exit codes: 0 done; 1 no satisfying sample, or failed diagnostics; 2 wrong scenario, command line or run; 130 interrupted, \
-    with a checkpoint.")]
+    Exit codes: 0 done; 1 no satisfying sample, or failed diagnostics; 2 wrong scenario, command line or run; \
+    130 interrupted, with a checkpoint.")]
 struct Cli {
     #[command(subcommand)]
     command: commands::Command,

@@ -1,6 +1,7 @@
-//! Pictures of a run's mixing as SVG: of each scalar the trace, the autocorrelation and the ranks of every chain; of each move how often it was accepted.
+//! Pictures of a run's mixing as SVG: of each scalar the trace, the autocorrelation and the ranks of every chain; of
+//! each move how often it was accepted.
 
-use crate::svg::{Frame, Svg};
+use crate::svg::{Frame, PANEL, Svg};
 use plaus_mcmc::MoveCounts;
 use plaus_mcmc::diagnose::autocorrelation;
 use plaus_run::diagnosis::columns;
@@ -61,7 +62,7 @@ pub(crate) fn write<S: Scene>(run: &RunOf<'_, S>, out: &Path, force: bool) -> Re
 
 /// Trace, autocorrelation and ranks.
 fn of_scalar(scalar: &Scalar, chains: &[Vec<f64>]) -> String {
-    let mut svg = Svg::new(1140, 300);
+    let mut svg = Svg::new(3 * PANEL[0] as usize, PANEL[1] as usize);
     let unit = if scalar.unit.is_empty() { String::new() } else { format!(" ({})", scalar.unit) };
     let draws = chains.iter().map(Vec::len).max().unwrap_or(0);
     let finite = || chains.iter().flatten().copied().filter(|value| value.is_finite());
@@ -107,7 +108,7 @@ fn rank_shares(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 /// A bar a move: the share of its proposals that was accepted.
 fn of_moves(names: &[String], counts: &[MoveCounts]) -> String {
-    let mut svg = Svg::new(560, 40 + 34 * names.len().max(1));
+    let mut svg = Svg::new(900, 48 + 44 * names.len().max(1));
     for (row, (name, count)) in names.iter().zip(counts).enumerate() {
         let (made, share) = (count.made(), count.acceptance());
         let share = if share.is_finite() { share } else { 0.0 };

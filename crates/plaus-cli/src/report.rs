@@ -28,7 +28,7 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
     let rule = if manifest.exact { "exact" } else { "not exact" };
     let rungs = if plan.rungs > 1 { format!(", {} rungs each", plan.rungs) } else { String::new() };
     format!(
-        "{} ({}): seed {}, {}{rungs} of {} iterations after {} of warm-up{thin}, {rule} acceptance",
+        "{} ({}): seed {}, {}{rungs} of {} iterations after {} of warm-up{thin}, {rule} acceptance (`plaus explain chain`)",
         manifest.scene,
         manifest.scenario.file,
         plan.seed,
@@ -57,12 +57,14 @@ pub(crate) fn warning(manifest: &Manifest) -> Option<String> {
     })
 }
 
-/// The table of all scalars, those of the draw first.
-pub(crate) fn scalar_table(diagnosis: &Diagnosis) -> String {
+/// The table of `most` scalars: results come before random variables where not all are shown, and are shown after them.
+pub(crate) fn scalar_table(diagnosis: &Diagnosis, most: usize) -> String {
     let head = ["", "mean", "sd", "MCSE", "ESS bulk", "ESS tail", "ESS/1000 it", "R-hat"];
     let mut rows: Vec<Vec<String>> = Vec::new();
+    let outcomes = diagnosis.scalars.iter().filter(|row| row.scalar.role == Role::Outcome).count().min(most);
     for (role, title) in [(Role::Draw, "variables of the draw"), (Role::Outcome, "outcomes")] {
-        let mut of_role = diagnosis.scalars.iter().filter(|row| row.scalar.role == role).peekable();
+        let room = if role == Role::Outcome { outcomes } else { most - outcomes };
+        let mut of_role = diagnosis.scalars.iter().filter(|row| row.scalar.role == role).take(room).peekable();
         if of_role.peek().is_none() {
             continue;
         }
@@ -109,7 +111,8 @@ pub(crate) fn move_table(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
     lay_out(&rows)
 }
 
-/// What scales were adapted to, with the share accepted at each, per chain where there are few; nothing for chains that adapt none.
+/// What scales were adapted to, with the share accepted at each, per chain where there are few; nothing for chains that
+/// adapt none.
 pub(crate) fn scale_table(diagnosis: &Diagnosis) -> String {
     let chains = &diagnosis.tally.chains;
     let Some(first) = chains.first().filter(|chain| !chain.scales.is_empty()) else { return String::new() };
@@ -146,10 +149,14 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let share = satisfying as f64 / (diagnosis.recorded * tally.chains.len() as u64) as f64;
     let note =
         if share.is_finite() { format!("{} of the sampled draws satisfy; ", percent(share)) } else { String::new() };
-    format!("first hit at iteration {}, {all}\n{note}{} distinct solutions\n", grouped(*first), grouped(tally.distinct))
+    let (first, distinct) = (grouped(*first), grouped(tally.distinct));
+    format!(
+        "first hit at iteration {first}, {all}\n{note}{distinct} distinct solutions (that differ in kind: `plaus explain distinct`)\n"
+    )
 }
 
-/// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are not tempered.
+/// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are
+/// not tempered.
 pub(crate) fn tempering(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
     let all: Vec<_> = diagnosis.tally.chains.iter().filter_map(|chain| chain.tempering.as_ref()).collect();
     if all.is_empty() {

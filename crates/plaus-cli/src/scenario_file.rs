@@ -12,8 +12,8 @@ use std::path::Path;
 /// Longest scenario file that is read, in bytes.
 const LONGEST: u64 = 16 << 20;
 
-/// Reads a scenario, with overrides in force. The name of the file in the recipe is without its folder, so that a run does not depend on where
-/// it was started.
+/// Reads a scenario, with overrides in force. The name of the file in the recipe is without its folder, so that a run
+/// does not depend on where it was started.
 pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) -> Result<Recipe, Failure> {
     let shown = path.display().to_string();
     let refuse = |what: String| Failure::Message(format!("{shown}: {what}"));

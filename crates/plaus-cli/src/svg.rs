@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 /// Width and height of a panel with its labels, and margins: left, right, top, bottom.
-const PANEL: [f64; 2] = [380.0, 300.0];
-const MARGIN: [f64; 4] = [62.0, 14.0, 30.0, 44.0];
+pub(crate) const PANEL: [f64; 2] = [560.0, 440.0];
+const MARGIN: [f64; 4] = [84.0, 20.0, 42.0, 58.0];
 /// Colours that are told apart also by people who do not see all of them (Okabe & Ito).
 const COLOURS: [&str; 6] = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9"];
 
@@ -42,7 +42,7 @@ impl Svg {
     pub(crate) fn new(width: usize, height: usize) -> Self {
         Self(format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
-             font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+             font-family=\"sans-serif\" font-size=\"17\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
         ))
     }
 
@@ -51,12 +51,12 @@ impl Svg {
         let _ =
             writeln!(self.0, "<path d=\"M{left:.1} {top:.1}V{bottom:.1}H{right:.1}\" fill=\"none\" stroke=\"#555\"/>");
         let middle = 0.5 * (left + right);
-        self.text(middle, top - 10.0, "middle", title);
-        self.text(middle, bottom + 34.0, "middle", along);
-        self.text(left, bottom + 16.0, "start", &short(frame.x[0]));
-        self.text(right, bottom + 16.0, "end", &short(frame.x[1]));
+        self.text(middle, top - 14.0, "middle", title);
+        self.text(middle, bottom + 44.0, "middle", along);
+        self.text(left, bottom + 20.0, "start", &short(frame.x[0]));
+        self.text(right, bottom + 20.0, "end", &short(frame.x[1]));
         self.text(left - 6.0, bottom, "end", &short(frame.y[0]));
-        self.text(left - 6.0, top + 8.0, "end", &short(frame.y[1]));
+        self.text(left - 6.0, top + 12.0, "end", &short(frame.y[1]));
     }
 
     /// A dashed line across.
@@ -84,12 +84,12 @@ impl Svg {
 
     /// A horizontal bar with a name before and words behind it.
     pub(crate) fn bar(&mut self, row: usize, name: &str, share: f64, words: &str) {
-        let (y, width) = (24.0 + 34.0 * row as f64, 200.0 * share);
-        self.text(130.0, y + 15.0, "end", name);
-        let _ = writeln!(self.0, "<rect x=\"140\" y=\"{y}\" width=\"200\" height=\"20\" fill=\"#eee\"/>");
+        let (y, width) = (28.0 + 44.0 * row as f64, 320.0 * share);
+        self.text(220.0, y + 20.0, "end", name);
+        let _ = writeln!(self.0, "<rect x=\"234\" y=\"{y}\" width=\"320\" height=\"28\" fill=\"#eee\"/>");
         let _ =
-            writeln!(self.0, "<rect x=\"140\" y=\"{y}\" width=\"{width:.1}\" height=\"20\" fill=\"{}\"/>", COLOURS[0]);
-        self.text(350.0, y + 15.0, "start", words);
+            writeln!(self.0, "<rect x=\"234\" y=\"{y}\" width=\"{width:.1}\" height=\"28\" fill=\"{}\"/>", COLOURS[0]);
+        self.text(568.0, y + 20.0, "start", words);
     }
 
     fn text(&mut self, x: f64, y: f64, anchor: &str, text: &str) {

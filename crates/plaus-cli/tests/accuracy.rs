@@ -1,10 +1,6 @@
 //! Samples simulated again at another accuracy: `--confirm`, `export --confirmed`, `replay --accuracy`.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod common;
-
-use common::Place;
+use crate::common::Place;
 use serde_json::Value;
 
 /// Two balls for two bins: full often, and soon simulated.

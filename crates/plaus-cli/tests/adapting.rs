@@ -1,10 +1,6 @@
 //! Scales adapted in the warm-up: what `plaus diagnose` says of them, and that `adapt` is a key like others.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod common;
-
-use common::Place;
+use crate::common::Place;
 use serde_json::Value;
 
 #[test]

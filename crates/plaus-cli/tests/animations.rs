@@ -1,9 +1,6 @@
 //! Animations and galleries as the program writes them.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::Place;
+use crate::common::Place;
 
 fn sampled() -> Place {
     let place = Place::new();

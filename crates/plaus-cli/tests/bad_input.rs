@@ -1,9 +1,6 @@
 //! Bad input: exit code 2, a message that says where and what, nothing overwritten.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::Place;
+use crate::common::Place;
 
 #[test]
 fn all_problems_of_a_scenario_are_shown_where_they_are() {
@@ -94,7 +91,7 @@ fn nothing_is_overwritten() {
     place.ends("export run --format csv --out ball.toml --force", 2).says(&["not made by such an export"]);
     place.ends("export run --format zarr --out run --force", 2).says(&["not made by such an export"]);
     assert_eq!(place.bytes("run"), before);
-    assert_eq!(std::fs::read_to_string(place.path("ball.toml")).unwrap(), common::SCENARIO);
+    assert_eq!(std::fs::read_to_string(place.path("ball.toml")).unwrap(), crate::common::SCENARIO);
     for format in ["csv", "zarr"] {
         let export = format!("export run --format {format} --out out.{format}");
         place.ok(&export);
@@ -161,7 +158,7 @@ fn a_full_disk_is_named() {
     place.ok("sample ball.toml --out run -q");
     for command in ["diagnose run", "export run --format csv --out -", "check ball.toml", "schema"] {
         let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
-        let ended = common::Ended::of(place.command(command).stdout(full).output().unwrap(), command);
+        let ended = crate::common::Ended::of(place.command(command).stdout(full).output().unwrap(), command);
         assert_eq!(ended.code, Some(2), "{command}");
         ended.says(&["cannot write: No space left on device"]);
     }

@@ -1,9 +1,7 @@
-//! Every way out of a run, where the run, the sample or the output is not as it should be: a clear error, nothing left behind, nothing overwritten.
-#![allow(clippy::unwrap_used)]
+//! Every way out of a run, where the run, the sample or the output is not as it should be: a clear error, nothing left
+//! behind, nothing overwritten.
 
-mod common;
-
-use common::Place;
+use crate::common::Place;
 use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::Duration;

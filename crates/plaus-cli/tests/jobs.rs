@@ -1,10 +1,6 @@
 //! Jobs for engines: what they are given runs as it is written, whatever files and folders are called.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Ended, Place, SCENARIO};
+use crate::common::{Ended, Place, SCENARIO};
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;

@@ -1,9 +1,6 @@
 //! Scenario files and run files changed at random: no panic, and an exit code that says what happened.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Ended, Place};
+use crate::common::{Ended, Place};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
@@ -97,7 +94,7 @@ proptest! {
     #[test]
     fn changed_scenarios_are_survived(changes in prop::collection::vec(change(), 1..4)) {
         let place = Place::new();
-        let mut text = common::SCENARIO.as_bytes().to_vec();
+        let mut text = crate::common::SCENARIO.as_bytes().to_vec();
         changes.iter().for_each(|change| change.of(&mut text));
         place.write("ball.toml", &text);
         let checked = place.run("check ball.toml");

@@ -1,9 +1,6 @@
 //! What the commands print and write.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::{Ended, Place};
+use crate::common::{Ended, Place};
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
@@ -81,7 +78,7 @@ fn keys_can_be_set_on_the_command_line() {
     let manifest: Value = serde_json::from_str(&manifest).unwrap();
     assert_eq!(manifest["run"]["plan"]["seed"], 9);
     assert_eq!(manifest["run"]["overrides"][0], "sigma_d=0.05");
-    assert_eq!(manifest["run"]["scenario"]["text"], common::SCENARIO);
+    assert_eq!(manifest["run"]["scenario"]["text"], crate::common::SCENARIO);
     let effective = manifest["run"]["scenario"]["effective"].as_str().unwrap();
     assert!(effective.contains("sigma_d = 0.05\n") && effective.contains("collisions = 3\n"), "{effective}");
     let checked = place.ok("check ball.toml --set sigma_d=0.25");
@@ -158,7 +155,7 @@ fn a_new_scenario_is_right_and_every_key_is_explained() {
     let place = Place::new();
     place.ok("new ball2d new.toml").says(&["next: plaus sample new.toml --out run"]);
     assert_eq!(place.ok("new ball2d").out, std::fs::read_to_string(place.path("new.toml")).unwrap());
-    place.ok("check new.toml").says(&["new.toml is right"]);
+    place.ok("check new.toml").says(&["new.toml is valid"]);
     place.ends("new bal2d", 2).says(&["there is no scene `bal2d`; known: ball2d"]);
     let keys = place.ok("explain").out;
     for key in keys.lines().filter(|line| !line.starts_with(' ')) {

@@ -1,10 +1,7 @@
 //! Pieces of a run, merged, are byte for byte the run that one machine makes; what makes no whole is refused, and
 //! nothing is overwritten.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::Place;
+use crate::common::Place;
 
 /// Seven chains with three rungs, so that pieces are uneven and each chain has a ladder.
 const RUN: &str = "sample ball.toml --chains 7 --set rungs=3 --set swap_every=5 --iterations 500 -q";
@@ -109,7 +106,7 @@ fn a_piece_started_twice_at_once_is_made_once() {
             place.command(&command).stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped()).spawn()
         };
         for process in [start().unwrap(), start().unwrap()] {
-            let ended = common::Ended::of(process.wait_with_output().unwrap(), "twice at once");
+            let ended = crate::common::Ended::of(process.wait_with_output().unwrap(), "twice at once");
             assert_eq!(ended.code, Some(0), "{}", ended.err);
         }
         let (mut alone, mut both) = (place.bytes("alone"), place.bytes(&format!("both{again}")));
@@ -238,7 +235,7 @@ fn numbers_that_name_no_piece_are_refused() {
     ] {
         let mut command = place.command(&format!("sample ball.toml -q --out cut/1 --shard {shard}"));
         command.env_remove("HQ_TASK_ID").env_remove("SLURM_ARRAY_TASK_ID");
-        let ended = common::Ended::of(command.output().unwrap(), shard);
+        let ended = crate::common::Ended::of(command.output().unwrap(), shard);
         assert_eq!(ended.code, Some(2), "{shard}");
         ended.says(&[says]);
     }
@@ -259,7 +256,7 @@ fn engines_say_which_task_it_is() {
         assert!(place.path(&format!("cut/{task}/chain-0000{}.records", index + 1)).exists());
     }
     let mut command = place.command("sample ball.toml -q --shard task/4 --out cut/{shard}");
-    let ended = common::Ended::of(command.env("HQ_TASK_ID", "9").output().unwrap(), "task 9");
+    let ended = crate::common::Ended::of(command.env("HQ_TASK_ID", "9").output().unwrap(), "task 9");
     assert_eq!(ended.code, Some(2));
     ended.says(&["HQ_TASK_ID is `9`: there is no piece 9 of 4"]);
 }

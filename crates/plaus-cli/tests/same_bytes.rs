@@ -1,10 +1,7 @@
-//! A run's folder has the same bytes whatever the number of threads, and however often the process was killed or interrupted.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
+//! A run's folder has the same bytes whatever the number of threads, and however often the process was killed or
+//! interrupted.
 
-mod common;
-
-use common::{Ended, Place};
+use crate::common::{Ended, Place};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 

@@ -1,10 +1,6 @@
 //! Tempered runs: the same bytes on any number of threads, what is said of restarts, and what is refused.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod common;
-
-use common::Place;
+use crate::common::Place;
 use serde_json::Value;
 
 const RUNGS: &str = "--set rungs=4 --set swap_every=5";

@@ -32,8 +32,8 @@
 //!
 //! # Invariants
 //!
-//! * A law that is built is sane: parameters are checked once, by the constructor or on deserialisation, and errors name
-//!   parameter, value and range.
+//! * A law that is built is sane: parameters are checked once, by the constructor or on deserialisation, and errors
+//!   name parameter, value and range.
 //! * A log density is finite or −∞; NaN in is [`NotANumber`] out, and so is an infinite density, which only
 //!   the centre of [`Radial`] has. This holds for scales from 1e-300 to 1e300 and every float x.
 //! * Every density is normalised, in the unit of its variable, so densities of states of different dimension may be

@@ -2,7 +2,8 @@
 //!
 //! * [`LogDensity`]: log of a **normalised** density or probability. Terms whose dimension changes between states
 //!   must be these.
-//! * [`LogPotential`]: log of an **unnormalised** weight, such as a Gibbs factor. Only differences of it mean something.
+//! * [`LogPotential`]: log of an **unnormalised** weight, such as a Gibbs factor. Only differences of it mean
+//!   something.
 //! * [`LogRatio`]: log of an acceptance or Hastings ratio.
 //!
 //! −∞ is a value of all three (probability 0). NaN never is: it is the error [`NotANumber`] where it would arise, so

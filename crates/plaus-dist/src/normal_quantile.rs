@@ -6,8 +6,9 @@ use crate::math;
 ///
 /// Relative error below 2e-15 (tested from p = 1e-300 up against values computed in 60 digits).
 ///
-/// Source: M. J. Wichura, "Algorithm AS 241: The Percentage Points of the Normal Distribution", Applied Statistics 37(3), 1988, routine
-/// PPND16: rational functions of degree 7 in p − 1/2 near the centre and in √(−ln p) in either tail.
+/// Source: M. J. Wichura, "Algorithm AS 241: The Percentage Points of the Normal Distribution", Applied Statistics
+/// 37(3), 1988, routine PPND16: rational functions of degree 7 in p − 1/2 near the centre and in √(−ln p) in either
+/// tail.
 #[must_use]
 pub fn normal_quantile(p: f64) -> f64 {
     if !(0.0..=1.0).contains(&p) {

@@ -18,8 +18,8 @@ const NAME: &str = "TruncatedGaussian";
 ///
 /// Both density and sampler stay accurate when the interval is far in a tail, where `Z` itself underflows: everything
 /// is measured from the end nearest the mean. The log density is right to 1e-13 and a few roundings of its largest
-/// term. (Far out the law may be narrower than the gap between floats: with mean 0, sd 1e-9 and low 1, say, all draws are
-/// the bound itself and its neighbours.)
+/// term. (Far out the law may be narrower than the gap between floats: with mean 0, sd 1e-9 and low 1, say, all draws
+/// are the bound itself and its neighbours.)
 ///
 /// Source of the tail sampler: C. P. Robert, "Simulation of truncated normal variables", Statistics and Computing 5,
 /// 1995. Deviation: his exponential proposal is itself truncated to the interval, so one rule serves wide and narrow

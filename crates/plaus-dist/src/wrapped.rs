@@ -116,7 +116,11 @@ mod tests {
     proptest! {
         /// Whole numbers are exact, so whole-number arithmetic is the reference, with `low` many periods from 0 too.
         #[test]
-        fn whole_periods_are_taken_off(low in -1_000_000_i64..1_000_000, width in 1_i64..1000, x in -(1_i64 << 52)..1_i64 << 52) {
+        fn whole_periods_are_taken_off(
+            low in -1_000_000_i64..1_000_000,
+            width in 1_i64..1000,
+            x in -(1_i64 << 52)..1_i64 << 52,
+        ) {
             let ring = WrappedUniform::new(low as f64, (low + width) as f64).unwrap();
             prop_assert_eq!(ring.wrap(x as f64), (low + (x - low).rem_euclid(width)) as f64);
         }

@@ -1,4 +1,5 @@
-//! A target of your own with moves of your own: sampled by four chains, diagnosed, and checked, with a wrong move caught in the act.
+//! A target of your own with moves of your own: sampled by four chains, diagnosed, and checked, with a wrong move
+//! caught in the act.
 //!
 //! `cargo run --release -p plaus-mcmc --example two_hills`
 #![allow(clippy::print_stdout)]
@@ -10,7 +11,8 @@ use plaus_mcmc::{
     SolutionClass, StateOf, Target, diagnose, run,
 };
 
-/// A marble is thrown with some strength; where it lands, by a law of our own, should be near either of two hills at ±2.
+/// A marble is thrown with some strength; where it lands, by a law of our own, should be near either of two hills at
+/// ±2.
 struct TwoHills {
     strength: Gaussian,
     hill: Gaussian,
@@ -82,8 +84,8 @@ impl Move<TwoHills> for Mirror {
     }
 }
 
-/// Multiplies the strength by exp(u), u uniform around 0. A symmetric law of u is not a symmetric proposal: what is stretched grows thinner, and the ratio is the
-/// factor itself, |to| / |from|. That is easy to forget.
+/// Multiplies the strength by exp(u), u uniform around 0. A symmetric law of u is not a symmetric proposal: what is
+/// stretched grows thinner, and the ratio is the factor itself, |to| / |from|. That is easy to forget.
 struct Stretch {
     log_factor: Uniform,
     forgets_the_ratio: bool,

@@ -1,25 +1,30 @@
 //! Scales of moves, adapted in a chain's warm-up and kept from then on.
 //!
-//! A move whose steps have a size can leave that size to the chain: it says which [`Scale`]s it has, and how it would be at others. In the iterations before
-//! the sampling phase each scale follows Robbins and Monro's stochastic approximation of the equation *acceptance = target rate*, in its logarithm:
+//! A move whose steps have a size can leave that size to the chain: it says which [`Scale`]s it has, and how it would
+//! be at others. In the iterations before the sampling phase each scale follows Robbins and Monro's stochastic
+//! approximation of the equation *acceptance = target rate*, in its logarithm:
 //!
 //! `ln s ← ln s + γ_n (accepted − target)`, `γ_n = min(1, 4 n^(−2/3))`, n counting the proposals made at that scale.
 //!
-//! The decision, 0 or 1, takes the place of the probability of acceptance, of which it is an unbiased estimate: a simulation that stops early because it is
-//! certain to be rejected leaves that probability unknown. Where the sampling phase begins the scale becomes the mean of `ln s` over the proposals of the warm-up's
-//! second half, which is as exact as any estimate from these decisions (Polyak and Juditsky 1992), and stays: what is recorded is a Markov chain whose kernel no
-//! longer changes, exact whatever the scales came out as. What adapts for ever is not, unless the gain vanishes, and then only in the limit (Andrieu
-//! and Thoms, "A tutorial on adaptive MCMC", Statistics and Computing 18, 2008).
+//! The decision, 0 or 1, takes the place of the probability of acceptance, of which it is an unbiased estimate: a
+//! simulation that stops early because it is certain to be rejected leaves that probability unknown. Where the sampling
+//! phase begins the scale becomes the mean of `ln s` over the proposals of the warm-up's second half, which is as exact
+//! as any estimate from these decisions (Polyak and Juditsky 1992), and stays: what is recorded is a Markov chain whose
+//! kernel no longer changes, exact whatever the scales came out as. What adapts for ever is not, unless the gain
+//! vanishes, and then only in the limit (Andrieu and Thoms, "A tutorial on adaptive MCMC", Statistics and Computing 18,
+//! 2008).
 //!
-//! The scales are a function of target, moves, seed and chain; each chain has its own, and so has each rung of tempered replicas.
+//! The scales are a function of target, moves, seed and chain; each chain has its own, and so has each rung of tempered
+//! replicas.
 
 use crate::moves::{Mixture, Move, MoveId, Path};
 use crate::target::Target;
 use plaus_dist::math;
 use serde::{Deserialize, Serialize};
 
-/// A scale must have been tried so often in the warm-up's second half; else its move stays as it is configured. The error of `ln s` is then about 0.4 where the acceptance
-/// falls by 0.3 with each unit of `ln s`, as that of a Gaussian step on a Gaussian target does.
+/// A scale must have been tried so often in the warm-up's second half; else its move stays as it is configured. The
+/// error of `ln s` is then about 0.4 where the acceptance falls by 0.3 with each unit of `ln s`, as that of a Gaussian
+/// step on a Gaussian target does.
 pub const ENOUGH: u64 = 16;
 
 /// A scale that a move leaves to its chain.
@@ -33,16 +38,17 @@ pub struct Scale {
     pub least: f64,
     /// The largest.
     pub most: f64,
-    /// The share of proposals that should be accepted: [`Scale::ONE`], [`Scale::MANY`] or another between 0 and 1. It falls as the scale grows.
+    /// The share of proposals that should be accepted: [`Scale::ONE`], [`Scale::MANY`] or another between 0 and 1. It
+    /// falls as the scale grows.
     pub target: f64,
 }
 
 impl Scale {
-    /// For steps along one dimension: best for a Gaussian step on a Gaussian target (Gelman, Roberts and Gilks, "Efficient Metropolis jumping rules", 1996;
-    /// Garthwaite, Fan and Sisson, Communications in Statistics 45, 2016).
+    /// For steps along one dimension: best for a Gaussian step on a Gaussian target (Gelman, Roberts and Gilks,
+    /// "Efficient Metropolis jumping rules", 1996; Garthwaite, Fan and Sisson, Communications in Statistics 45, 2016).
     pub const ONE: f64 = 0.44;
-    /// For steps along many dimensions at once: best in the limit (Roberts, Gelman and Gilks 1997; Roberts and Rosenthal, "Optimal scaling for various
-    /// Metropolis–Hastings algorithms", Statistical Science 16, 2001).
+    /// For steps along many dimensions at once: best in the limit (Roberts, Gelman and Gilks 1997; Roberts and
+    /// Rosenthal, "Optimal scaling for various Metropolis–Hastings algorithms", Statistical Science 16, 2001).
     pub const MANY: f64 = 0.234;
 
     fn log(&self, value: f64) -> f64 {
@@ -152,7 +158,8 @@ pub(crate) struct Adaptation<T: Target> {
 }
 
 impl<T: Target> Adaptation<T> {
-    /// In the iterations before `until`, from the beginning; `None` where there is nothing to adapt, or no iteration to do it in.
+    /// In the iterations before `until`, from the beginning; `None` where there is nothing to adapt, or no iteration to
+    /// do it in.
     pub(crate) fn start(moves: &Mixture<T>, until: u64) -> Option<Self> {
         // Iteration 0 is the start, which no move makes.
         let scales = (until > 1).then(|| Scales::start(moves, until)).flatten()?;
@@ -209,7 +216,8 @@ fn remade<T: Target>(kernel: &dyn Move<T>, scales: &Scales, id: MoveId) -> Optio
 }
 
 impl<T: Target> Mixture<T> {
-    /// The same moves, with the same probabilities, at these scales: the kernel of a chain whose warm-up ended with them.
+    /// The same moves, with the same probabilities, at these scales: the kernel of a chain whose warm-up ended with
+    /// them.
     #[must_use]
     pub fn at(&self, scales: &Scales) -> Self {
         self.map(|id, kernel| remade(kernel, scales, id))

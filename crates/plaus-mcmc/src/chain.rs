@@ -123,8 +123,8 @@ pub struct Step {
     pub verdict: Verdict,
 }
 
-/// A chain at one iteration. With the same streams, target, moves and inverse temperature, its future follows from `iteration` and `state` alone, and
-/// from its scales where it adapts any.
+/// A chain at one iteration. With the same streams, target, moves and inverse temperature, its future follows from
+/// `iteration` and `state` alone, and from its scales where it adapts any.
 pub struct Chain<'a, T: Target> {
     target: &'a T,
     moves: &'a Mixture<T>,
@@ -187,8 +187,9 @@ impl<'a, T: Target> Chain<'a, T> {
         Self { target, moves, streams, beta: 1.0, iteration, state, counts, adaptation: None, candidate, scratch }
     }
 
-    /// The same chain, which adapts the scales of its moves in the iterations before `until`, and keeps them from then on. With `until` below 2 there is no such
-    /// iteration, and moves are as configured. To be said of a chain that has just started.
+    /// The same chain, which adapts the scales of its moves in the iterations before `until`, and keeps them from then
+    /// on. With `until` below 2 there is no such iteration, and moves are as configured. To be said of a chain that has
+    /// just started.
     #[must_use]
     pub fn adapting(self, until: u64) -> Self {
         Self { adaptation: Adaptation::start(self.moves, until), ..self }
@@ -235,7 +236,7 @@ impl<'a, T: Target> Chain<'a, T> {
         &self.counts
     }
 
-    /// Makes one iteration: choose a move, propose, evaluate from cheap to dear, accept or stay.
+    /// Makes one iteration: choose a move, propose, evaluate in order of cost, accept or reject.
     ///
     /// # Errors
     /// [`ChainError::Model`] where the model fails; the state is then still the one before.
@@ -256,9 +257,9 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(Step { move_id, verdict })
     }
 
-    /// The accept step of Metropolis and Hastings, solved for the constraint: with u uniform and drawn first, `ln u < log α` says that the
-    /// candidate's log constraint exceeds a floor known before the simulation. Rounding is monotone, so a bound on the constraint at
-    /// or below the floor decides exactly as the whole simulation would.
+    /// The accept step of Metropolis and Hastings, solved for the constraint: with u uniform and drawn first,
+    /// `ln u < log α` says that the candidate's log constraint exceeds a floor known before the simulation. Rounding is
+    /// monotone, so a bound on the constraint at or below the floor decides exactly as the whole simulation would.
     fn judge(&mut self, next: u64, move_id: MoveId, proposal: Proposal) -> Result<Verdict, ModelError> {
         let Proposal::Candidate { log_ratio, path, later } = proposal else { return Ok(Verdict::Stayed) };
         let log_prior = self.target.log_prior(&self.candidate)?;
@@ -288,7 +289,8 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
     }
 
-    /// Exchanges what two chains aim at, that is inverse temperatures, moves, their scales and counts, while each keeps its state, memory and streams.
+    /// Exchanges what two chains aim at, that is inverse temperatures, moves, their scales and counts, while each keeps
+    /// its state, memory and streams.
     pub(crate) fn exchange_rungs(a: &mut Self, b: &mut Self) {
         std::mem::swap(&mut a.beta, &mut b.beta);
         std::mem::swap(&mut a.moves, &mut b.moves);
@@ -319,8 +321,8 @@ fn kernel<'k, T: Target>(moves: &'k Mixture<T>, adaptation: Option<&'k Adaptatio
     adaptation.and_then(|adaptation| adaptation.kernel(id)).unwrap_or_else(|| moves.get(id).1)
 }
 
-/// What the candidate's log constraint must exceed: `ln u − log ratio + log p(current) − log p_w(candidate)`. `None`: no constraint is enough, the
-/// candidate is impossible or could not be undone.
+/// What the candidate's log constraint must exceed: `ln u − log ratio + log p(current) − log p_w(candidate)`. `None`:
+/// no constraint is enough, the candidate is impossible or could not be undone.
 fn floor(
     ln_u: f64,
     log_ratio: LogRatio,

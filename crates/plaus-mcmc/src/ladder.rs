@@ -21,7 +21,8 @@ impl From<Ladder> for Vec<f64> {
     }
 }
 
-/// Part of the barrier that lies between the two ends whatever was seen, so that rungs that never rejected a swap stay apart.
+/// Part of the barrier that lies between the two ends whatever was seen, so that rungs that never rejected a swap stay
+/// apart.
 const LEAST: f64 = 1e-3;
 
 impl Ladder {
@@ -59,16 +60,18 @@ impl Ladder {
         &self.0
     }
 
-    /// The barrier Λ: the sum of the shares of swaps rejected between neighbours. It hardly depends on the rungs once there are some. States come down and up again
-    /// about once in `2 + 2 Λ` rounds at best, for which about `2 Λ + 1` rungs are needed (Syed, Bouchard-Côté, Deligiannidis & Doucet,
-    /// "Non-reversible parallel tempering", JRSS B 84, 2022).
+    /// The barrier Λ: the sum of the shares of swaps rejected between neighbours. It hardly depends on the rungs once
+    /// there are some. States come down and up again about once in `2 + 2 Λ` rounds at best, for which about `2 Λ + 1`
+    /// rungs are needed (Syed, Bouchard-Côté, Deligiannidis & Doucet, "Non-reversible parallel tempering", JRSS B 84,
+    /// 2022).
     #[must_use]
     pub fn barrier(rejected: &[f64]) -> f64 {
         rejected.iter().sum()
     }
 
-    /// A ladder of `rungs` that would share the barrier equally, given the share of swaps rejected between each rung and the next: each between 0 and 1, one less
-    /// than there are rungs. The barrier is taken to grow evenly from rung to rung.
+    /// A ladder of `rungs` that would share the barrier equally, given the share of swaps rejected between each rung
+    /// and the next: each between 0 and 1, one less than there are rungs. The barrier is taken to grow evenly from rung
+    /// to rung.
     #[must_use]
     pub fn adapted(&self, rejected: &[f64], rungs: usize) -> Self {
         let steps = rungs.max(2) - 1;

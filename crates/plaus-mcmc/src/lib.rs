@@ -1,7 +1,7 @@
 //! Markov chain Monte Carlo over an opaque draw.
 //!
-//! A [`Target`] says how likely a draw is, simulates it, and judges the outcome; [`Move`]s propose; a [`Chain`] accepts so that the
-//! target stays invariant; [`run()`] advances many chains at once.
+//! A [`Target`] says how likely a draw is, simulates it, and judges the outcome; [`Move`]s propose; a [`Chain`] accepts
+//! so that the target stays invariant; [`run()`] advances many chains at once.
 //!
 //! ```
 //! use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Seed, Stream};
@@ -27,11 +27,13 @@
 //! struct Nudge(Gaussian);
 //! impl Move<Throw> for Nudge {
 //!     fn name(&self) -> &str { "nudge" }
-//!     fn propose(&self, _: &Throw, _: &StateOf<Throw>, candidate: &mut f64, stream: &mut Stream) -> Result<Proposal, ModelError> {
+//!     fn propose(&self, _: &Throw, _: &StateOf<Throw>, candidate: &mut f64, stream: &mut Stream)
+//!         -> Result<Proposal, ModelError> {
 //!         *candidate += self.0.sample(stream);
 //!         Ok(Proposal::SYMMETRIC)
 //!     }
-//!     fn log_ratio(&self, _: &Throw, _: &StateOf<Throw>, _: &StateOf<Throw>, _: Path) -> Result<LogRatio, ModelError> {
+//!     fn log_ratio(&self, _: &Throw, _: &StateOf<Throw>, _: &StateOf<Throw>, _: Path)
+//!         -> Result<LogRatio, ModelError> {
 //!         Ok(LogRatio::ONE)
 //!     }
 //! }
@@ -72,7 +74,7 @@ pub use replicas::{Climb, Course, Replicas, ReplicasSnapshot, RungStatistics, Te
 pub use required::{Judged, Mark, Required, Requirement};
 pub use run::{
     ChainPulse, Control, Ending, Plan, PlanError, Progress, Pulse, RunError, Sink, Snapshot, Start, run, run_some,
-    run_watched,
+    run_watched, useful_threads,
 };
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};

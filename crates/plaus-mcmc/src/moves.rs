@@ -17,11 +17,13 @@ pub enum Proposal {
     Stay,
     /// The candidate buffer holds a proposal.
     Candidate {
-        /// `log q(current | candidate) − log q(candidate | current)` along `path`, as far as it is known without the candidate's outcome.
+        /// `log q(current | candidate) − log q(candidate | current)` along `path`, as far as it is known without the
+        /// candidate's outcome.
         log_ratio: LogRatio,
         /// The way it was made.
         path: Path,
-        /// For a move whose ratio needs the candidate's outcome: an upper bound of [`Move::log_ratio_after`]. `None`: nothing is missing.
+        /// For a move whose ratio needs the candidate's outcome: an upper bound of [`Move::log_ratio_after`]. `None`:
+        /// nothing is missing.
         later: Option<LogRatio>,
     },
 }
@@ -46,8 +48,8 @@ impl Proposal {
     }
 }
 
-/// A proposal kernel. Choosing a [`Path`] must not depend on the state in a way that the ratio ignores: given the path, `q` is what the
-/// ratio is about.
+/// A proposal kernel. Choosing a [`Path`] must not depend on the state in a way that the ratio ignores: given the path,
+/// `q` is what the ratio is about.
 pub trait Move<T: Target>: Send + Sync {
     /// A short name for statistics and scenario files, e.g. `redraw`.
     fn name(&self) -> &str;
@@ -64,8 +66,8 @@ pub trait Move<T: Target>: Send + Sync {
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError>;
 
-    /// The whole `log q(from | to) − log q(to | from)` along `path`. The chain does not call it; the checks of [`crate::check`] hold it
-    /// against what `propose` returned and against the reverse direction.
+    /// The whole `log q(from | to) − log q(to | from)` along `path`. The chain does not call it; the checks of
+    /// [`crate::check`] hold it against what `propose` returned and against the reverse direction.
     ///
     /// # Errors
     /// [`ModelError`] where a density is no number.
@@ -95,12 +97,14 @@ pub trait Move<T: Target>: Send + Sync {
         Vec::new()
     }
 
-    /// The same move at other values of its [`Move::scales`], one each; `None` leaves one as it is configured. A move that has scales gives one.
+    /// The same move at other values of its [`Move::scales`], one each; `None` leaves one as it is configured. A move
+    /// that has scales gives one.
     fn at_scales(&self, _values: &[Option<f64>]) -> Option<Box<dyn Move<T>>> {
         None
     }
 
-    /// Which of its scales the size of a proposal came from; `None` where from none, so that nothing is learned from it.
+    /// Which of its scales the size of a proposal came from; `None` where from none, so that nothing is learned from
+    /// it.
     fn scale_of(&self, _path: Path) -> Option<usize> {
         Some(0)
     }
@@ -141,7 +145,8 @@ impl<T: Target> Mixture<T> {
     /// A mixture of `moves` with relative weights; moves of weight 0 are left out.
     ///
     /// # Errors
-    /// [`MixtureError`] where a weight is negative or not finite, none is positive, or there are more than 65,535 moves.
+    /// [`MixtureError`] where a weight is negative or not finite, none is positive, or there are more than 65,535
+    /// moves.
     pub fn new(moves: Vec<(f64, Box<dyn Move<T>>)>) -> Result<Self, MixtureError> {
         if let Some((weight, bad)) = moves.iter().find(|(weight, _)| !weight.is_finite() || *weight < 0.0) {
             return Err(MixtureError::Weight { name: bad.name().to_owned(), weight: *weight });

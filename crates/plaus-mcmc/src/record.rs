@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 pub struct Entry<D, O> {
     /// How many recorded draws in a row have this state; at least 1.
     pub draws: u64,
-    /// Proposals accepted since the recorded draw before the first of these; 0 in an entry that continues the last block's state.
+    /// Proposals accepted since the recorded draw before the first of these; 0 in an entry that continues the last
+    /// block's state.
     pub accepted: u32,
     /// The move accepted last; `None` where none was, or where the state came from another rung after it.
     pub by: Option<MoveId>,

@@ -4,8 +4,9 @@ use crate::moves::{Move, Path, Proposal};
 use crate::target::{ModelError, StateOf, Target};
 use plaus_dist::{LogRatio, Stream};
 
-/// Proposes [`Target::start`]'s draw. Right for a target whose start has the law of its prior, density and all: then the prior cancels, and what is left of the
-/// acceptance is the ratio of constraints. It is the move of tempering's first rung, where everything is accepted.
+/// Proposes [`Target::start`]'s draw. Right for a target whose start has the law of its prior, density and all: then
+/// the prior cancels, and what is left of the acceptance is the ratio of constraints. It is the move of tempering's
+/// first rung, where everything is accepted.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Redraw;
 

@@ -6,15 +6,14 @@
 //! its answer can change the decision. So what is dear to judge, a function of a script for one, is judged seldom, and
 //! the chain stays exact.
 
-use crate::adapt::Scale;
 use crate::chain::ChainError;
-use crate::moves::{Mixture, Move, Path, Proposal};
+use crate::moves::Mixture;
 use crate::record::Block;
 use crate::run::{Control, Ending, Plan, Progress, Pulse, RunError, Sink, Snapshot, Start, run_some};
 use crate::target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
-use plaus_dist::{LogDensity, LogPotential, LogRatio, Stream};
+use crate::view::{Lent, Sees};
+use plaus_dist::{LogDensity, LogPotential, Stream};
 use std::ops::Range;
-use std::sync::Arc;
 
 /// What a requirement says of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,7 +72,7 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
     where
         T: 'static,
     {
-        moves.map_all(|kernel| Box::new(Raised::<T>(kernel)))
+        moves.map_all(|kernel| Box::new(Lent(kernel)))
     }
 
     /// Judges a state of the target.
@@ -173,58 +172,15 @@ impl<T: Goal, R: Requirement<T>> Goal for Required<'_, T, R> {
     }
 }
 
-/// A move of the target, as one of the target under a requirement.
-struct Raised<T: Target>(Arc<dyn Move<T>>);
+impl<T: Target + 'static, R: Requirement<T>> Sees for Required<'_, T, R> {
+    type Seen = T;
 
-impl<'a, T: Target + 'static, R: Requirement<T>> Move<Required<'a, T, R>> for Raised<T> {
-    fn name(&self) -> &str {
-        self.0.name()
+    fn seen(&self) -> &T {
+        self.target
     }
 
-    fn propose(
-        &self,
-        target: &Required<'a, T, R>,
-        current: &StateOf<Required<'a, T, R>>,
-        candidate: &mut T::Draw,
-        stream: &mut Stream,
-    ) -> Result<Proposal, ModelError> {
-        self.0.propose(target.target, &current.outcome.seen, candidate, stream)
-    }
-
-    fn log_ratio(
-        &self,
-        target: &Required<'a, T, R>,
-        from: &StateOf<Required<'a, T, R>>,
-        to: &StateOf<Required<'a, T, R>>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.0.log_ratio(target.target, &from.outcome.seen, &to.outcome.seen, path)
-    }
-
-    fn reverse(&self, path: Path) -> Path {
-        self.0.reverse(path)
-    }
-
-    fn log_ratio_after(
-        &self,
-        target: &Required<'a, T, R>,
-        current: &StateOf<Required<'a, T, R>>,
-        candidate: &StateOf<Required<'a, T, R>>,
-        path: Path,
-    ) -> Result<LogRatio, ModelError> {
-        self.0.log_ratio_after(target.target, &current.outcome.seen, &candidate.outcome.seen, path)
-    }
-
-    fn scales(&self) -> Vec<Scale> {
-        self.0.scales()
-    }
-
-    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<Required<'a, T, R>>>> {
-        Some(Box::new(Raised::<T>(Arc::from(self.0.at_scales(values)?))))
-    }
-
-    fn scale_of(&self, path: Path) -> Option<usize> {
-        self.0.scale_of(path)
+    fn state(state: &StateOf<Self>) -> &StateOf<T> {
+        &state.outcome.seen
     }
 }
 

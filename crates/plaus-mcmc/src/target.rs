@@ -29,8 +29,8 @@ impl From<NotANumber> for ModelError {
 
 /// The distribution `p(A) ∝ p_w(draw) · p_c(outcome)` over animations `A = (draw, outcome)`.
 ///
-/// A draw holds the value of every random variable of a world; the outcome is what a deterministic simulation makes of it. The chain
-/// never looks into either. Evaluation goes from cheap to dear: prior, then simulation, then constraint.
+/// A draw holds the value of every random variable of a world; the outcome is what a deterministic simulation makes of
+/// it. The chain never looks into either. Evaluation goes in order of cost: prior, then simulation, then constraint.
 pub trait Target: Sync {
     /// Values of all random variables. `clone_from` should reuse its allocation: the chain calls it once an iteration.
     type Draw: Clone + PartialEq + Send + Sync;
@@ -50,9 +50,9 @@ pub trait Target: Sync {
 
     /// Simulates `draw`.
     ///
-    /// `floor` is what [`Target::log_constraint`] must exceed for the draw to be accepted; where it is certain that it cannot, the
-    /// simulation may stop and answer [`Simulated::CannotExceedFloor`]. `current` is the chain's state, from which unchanged parts may be
-    /// reused as long as the outcome has the same bits as without it.
+    /// `floor` is what [`Target::log_constraint`] must exceed for the draw to be accepted; where it is certain that it
+    /// cannot, the simulation may stop and answer [`Simulated::CannotExceedFloor`]. `current` is the chain's state,
+    /// from which unchanged parts may be reused as long as the outcome has the same bits as without it.
     ///
     /// # Errors
     /// [`ModelError`] where the simulation broke down.
@@ -70,15 +70,15 @@ pub trait Target: Sync {
     /// [`ModelError`] where it is no number.
     fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError>;
 
-    /// Told after every accept step that followed a simulation whether the simulated candidate became the current state, so that memory kept in
-    /// `scratch` about the current state can follow.
+    /// Told after every accept step that followed a simulation whether the simulated candidate became the current
+    /// state, so that memory kept in `scratch` about the current state can follow.
     fn settle(&self, _accepted: bool, _scratch: &mut Self::Scratch) {}
 }
 
 /// A target whose states may satisfy its constraint, in ways that can be told apart.
 pub trait Goal: Target {
-    /// The class of solutions `state` belongs to, or `None` where it does not satisfy the constraint. Two satisfying states of the same class
-    /// count as one distinct solution.
+    /// The class of solutions `state` belongs to, or `None` where it does not satisfy the constraint. Two satisfying
+    /// states of the same class count as one distinct solution.
     fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass>;
 }
 
@@ -98,7 +98,8 @@ impl SolutionClass {
         Self(mix(self.0.rotate_left(23) ^ mix(feature.cast_unsigned().wrapping_add(0x51ed))))
     }
 
-    /// The label of a sequence of whole numbers (cells, bins, faces). Different sequences collide with probability 2⁻⁶⁴.
+    /// The label of a sequence of whole numbers (cells, bins, faces). Different sequences collide with probability
+    /// 2⁻⁶⁴.
     #[must_use]
     pub fn of(features: impl IntoIterator<Item = i64>) -> Self {
         features.into_iter().fold(Self::EMPTY, Self::with)

@@ -6,10 +6,11 @@ use crate::target::{ModelError, StateOf, Target};
 use plaus_dist::{LogRatio, Stream};
 use std::sync::Arc;
 
-/// A target that shows another one under a different constraint, or simulates it in a different way, over the same draws and outcomes. The other
-/// one's moves propose for the view as they are: see [`lend`].
+/// A target that shows another one under a different constraint, or simulates it in a different way, over the same
+/// draws and outcomes. The other one's moves propose for the view as they are: see [`lend`].
 ///
-/// The `log_constraint` in a view's states is the view's own, also where such a state is handed to the target seen or to its moves.
+/// The `log_constraint` in a view's states is the view's own, also where such a state is handed to the target seen or
+/// to its moves.
 pub trait View: Target {
     /// The target seen.
     type Seen: Target<Draw = Self::Draw, Outcome = Self::Outcome> + 'static;
@@ -28,8 +29,32 @@ pub fn lend<V: View>(moves: impl Into<Arc<Mixture<V::Seen>>>) -> Result<Mixture<
     Mixture::new(lent.collect())
 }
 
+/// Whose states hold one of the target seen, whatever else they hold.
+pub(crate) trait Sees: Target {
+    /// The target seen.
+    type Seen: Target<Draw = Self::Draw> + 'static;
+
+    /// The target seen.
+    fn seen(&self) -> &Self::Seen;
+
+    /// Its state in one of this target's.
+    fn state(state: &StateOf<Self>) -> &StateOf<Self::Seen>;
+}
+
+impl<V: View> Sees for V {
+    type Seen = V::Seen;
+
+    fn seen(&self) -> &V::Seen {
+        View::seen(self)
+    }
+
+    fn state(state: &StateOf<V>) -> &StateOf<V::Seen> {
+        state
+    }
+}
+
 /// One move of a shared mixture.
-struct Lent<T: Target>(Arc<dyn Move<T>>);
+pub(crate) struct Lent<T: Target>(pub(crate) Arc<dyn Move<T>>);
 
 impl<T: Target> Lent<T> {
     fn kernel(&self) -> &dyn Move<T> {
@@ -37,7 +62,7 @@ impl<T: Target> Lent<T> {
     }
 }
 
-impl<V: View> Move<V> for Lent<V::Seen> {
+impl<V: Sees> Move<V> for Lent<V::Seen> {
     fn name(&self) -> &str {
         self.kernel().name()
     }
@@ -49,11 +74,11 @@ impl<V: View> Move<V> for Lent<V::Seen> {
         candidate: &mut V::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        self.kernel().propose(target.seen(), current, candidate, stream)
+        self.kernel().propose(target.seen(), V::state(current), candidate, stream)
     }
 
     fn log_ratio(&self, target: &V, from: &StateOf<V>, to: &StateOf<V>, path: Path) -> Result<LogRatio, ModelError> {
-        self.kernel().log_ratio(target.seen(), from, to, path)
+        self.kernel().log_ratio(target.seen(), V::state(from), V::state(to), path)
     }
 
     fn reverse(&self, path: Path) -> Path {
@@ -67,7 +92,7 @@ impl<V: View> Move<V> for Lent<V::Seen> {
         candidate: &StateOf<V>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        self.kernel().log_ratio_after(target.seen(), current, candidate, path)
+        self.kernel().log_ratio_after(target.seen(), V::state(current), V::state(candidate), path)
     }
 
     fn scales(&self) -> Vec<Scale> {

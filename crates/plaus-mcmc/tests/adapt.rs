@@ -1,6 +1,5 @@
-//! Scales adapted in the warm-up: they come to what is wanted, stay from then on, and leave the target as it is; a twin that adapts for ever does not.
-
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+//! Scales adapted in the warm-up: they come to what is wanted, stay from then on, and leave the target as it is; a twin
+//! that adapts for ever does not.
 
 use plaus_dist::{
     Density, Gaussian, LogDensity, LogPotential, LogRatio, Purpose, Sample, Seed, Stream, math, open_unit,
@@ -106,7 +105,8 @@ fn size(scales: Option<&Scales>) -> f64 {
     scales.unwrap().values(MoveId(0))[0].unwrap()
 }
 
-/// A chain of iterations before `until`, and the share it accepts in the `count` after them, with its autocorrelation time.
+/// A chain of iterations before `until`, and the share it accepts in the `count` after them, with its autocorrelation
+/// time.
 fn adapted(start: f64, target: f64, seed: u64, until: u64, count: u64) -> (Scales, f64, f64) {
     let moves = Mixture::of(Box::new(Walk { size: start, target }) as Box<dyn Move<Number>>);
     let mut chain = Chain::start(&GAUSSIAN, &moves, Seed(seed).chain(0)).unwrap().adapting(until);
@@ -123,9 +123,10 @@ fn adapted(start: f64, target: f64, seed: u64, until: u64, count: u64) -> (Scale
     (frozen, accepts.iter().sum::<f64>() / count as f64, tau)
 }
 
-/// The mean of `ln s` over the warm-up's second half, n proposals, solves *acceptance = target* up to an error whose effect on the acceptance has variance τ p (1 − p)/n,
-/// whatever the slope (Polyak and Juditsky 1992), τ being the decisions' autocorrelation time; the measured share of m proposals adds τ p (1 − p)/m. Eight chains at
-/// 1e-6 together: 5.4 standard deviations.
+/// The mean of `ln s` over the warm-up's second half, n proposals, solves *acceptance = target* up to an error whose
+/// effect on the acceptance has variance τ p (1 − p)/n, whatever the slope (Polyak and Juditsky 1992), τ being the
+/// decisions' autocorrelation time; the measured share of m proposals adds τ p (1 − p)/m. Eight chains at 1e-6
+/// together: 5.4 standard deviations.
 #[test]
 fn a_gaussian_is_accepted_as_often_as_wanted() {
     let (until, count) = (20_000, 20_000);
@@ -189,8 +190,9 @@ fn frozen_scales_leave_the_target_invariant() {
     }
 }
 
-/// Steps from an exact draw, by a walk whose scale begins at 1 and goes on adapting with this gain. Where the exponential density ends half of the steps are
-/// refused, so that the scale learns where the chain is: short steps there, long ones far out.
+/// Steps from an exact draw, by a walk whose scale begins at 1 and goes on adapting with this gain. Where the
+/// exponential density ends half of the steps are refused, so that the scale learns where the chain is: short steps
+/// there, long ones far out.
 fn wandered(gain: f64, steps: u64, sample: u64) -> f64 {
     let streams = Seed(17).chain(sample);
     let draw = EXPONENTIAL.start(&mut streams.at(0, Purpose(100)));
@@ -206,7 +208,8 @@ fn wandered(gain: f64, steps: u64, sample: u64) -> f64 {
     state.draw
 }
 
-/// Against the exact distribution function, by Dvoretzky, Kiefer and Wolfowitz with Massart's constant: P(D > ε) ≤ 2 exp(−2 n ε²).
+/// Against the exact distribution function, by Dvoretzky, Kiefer and Wolfowitz with Massart's constant: P(D > ε) ≤ 2
+/// exp(−2 n ε²).
 #[test]
 fn adapting_for_ever_is_biased_and_seen() {
     const SAMPLES: u64 = 20_000;

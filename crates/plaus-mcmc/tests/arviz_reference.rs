@@ -1,8 +1,9 @@
 //! Diagnostics against ArviZ's own values on stored draws (`arviz/reference.json`, made by `arviz/make_reference.py`).
 //!
-//! Tolerance: both sides evaluate the same formulas in doubles, in another order and with another Fourier transform. Ranks, R̂ and bulk and tail ESS agree to
-//! 1e-14. What is computed from the draws themselves carries their rounding: the case `far from zero` lies 10⁶ standard deviations out, and
-//! 10⁶ · 2⁻⁵² ≈ 2e-10 is the largest deviation found (run with `--nocapture`). Hence 1e-9 relative; every wrong twin is off by more than 1e-3.
+//! Tolerance: both sides evaluate the same formulas in doubles, in another order and with another Fourier transform.
+//! Ranks, R̂ and bulk and tail ESS agree to 1e-14. What is computed from the draws themselves carries their rounding:
+//! the case `far from zero` lies 10⁶ standard deviations out, and 10⁶ · 2⁻⁵² ≈ 2e-10 is the largest deviation found
+//! (run with `--nocapture`). Hence 1e-9 relative; every wrong twin is off by more than 1e-3.
 
 use plaus_mcmc::diagnose::{self, Summary};
 use serde_json::Value;

@@ -1,11 +1,13 @@
-//! The checks on balls that are dropped or not. Wrong twins: a change-all taken for symmetric, toggles that forget the balls they leave alone, toggles that
-//! measure area in another unit, a move that forgets what its ratio owes to the outcome.
+//! The checks on balls that are dropped or not. Wrong twins: a change-all taken for symmetric, toggles that forget the
+//! balls they leave alone, toggles that measure area in another unit, a move that forgets what its ratio owes to the
+//! outcome.
 
 // Helpers outside of `#[test]` functions panic and print as tests do.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::print_stdout)]
 
-mod toys;
-
+use crate::toys::balls::{Balls, Drops, active, filled};
+use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle, Ways};
+use crate::toys::remembering::Remembering;
 use plaus_dist::{LogPotential, Seed};
 use plaus_mcmc::check::{
     Balance, BalanceReport, Enumerable, OneStep, OneStepReport, PriorOnly, Ratios, Statistic, balance, early_exit,
@@ -14,9 +16,6 @@ use plaus_mcmc::check::{
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, Move, Redraw, StateOf, Tempered};
 use std::sync::Arc;
-use toys::balls::{Balls, Drops, active, filled};
-use toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle, Ways};
-use toys::remembering::Remembering;
 
 const CHANGE_ALL: ChangeAll = ChangeAll { symmetric: false };
 const REDROP: Redrop = Redrop { fault: Fault::None };
@@ -163,7 +162,8 @@ fn early_stops_change_nothing_unless_they_are_wrong() {
     assert!(!wrong.passed(), "{wrong}");
 }
 
-/// A bound of a later part that is too low lets simulations stop that would have been accepted: the twin parts from its plain chain.
+/// A bound of a later part that is too low lets simulations stop that would have been accepted: the twin parts from its
+/// plain chain.
 #[test]
 fn a_bound_that_is_too_low_is_caught() {
     let low = early_exit(&Balls::anywhere(6, 4, AREA, 2.0), mixture(Fault::Bound), Seed(5), 20_000).unwrap();
@@ -171,7 +171,8 @@ fn a_bound_that_is_too_low_is_caught() {
     assert!(!low.passed(), "{low}");
 }
 
-/// What stops early when tempered is what would not have been accepted: the floor is translated without losing a rounding.
+/// What stops early when tempered is what would not have been accepted: the floor is translated without losing a
+/// rounding.
 #[test]
 fn early_stops_survive_tempering() {
     let balls: &'static Balls = Box::leak(Box::new(Balls::anywhere(6, 4, AREA, 2.0)));

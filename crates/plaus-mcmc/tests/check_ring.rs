@@ -1,10 +1,11 @@
-//! The checks on a ring of places, a walk around it and a fresh draw; wrong twins: a redraw taken for symmetric, a chain that ignores −∞ priors.
+//! The checks on a ring of places, a walk around it and a fresh draw; wrong twins: a redraw taken for symmetric, a
+//! chain that ignores −∞ priors.
 
 // Helpers outside of `#[test]` functions panic and print as tests do.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::print_stdout)]
 
-mod toys;
-
+use crate::toys::IgnoresForbidden;
+use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{LogPotential, LogRatio, Seed, Stream};
 use plaus_mcmc::check::{
     Balance, BalanceReport, Branch, CheckError, Enumerable, LogP, OneStep, OneStepReport, PriorOnly, Ratios, Statistic,
@@ -12,8 +13,6 @@ use plaus_mcmc::check::{
 };
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, State, StateOf, Target, Tempered};
-use toys::IgnoresForbidden;
-use toys::ring::{Redraw, Ring, Walk};
 
 const RIGHT: Redraw = Redraw { symmetric: false };
 const SYMMETRIC: Redraw = Redraw { symmetric: true };

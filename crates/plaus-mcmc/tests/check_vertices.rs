@@ -1,16 +1,14 @@
-//! The checks on continuous offsets. Wrong twins: a change-all taken for symmetric, fresh offsets in a random direction with a Gaussian length, both together
-//! (the paper's change-all).
+//! The checks on continuous offsets. Wrong twins: a change-all taken for symmetric, fresh offsets in a random direction
+//! with a Gaussian length, both together (the paper's change-all).
 
 // Helpers outside of `#[test]` functions panic and print as tests do.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::print_stdout)]
 
-mod toys;
-
+use crate::toys::vertices::{ChangeAll, Fresh, RedrawOne, Vertices, WalkOne, radius};
 use plaus_dist::{LogPotential, Seed, math};
 use plaus_mcmc::check::{OneStep, OneStepReport, PriorOnly, Ratios, Statistic, one_step, prior, ratios, rejection};
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, Move, StateOf};
-use toys::vertices::{ChangeAll, Fresh, RedrawOne, Vertices, WalkOne, radius};
 
 type Kernel = fn() -> Box<dyn Move<Vertices>>;
 

@@ -49,7 +49,8 @@ proptest! {
         turned.rotate_left(turn % count);
         turned.swap(0, other % count);
         prop_assert_eq!(diagnose::summarize(&chains), diagnose::summarize(&turned));
-        prop_assert_eq!(diagnose::integrated_autocorrelation_time(&chains), diagnose::integrated_autocorrelation_time(&turned));
+        let time = diagnose::integrated_autocorrelation_time;
+        prop_assert_eq!(time(&chains), time(&turned));
     }
 
     /// Bounds that hold for any draws.
@@ -98,9 +99,10 @@ fn ar1(rho: f64, draws: usize, chain: u64) -> Vec<f64> {
 
 /// τ = (1 + ρ) / (1 − ρ) by both rules; τ of the wrong ρ is refused.
 ///
-/// Standard error of a τ summed to lag M over N draws: τ √(2 (2M + 1) / N) (Sokal 1997, section 3). For ρ < 0 the largest value of the spectrum, 1/τ, takes
-/// the place of its value τ at frequency 0: a bound, since the sharp end of the window leaks. Geyer's rule sums about as far. On fixed seeds four of them
-/// are allowed, and the share e⁻⁵ that the window leaves out.
+/// Standard error of a τ summed to lag M over N draws: τ √(2 (2M + 1) / N) (Sokal 1997, section 3). For ρ < 0 the
+/// largest value of the spectrum, 1/τ, takes the place of its value τ at frequency 0: a bound, since the sharp end of
+/// the window leaks. Geyer's rule sums about as far. On fixed seeds four of them are allowed, and the share e⁻⁵ that
+/// the window leaves out.
 #[test]
 fn the_time_of_an_autoregression_is_found() {
     const DRAWS: usize = 100_000;
@@ -132,7 +134,8 @@ fn the_time_has_a_least_value() {
     assert_eq!(diagnose::ess_mean(&chains), Ok(40_000.0 / bound));
 }
 
-/// Known coverage: the mean of an autoregression lies within 1.96 `mcse_mean` in 95% of 400 runs, and within 1.96 naive errors in far fewer.
+/// Known coverage: the mean of an autoregression lies within 1.96 `mcse_mean` in 95% of 400 runs, and within 1.96 naive
+/// errors in far fewer.
 #[test]
 fn the_error_of_the_mean_covers() {
     let mut covered = [0; 2];
@@ -143,7 +146,8 @@ fn the_error_of_the_mean_covers() {
             *count += u32::from(row.mean.abs() <= 1.96 * error);
         }
     }
-    // 380 ± 4.4 (binomial); four of those and as many again for the noise of the error itself, τ being known to some 12%.
+    // 380 ± 4.4 (binomial); four of those and as many again for the noise of the error itself, τ being known to some
+    // 12%.
     assert!((345..=398).contains(&covered[0]), "{covered:?}");
     // The naive error is three times too small: coverage 49%.
     assert!(covered[1] < 245, "{covered:?}");

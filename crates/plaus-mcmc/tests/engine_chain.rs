@@ -1,16 +1,13 @@
 //! One chain: choosing moves, verdicts, and what happens when a model fails.
 
 // Helpers outside of `#[test]` functions panic as tests do.
-#![allow(clippy::unwrap_used)]
 
-mod toys;
-
+use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
 use plaus_mcmc::{
     Block, Chain, ChainError, Control, Ending, Goal, Mixture, MixtureError, ModelError, Move, MoveId, Path, Plan,
     Progress, Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, State, StateOf, Target, Verdict, run,
 };
-use toys::ring::{Redraw, Ring, Walk};
 
 /// Counts up from its start; some numbers are forbidden or break the model.
 #[derive(Clone, Copy)]
@@ -332,8 +329,8 @@ fn a_long_chain_has_the_law_of_the_target() {
     let total: f64 = (0..9).map(weight).sum();
     for (place, count) in visits.iter().enumerate() {
         let share = weight(place) / total;
-        // An independence sampler whose weights are at most e apart has a relaxation time of at most e: ESS above 200,000 / (2e) = 36,000;
-        // six standard deviations.
+        // An independence sampler whose weights are at most e apart has a relaxation time of at most e: ESS above
+        // 200,000 / (2e) = 36,000; six standard deviations.
         let margin = 6.0 * (share * (1.0 - share) / 36_000.0).sqrt();
         assert!((f64::from(*count) / f64::from(iterations) - share).abs() <= margin, "{visits:?}");
     }

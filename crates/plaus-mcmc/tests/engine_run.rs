@@ -1,10 +1,9 @@
 //! Runs: the same bits whatever the threads, the blocks and the interruptions; solutions, hits, thinning.
 
 // Helpers outside of `#[test]` functions panic as tests do.
-#![allow(clippy::unwrap_used)]
 
-mod toys;
-
+use crate::toys::balls::{Balls, Drops};
+use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
 use plaus_dist::{LogRatio, Seed, Stream};
 use plaus_mcmc::{
     Block, Chain, ChainPulse, Control, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture, ModelError, Move,
@@ -13,8 +12,6 @@ use plaus_mcmc::{
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use toys::balls::{Balls, Drops};
-use toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
 
 type Loads = Vec<u32>;
 type S = StateOf<Balls>;

@@ -1,12 +1,8 @@
 //! Parallel tempering samples every rung exactly, and crosses what the target's own moves cannot.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod toys;
-
+use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{Seed, math};
 use plaus_mcmc::{Course, Ladder, Mixture, Replicas, Tempering, diagnose};
-use toys::ring::{Redraw, Ring, Walk};
 
 /// Moves of all rungs but the first, and of the first.
 struct Moves(Mixture<Ring>, Mixture<Ring>);

@@ -3,15 +3,12 @@
 //! that exceeds what it said is the most.
 
 // Helpers outside of `#[test]` functions panic as tests do.
-#![allow(clippy::unwrap_used)]
 
-mod toys;
-
+use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{LogPotential, Seed};
 use plaus_mcmc::check::{OneStep, OneStepReport, Statistic, one_step, rejection};
 use plaus_mcmc::{Chain, Goal, Judged, Mark, Mixture, ModelError, Required, Requirement, State, StateOf};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use toys::ring::{Redraw, Ring, Walk};
 
 const PLAN: OneStep = OneStep { seed: Seed(21), samples: 40_000, steps: 1, cells: 16, false_alarm: 1e-6 };
 

@@ -5,7 +5,7 @@
 //! checkpoints in place and all others' beside them: [`settle`] finishes the replacement.
 
 use crate::codec::{self, FrameError, FrameProblem, Frames, Kind};
-use crate::disk::Disk;
+use crate::disk::{Disk, for_each};
 use crate::error::{RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use plaus_mcmc::Snapshot;
@@ -112,12 +112,12 @@ pub(crate) fn encode<D: Serialize, O: Serialize>(
 ///
 /// # Errors
 /// [`RunFileError`] where the disk refuses; what was valid before then still is.
-pub fn replace<D: Serialize, O: Serialize>(
+pub fn replace<D: Serialize + Sync, O: Serialize + Sync>(
     folder: &Folder,
     disk: &dyn Disk,
     checkpoints: &[Checkpoint<D, O>],
 ) -> Result<(), RunFileError> {
-    let written = checkpoints.iter().try_for_each(|checkpoint| {
+    let written = for_each(checkpoints, |checkpoint| {
         let path = folder.next_checkpoint(checkpoint.chain);
         let bytes = encode(&path, checkpoint)?;
         disk.write(&path, &bytes).map_err(RunFileError::io(&path, "write"))
@@ -160,8 +160,12 @@ where
         }
         let next = Checkpoint::read(&folder.next_checkpoint(chain), run, chain)?.filter(|next| end(next) == newest);
         settled.push(next.ok_or_else(|| {
-            let message = format!("other chains have checkpoints of iteration {newest}, this one has none");
-            RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message))
+            let path = folder.checkpoint(chain);
+            let problem = match path.exists() {
+                true => RunFileProblem::Mixed(format!("other chains have checkpoints of iteration {newest}")),
+                false => RunFileProblem::Gone { newest },
+            };
+            RunFileError::new(path, problem)
         })?);
         promote(folder, disk, chain)?;
     }

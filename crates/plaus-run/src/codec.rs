@@ -129,21 +129,27 @@ fn decode_from<T: DeserializeOwned>(kind: Kind, input: impl Read, length: u64) -
     }
 }
 
+/// Bytes that are asked of a file at a time, unless a frame is longer.
+const AT_A_TIME: u64 = 1 << 18;
+
 /// The values of a file of frames of one kind, in order. After an error it ends.
 #[derive(Debug)]
 pub struct Frames<T, R> {
     kind: Kind,
     input: R,
+    /// Where the next frame begins in the file, and in the window.
     offset: u64,
+    next: usize,
     end: u64,
-    buffer: Vec<u8>,
+    /// What was read of the file and is not yet forgotten.
+    window: Vec<u8>,
     value: PhantomData<T>,
 }
 
 impl<T: DeserializeOwned, R: Read> Frames<T, R> {
-    /// Reads frames of `kind` from the first `length` bytes of `input`.
+    /// Reads frames of `kind` from the first `length` bytes of `input`, many at a time: it needs no buffer of its own.
     pub fn new(kind: Kind, input: R, length: u64) -> Self {
-        Self { kind, input, offset: 0, end: length, buffer: Vec::new(), value: PhantomData }
+        Self { kind, input, offset: 0, next: 0, end: length, window: Vec::new(), value: PhantomData }
     }
 
     /// Where the next frame begins; after a damaged one, where that begins.
@@ -151,14 +157,15 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
         self.offset
     }
 
-    /// The next frame's bytes, with its checksum found right but its value not looked at; `None` at the end. After an error it ends.
+    /// The next frame's bytes, with its checksum found right but its value not looked at; `None` at the end. After an
+    /// error it ends.
     pub fn next_raw(&mut self) -> Option<Result<&[u8], FrameError>> {
         if self.offset == self.end {
             return None;
         }
         let offset = self.offset;
         match self.read_raw() {
-            Ok(()) => Some(Ok(&self.buffer)),
+            Ok(length) => Some(Ok(&self.window[self.next - length..self.next])),
             Err(problem) => {
                 self.end = self.offset;
                 Some(Err(FrameError { offset, problem }))
@@ -166,51 +173,73 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
         }
     }
 
+    /// The bytes of the frames that were given last, one behind the other; `None` while the next is at hand as well, so
+    /// that they are handed on in large parts: asked after every frame, all frames are in one part.
+    pub fn passed(&self) -> Option<&[u8]> {
+        let present = &self.window[self.next..];
+        let at_hand = self.check_header(present).is_ok_and(|length| frame_of(length) <= present.len() as u64);
+        (!at_hand || self.offset == self.end).then(|| &self.window[..self.next])
+    }
+
     fn read(&mut self) -> Result<T, FrameProblem> {
-        self.read_raw()?;
-        let content = &self.buffer[HEADER..self.buffer.len() - TRAILER];
-        let value = decode_payload(self.kind.name, content);
+        let length = self.read_raw()?;
+        let frame = &self.window[self.next - length..self.next];
+        let value = decode_payload(self.kind.name, &frame[HEADER..length - TRAILER]);
         if value.is_err() {
-            self.offset -= self.buffer.len() as u64;
+            self.offset -= length as u64;
         }
         value
     }
 
-    /// Reads the next frame into the buffer, and checks it.
-    fn read_raw(&mut self) -> Result<(), FrameProblem> {
+    /// Brings the next frame into the window, checks it, and goes past it: its length.
+    fn read_raw(&mut self) -> Result<usize, FrameProblem> {
         let present = self.end - self.offset;
-        let overhead = (HEADER + TRAILER) as u64;
+        let truncated = |needed| Err(FrameProblem::Truncated { needed, present });
+        let overhead = frame_of(0);
         if present < overhead {
-            return Err(FrameProblem::Truncated { needed: overhead, present });
+            return truncated(overhead);
         }
-        self.buffer.clear();
-        self.fill(HEADER as u64)?;
-        let length = self.check_header()?;
-        if present - overhead < length {
-            return Err(FrameProblem::Truncated { needed: overhead + length, present });
+        self.fill(HEADER)?;
+        let length = frame_of(self.check_header(&self.window[self.next..])?);
+        if present < length {
+            return truncated(length);
         }
-        self.fill(length + TRAILER as u64)?;
-        let (content, trailer) = self.buffer.split_at(self.buffer.len() - TRAILER);
+        let length = length as usize; // no longer than LONGEST_PAYLOAD and a little
+        self.fill(length)?;
+        let (content, trailer) = self.window[self.next..self.next + length].split_at(length - TRAILER);
         if blake3::hash(content).as_bytes() != trailer {
             return Err(FrameProblem::Checksum);
         }
-        self.offset += overhead + length;
+        self.next += length;
+        self.offset += length as u64;
+        Ok(length)
+    }
+
+    /// Sees to it that so many bytes are in the window behind where the next frame begins. It grows only by what is
+    /// really there.
+    fn fill(&mut self, bytes: usize) -> Result<(), FrameProblem> {
+        if self.window.len() - self.next >= bytes {
+            return Ok(());
+        }
+        self.window.drain(..self.next);
+        self.next = 0;
+        let unread = self.end - self.offset - self.window.len() as u64;
+        let wanted = (bytes - self.window.len()) as u64;
+        self.input.by_ref().take(wanted.max(AT_A_TIME).min(unread)).read_to_end(&mut self.window)?;
+        let present = self.window.len();
+        if present < bytes {
+            return Err(FrameProblem::Truncated { needed: bytes as u64, present: present as u64 });
+        }
         Ok(())
     }
 
-    /// Reads exactly `bytes` more into the buffer, which grows only by what is really there.
-    fn fill(&mut self, bytes: u64) -> Result<(), FrameProblem> {
-        let got = self.input.by_ref().take(bytes).read_to_end(&mut self.buffer)? as u64;
-        if got == bytes {
-            return Ok(());
-        }
-        let present = self.buffer.len() as u64;
-        Err(FrameProblem::Truncated { needed: present - got + bytes, present })
-    }
-
-    fn check_header(&self) -> Result<u64, FrameProblem> {
-        let field = |from: usize| std::array::from_fn::<u8, 4, _>(|i| self.buffer[from + i]);
-        if self.buffer[..8] != MAGIC {
+    /// The length of the payload of the frame that begins with `bytes`.
+    fn check_header(&self, bytes: &[u8]) -> Result<u64, FrameProblem> {
+        let Some(header) = bytes.first_chunk::<HEADER>() else {
+            return Err(FrameProblem::Truncated { needed: HEADER as u64, present: bytes.len() as u64 });
+        };
+        let field = |from: usize| std::array::from_fn::<u8, 4, _>(|i| header[from + i]);
+        if header[..8] != MAGIC {
             return Err(FrameProblem::Magic);
         }
         let (tag, found) = (field(8), u32::from_le_bytes(field(12)));
@@ -228,6 +257,11 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
         }
         Ok(length)
     }
+}
+
+/// The length of a frame whose payload is so long.
+fn frame_of(payload: u64) -> u64 {
+    (HEADER + TRAILER) as u64 + payload
 }
 
 impl<T: DeserializeOwned, R: Read> Iterator for Frames<T, R> {

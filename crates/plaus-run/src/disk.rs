@@ -1,8 +1,12 @@
 //! The few file operations a run is written with, behind a trait, so that tests can fill the disk or stop at any byte.
 
+use crate::error::RunFileError;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::thread;
 
 /// What the writing of a run asks of a disk. Each operation may fail half done, as real ones do.
 pub trait Disk: Sync {
@@ -47,6 +51,44 @@ pub trait Disk: Sync {
     /// # Errors
     /// As the operating system says.
     fn create_folder(&self, path: &Path) -> io::Result<()>;
+}
+
+/// Files that are waited for at a time: a disk takes hardly longer for so many than for one.
+const AT_A_TIME: usize = 16;
+
+/// Does `work` for each of `items`, several at a time where there are many.
+///
+/// # Errors
+/// That of the first item, in order, whose `work` failed; what had not begun by then is left.
+pub(crate) fn for_each<T: Sync>(
+    items: &[T],
+    work: impl Fn(&T) -> Result<(), RunFileError> + Sync,
+) -> Result<(), RunFileError> {
+    if items.len() <= AT_A_TIME {
+        return items.iter().try_for_each(work);
+    }
+    let (next, failed) = (AtomicUsize::new(0), Mutex::new(None::<(usize, RunFileError)>));
+    thread::scope(|scope| {
+        for _ in 0..AT_A_TIME {
+            scope.spawn(|| {
+                loop {
+                    let index = next.fetch_add(1, Relaxed);
+                    let Some(item) = items.get(index) else { break };
+                    let Err(error) = work(item) else { continue };
+                    next.store(items.len(), Relaxed);
+                    if let Ok(mut first) = failed.lock()
+                        && first.as_ref().is_none_or(|(before, _)| index < *before)
+                    {
+                        *first = Some((index, error));
+                    }
+                }
+            });
+        }
+    });
+    match failed.into_inner() {
+        Ok(Some((_, error))) => Err(error),
+        _ => Ok(()),
+    }
 }
 
 /// The operating system's disk.

@@ -82,6 +82,16 @@ pub enum RunFileProblem {
         /// What and where.
         source: FrameError,
     },
+    /// The checkpoint of a chain is not there, though those of others are.
+    #[error(
+        "this checkpoint is gone, while other chains have theirs, of iteration {newest}: the run cannot go on. The records are \
+         not touched by this: `plaus export --salvage` and `plaus gallery --salvage` read them; the same scenario and seed \
+         sample the run again"
+    )]
+    Gone {
+        /// Iterations that the others' checkpoints cover.
+        newest: u64,
+    },
     /// The parts of the run do not fit each other.
     #[error(
         "{0}: files of different runs, or of different moments of one run, were mixed; the same scenario and seed sample the run again"
@@ -98,7 +108,8 @@ pub enum RunFileProblem {
     Encode(#[from] EncodeError),
     /// There is nothing to read yet.
     #[error(
-        "holds no draws yet: the run was stopped in its warm-up, whose draws do not count, or before its first checkpoint; `plaus resume` goes on with it"
+        "holds no draws yet: the run was stopped in its warm-up, whose draws do not count, or before its first checkpoint \
+         (`plaus resume` goes on with it), or it records so few of its iterations (`thin`) that none was due"
     )]
     Empty,
     /// A sample that does not exist.

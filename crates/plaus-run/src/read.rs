@@ -45,6 +45,8 @@ pub struct RunOf<'a, S: Scene> {
 /// What is known of a chain without reading its records.
 struct ChainOf<S: Target> {
     extent: Extent,
+    /// Bytes of its records behind what can be read.
+    lost: u64,
     snapshot: Option<Snapshot<S::Draw, S::Outcome>>,
 }
 
@@ -122,8 +124,25 @@ impl<'a, S: Scene> RunOf<'a, S> {
             return Err(RunFileError::new(run.folder.manifest(), RunFileProblem::Differs(message)).into());
         }
         let open = if run.salvage { ChainOf::salvage } else { ChainOf::open };
-        let chains = run.manifest.chains().map(|chain| open(run, chain)).collect::<Result<_, _>>()?;
+        let chains: Vec<ChainOf<S>> =
+            run.manifest.chains().map(|chain| open(run, chain)).collect::<Result<_, RunFileError>>()?;
+        let end = |chain: &ChainOf<S>| chain.snapshot.as_ref().map(|snapshot| snapshot.end_iteration);
+        if let Some(newest) = chains.iter().filter_map(end).max() {
+            for (chain, _) in run.manifest.chains().zip(&chains).filter(|(_, chain)| chain.snapshot.is_none()) {
+                // One that is about to take its place is there in a run that was killed as its checkpoints were replaced.
+                if !run.folder.next_checkpoint(chain).exists() {
+                    let problem = RunFileProblem::Gone { newest };
+                    return Err(RunFileError::new(run.folder.checkpoint(chain), problem).into());
+                }
+            }
+        }
         Ok(Self { run, scene, chains })
+    }
+
+    /// Per chain that has any: bytes at the end of its records that cannot be read. None unless the run is read for salvage.
+    #[must_use]
+    pub fn lost(&self) -> Vec<(u32, u64)> {
+        self.chains().zip(&self.chains).map(|(chain, of)| (chain, of.lost)).filter(|(_, lost)| *lost > 0).collect()
     }
 
     /// The run.
@@ -263,18 +282,19 @@ impl<S: Scene> ChainOf<S> {
         let (bytes, end_iteration) =
             checkpoint.as_ref().map_or((0, 0), |c: &Checkpoint<_, _>| (c.records, c.snapshot.end_iteration));
         let extent = Extent { run: id, chain, thin, bytes, end_iteration };
-        Ok(Self { extent, snapshot: checkpoint.map(|checkpoint| checkpoint.snapshot) })
+        Ok(Self { extent, lost: 0, snapshot: checkpoint.map(|checkpoint| checkpoint.snapshot) })
     }
 
     /// Everything up to the first frame that is damaged or missing.
     fn salvage(run: &Run, chain: u32) -> Result<Self, RunFileError> {
         let path = run.folder.records(chain);
         let (id, thin, plan) = (run.manifest.run_id(), run.manifest.plan.thin, run.manifest.plan);
-        let bytes = records::length(&path)?;
+        let whole = records::length(&path)?;
+        let bytes = whole;
         let mut extent = Extent { run: id, chain, thin, bytes, end_iteration: plan.end() };
         let (bytes, end_iteration) =
             if bytes == 0 { (0, 0) } else { Blocks::<S::Draw, S::Outcome>::open(&path, extent)?.intact() };
         extent = Extent { bytes, end_iteration, ..extent };
-        Ok(Self { extent, snapshot: None })
+        Ok(Self { extent, lost: whole - bytes, snapshot: None })
     }
 }

@@ -6,7 +6,7 @@ use plaus_mcmc::{Block, Distinct, FirstOfClass};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::{BufReader, ErrorKind};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 const KIND: Kind = Kind::new(*b"recs", 1, "records of a chain");
@@ -47,7 +47,7 @@ pub(crate) struct Extent {
 
 /// The blocks of one chain, read one after the other. After an error it ends.
 pub struct Blocks<D, O> {
-    frames: Frames<Stored<Block<D, O>>, BufReader<File>>,
+    frames: Frames<Stored<Block<D, O>>, File>,
     path: PathBuf,
     extent: Extent,
     next_iteration: u64,
@@ -59,7 +59,7 @@ impl<D: DeserializeOwned, O: DeserializeOwned> Blocks<D, O> {
     pub(crate) fn open(path: &Path, extent: Extent) -> Result<Self, RunFileError> {
         let file = File::open(path).map_err(RunFileError::io(path, "read"))?;
         let present = file.metadata().map_err(RunFileError::io(path, "read"))?.len();
-        let frames = Frames::new(KIND, BufReader::with_capacity(1 << 16, file), extent.bytes.min(present));
+        let frames = Frames::new(KIND, file, extent.bytes.min(present));
         let over = extent.bytes == 0;
         Ok(Self { frames, path: path.to_owned(), extent, next_iteration: 0, draws: 0, over })
     }
@@ -132,22 +132,23 @@ impl<D: DeserializeOwned, O: DeserializeOwned> Iterator for Blocks<D, O> {
 /// What a stored block begins with: run, chain, first iteration and one past the last.
 type Head = (u64, u32, u64, u64);
 
-/// Hands on the frames of a chain's records, whose checksums, places and number of iterations were found right; what they hold is not looked at.
+/// Hands on the bytes of a chain's records in large parts, whole frames whose checksums, places and number of iterations
+/// were found right; what they hold is not looked at.
 ///
 /// # Errors
 /// [`RunFileError`] where they are damaged or belong elsewhere, or as `take`.
-pub(crate) fn copy(
+pub(crate) fn copy<E: From<RunFileError>>(
     path: &Path,
     extent: Extent,
-    mut take: impl FnMut(&[u8]) -> Result<(), RunFileError>,
-) -> Result<(), RunFileError> {
+    mut take: impl FnMut(&[u8]) -> Result<(), E>,
+) -> Result<(), E> {
     let Extent { run, chain, thin, bytes, end_iteration } = extent;
     if bytes == 0 {
         return Ok(());
     }
     let file = File::open(path).map_err(RunFileError::io(path, "read"))?;
     let present = file.metadata().map_err(RunFileError::io(path, "read"))?.len();
-    let mut frames = Frames::<(), _>::new(KIND, BufReader::with_capacity(1 << 20, file), bytes.min(present));
+    let mut frames = Frames::<(), _>::new(KIND, file, bytes.min(present));
     let mut next_iteration = 0;
     let damage = |next_iteration: u64, source| {
         RunFileError::new(path, RunFileProblem::Records { source, intact: next_iteration.div_ceil(thin) })
@@ -160,15 +161,15 @@ pub(crate) fn copy(
         let head = head.map_err(|problem| damage(next_iteration, FrameError { offset, problem }))?;
         if (head.0, head.1, head.2) != (run, chain, next_iteration) || head.3 <= next_iteration {
             let message = format!("the frame at byte {offset} does not follow on");
-            return Err(RunFileError::new(path, RunFileProblem::Mixed(message)));
+            return Err(RunFileError::new(path, RunFileProblem::Mixed(message)).into());
         }
         next_iteration = head.3;
-        take(frame)?;
+        frames.passed().map_or(Ok(()), &mut take)?;
     }
     let offset = frames.offset();
     if offset < bytes || next_iteration != end_iteration {
         let problem = FrameProblem::Truncated { needed: bytes, present: offset };
-        return Err(damage(next_iteration, FrameError { offset, problem }));
+        return Err(damage(next_iteration, FrameError { offset, problem }).into());
     }
     Ok(())
 }

@@ -79,7 +79,7 @@ impl Watch for Unwatched {
 
 /// How to sample, beside what.
 pub struct Sampling<'a> {
-    /// Threads; 0 is one a core. Never changes results.
+    /// Threads; 0 is one a core. No more are started than there are replicas of chains. Never changes results.
     pub threads: usize,
     /// Where to write.
     pub disk: &'a dyn Disk,
@@ -93,8 +93,9 @@ impl<'a> Sampling<'a> {
         Self { threads, disk: &RealDisk, watch }
     }
 
-    fn pool(&self) -> Result<ThreadPool, Error> {
-        let built = ThreadPoolBuilder::new().num_threads(self.threads).build();
+    fn pool(&self, manifest: &Manifest) -> Result<ThreadPool, Error> {
+        let threads = plaus_mcmc::useful_threads(self.threads, &manifest.plan, &manifest.chains());
+        let built = ThreadPoolBuilder::new().num_threads(threads).build();
         built.map_err(|error| Error::Sampling(format!("cannot start worker threads: {error}")))
     }
 }
@@ -313,7 +314,7 @@ fn restore<S: Scene>(
     let done = checkpoints.first().map_or(0, |checkpoint| checkpoint.snapshot.end_iteration);
     cut(&folder.trail(), disk, trail::length_until(&folder.trail(), run, done)?)?;
     let restore = |checkpoint| restore_chain(folder, manifest, scene, disk, checkpoint);
-    sampling.pool()?.install(|| checkpoints.into_par_iter().map(restore).collect())
+    sampling.pool(manifest)?.install(|| checkpoints.into_par_iter().map(restore).collect())
 }
 
 fn restore_chain<S: Scene>(
@@ -373,7 +374,7 @@ fn go_on<S: Scene, D: Drive>(
     let done = starts.first().map_or(0, |start| start.snapshot.end_iteration);
     let lengths =
         manifest.chains().map(|chain| records::length(&folder.records(chain))).collect::<Result<Vec<_>, _>>()?;
-    let pool = sampling.pool()?;
+    let pool = sampling.pool(manifest)?;
     let Sampling { threads, disk, watch } = sampling;
     watch.begin(manifest, done);
     let (plan, pulse, run) = (manifest.plan, watch.pulse(), manifest.run_id());

@@ -1,7 +1,7 @@
 //! Writes what the chains leave behind: records after every round, checkpoints when they are due.
 
 use crate::checkpoint::{self, Checkpoint};
-use crate::disk::Disk;
+use crate::disk::{Disk, for_each};
 use crate::error::RunFileError;
 use crate::folder::Folder;
 use crate::gauge::Gauge;
@@ -95,11 +95,11 @@ impl<'a, S: Scene> FolderSink<'a, S> {
             return Ok(());
         };
         let Place { folder, disk, first, .. } = self.place;
-        let chains = || (first..).zip(&self.lengths);
-        for (chain, _) in chains() {
+        let chains: Vec<u32> = (first..).take(self.lengths.len()).collect();
+        for_each(&chains, |&chain| {
             let path = folder.records(chain);
-            disk.sync(&path).map_err(RunFileError::io(&path, "write"))?;
-        }
+            disk.sync(&path).map_err(RunFileError::io(&path, "write"))
+        })?;
         if self.hunt.is_some() {
             disk.sync(&folder.trail()).map_err(RunFileError::io(&folder.trail(), "write"))?;
         }

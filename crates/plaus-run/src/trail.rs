@@ -13,7 +13,7 @@ use plaus_mcmc::FirstOfClass;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::{BufReader, ErrorKind, Seek, SeekFrom};
+use std::io::{ErrorKind, Seek, SeekFrom};
 use std::path::Path;
 
 const KIND: Kind = Kind::new(*b"trai", 1, "a trail of checkpoints");
@@ -88,8 +88,7 @@ fn walk<T: DeserializeOwned>(
     };
     let length = file.metadata().map_err(RunFileError::io(path, "read"))?.len();
     file.seek(SeekFrom::Start(from)).map_err(RunFileError::io(path, "read"))?;
-    let input = BufReader::with_capacity(1 << 16, file);
-    let mut frames = Frames::<(), _>::new(KIND, input, length.saturating_sub(from));
+    let mut frames = Frames::<(), _>::new(KIND, file, length.saturating_sub(from));
     loop {
         let begin = from + frames.offset();
         let Some(Ok(frame)) = frames.next_raw() else { return Ok(()) };

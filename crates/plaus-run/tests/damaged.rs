@@ -1,10 +1,6 @@
 //! Damaged files of a run: each either reads as before or gives an error that says where; nothing panics.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{AllDraws, bytes_of, recipe};
+use crate::common::{AllDraws, bytes_of, recipe};
 use plaus_run::{Folder, More, Phase, Run, Sampling, Unwatched, resume, sample};
 use proptest::prelude::*;
 use std::sync::LazyLock;

@@ -1,10 +1,6 @@
 //! A run killed at any write, or on a full disk, goes on to the same bytes.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{FailingDisk, adapting, bytes_of, recipe, tempered};
+use crate::common::{FailingDisk, adapting, bytes_of, recipe, tempered};
 use plaus_run::disk::{Disk, RealDisk};
 use plaus_run::{Error, Folder, More, Recipe, Run, RunOf, RunVisitor, Sampling, Shard, Unwatched};
 use plaus_run::{Watch, resume, sample, sample_shard};
@@ -196,7 +192,7 @@ fn a_longer_run_begins_like_the_shorter() {
     sample(&long, &more, Sampling::new(1, &mut Unwatched)).unwrap();
     resume(&short, More { iterations: Some(700), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap();
     assert_eq!(Manifest::read(&short).unwrap().extended_from, [430]);
-    let draws = |folder: &Folder| Run::open(folder).unwrap().visit(common::AllDraws(Phase::Sampling)).unwrap();
+    let draws = |folder: &Folder| Run::open(folder).unwrap().visit(crate::common::AllDraws(Phase::Sampling)).unwrap();
     assert_eq!(draws(&short), draws(&long));
     let shorter =
         resume(&short, More { iterations: Some(5), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap_err();

@@ -1,10 +1,6 @@
 //! A merge that is killed anywhere, or finds no room, leaves nothing behind and the pieces as they were.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{FailingDisk, bytes_of, recipe, tempered};
+use crate::common::{FailingDisk, bytes_of, recipe, tempered};
 use plaus_run::disk::{Disk, RealDisk};
 use plaus_run::merge::{MergePulse, Merged, Merging, merge};
 use plaus_run::{Error, Folder, Recipe, Sampling, Shard, Unwatched, sample, sample_shard};

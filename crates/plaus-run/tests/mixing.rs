@@ -1,10 +1,6 @@
 //! What a run says of its mixing while it is sampled is what its diagnosis says afterwards, of as many draws.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::FailingDisk;
+use crate::common::FailingDisk;
 use plaus_mcmc::{Control, Progress};
 use plaus_run::disk::Disk;
 use plaus_run::{Diagnosis, Folder, Mixing, More, Recipe, Run, RunOf, RunVisitor, Sampling, Watch, resume, sample};
@@ -54,7 +50,7 @@ impl RunVisitor for OfRecords {
 }
 
 fn recipe(iterations: u64, thin: u64) -> Recipe {
-    let mut recipe = common::recipe(None);
+    let mut recipe = crate::common::recipe(None);
     let sampler = &mut recipe.scenario.sampler;
     (sampler.warmup, sampler.iterations, sampler.thin, sampler.checkpoint_every) = (100, iterations, thin, 500);
     recipe

@@ -1,10 +1,6 @@
 //! What a run refuses to believe or to touch, and what it says when the disk refuses.
 
-#![allow(clippy::unwrap_used)]
-
-mod common;
-
-use common::{bytes_of, recipe};
+use crate::common::{bytes_of, recipe};
 use plaus_run::disk::{Disk, RealDisk};
 use plaus_run::{
     Diagnosis, Error, Folder, Manifest, More, Run, RunFileError, RunOf, RunVisitor, Sampling, Unwatched, resume, sample,
@@ -150,7 +146,7 @@ fn any_refusal_of_the_disk_says_what_is_safe() {
 fn a_disk_without_room_for_a_manifest_is_blamed_on_the_run() {
     let place = tempfile::tempdir().unwrap();
     let folder = Folder::new(place.path().join("run"));
-    let disk = common::FailingDisk::new(10, u64::MAX, false);
+    let disk = crate::common::FailingDisk::new(10, u64::MAX, false);
     let error =
         sample(&folder, &recipe(None), Sampling { threads: 1, disk: &disk, watch: &mut Unwatched }).unwrap_err();
     assert!(error.to_string().starts_with(&format!("{}: cannot write", folder.path().display())), "{error}");

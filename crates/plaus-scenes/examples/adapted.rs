@@ -2,8 +2,9 @@
 //!
 //!     cargo run --release -p plaus-scenes --example adapted -- scenarios/dice-one.toml 8 2000 10000 [key=value ...]
 //!
-//! Scenario, seeds, iterations of the warm-up and after it. Effective draws are those of all seeds together, so that chains which disagree count little; of the
-//! outcomes, and of the draw's variables the median and the least. Times are processor time of this thread after the warm-up.
+//! Scenario, seeds, iterations of the warm-up and after it. Effective draws are those of all seeds together, so that
+//! chains which disagree count little; of the outcomes, and of the draw's variables the median and the least. Times are
+//! processor time of this thread after the warm-up.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 mod shared;

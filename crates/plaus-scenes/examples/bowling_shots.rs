@@ -1,9 +1,11 @@
-//! Shots that are drawn from the prior: how long they take, what they leave, and, with `--whole`, whether anything goes through anything.
+//! Shots that are drawn from the prior: how long they take, what they leave, and, with `--whole`, whether anything goes
+//! through anything.
 //!
 //!     cargo run --release -p plaus-scenes --example bowling_shots -- [SCENARIO] [SHOTS] [FIRST] [--whole]
 //!
-//! Shot k is the same whatever the first is, so that many can be made in parts. Whole shots go on until all is at rest: at every new motion each pair of bodies near each other, and
-//! each body's place in the alley, are looked at; and the pins that ever fell are held against those of which the early end told.
+//! Shot k is the same whatever the first is, so that many can be made in parts. Whole shots go on until all is at rest:
+//! at every new motion each pair of bodies near each other, and each body's place in the alley, are looked at; and the
+//! pins that ever fell are held against those of which the early end told.
 #![allow(clippy::print_stdout, reason = "an example reports to the terminal")]
 
 mod shared;
@@ -21,7 +23,8 @@ use plaus_sim::{Outcome, Scratch};
 use shared::seconds;
 use std::error::Error;
 
-/// Depths in m of overlaps that are counted: what steps of lasting contact may leave, and far less than it takes to go through a pin's neck, 46 mm.
+/// Depths in m of overlaps that are counted: what steps of lasting contact may leave, and far less than it takes to go
+/// through a pin's neck, 46 mm.
 const DEPTHS: [f64; 3] = [1e-4, 1e-3, 1e-2];
 
 /// Inside of the alley: half its width, and where its cushion is, in m.

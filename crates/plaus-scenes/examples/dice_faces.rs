@@ -1,7 +1,8 @@
-//! Which faces come up: each face of a cube a sixth of the time, and a square face of cuboids x × y × y beside rolls of real ones (Mathematical Gazette 97.16,
-//! 2013).
+//! Which faces come up: each face of a cube a sixth of the time, and a square face of cuboids x × y × y beside rolls of
+//! real ones (Mathematical Gazette 97.16, 2013).
 //!
-//!     cargo run --release -p plaus-scenes --example dice_faces -- 100000 5000     # throws of a cube, and of each cuboid
+//!     cargo run --release -p plaus-scenes --example dice_faces -- \
+//!         100000 5000     # throws of a cube, and of each cuboid
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 use plaus_dist::{Purpose, Seed};

@@ -1,6 +1,8 @@
-//! How long dice take: time a throw and an iteration, to the first solution, distinct solutions a minute, R-hat over the seeds. Times are those of one core.
+//! How long dice take: time a throw and an iteration, to the first solution, distinct solutions a minute, R-hat over
+//! the seeds. Times are those of one core.
 //!
-//!     cargo run --release -p plaus-scenes --example dice_times -- scenarios/dice-one.toml 20 20000 [key=value ...] [--first]
+//!     cargo run --release -p plaus-scenes --example dice_times -- \
+//!         scenarios/dice-one.toml 20 20000 [key=value ...] [--first]
 //!
 //! With `--first` each seed stops at its first solution.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]

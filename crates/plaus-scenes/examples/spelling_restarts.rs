@@ -1,6 +1,7 @@
 //! How often parallel tempering restarts a word from a fresh draw of the prior, and how many full words come of it.
 //!
-//!     cargo run --release -p plaus-scenes --example spelling_restarts -- scenarios/spelling-hi.toml 8 20 60 [key=value ...]
+//!     cargo run --release -p plaus-scenes --example spelling_restarts -- \
+//!         scenarios/spelling-hi.toml 8 20 60 [key=value ...]
 //!
 //! with 8 rungs, 20 iterations between swaps, for 60 seconds of one core after a warm-up of 6,000 iterations.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]

@@ -1,6 +1,8 @@
-//! How long words take: time an iteration, to the first full word, and distinct full words a minute, over some seeds. Times are those of one core.
+//! How long words take: time an iteration, to the first full word, and distinct full words a minute, over some seeds.
+//! Times are those of one core.
 //!
-//!     cargo run --release -p plaus-scenes --example spelling_times -- scenarios/spelling-hi.toml 20 20000 [key=value ...]
+//!     cargo run --release -p plaus-scenes --example spelling_times -- \
+//!         scenarios/spelling-hi.toml 20 20000 [key=value ...]
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 mod shared;
@@ -26,7 +28,8 @@ struct Run {
     bins: Vec<Vec<Option<u16>>>,
 }
 
-/// Share of balls in one bin both before and `lag` hundreds of iterations later, among those in a bin before, over all such pairs of states.
+/// Share of balls in one bin both before and `lag` hundreds of iterations later, among those in a bin before, over all
+/// such pairs of states.
 fn overlap(runs: &[Run], lag: usize) -> f64 {
     let (mut same, mut all) = (0_u64, 0_u64);
     for pair in runs.iter().flat_map(|run| run.bins.iter().zip(run.bins.iter().skip(lag))) {

@@ -1,7 +1,9 @@
-//! Whether any ball ever leaves the box or passes through a partition or a floor: every candidate that a chain simulates is looked at, piece by piece of every ball's
-//! way, at the exact times at which it is lowest, farthest out, or over a partition.
+//! Whether any ball ever leaves the box or passes through a partition or a floor: every candidate that a chain
+//! simulates is looked at, piece by piece of every ball's way, at the exact times at which it is lowest, farthest out,
+//! or over a partition.
 //!
-//!     cargo run --release -p plaus-scenes --example spelling_walls -- scenarios/spelling-hi.toml 500000 [key=value ...]
+//!     cargo run --release -p plaus-scenes --example spelling_walls -- \
+//!         scenarios/spelling-hi.toml 500000 [key=value ...]
 //!
 //! for 500,000 simulated candidates.
 #![allow(clippy::print_stdout, reason = "a checking program: it prints")]
@@ -30,7 +32,8 @@ struct Faces {
     extent: [f64; 2],
 }
 
-/// What was seen so far: the deepest that a ball was beyond a wall, in a floor and in a partition over whose middle it passed.
+/// What was seen so far: the deepest that a ball was beyond a wall, in a floor and in a partition over whose middle it
+/// passed.
 #[derive(Default, Clone, Copy, Debug)]
 struct Seen {
     simulated: u64,
@@ -84,7 +87,8 @@ impl Faces {
         }
     }
 
-    /// How low a centre can be over the middle of a partition: on both its upper edges. They do not move, whatever the ridge between them does.
+    /// How low a centre can be over the middle of a partition: on both its upper edges. They do not move, whatever the
+    /// ridge between them does.
     fn top(&self) -> f64 {
         self.height + (math::square(self.radius) - math::square(self.half)).sqrt()
     }

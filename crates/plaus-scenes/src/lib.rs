@@ -20,8 +20,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A [`Scene`] is a target with a goal, moves and animations; [`registry`] lists all there are; [`scenario`] reads the files; [`rules`] says
-//! whether acceptance is exact or as the paper prints it.
+//! A [`Scene`] is a target with a goal, moves and animations; [`registry`] lists all there are; [`scenario`] reads the
+//! files; [`rules`] says whether acceptance is exact or as the paper prints it.
 
 pub mod accuracy;
 pub mod ball2d;

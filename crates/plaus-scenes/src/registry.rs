@@ -54,12 +54,14 @@ macro_rules! scenes {
 }
 
 scenes! {
-    /// A ball bounces on a table whose surface normal is uncertain at every bounce; it should come to rest in a given place.
+    /// A ball bounces on a table whose surface normal is uncertain at every bounce; it should come to rest in a given
+    /// place.
     "ball2d" Ball2d => ball2d,
     /// A ball is bowled at ten-pins; those pins should be left standing that are asked for.
     "bowling" Bowling => bowling,
     /// Balls are dropped one after the other into a box of bins and should come to rest so that they spell a word.
     "spelling" Spelling => spelling,
-    /// Dice are thrown onto a table of random height, restitution and friction, and should come to rest where and as demanded.
+    /// Dice are thrown onto a table of random height, restitution and friction, and should come to rest where and as
+    /// demanded.
     "dice" Dice => dice,
 }

@@ -1,7 +1,7 @@
 //! Acceptance rules: exact, or as the paper prints them.
 //!
-//! Each erratum of the paper that changes which law the chain samples is a flag of its own. With any flag on, nobody knows what law
-//! the chain converges to, or whether it does; the flags exist to reproduce what the paper shows.
+//! Each erratum of the paper that changes which law the chain samples is a flag of its own. With any flag on, nobody
+//! knows what law the chain converges to, or whether it does; the flags exist to reproduce what the paper shows.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,15 +23,15 @@ pub enum Preset {
 pub struct Rules {
     /// Which set of flags to start from: "exact" or "as-printed".
     pub preset: Preset,
-    /// Accept moves that draw values anew as if they were symmetric, as the paper does (its A.2 and 5.3). The true ratio divides by the prior.
-    /// Unset: what the preset says.
+    /// Accept moves that draw values anew as if they were symmetric, as the paper does (its A.2 and 5.3). The true
+    /// ratio divides by the prior. Unset: what the preset says.
     pub symmetric_redraws: Option<bool>,
-    /// Draw fresh offsets of points in a random direction with a Gaussian length, as the paper does (its A.2, B.1 and B.2), where its prior is
-    /// Gaussian in each coordinate. Unset: what the preset says.
+    /// Draw fresh offsets of points in a random direction with a Gaussian length, as the paper does (its A.2, B.1 and
+    /// B.2), where its prior is Gaussian in each coordinate. Unset: what the preset says.
     pub radial_offsets: Option<bool>,
-    /// Accept moves that add or remove some of many balls by the area's factor alone, as the paper does (its B.2, with that factor the right way up: as printed
-    /// it would empty or fill the box by the choice of the unit of length). The true ratio counts the balls left as they were, too. Unset: what the
-    /// preset says.
+    /// Accept moves that add or remove some of many balls by the area's factor alone, as the paper does (its B.2, with
+    /// that factor the right way up: as printed it would empty or fill the box by the choice of the unit of length).
+    /// The true ratio counts the balls left as they were, too. Unset: what the preset says.
     pub incomplete_toggles: Option<bool>,
 }
 

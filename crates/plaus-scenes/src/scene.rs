@@ -14,7 +14,8 @@ use serde::de::DeserializeOwned;
 pub trait Scene:
     Goal<Draw: Serialize + DeserializeOwned, Outcome: Serialize + DeserializeOwned + PartialEq> + Sized + Send + 'static
 {
-    /// Whether the scales of its moves are adapted in the warm-up where a scenario does not say: where that was measured to be better.
+    /// Whether the scales of its moves are adapted in the warm-up where a scenario does not say: where that was
+    /// measured to be better.
     const ADAPTS: bool = false;
 
     /// What the numbers at the ends of scalars' names count: `die` where `x_2` is the x of the second die.
@@ -29,7 +30,8 @@ pub trait Scene:
     /// [`ConfigError`] where the configured weights make no mixture.
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError>;
 
-    /// The scalars every state has, in the order of [`Scene::write_scalars`]; the same for all states of one configuration.
+    /// The scalars every state has, in the order of [`Scene::write_scalars`]; the same for all states of one
+    /// configuration.
     fn scalars(&self) -> Vec<Scalar>;
 
     /// Writes the values of [`Scene::scalars`] for `state`; `values` has as many places.
@@ -53,8 +55,18 @@ pub trait Scene:
         }
     }
 
-    /// The same world simulated at another accuracy: draws mean the same, what becomes of them may differ. `None` where motion has a closed form, exact at any
-    /// accuracy, so that there is nothing to choose. A scene with a simulator overrides this.
+    /// Bodies and impacts of [`Scene::animate`], for those who need not see what stands still. A scene in which that is
+    /// dear to build overrides this.
+    ///
+    /// # Errors
+    /// As [`Scene::animate`].
+    fn motion(&self, draw: &Self::Draw) -> Result<Animation, ModelError> {
+        self.animate(draw)
+    }
+
+    /// The same world simulated at another accuracy: draws mean the same, what becomes of them may differ. `None` where
+    /// motion has a closed form, exact at any accuracy, so that there is nothing to choose. A scene with a simulator
+    /// overrides this.
     ///
     /// # Errors
     /// [`ConfigError`] where the configuration makes no world at that accuracy.

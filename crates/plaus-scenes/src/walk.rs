@@ -5,7 +5,8 @@ use plaus_dist::{Stream, math, standard_normal};
 /// How far the sizes of an adapted step reach to either side of its scale, in their logarithm: a factor e.
 pub(crate) const NARROW: f64 = 1.0;
 
-/// Share of an adapted step's sizes that still come from the whole range: where a target has several hills, or one that narrows, another size serves elsewhere.
+/// Share of an adapted step's sizes that still come from the whole range: where a target has several hills, or one that
+/// narrows, another size serves elsewhere.
 pub(crate) const WIDE_SHARE: f64 = 0.2;
 
 /// A shift in a uniformly random direction by a length N(0, `sd`). As likely as its opposite.

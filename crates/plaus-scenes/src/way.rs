@@ -1,4 +1,5 @@
-//! The ways of bodies that were simulated apart: which come near each other, and so which have to be simulated together.
+//! The ways of bodies that were simulated apart: which come near each other, and so which have to be simulated
+//! together.
 
 use plaus_sim::motion::Parabola;
 use plaus_sim::scenery::Aabb;
@@ -44,7 +45,8 @@ impl Way {
         Self { pieces, around }
     }
 
-    /// Whether the two centres come nearer than `reach`. Answers yes where it is close: then the bodies are simulated together, which is right in any case.
+    /// Whether the two centres come nearer than `reach`. Answers yes where it is close: then the bodies are simulated
+    /// together, which is right in any case.
     pub(crate) fn meets(&self, other: &Self, reach: f64) -> bool {
         let (Some(a), Some(b)) = (&self.around, &other.around) else { return false };
         if !a.grown(reach).meets(b) {
@@ -66,10 +68,12 @@ impl Way {
     }
 }
 
-/// Seconds below which two centres that could be near each other count as near. Default 1e-7; larger merges more groups than needed.
+/// Seconds below which two centres that could be near each other count as near. Default 1e-7; larger merges more groups
+/// than needed.
 const SHORTEST: f64 = 1e-7;
 
-/// Whether two centres may come nearer than `reach` between two times: no where their distance in the middle, less what they can cover until the ends, is more.
+/// Whether two centres may come nearer than `reach` between two times: no where their distance in the middle, less what
+/// they can cover until the ends, is more.
 fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> bool {
     let velocity = |t: f64| a.path.velocity_after(t - a.path.t) - b.path.velocity_after(t - b.path.t);
     // A velocity that changes linearly is largest at an end.
@@ -85,8 +89,8 @@ fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> bool {
         || come_near(a, b, middle, until, reach)
 }
 
-/// Groups of `count` things that meet, directly or through others, as lists of indices in order of the first. `meets` is asked for indices that are not in one
-/// group yet, the larger first.
+/// Groups of `count` things that meet, directly or through others, as lists of indices in order of the first. `meets`
+/// is asked for indices that are not in one group yet, the larger first.
 pub(crate) fn merge(count: usize, meets: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
     let mut leader: Vec<usize> = (0..count).collect();
     for a in 0..count {

@@ -1,4 +1,5 @@
-//! Bad scenario files: each problem is found where it stands, with its key, the allowed range and the nearest known name.
+//! Bad scenario files: each problem is found where it stands, with its key, the allowed range and the nearest known
+//! name.
 
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{Problem, ScenarioError, Source};
@@ -271,7 +272,8 @@ fn overrides_take_full_names_and_unique_ends() {
         let overrides: Vec<String> = overrides.iter().map(|said| (*said).to_owned()).collect();
         Scenario::read("good.toml", text, &overrides).unwrap_or_else(|error| panic!("{error}"))
     };
-    // The last word counts, also over what is wrong in the file; tables are made; words need no quotes; tables are replaced whole.
+    // The last word counts, also over what is wrong in the file; tables are made; words need no quotes; tables are
+    // replaced whole.
     let mended = "world.ball2d.sigma_theta_deg=10";
     let read = read(&[
         mended,
@@ -335,4 +337,64 @@ fn later_errors_are_blamed_on_their_key_or_on_the_table_that_lacks_it() {
         assert_eq!(error.problems[0].span.clone().map(|span| &text[span]), place);
         assert_eq!(error.to_string(), line);
     }
+}
+
+/// Two demands, of which one could be meant by its kind.
+const DICE: &str = "[world.dice]\nconstraints = [\n    { rest_at = { x_mm = 1.0, y_mm = 2.0 } },\n    { face_up = { face = 6 } },\n]\n";
+
+#[test]
+fn overrides_reach_into_lists() {
+    let read =
+        |text: &str, said: &str| Scenario::read("dice.toml", text, &[said.to_owned()]).map(|read| read.to_toml());
+    let moved = DICE.replace("x_mm = 1.0", "x_mm = 20.0");
+    let wanted = Scenario::read("dice.toml", &moved, &[]).map(|read| read.to_toml());
+    for said in ["constraints[0].rest_at.x_mm=20", "world.dice.constraints[0].rest_at.x_mm=20", "rest_at.x_mm=20"] {
+        assert_eq!(read(DICE, said), wanted, "{said}");
+    }
+    let whole = "constraints[0]={ rest_at = { x_mm = 20, y_mm = 2 } }";
+    assert_eq!(read(DICE, whole), wanted, "a whole table");
+    // A list that the file leaves out has its default's places.
+    assert!(read("[world.dice]", "constraints[0].rest_at.x_mm=20").is_ok_and(|read| read.contains("x_mm = 20.0")));
+}
+
+#[test]
+fn overrides_of_places_that_are_not_there_say_which_are() {
+    let said = |said| only(DICE, &[said]).to_string();
+    let beyond = said("constraints[2].rest_at.x_mm=20");
+    assert!(beyond.contains("`constraints` has 2 entries, `constraints[0]` to `constraints[1]`"), "{beyond}");
+    let other = said("constraints[1].rest_at.x_mm=20");
+    assert!(other.contains("`world.dice.constraints[1]` is `face_up`, not `rest_at`"), "{other}");
+    let none = said("spilled.x_mm=20");
+    assert!(none.contains("unknown key"), "{none}");
+    let two = DICE.replace("{ face_up = { face = 6 } }", "{ rest_at = { x_mm = 3.0, y_mm = 4.0 } }");
+    let which = only(&two, &["rest_at.x_mm=20"]).to_string();
+    let choice = "`world.dice.constraints[0].rest_at.x_mm` or `world.dice.constraints[1].rest_at.x_mm`";
+    assert!(which.contains(choice), "{which}");
+}
+
+#[test]
+fn two_demands_in_one_table_are_told_apart() {
+    let text = "[world.dice]\nconstraints = [{ rest_at = { x_mm = 1.0, y_mm = 2.0 }, face_up = { face = 6 } }]";
+    let problem = only(text, &[]);
+    assert_eq!(problem.message, "`face_up` and `rest_at` in one table: each needs a table of its own");
+    assert_eq!(problem.help.as_deref(), Some("write { face_up = … }, { rest_at = … }"));
+}
+
+/// Each key was compared with all others, and each line counted from the top: 200,000 took minutes.
+#[test]
+#[allow(clippy::disallowed_methods, reason = "the clock is what is tested")]
+fn unknown_keys_beyond_number_are_counted_quickly() {
+    let mut text = String::from("[world.ball2d]\n");
+    for key in 0..200_000 {
+        text += &format!("unknown_key_{key} = 1\n");
+    }
+    let begun = std::time::Instant::now();
+    let error = error(&text, &[]);
+    let seconds = begun.elapsed().as_secs_f64();
+    assert_eq!(error.problems.len(), 200_000);
+    assert_eq!((error.problems[199_999].line, error.problems[199_999].column), (Some(200_001), Some(1)));
+    let said = error.to_string();
+    assert_eq!(said.lines().count(), 21, "{said}");
+    assert!(said.ends_with("and 199980 more problems"), "{said}");
+    assert!(seconds < 20.0, "it took {seconds} s");
 }

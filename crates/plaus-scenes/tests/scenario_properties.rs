@@ -1,10 +1,6 @@
 //! Whatever a scenario file holds: no panic, and either a scenario within all ranges or problems with a place.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod common;
-
-use common::{BALL2D, Leaf, leaves};
+use crate::common::{BALL2D, Leaf, leaves};
 use plaus_scenes::Scenario;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{Problem, ScenarioError, Source, template};
@@ -313,7 +309,8 @@ proptest! {
         let result = read(&overrides).or_else(|error| if tempered(&error) { read(&alone) } else { Err(error) });
         match result {
             Ok(scenario) => same_when_written(&scenario)?,
-            // Values that are right one by one may not go together: weights that are all zero, a ball larger than its bin.
+            // Values that are right one by one may not go together: weights that are all zero, a ball larger than its
+            // bin.
             Err(error) => {
                 let of_the_scene = error.problems.iter().all(|problem| problem.key.starts_with(&format!("world.{scene}.")));
                 prop_assert!(of_the_scene && !error.to_string().contains("out of range"), "{}", error);

@@ -1,13 +1,9 @@
 //! The schema is enforced as it stands, and what is derived from it agrees with the code.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
-mod common;
-
-use common::{BALL2D, Leaf, leaves};
+use crate::common::{BALL2D, Leaf, leaves};
 use plaus_scenes::Scenario;
 use plaus_scenes::registry::NAMES;
-use plaus_scenes::scenario::{self, explain, keys, template};
+use plaus_scenes::scenario::{self, NoKey, explain, keys, template};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -25,7 +21,8 @@ fn refused(leaf: &Leaf, value: &str) {
     assert!(!doc.range.is_empty() && error.problems[0].message.contains(&doc.range), "{error} lacks {}", doc.range);
 }
 
-/// Nothing is wrong with the value by itself. What it may not go together with at their defaults (a ball larger than a bin) is said in other words.
+/// Nothing is wrong with the value by itself. What it may not go together with at their defaults (a ball larger than a
+/// bin) is said in other words.
 fn taken(leaf: &Leaf, value: &str) {
     if let Err(error) = with(&leaf.key, value) {
         let of_the_scene = error.problems.len() == 1 && !error.problems[0].key.starts_with("world.ball2d.");
@@ -34,8 +31,8 @@ fn taken(leaf: &Leaf, value: &str) {
     }
 }
 
-/// Every key of `keys()` is in the schema and the other way round; every number has both ends; each end is enforced to the last bit, and
-/// the scene takes what the schema allows.
+/// Every key of `keys()` is in the schema and the other way round; every number has both ends; each end is enforced to
+/// the last bit, and the scene takes what the schema allows.
 #[test]
 fn every_range_is_enforced_to_the_last_bit() {
     let leaves = leaves();
@@ -237,9 +234,24 @@ fn keys_are_explained_by_full_name_or_unique_end() {
     assert_eq!(explain("symmetric_redraws").unwrap().default, "unset");
     assert_eq!(explain("ball2d.weights").unwrap().kind, "a table");
     assert_eq!(explain("weights.perturb").unwrap().key, "world.ball2d.weights.perturb");
-    assert_eq!(explain("sigma_teta_deg"), Err(Some("world.ball2d.sigma_theta_deg".into())));
-    assert_eq!(explain("sampler.sede"), Err(Some("sampler.seed".into())));
-    assert_eq!(explain("gravity"), Err(None));
-    assert_eq!(explain(""), Err(None));
+    assert_eq!(explain("sigma_teta_deg"), Err(NoKey::Unknown(Some("world.ball2d.sigma_theta_deg".into()))));
+    assert_eq!(explain("sampler.sede"), Err(NoKey::Unknown(Some("sampler.seed".into()))));
+    assert_eq!(explain("gravity"), Err(NoKey::Unknown(None)));
+    assert_eq!(explain(""), Err(NoKey::Unknown(None)));
     assert!(keys().iter().all(|doc| !doc.description.is_empty()));
+}
+
+#[test]
+fn keys_in_lists_are_explained_and_ambiguous_ones_named() {
+    let doc = explain("rest_at").unwrap();
+    assert_eq!((doc.key.as_str(), doc.kind.as_str()), ("world.dice.constraints[].rest_at", "a table"));
+    assert_eq!(explain("constraints[0].rest_at"), Ok(doc.clone()));
+    assert_eq!(explain("world.dice.constraints[7].rest_at"), Ok(doc));
+    assert_eq!(explain("rest_at.x_mm").unwrap().unit.as_deref(), Some("mm"));
+    assert_eq!(explain("face_up.face").unwrap().key, "world.dice.constraints[].face_up.face");
+    let Err(NoKey::Ambiguous(all)) = explain("ln_lambda") else { panic!("one key") };
+    for key in ["world.bowling.ln_lambda", "world.spelling.ln_lambda"] {
+        assert!(all.iter().any(|one| one == key), "{key} is not among {all:?}");
+    }
+    assert_eq!(explain("rest_att"), Err(NoKey::Unknown(Some("world.dice.constraints[].rest_at".into()))));
 }

@@ -1,5 +1,4 @@
 //! Random drops into bins: nothing tunnels, nothing freezes, and what rests is supported. `examples/drops.rs` does the same 10⁵ times.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::marbles::Phase;

@@ -1,8 +1,6 @@
 //! Numbers far out: energy never grows, nothing turns NaN, every run ends in an outcome.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use plaus_sim::marbles::{MarbleSpec, Start};
 use plaus_sim::scenery::{Mesh, Plane};

@@ -1,5 +1,4 @@
 //! Spline fields: values against the plain formula, derivatives, bounds, laziness, faults.
-#![allow(clippy::unwrap_used)]
 
 use plaus_sim::WorldError;
 use plaus_sim::field::{Grid, Spline};

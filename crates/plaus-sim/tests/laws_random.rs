@@ -1,11 +1,7 @@
 //! Conservation, Coulomb's bound and energy over random worlds of every shape, at every preset; and wrong twins of the
 //! records, which the same checks must refuse. Thousands of worlds: the example `laws`.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-#[path = "common/laws/mod.rs"]
-mod laws;
-
-use laws::campaign::{Case, tally};
+use crate::laws::campaign::{Case, tally};
 use plaus_sim::Preset;
 
 /// Worlds of each case and preset: every kind of body, or pair of kinds, comes up.

@@ -1,12 +1,8 @@
 //! What is symmetric stays so: points that are struck at one instant are resolved in no order of their own.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-#[path = "common/laws/mod.rs"]
-mod laws;
-
+use crate::laws::record::{Moment, Record, record};
+use crate::laws::worlds::{M, in_space, on_floor};
 use glam::{DMat3, DQuat, DVec3};
-use laws::record::{Moment, Record, record};
-use laws::worlds::{M, in_space, on_floor};
 use plaus_sim::resolve::{ContactMatrix, stronge_impulse};
 use plaus_sim::rigid::{BodySpec, Start};
 use plaus_sim::shape::{Cuboid, Shape};

@@ -1,17 +1,11 @@
 //! Presets against truths of another make: the finer, the nearer. Many tosses, and how near: the example `truths`.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-#[path = "common/laws/mod.rs"]
-mod laws;
-#[path = "common/small_steps/mod.rs"]
-mod small_steps;
-
+use crate::laws::worlds::Dice;
+use crate::small_steps::impact::impulse;
+use crate::small_steps::tosses::{Toss, smooth, wild};
 use glam::{DMat3, DVec3};
-use laws::worlds::Dice;
 use plaus_sim::resolve::{ContactMatrix, stronge_impulse};
 use plaus_sim::{Accuracy, Preset};
-use small_steps::impact::impulse;
-use small_steps::tosses::{Toss, smooth, wild};
 
 /// Length of the truth's steps in s: what is unknown of it then is far below what presets are off.
 const STEP: f64 = 1e-3;
@@ -21,7 +15,7 @@ fn errors(toss: &Toss) -> ([f64; 4], f64) {
     let (mut off, mut unknown) = ([0.0_f64; 4], 0.0_f64);
     for start in &toss.starts {
         let (truth, doubt, _) = toss.truth_and_doubt(start, STEP);
-        let worst = |looks: &[small_steps::tosses::Look]| {
+        let worst = |looks: &[crate::small_steps::tosses::Look]| {
             looks.iter().zip(&truth).map(|(a, b)| a.off(b, toss.length())).fold(0.0, f64::max)
         };
         unknown = unknown.max(worst(&doubt));

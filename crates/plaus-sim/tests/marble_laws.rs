@@ -1,8 +1,6 @@
 //! What marbles in contact that lasts must do at every preset.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::marbles::{Marble, MarbleSpec, Marbles, Phase, Start};

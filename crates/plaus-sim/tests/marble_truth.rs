@@ -1,10 +1,8 @@
 //! Lasting contact of marbles against an integrator of another make: where there is no closed form, finer presets are
 //! nearer to the truth, by the square of the step.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-use common::smooth::{Ball, Friction, Smooth, Touch, With};
-use common::*;
+use crate::common::smooth::{Ball, Friction, Smooth, Touch, With};
+use crate::common::*;
 use glam::DVec3;
 use plaus_sim::marbles::{MarbleSpec, Start};
 use plaus_sim::scenery::{Aabb, Dome};

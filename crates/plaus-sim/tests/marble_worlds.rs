@@ -1,8 +1,6 @@
 //! What worlds of marbles at random must keep at every preset: each check fails on a twin that is a little wrong.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::marbles::{Marble, MarbleSpec, Marbles};

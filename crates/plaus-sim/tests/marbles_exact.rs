@@ -1,8 +1,6 @@
 //! Marbles against exact answers.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use plaus_sim::marbles::{MarbleSpec, Marbles, Phase, Start};
 use plaus_sim::scenery::{Aabb, Dome, Plane};

@@ -1,8 +1,6 @@
 //! Worlds that must behave alike to the last bit.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::marbles::{Marble, MarbleSpec, MarbleWorld, Marbles, Start};
@@ -79,12 +77,12 @@ fn relabelling_ten_marbles_in_contact_permutes_the_result() {
     for run in 0..5 {
         let mut stream = Seed(11).chain(0).at(run, Purpose::START);
         let starts = drops(&bins, COUNT, 0.05, || open_unit(&mut stream));
-        let (plain, outcome, state) = common::run(&world, &starts, 2.0);
+        let (plain, outcome, state) = crate::common::run(&world, &starts, 2.0);
         linked += state.links().len();
         // Reversed, and every third: both far from the order of the drops.
         for order in [(0..COUNT).rev().collect::<Vec<_>>(), (0..COUNT).map(|k| (3 * k + 1) % COUNT).collect()] {
             let shuffled: Vec<Start> = order.iter().map(|&k| starts[k]).collect();
-            let (bodies, same, _) = common::run(&world, &shuffled, 2.0);
+            let (bodies, same, _) = crate::common::run(&world, &shuffled, 2.0);
             assert_eq!(outcome, same, "draw {run}");
             for (k, &label) in order.iter().enumerate() {
                 assert_eq!(plain[label].path, bodies[k].path, "marble {label} of draw {run}");

@@ -1,8 +1,6 @@
 //! Saving and resuming, early exit, traces, and worlds that are refused.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-use common::*;
+use crate::common::*;
 use glam::DVec3;
 use plaus_sim::marbles::{Marble, MarbleSpec, MarbleWorld, Marbles, Phase, Start};
 use plaus_sim::mechanics::Mechanics;

@@ -1,9 +1,6 @@
 //! Cuboids against cuboids: when they touch, what an impact keeps, stacks, piles, and nothing inside anything.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::turning::Overlaps;
+use crate::common::turning::Overlaps;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, math, open_unit};
 use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start, Turning};

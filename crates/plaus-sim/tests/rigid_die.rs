@@ -1,9 +1,6 @@
 //! Dice on tables: rest, fairness, energy, scale, restart, extremes, faults.
-#![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::turning::noise;
+use crate::common::turning::noise;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};

@@ -1,9 +1,6 @@
 //! Turning bodies with numbers far out: energy never grows, nothing turns NaN, every run ends in an outcome; and worlds that must behave alike to the last bit.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::turning::same_when_relabelled;
+use crate::common::turning::same_when_relabelled;
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Turning};

@@ -1,9 +1,6 @@
 //! Convex polyhedra: as cuboids where they are cuboids; rest, energy, outcomes, scale; against balls, cuboids and each other.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::turning::{Overlaps, noise, same_when_relabelled};
+use crate::common::turning::{Overlaps, noise, same_when_relabelled};
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::field::{Grid, Spline};

@@ -1,5 +1,4 @@
 //! Convex polyhedra at edges and corners of boxes, where no corner of theirs is: posts, walls and ledges.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};

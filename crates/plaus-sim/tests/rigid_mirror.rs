@@ -1,5 +1,4 @@
 //! A mirrored shot gives the mirrored result: to the bit until an order among equals decides, which the mirror turns around.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use glam::{DQuat, DVec3};
 use plaus_sim::mechanics::{Impact, Other};

@@ -1,5 +1,4 @@
 //! Pins: standing for ever, tipping at the analytic angle, and a ball that goes through none of them.
-#![allow(clippy::unwrap_used)]
 
 use glam::{DQuat, DVec3};
 use plaus_dist::math;

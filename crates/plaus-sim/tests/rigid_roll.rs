@@ -1,5 +1,4 @@
 //! A ball on a lane against the closed form: sliding into rolling, and the hook under oil and dry boards.
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use glam::DVec3;
 use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start, Stretch};

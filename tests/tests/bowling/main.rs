@@ -1,4 +1,5 @@
-//! Bowling is sampled exactly: the prior is what the paper's appendix A says, every move leaves prior and target as they are, and wrong twins of the moves do not.
+//! Bowling is sampled exactly: the prior is what the paper's appendix A says, every move leaves prior and target as
+//! they are, and wrong twins of the moves do not.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

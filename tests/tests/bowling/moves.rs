@@ -1,4 +1,5 @@
-//! Every move leaves the prior and the constrained target as they are; moves that are wrong in the ways in which one goes wrong do not.
+//! Every move leaves the prior and the constrained target as they are; moves that are wrong in the ways in which one
+//! goes wrong do not.
 
 use super::straight::{AnyMove, Straight, all_moves, small, statistics};
 use plaus_dist::{LogPotential, Stream};
@@ -133,8 +134,8 @@ fn wrong_twins_are_caught() {
     }
 }
 
-/// A height drawn for one radius is no draw for another: the truncation's mass must be in the ratio. At the paper's height the ball touches the lane one standard
-/// deviation below the mean, for the largest radius.
+/// A height drawn for one radius is no draw for another: the truncation's mass must be in the ratio. At the paper's
+/// height the ball touches the lane one standard deviation below the mean, for the largest radius.
 #[test]
 fn a_shift_of_the_radius_keeps_the_height_s_law() {
     let scene = super::straight::scene(|config| config.ln_lambda = 0.0);

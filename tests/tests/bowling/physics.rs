@@ -1,4 +1,5 @@
-//! What the scene hands to the simulator, against closed forms and symmetries: slide, hook and roll under the lane's friction, mirrored shots, energy.
+//! What the scene hands to the simulator, against closed forms and symmetries: slide, hook and roll under the lane's
+//! friction, mirrored shots, energy.
 
 use super::straight::scene;
 use glam::DVec3;
@@ -23,7 +24,8 @@ struct Ball {
     w: DVec3,
 }
 
-/// A ball slides, by the formulas of PHYSICS.md, on friction `mu` until it rolls, until it is `end` along the lane, or for `left` seconds; and then rolls until one of the others. Returns what time is left.
+/// A ball slides, by the formulas of PHYSICS.md, on friction `mu` until it rolls, until it is `end` along the lane, or
+/// for `left` seconds; and then rolls until one of the others. Returns what time is left.
 fn glide(ball: &mut Ball, [radius, gyration]: [f64; 2], mu: f64, end: f64, mut left: f64) -> f64 {
     let arm = DVec3::new(0.0, 0.0, -radius);
     let leverage = (radius / gyration) * (radius / gyration);
@@ -116,8 +118,9 @@ fn mirrored(draw: &Shot, twins: &[usize]) -> Shot {
     there
 }
 
-/// The way to the pins and the ball's first pins are the same to the last bit. Later the order in which contacts of a group are gone through, which turns around in the mirror, parts the two ways; one pin alone
-/// is no group, and ends the same.
+/// The way to the pins and the ball's first pins are the same to the last bit. Later the order in which contacts of a
+/// group are gone through, which turns around in the mirror, parts the two ways; one pin alone is no group, and ends
+/// the same.
 #[test]
 fn mirrored_shots_have_mirrored_results() {
     let ten = [0, 2, 1, 5, 4, 3, 9, 8, 7, 6];
@@ -166,8 +169,9 @@ impl Observer<Rigid> for Ledger<'_> {
     }
 }
 
-/// The simulator's promise for shots at ten pins at the standard preset: at no time more than a hundredth of a pin's weight times the radius of its foot, which pushing bodies out of overlaps takes. The ball
-/// brings some 150 J; a hundredth is 4 mJ.
+/// The simulator's promise for shots at ten pins at the standard preset: at no time more than a hundredth of a pin's
+/// weight times the radius of its foot, which pushing bodies out of overlaps takes. The ball brings some 150 J; a
+/// hundredth is 4 mJ.
 #[test]
 fn energy_does_not_grow_over_a_shot() {
     let scene = scene(|_| ());

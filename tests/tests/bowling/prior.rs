@@ -31,7 +31,8 @@ fn every_variable_has_its_law() {
     check("twist", &|draw| draw.get(Quantity::Twist), &|x| normal(x / 0.2));
     check("pin 1", &|draw| draw.pins[0][0], &normal);
     check("pin 10", &|draw| draw.pins[9][1], &normal);
-    // Given the radius, the height is N(1.1, 0.1) largest radii, above it: its distribution function at itself is uniform.
+    // Given the radius, the height is N(1.1, 0.1) largest radii, above it: its distribution function at itself is
+    // uniform.
     let height = |draw: &Shot| {
         let z = |x: f64| (x - 0.121) / 0.011;
         let below = normal(z(draw.get(Quantity::Radius)));

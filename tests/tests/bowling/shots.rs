@@ -80,7 +80,8 @@ fn animations_show_the_outcome() {
     }
 }
 
-/// Begun at the foul line, a shot is that of its draw; a ball that rolls from just before the pins meets them on the straight line that it was sent along.
+/// Begun at the foul line, a shot is that of its draw; a ball that rolls from just before the pins meets them on the
+/// straight line that it was sent along.
 #[test]
 fn balls_may_begin_before_the_pins() {
     let scene = scene(|_| ());

@@ -1,5 +1,5 @@
-//! The scene with a simulator simple enough to trust: the ball keeps its direction, and pins in its way fall. Moves cannot tell the difference, and thousands of shots
-//! cost nothing.
+//! The scene with a simulator simple enough to trust: the ball keeps its direction, and pins in its way fall. Moves
+//! cannot tell the difference, and thousands of shots cost nothing.
 
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
@@ -13,7 +13,8 @@ use plaus_scenes::bowling::{
 pub(crate) type AnyMove = Box<dyn Move<Bowling>>;
 pub(crate) type Bowled = State<Shot, Rest>;
 
-/// Pins whose centre comes closer to the ball's straight way than its radius fall. Offsets count ten times, so that they matter.
+/// Pins whose centre comes closer to the ball's straight way than its radius fall. Offsets count ten times, so that
+/// they matter.
 pub(crate) struct Straight<'a>(pub &'a Bowling);
 
 /// Place of a pin's spot across the lane, and beyond the head pin, in m.
@@ -82,7 +83,8 @@ pub(crate) fn scene(change: impl FnOnce(&mut Config)) -> Bowling {
     Bowling::new(&config).unwrap()
 }
 
-/// Three pins, which look the same in the mirror, one to be left; all quantities of the ball uncertain where `delivery` is regulation.
+/// Three pins, which look the same in the mirror, one to be left; all quantities of the ball uncertain where `delivery`
+/// is regulation.
 pub(crate) fn small(ln_lambda: f64, delivery: Delivery) -> Bowling {
     scene(|config| {
         config.pins = vec![1, 4, 6];

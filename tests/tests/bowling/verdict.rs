@@ -10,8 +10,9 @@ use plaus_sim::trace::{Observer, While};
 use plaus_sim::worlds::{Alley, Verdict};
 use plaus_sim::{Scratch, State};
 
-/// Shots of the scene's prior that ended with other pins than was told early, at the time when this was written, by a verdict that did not wait for the pit and for pins at an edge, or took what flies over the pit without meeting anything for
-/// something at rest.
+/// Shots of the scene's prior that ended with other pins than was told early, at the time when this was written, by a
+/// verdict that did not wait for the pit and for pins at an edge, or took what flies over the pit without meeting
+/// anything for something at rest.
 const SHOTS: [u64; 5] = [11_484, 14_243, 5_722, 26_827, 1_526];
 
 fn draw(scene: &Bowling, shot: u64) -> Shot {
@@ -76,7 +77,8 @@ fn is_calm(alley: &Alley, world: &Rigid, state: &State<Turning>) -> bool {
     left <= 0.018
 }
 
-/// A pin that comes back out of the pit onto the nine, and an eight with its middle a centimetre past the deck's end. The ball lies far away.
+/// A pin that comes back out of the pit onto the nine, and an eight with its middle a centimetre past the deck's end.
+/// The ball lies far away.
 #[test]
 fn a_verdict_waits_for_the_pit_and_for_the_edge() {
     let alley = Alley { duration: 8.0, ..Alley::default() };

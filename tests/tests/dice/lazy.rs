@@ -19,7 +19,8 @@ fn make_whole(table: &mut Realisation) {
     scores.into_iter().for_each(|(site, score)| table.set(site, score));
 }
 
-/// Full bookkeeping: the density of a draw holds that of every control point of the table, `Π exp(−score²/2)`, and ratios are those of densities of scores.
+/// Full bookkeeping: the density of a draw holds that of every control point of the table, `Π exp(−score²/2)`, and
+/// ratios are those of densities of scores.
 struct Booked<'a>(&'a Dice);
 
 fn booked(draw: &Draw) -> f64 {
@@ -56,8 +57,9 @@ impl Target for Booked<'_> {
     }
 }
 
-/// A move whose step from score to score has the density of the autoregressive proposal, or of the prior where all is drawn anew: its ratio is
-/// `exp(−old²/2)/exp(−new²/2)` for each point that it changes, times what the lazy move says of the rest.
+/// A move whose step from score to score has the density of the autoregressive proposal, or of the prior where all is
+/// drawn anew: its ratio is `exp(−old²/2)/exp(−new²/2)` for each point that it changes, times what the lazy move says
+/// of the rest.
 struct OnScores {
     inner: Mixture<Dice>,
     index: plaus_mcmc::MoveId,
@@ -106,7 +108,8 @@ impl Move<Booked<'_>> for OnScores {
     }
 }
 
-/// The chain that holds only what moves have changed and the chain that holds all points and their densities make the same states, bit by bit.
+/// The chain that holds only what moves have changed and the chain that holds all points and their densities make the
+/// same states, bit by bit.
 #[test]
 fn touched_points_alone_and_full_bookkeeping_give_the_same_chain() {
     // Without shifts, which would move the window that is held whole.

@@ -164,7 +164,8 @@ fn savings_change_nothing() {
     assert!(report.passed(), "{report}");
 }
 
-/// Several dice of one table at once, half of them not led: with the ratio the target stays as it is, without it does not.
+/// Several dice of one table at once, half of them not led: with the ratio the target stays as it is, without it does
+/// not.
 #[test]
 fn recasts_of_several_dice_leave_the_constrained_target_invariant() {
     let dice = scene(|config| {
@@ -226,8 +227,8 @@ fn adapted_moves_leave_prior_and_target_invariant() {
     assert!(!wrong.passed(), "not caught: {wrong}");
 }
 
-/// Turning the pips changes which face comes up, a shift with the table where the die lies, and neither any bit of the motion; a state is what its draw alone
-/// makes of it.
+/// Turning the pips changes which face comes up, a shift with the table where the die lies, and neither any bit of the
+/// motion; a state is what its draw alone makes of it.
 #[test]
 fn turns_and_shifts_change_no_motion() {
     let dice = scene(|config| {

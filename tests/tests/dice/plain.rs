@@ -13,9 +13,9 @@ use plaus_scenes::dice::{
 pub(crate) type AnyMove = Box<dyn Move<Dice>>;
 pub(crate) type Thrown = State<Draw, Rest>;
 
-/// A die lands where its velocity brings it in a tenth of a second, moved by the height of the control point there. Where that is above its mean it touches the
-/// table mostly there, else mostly far behind it, so that which points are near collisions depends on the draw. It lies as it was thrown, or always on the face
-/// that its first axis points to.
+/// A die lands where its velocity brings it in a tenth of a second, moved by the height of the control point there.
+/// Where that is above its mean it touches the table mostly there, else mostly far behind it, so that which points are
+/// near collisions depends on the draw. It lies as it was thrown, or always on the face that its first axis points to.
 pub(crate) struct Plain<'a> {
     pub(crate) dice: &'a Dice,
     pub(crate) flat: bool,

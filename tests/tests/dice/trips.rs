@@ -12,7 +12,8 @@ fn thrown(scene: &Dice, count: u64) -> Vec<super::plain::Thrown> {
     draws.map(|draw| State::evaluate(scene, draw, &mut work).unwrap()).collect()
 }
 
-/// On bumps of any height every throw ends as one of what there is, and most dice lie on a table with small ones, a face up, at the height of half an edge.
+/// On bumps of any height every throw ends as one of what there is, and most dice lie on a table with small ones, a
+/// face up, at the height of half an edge.
 #[test]
 fn every_throw_ends() {
     for state in thrown(&scene(|_| ()), 60) {

@@ -1,5 +1,5 @@
-//! The simulator by itself: digests of where marbles, dice, pins, polyhedra and a ball end, and of every impact on the way. They hold at every optimisation level, on every thread, and however often
-//! the same work space has been used.
+//! The simulator by itself: digests of where marbles, dice, pins, polyhedra and a ball end, and of every impact on the
+//! way. They hold at every optimisation level, on every thread, and however often the same work space has been used.
 
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};

@@ -16,7 +16,7 @@ fn world(ln_lambda: f64, moves: Moves) -> Spelling {
         config.bitmap = "#.#".into();
         (config.columns, config.rows) = (3, 1);
         config.vertices = Vertices::Crossings;
-        (config.ln_lambda, config.moves) = (ln_lambda, moves);
+        (config.ln_lambda, config.moves) = (Some(ln_lambda), moves);
         config.sigma_mm = 0.4;
     })
 }
@@ -27,7 +27,8 @@ fn flag(holds: bool) -> f64 {
     f64::from(u8::from(holds))
 }
 
-/// Every marginal: how many are dropped, how many bins are filled and by whom, where balls are dropped, offsets with their squares.
+/// Every marginal: how many are dropped, how many bins are filled and by whom, where balls are dropped, offsets with
+/// their squares.
 const VALUES: [Value; 13] = [
     ("no ball", |_, state| flag(state.draw.active() == 0)),
     ("one ball", |_, state| flag(state.draw.active() == 1)),
@@ -44,10 +45,11 @@ const VALUES: [Value; 13] = [
     ("all squares", |_, state| state.draw.offsets.iter().flatten().map(|x| x * x).sum()),
 ];
 
-/// Mean of each value under the target, by importance sampling, with its standard error (delta method for a ratio of means).
+/// Mean of each value under the target, by importance sampling, with its standard error (delta method for a ratio of
+/// means).
 fn by_weights(scene: &Spelling, draws: &[Letters]) -> Vec<(f64, f64)> {
     let weights: Vec<f64> =
-        draws.iter().map(|state| math::exp(scene.config().ln_lambda * scene.filled(&state.outcome) as f64)).collect();
+        draws.iter().map(|state| math::exp(scene.ln_lambda() * scene.filled(&state.outcome) as f64)).collect();
     let total: f64 = weights.iter().sum();
     let mean = |value: fn(&Spelling, &Letters) -> f64| {
         let mean = draws.iter().zip(&weights).map(|(state, weight)| weight * value(scene, state)).sum::<f64>() / total;
@@ -92,7 +94,8 @@ fn chains_agree_with_weighted_draws_in_every_marginal() {
             let chains = by_chains(&world(ln_lambda, moves));
             for ((name, _), (a, b)) in VALUES.iter().zip(weighted.iter().zip(&chains)) {
                 let error = math::hypot(a.1, b.1);
-                // 52 comparisons at 5.3 standard errors; the errors of the chains are themselves known to some per cent.
+                // 52 comparisons at 5.3 standard errors; the errors of the chains are themselves known to some per
+                // cent.
                 let z = (a.0 - b.0) / error;
                 assert!(z.abs() < 5.3, "{name}, ln λ = {ln_lambda}, {moves:?}: {a:?} by weights, {b:?} by chains");
             }

@@ -15,7 +15,7 @@ const SAMPLES: u64 = 20_000;
 /// One step of `kernel` alone from draws of the prior, with the constraint switched off.
 pub(crate) fn free(scene: &Spelling, kernel: AnyMove) -> OneStepReport {
     // λ = 1: every outcome is as good as any other.
-    assert!(scene.config().ln_lambda == 0.0);
+    assert!(scene.ln_lambda() == 0.0);
     let toy = Straight(scene);
     let moves = lend::<Straight>(Mixture::of(kernel)).unwrap();
     let plan = OneStep { samples: SAMPLES, ..OneStep::default() };
@@ -27,7 +27,7 @@ pub(crate) fn constrained(scene: &Spelling, kernel: AnyMove) -> OneStepReport {
     let toy = Straight(scene);
     let moves = lend::<Straight>(Mixture::of(kernel)).unwrap();
     let plan = OneStep { samples: SAMPLES, ..OneStep::default() };
-    let bound = LogPotential::new(scene.config().ln_lambda * scene.word().designated().len() as f64).unwrap();
+    let bound = LogPotential::new(scene.ln_lambda() * scene.word().designated().len() as f64).unwrap();
     one_step(&toy, &moves, rejection(&toy, bound), &statistics(scene), plan).unwrap()
 }
 

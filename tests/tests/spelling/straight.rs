@@ -1,4 +1,5 @@
-//! The scene with a simulator simple enough to trust: balls fall straight down. Moves cannot tell the difference, and thousands of draws cost nothing.
+//! The scene with a simulator simple enough to trust: balls fall straight down. Moves cannot tell the difference, and
+//! thousands of draws cost nothing.
 
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
@@ -12,8 +13,9 @@ use plaus_scenes::spelling::{
 pub(crate) type AnyMove = Box<dyn Move<Spelling>>;
 pub(crate) type Letters = State<Drops, Rest>;
 
-/// A ball lands in the bin below it, moved by the first vertex's offset; where another one lies there already, in the next bin, and past the last one in none. So
-/// outcomes depend on offsets, on the order of balls, and on all balls before.
+/// A ball lands in the bin below it, moved by the first vertex's offset; where another one lies there already, in the
+/// next bin, and past the last one in none. So outcomes depend on offsets, on the order of balls, and on all balls
+/// before.
 pub(crate) struct Straight<'a>(pub &'a Spelling);
 
 impl Target for Straight<'_> {
@@ -81,7 +83,7 @@ pub(crate) fn small(ln_lambda: f64) -> Spelling {
     scene(|config| {
         config.bitmap = "##.\n.##".into();
         config.vertices = Vertices::Interior;
-        config.ln_lambda = ln_lambda;
+        config.ln_lambda = Some(ln_lambda);
         // Large enough to make a difference.
         config.sigma_mm = 0.4;
     })
@@ -101,7 +103,8 @@ pub(crate) fn all_moves() -> Vec<AnyMove> {
     ]
 }
 
-/// What must keep its law: how many balls are dropped, where two of them are, some offsets, and what became of the balls.
+/// What must keep its law: how many balls are dropped, where two of them are, some offsets, and what became of the
+/// balls.
 pub(crate) fn statistics(scene: &Spelling) -> Vec<Statistic<'_, Drops, Rest>> {
     let coordinate = |ball: usize, axis: usize| {
         let value = move |state: &Letters| state.draw.balls[ball].map_or(-1.0, |position| position[axis]);

@@ -1,4 +1,5 @@
-//! Moves that are wrong in the ways in which one goes wrong, each caught by the check that the right one passes; the paper's errata among them.
+//! Moves that are wrong in the ways in which one goes wrong, each caught by the check that the right one passes; the
+//! paper's errata among them.
 
 use super::moves::{constrained, free};
 use super::straight::{AnyMove, small};
@@ -145,7 +146,8 @@ fn other_faults_change_the_law() {
     assert!(!report.passed(), "not caught: {report}");
 }
 
-/// A fresh radial draw is likelier, under the Gaussian, than one of the Gaussian itself, by about a nat a vertex: the paper's change-all effect.
+/// A fresh radial draw is likelier, under the Gaussian, than one of the Gaussian itself, by about a nat a vertex: the
+/// paper's change-all effect.
 #[test]
 fn radial_offsets_gain_a_nat_a_vertex() {
     let scene = super::straight::scene(|_| ());
@@ -160,7 +162,8 @@ fn radial_offsets_gain_a_nat_a_vertex() {
             .sum();
         sum / 20_000.0
     };
-    // −V/2 against −3V/2 with V = 48. One draw has a variance of 48 · ½ and 144 · ½: six standard errors of the means are 0.21 and 0.36.
+    // −V/2 against −3V/2 with V = 48. One draw has a variance of 48 · ½ and 144 · ½: six standard errors of the means
+    // are 0.21 and 0.36.
     assert!((mean(true) + 24.0).abs() < 0.21, "{}", mean(true));
     assert!((mean(false) + 72.0).abs() < 0.36, "{}", mean(false));
 }

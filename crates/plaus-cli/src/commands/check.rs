@@ -16,7 +16,7 @@ pub(crate) struct Args {
     /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
-    /// Print nothing where all is right
+    /// Print nothing where the scenario is valid
     #[arg(short, long)]
     quiet: bool,
 }
@@ -44,7 +44,7 @@ impl Args {
         if !self.quiet {
             let scalars: Vec<&str> = manifest.scalars.iter().map(|scalar| scalar.name.as_str()).collect();
             console::note_line(&format!(
-                "{name} is right; moves: {}; scalars: {}",
+                "{name} is valid; moves: {}; scalars: {}",
                 manifest.moves.join(", "),
                 scalars.join(", ")
             ));

@@ -76,7 +76,7 @@ impl Args {
             console::print(&format!(
                 "{}\n{solutions}\n{}{some}\n{}\n{}{verdict}{findings}",
                 report::headline(manifest),
-                report::scalar_table(&diagnosis),
+                report::scalar_table(&diagnosis, usize::MAX),
                 report::move_table(manifest, &diagnosis),
                 report::scale_table(&diagnosis),
             ))?;

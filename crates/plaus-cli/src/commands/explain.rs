@@ -2,13 +2,15 @@
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::glossary;
 use plaus_scenes::registry::NAMES;
-use plaus_scenes::scenario::{self, KeyDoc};
+use plaus_scenes::scenario::{self, KeyDoc, NoKey};
 
 /// What to explain.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A key such as sigma_d or world.ball2d.sigma_d, or a scene such as ball2d; nothing lists all keys
+    /// A key such as sigma_d, world.ball2d.sigma_d or constraints[0].rest_at, a scene such as ball2d, or a word such as
+    /// chain or distinct; nothing lists all keys
     key: Option<String>,
 }
 
@@ -21,19 +23,27 @@ impl Args {
                 let about = scenario::explain(&table).map(|doc| format!("{}\n\n", doc.description)).unwrap_or_default();
                 format!("{about}{}", list(&format!("{table}.")))
             }
-            Some(key) => describe(&scenario::explain(key).map_err(|nearest| unknown(key, nearest))?),
+            Some(word) if glossary::meaning(word).is_some() => {
+                let meaning = glossary::meaning(word).unwrap_or_default();
+                let key = scenario::explain(word).map(|doc| format!("\n{}", describe(&doc))).unwrap_or_default();
+                format!("{word}: {meaning}\n{key}")
+            }
+            Some(key) => describe(&scenario::explain(key).map_err(|error| unknown(key, error))?),
         };
         console::print(&text)?;
         Ok(Outcome::Done)
     }
 }
 
-fn unknown(key: &str, nearest: Option<String>) -> Failure {
-    let advice = match nearest {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => "`plaus explain` lists all keys".to_owned(),
-    };
-    Failure::Message(format!("there is no key `{key}`; {advice}"))
+fn unknown(key: &str, error: NoKey) -> Failure {
+    Failure::Message(match error {
+        NoKey::Unknown(Some(near)) => format!("there is no key `{key}`; did you mean `{near}`?"),
+        NoKey::Unknown(None) => format!("there is no key `{key}`; `plaus explain` lists all keys"),
+        NoKey::Ambiguous(keys) => {
+            let keys = keys.iter().map(|key| format!("\n  plaus explain {key}")).collect::<String>();
+            format!("several keys are called `{key}`; choose one:{keys}")
+        }
+    })
 }
 
 fn list(prefix: &str) -> String {

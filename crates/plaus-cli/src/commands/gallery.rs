@@ -18,15 +18,15 @@ pub(crate) struct Args {
     /// Folder of the run
     run: PathBuf,
     /// The page to make: one HTML file that needs nothing else
-    #[arg(long, value_name = "FILE.html")]
+    #[arg(long, alias = "output", value_name = "FILE.html")]
     out: PathBuf,
-    /// Most solutions to show; they are chosen so that they differ as much as can be
+    /// Maximum number of solutions to show; they are chosen to differ as much as possible
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=5000))]
     count: u32,
     /// Replace what is there, if `plaus gallery` made it
     #[arg(long)]
     force: bool,
-    /// Read a damaged run up to its first damage
+    /// Read a damaged run as far as it is intact, and say what is lost
     #[arg(long)]
     salvage: bool,
 }
@@ -52,6 +52,7 @@ impl Args {
         let mut run = Run::open(&Folder::new(&self.run))?;
         if self.salvage {
             run = run.salvaged();
+            console::note_line(&run.visit(super::Salvage)?);
         } else if run.folder().is_being_written() {
             console::note_line("note: the run is being written; this shows it as of its last checkpoint");
         }

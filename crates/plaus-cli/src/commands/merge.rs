@@ -26,9 +26,9 @@ pub(crate) struct Args {
     #[arg(required = true, value_name = "PIECES")]
     pieces: Vec<PathBuf>,
     /// Folder to make for the whole run; must not exist
-    #[arg(long, value_name = "RUN")]
+    #[arg(long, alias = "output", value_name = "RUN")]
     out: PathBuf,
-    /// Threads; 0 is one a core. Results never depend on it
+    /// Number of threads; 0: one per core. Results do not depend on it
     #[arg(long, value_name = "T", default_value_t = 0)]
     threads: usize,
     /// Show no progress

@@ -19,20 +19,47 @@ mod submit;
 mod wanted;
 
 use crate::failure::{Failure, Outcome};
+use crate::table::grouped;
 use clap::Subcommand;
+use plaus_run::{RunOf, RunVisitor};
+use plaus_scenes::Scene;
+
+/// Says what is left of a run that is read for salvage, and what is lost.
+struct Salvage;
+
+impl RunVisitor for Salvage {
+    type Output = String;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> String {
+        let (kept, planned) = (run.iterations(), run.run().manifest().plan.end());
+        let lost = run.lost();
+        let chains: Vec<String> =
+            lost.iter().take(8).map(|(chain, bytes)| format!("{} bytes of chain {chain}", grouped(*bytes))).collect();
+        let more = if lost.len() > chains.len() {
+            format!(" and of {} more", lost.len() - chains.len())
+        } else {
+            String::new()
+        };
+        let damage = if lost.is_empty() {
+            "no damage in the records".to_owned()
+        } else {
+            format!("lost: {}{more}", chains.join(", "))
+        };
+        format!("salvaged: the first {} of {} iterations of each chain; {damage}", grouped(kept), grouped(planned))
+    }
+}
 
 /// What to do.
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Write a commented scenario file for a scene.
     New(new::Args),
-    /// Say whether a scenario file is right, and show it with all defaults.
+    /// Say whether a scenario file is valid, and show it with all defaults.
     Check(check::Args),
     /// Sample a scenario into a run folder.
     Sample(sample::Args),
-    /// Go on with an interrupted run from its last checkpoint, or make it longer.
+    /// Continue an interrupted run from its last checkpoint, or make it longer.
     Resume(resume::Args),
-    /// Put the pieces of a run together: byte for byte the run that one machine would have made.
+    /// Merge the pieces of a run into the run that one machine would have made, byte for byte.
     Merge(merge::Args),
     /// Write the job that samples a run in pieces on many machines, and submit it.
     Submit(submit::Args),
@@ -48,7 +75,7 @@ pub(crate) enum Command {
     Replay(replay::Args),
     /// Print the JSON Schema of scenario files.
     Schema,
-    /// Explain a scenario key, or list all keys.
+    /// Explain a scenario key or a word, or list all keys.
     Explain(explain::Args),
     /// Print completions for a shell.
     Completions(completions::Args),

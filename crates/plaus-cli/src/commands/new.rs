@@ -20,7 +20,11 @@ pub(crate) struct Args {
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        let unknown = || Failure::Message(format!("there is no scene `{}`; known: {}", self.scene, NAMES.join(", ")));
+        let unknown = || {
+            let near = scenario::nearest(&self.scene, NAMES.iter().copied());
+            let near = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
+            Failure::Message(format!("there is no scene `{}`; {near}known: {}", self.scene, NAMES.join(", ")))
+        };
         let text = scenario::template(&self.scene).ok_or_else(unknown)?;
         // Editors that know TOML read the schema that this line names.
         let text = format!("#:schema ./{SCHEMA_FILE}\n{text}");

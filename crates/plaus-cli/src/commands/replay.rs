@@ -24,7 +24,7 @@ pub(crate) struct Args {
     /// csv or json
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     format: Format,
-    /// What becomes of the same draw at another accuracy: draft, standard, fine or reference
+    /// Simulate the same draw at another accuracy: draft, standard, fine or reference
     #[arg(long, value_name = "PRESET")]
     accuracy: Option<AccuracyPreset>,
 }

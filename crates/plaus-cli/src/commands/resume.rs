@@ -14,7 +14,7 @@ pub(crate) struct Args {
     /// Make the run longer: iterations of each chain after the warm-up, in all
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     iterations: Option<u64>,
-    /// Look for more: stop once so many distinct solutions are recorded, those before included
+    /// Look for more: stop once K distinct solutions are recorded in all
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     solutions: Option<u64>,
     #[command(flatten)]

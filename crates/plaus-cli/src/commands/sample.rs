@@ -20,19 +20,23 @@ use std::time::Duration;
 /// Draws of all chains together that the closing summary looks at; `plaus diagnose` looks at all.
 const SUMMARISED: u64 = 400_000;
 
+/// Rows of the closing table; `plaus diagnose` shows all.
+const SHOWN_SCALARS: usize = 16;
+
 /// What to sample, and how.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     wanted: Wanted,
-    /// Folder to make for the run; must not exist. With `--shard`, `{shard}` as its last part stands for the number of the piece
-    #[arg(long, value_name = "RUN")]
+    /// Folder to make for the run; must not exist. With `--shard`, `{shard}` as its last part stands for the number of
+    /// the piece
+    #[arg(long, alias = "output", value_name = "RUN")]
     out: PathBuf,
-    /// Sample only one piece of the run's chains, e.g. 3/16; `task/16` takes the number from HQ_TASK_ID or SLURM_ARRAY_TASK_ID.
-    /// `plaus merge` makes the whole of all
+    /// Sample only one piece of the run's chains, e.g. 3/16; `task/16` takes the number from HQ_TASK_ID or
+    /// SLURM_ARRAY_TASK_ID. `plaus merge` makes the whole of all
     #[arg(long, value_name = "PIECE/PIECES", allow_hyphen_values = true)]
     shard: Option<String>,
-    /// Where RUN holds this very run already, go on with it; while another process writes it, wait
+    /// If RUN already holds this run, go on with it; wait while another process writes it
     #[arg(long = "continue")]
     go_on: bool,
     #[command(flatten)]
@@ -42,7 +46,7 @@ pub(crate) struct Args {
 /// How a run is watched.
 #[derive(clap::Args)]
 pub(crate) struct Watching {
-    /// Threads; 0 is one a core. Results never depend on it
+    /// Number of threads; 0: one per core. Never more than there are cores or chains. Results do not depend on it
     #[arg(long, value_name = "T", default_value_t = 0, allow_negative_numbers = true)]
     threads: usize,
     /// Stop after this time, e.g. 60s, 1.5m or 2h; the run can be resumed
@@ -105,9 +109,14 @@ impl Watching {
         let monitor = Monitor::new(self.style(), self.verbose, self.max_time, folder);
         let opening = |manifest: &Manifest, done| self.open(folder, manifest, done);
         let mut rounds = Rounds::new(&monitor, &opening, waits);
-        let ended = monitor.over(|| sampling(Sampling::new(self.threads, &mut rounds)));
+        let ended = monitor.over(|| sampling(Sampling::new(self.threads(), &mut rounds)));
         monitor.signal_end(ended.as_ref());
         self.sum_up(folder, &monitor, ended?)
+    }
+
+    /// Threads that are asked for, as far as there are cores for them.
+    fn threads(&self) -> usize {
+        self.threads.min(cores())
     }
 
     /// Whether solutions are to be confirmed.
@@ -128,7 +137,8 @@ impl Watching {
                 "plan": manifest.plan,
                 "iteration": done,
             });
-            let _ = console::print_line(&begin.to_string()); // where the reader has gone, the end of the run will say so
+            // Where the reader has gone, the end of the run will say so.
+            let _ = console::print_line(&begin.to_string());
         } else if self.quiet {
             console::note_line(&format!("seed {}", manifest.plan.seed));
         } else {
@@ -136,6 +146,12 @@ impl Watching {
             if done > 0 {
                 console::note_line(&format!("going on from iteration {}", grouped(done)));
             }
+        }
+        let useful = plaus_mcmc::useful_threads(self.threads(), &manifest.plan, &manifest.chains());
+        if useful < self.threads && !self.json && !self.quiet {
+            let why = if useful < self.threads() { "chains" } else { "cores" };
+            let (asked, used) = (grouped(self.threads as u64), grouped(useful as u64));
+            console::note_line(&format!("note: {used} of {asked} threads are used, as there are no more {why}"));
         }
         if let Some(warning) = report::warning(manifest) {
             console::note_line(&warning);
@@ -161,7 +177,7 @@ impl Watching {
         let plan = run.manifest().plan;
         let diagnosis = report::diagnose(&run, Some(SUMMARISED / run.manifest().chains().len().max(1) as u64))?;
         let confirmed = if self.confirm {
-            let Some(list) = confirm::confirm(&run, self.threads, !self.json && !self.quiet)? else {
+            let Some(list) = confirm::confirm(&run, self.threads(), !self.json && !self.quiet)? else {
                 console::note_line(&format!(
                     "interrupted while confirming; go on: plaus resume {} --confirm",
                     quoted(path)
@@ -197,6 +213,9 @@ impl Watching {
                 "only {found} of the {wanted} distinct solutions were found; go on: plaus resume {}{more}",
                 quoted(path)
             ));
+        }
+        if diagnosis.draws == 0 && ending == Ending::Complete {
+            return Ok(Outcome::Unsatisfied); // the summary has said why
         }
         if !diagnosis.tally.is_satisfied() && monitor.done() <= plan.warmup && ending == Ending::Stopped {
             console::note_line(&format!(
@@ -254,6 +273,9 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     let speed = format!(", {} in {}", rate(monitor.rate()), in_words(monitor.seconds()));
     let mut text = format!("{why}{}\n", if monitor.rate() > 0.0 { speed } else { String::new() });
     text += &report::solutions(diagnosis);
+    if ending == Ending::Complete && diagnosis.draws == 0 {
+        return text + &nothing_recorded(&plan, &path);
+    }
     // Restarts count from the end of the warm-up on, in all sessions; the clock knows this session.
     let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
     text += &report::tempering(diagnosis, (monitor.begun_at() == 0).then_some(sampling));
@@ -262,17 +284,10 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
         text += &format!("\nstill in the warm-up: nothing to look at yet\n\nnext:\n  plaus resume {path}\n");
         return text;
     }
-    text += &format!("\n{}", report::scalar_table(diagnosis));
-    if diagnosis.stride > 1 {
-        text += &format!("(from one draw in {}; `plaus diagnose` uses all)\n", diagnosis.stride);
-    }
-    match diagnosis.findings.as_slice() {
-        [] => {}
-        [first] => text += &format!("\nnot to be trusted yet: {first}\n"),
-        [first, rest @ ..] => {
-            text += &format!("\nnot to be trusted yet: {first}; and {} more findings of `plaus diagnose`\n", rest.len())
-        }
-    }
+    text += &match plan.solutions {
+        Some(_) => format!("(whether they come up as often as they are plausible: `plaus diagnose {path}`)\n"),
+        None => statistics(diagnosis, &path),
+    };
     text += "\nnext:\n";
     if let Some(best) = diagnosis.tally.best() {
         text += &format!("  plaus gallery {path} --out gallery.html\n  plaus replay {path} --sample {best}\n");
@@ -280,13 +295,51 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
     match ending {
         Ending::Stopped => text += &format!("  plaus resume {path}\n"),
-        Ending::Complete if !diagnosis.is_healthy() => text += &format!("  plaus resume {path}{}\n", longer(&plan)),
+        Ending::Complete if !diagnosis.is_healthy() && plan.solutions.is_none() => {
+            text += &format!("  plaus resume {path}{}\n", longer(&plan))
+        }
         Ending::EnoughSolutions => {
             text += &format!("  plaus resume {path} --solutions {}\n", plan.solutions.unwrap_or(1).saturating_mul(2));
         }
         Ending::Complete => {}
     }
     text
+}
+
+/// What a run says that was not made for solutions alone: how its numbers are spread, and whether to trust them.
+fn statistics(diagnosis: &Diagnosis, path: &str) -> String {
+    let mut text = format!("\n{}", report::scalar_table(diagnosis, SHOWN_SCALARS));
+    let more = diagnosis.scalars.len().saturating_sub(SHOWN_SCALARS);
+    if more > 0 {
+        text += &format!("  and {more} more: plaus diagnose {path}\n");
+    }
+    if diagnosis.stride > 1 {
+        text += &format!("(from one draw in {}; `plaus diagnose` uses all)\n", diagnosis.stride);
+    }
+    match diagnosis.findings.as_slice() {
+        [] => {}
+        [first] => text += &format!("\nnot to be trusted yet: {first}\n"),
+        [first, rest @ ..] => {
+            text +=
+                &format!("\nnot to be trusted yet: {first}; and {} more findings of `plaus diagnose`\n", rest.len());
+        }
+    }
+    text
+}
+
+/// A run that has ended, of whose sampling phase nothing was to be recorded.
+fn nothing_recorded(plan: &Plan, path: &str) -> String {
+    let (thin, iterations) = (grouped(plan.thin), grouped(plan.iterations));
+    format!(
+        "\nnothing was recorded after the warm-up: one in {thin} iterations is, and there were {iterations}\n\nnext:\n  \
+         sample again with a smaller --thin, or make the run longer:\n  plaus resume {path} --iterations {}\n",
+        plan.thin.saturating_mul(100)
+    )
+}
+
+/// Cores that this process may use.
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
 /// What makes a run that has ended ten times as long.

@@ -23,10 +23,10 @@ pub(crate) struct Wanted {
     /// Iterations before sampling begins
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     warmup: Option<u64>,
-    /// Record only every so many iterations
+    /// Record one in N iterations
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     thin: Option<u64>,
-    /// Stop once so many distinct satisfying solutions are recorded after the warm-up
+    /// Stop once K distinct solutions are recorded after the warm-up
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     solutions: Option<u64>,
     /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times

@@ -1,6 +1,7 @@
 //! Watches a run: shows how far it is, makes it durable about once a second, stops it when asked to.
 //!
-//! A thread of its own looks at the chains' [`Pulse`] while they work, so that something is seen from the first second on, however long a round takes.
+//! A thread of its own looks at the chains' [`Pulse`] while they work, so that something is seen from the first second
+//! on, however long a round takes.
 
 mod beacon;
 mod view;
@@ -111,7 +112,8 @@ impl Monitor {
         Self { folder, style, verbose, limit, pulse: Arc::default(), board: Mutex::new(board), over: Condvar::new() }
     }
 
-    /// Does `sampling` while a thread looks on; then takes away what was drawn, so that what follows stands in its place.
+    /// Does `sampling` while a thread looks on; then takes away what was drawn, so that what follows stands in its
+    /// place.
     pub(crate) fn over<T>(&self, sampling: impl FnOnce() -> T) -> T {
         /// Ends the other thread, also where `sampling` panics.
         struct End<'a>(&'a Monitor);
@@ -335,7 +337,8 @@ impl Watch for Rounds<'_> {
         if let Some(writing) = self.writing.take() {
             self.pause = (20.0 * writing.seconds()).max(1.0);
             if self.is_piece {
-                // Many pieces share a disk: what one loses when it is killed is at most this part of what it has, and at most a minute.
+                // Many pieces share a disk: what one loses when it is killed is at most this part of what it has, and
+                // at most a minute.
                 self.pause = self.pause.max((self.monitor.seconds() / 20.0).min(60.0));
             }
         }

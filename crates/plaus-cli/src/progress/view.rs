@@ -67,7 +67,9 @@ impl View<'_> {
             self.standing.restarts.map(|restarts| format!("  restarts {}", grouped(restarts))).unwrap_or_default();
         let hits = percent(hits as f64 / iterations as f64);
         let mut lines = vec![far, format!("hits {hits}  distinct {}{wanted}{fresh}", grouped(self.distinct))];
-        if let Some(Mixing { rhat, ess: (scarce, ess) }) = &self.standing.mixing {
+        // Whoever looks for solutions is not told how well averages over them could be trusted.
+        let mixing = self.standing.mixing.as_ref().filter(|_| plan.solutions.is_none());
+        if let Some(Mixing { rhat, ess: (scarce, ess) }) = mixing {
             let rhat =
                 rhat.as_ref().map(|(name, rhat)| format!("R-hat at most {rhat:.3} ({name})  ")).unwrap_or_default();
             lines.push(format!("outcomes: {rhat}ESS at least {ess:.0} ({scarce})"));

@@ -9,7 +9,8 @@ use std::fmt;
 /// How to check balance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
-    /// Largest allowed `|π_i P_ij − π_j P_ji|`, and deviation of a row sum from 1. Probabilities add up to 1, so 1e-12 is some 10⁴ rounding errors.
+    /// Largest allowed `|π_i P_ij − π_j P_ji|`, and deviation of a row sum from 1. Probabilities add up to 1, so 1e-12
+    /// is some 10⁴ rounding errors.
     pub tolerance: f64,
     /// Seed of the proposals that are compared with the lists.
     pub seed: Seed,
@@ -108,14 +109,16 @@ impl fmt::Display for BalanceReport {
     }
 }
 
-/// Builds the whole transition matrix of the accept rule `min(1, exp(log α))` for a toy `target` whose states are exactly `draws` (others have prior
-/// density 0) and moves with relative weights; reports how far it is from detailed balance for the target, move by move and mixed. Also makes
-/// proposals and tests that they come with the listed probabilities and with the ratios the matrix is built from.
+/// Builds the whole transition matrix of the accept rule `min(1, exp(log α))` for a toy `target` whose states are
+/// exactly `draws` (others have prior density 0) and moves with relative weights; reports how far it is from detailed
+/// balance for the target, move by move and mixed. Also makes proposals and tests that they come with the listed
+/// probabilities and with the ratios the matrix is built from.
 ///
 /// Time and memory grow with the square of the number of states.
 ///
 /// # Errors
-/// [`CheckError`] where the model fails, a state is missing from `draws` or twice in it, or a setting or weight is out of range.
+/// [`CheckError`] where the model fails, a state is missing from `draws` or twice in it, or a setting or weight is out
+/// of range.
 pub fn balance<T: Target>(
     target: &T,
     draws: Vec<T::Draw>,

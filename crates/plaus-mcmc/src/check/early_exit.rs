@@ -9,7 +9,8 @@ use plaus_dist::{LogDensity, LogPotential, Seed, Stream};
 use std::fmt;
 use std::sync::Arc;
 
-/// A target simulated the plain way: never stopped early, nothing reused from the current state, nothing remembered from one simulation to the next.
+/// A target simulated the plain way: never stopped early, nothing reused from the current state, nothing remembered
+/// from one simulation to the next.
 #[derive(Debug)]
 pub struct NeverEarly<'a, T> {
     target: &'a T,
@@ -103,8 +104,8 @@ impl fmt::Display for EarlyExitReport {
     }
 }
 
-/// Runs a chain with all the savings its target makes (early stops, reuse of the current state, scratch memory) beside its plain twin
-/// ([`NeverEarly`]) and compares them state by state, bit by bit.
+/// Runs a chain with all the savings its target makes (early stops, reuse of the current state, scratch memory) beside
+/// its plain twin ([`NeverEarly`]) and compares them state by state, bit by bit.
 ///
 /// Draws and outcomes are compared by `==`, so one that holds a NaN differs from itself.
 ///

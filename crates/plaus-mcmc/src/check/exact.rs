@@ -10,8 +10,9 @@ use rand::RngExt;
 /// Draws tried for one that is kept, before giving up.
 const TRIES: u64 = 10_000_000;
 
-/// Draws of the prior, as [`Target::start`] makes them; those of prior density 0 are thrown away. They are exact draws of `target` where its
-/// constraint is switched off ([`super::PriorOnly`]) **and** `start` draws from the prior: where it does not, [`super::one_step()`] says so.
+/// Draws of the prior, as [`Target::start`] makes them; those of prior density 0 are thrown away. They are exact draws
+/// of `target` where its constraint is switched off ([`super::PriorOnly`]) **and** `start` draws from the prior: where
+/// it does not, [`super::one_step()`] says so.
 pub fn prior<T: Target>(target: &T) -> impl FnMut(&mut Stream) -> Result<StateOf<T>, ModelError> {
     let mut scratch = T::Scratch::default();
     move |stream| {
@@ -25,8 +26,9 @@ pub fn prior<T: Target>(target: &T) -> impl FnMut(&mut Stream) -> Result<StateOf
     }
 }
 
-/// Exact draws of `target` by rejection: a draw of the prior is kept with probability `exp(log p_c − bound)`. Each costs about `exp(bound)` over the mean
-/// of `p_c` under the prior; a sampler that has to try 10⁷ times in a row gives up with an error, as does one that meets a constraint above `bound`.
+/// Exact draws of `target` by rejection: a draw of the prior is kept with probability `exp(log p_c − bound)`. Each
+/// costs about `exp(bound)` over the mean of `p_c` under the prior; a sampler that has to try 10⁷ times in a row gives
+/// up with an error, as does one that meets a constraint above `bound`.
 ///
 /// `bound` is the largest `log p_c` there is, or anything above.
 pub fn rejection<T: Target>(
@@ -61,8 +63,8 @@ pub fn any_of<D: Clone, O: Clone>(
     }
 }
 
-/// Every `every`-th of the states that a chain visits, `count` of them, its start left out: states typical of the target, with [`any_of`] a source
-/// for [`super::ratios()`].
+/// Every `every`-th of the states that a chain visits, `count` of them, its start left out: states typical of the
+/// target, with [`any_of`] a source for [`super::ratios()`].
 ///
 /// # Errors
 /// [`CheckError::Chain`] where the chain fails.

@@ -55,16 +55,17 @@ impl fmt::Display for LogP {
 
 /// Tests that the differences `d` have a law symmetric about 0, by their mean.
 ///
-/// Given their sizes |d|, only the signs are random, so `P(|Σd| ≥ z √Σd²) ≤ 2 exp(−z²/2)` for any law and any number of them (Hoeffding, "Probability
-/// inequalities for sums of bounded random variables", JASA 58, 1963; Efron, "Student's t-test under symmetry conditions", JASA 64, 1969).
+/// Given their sizes |d|, only the signs are random, so `P(|Σd| ≥ z √Σd²) ≤ 2 exp(−z²/2)` for any law and any number of
+/// them (Hoeffding, "Probability inequalities for sums of bounded random variables", JASA 58, 1963; Efron, "Student's
+/// t-test under symmetry conditions", JASA 64, 1969).
 pub(super) fn symmetric(differences: impl Iterator<Item = f64>) -> LogP {
     let (sum, squares) = differences.fold((0.0, 0.0), |(sum, squares), d| (sum + d, squares + d * d));
     if squares > 0.0 { LogP::of(LN_2 - 0.5 * sum * sum / squares) } else { LogP::ONE }
 }
 
-/// Tests that two sorted samples of equal size have one law, by the largest distance D between their distribution functions: `P ≤ 2 exp(−n D²)`
-/// for n ≥ 458, with equality in the limit for continuous laws (Wei & Dudley, "Two-sample Dvoretzky–Kiefer–Wolfowitz inequalities", Statistics &
-/// Probability Letters 82, 2012).
+/// Tests that two sorted samples of equal size have one law, by the largest distance D between their distribution
+/// functions: `P ≤ 2 exp(−n D²)` for n ≥ 458, with equality in the limit for continuous laws (Wei & Dudley, "Two-sample
+/// Dvoretzky–Kiefer–Wolfowitz inequalities", Statistics & Probability Letters 82, 2012).
 pub(super) fn same_law(a: &[f64], b: &[f64]) -> LogP {
     let size = a.len().min(b.len()) as f64;
     let (mut i, mut j, mut largest) = (0, 0, 0_usize);
@@ -83,9 +84,10 @@ pub(super) fn same_law(a: &[f64], b: &[f64]) -> LogP {
     LogP::of(LN_2 - size * distance * distance)
 }
 
-/// Tests that counts over cells come from the probabilities, by the relative entropy D of what was seen: for `t = n D > k − 1`,
-/// `P ≤ exp(−t) (e t / (k − 1))^(k − 1)` (Agrawal, "Finite-sample concentration of the multinomial in relative entropy", IEEE Trans. Inf. Theory 66, 2020).
-/// 2t is the G statistic, asymptotically χ² with k − 1 degrees of freedom; the bound needs no cell to be well filled.
+/// Tests that counts over cells come from the probabilities, by the relative entropy D of what was seen: for
+/// `t = n D > k − 1`, `P ≤ exp(−t) (e t / (k − 1))^(k − 1)` (Agrawal, "Finite-sample concentration of the multinomial
+/// in relative entropy", IEEE Trans. Inf. Theory 66, 2020). 2t is the G statistic, asymptotically χ² with k − 1 degrees
+/// of freedom; the bound needs no cell to be well filled.
 pub(super) fn multinomial(cells: &[(u64, f64)]) -> LogP {
     let total: u64 = cells.iter().map(|(count, _)| count).sum();
     let free = cells.iter().filter(|(_, probability)| *probability > 0.0).count().saturating_sub(1) as f64;
@@ -110,8 +112,8 @@ pub(super) struct Column {
     pub(super) fresh: Vec<f64>,
 }
 
-/// The strongest evidence of several tests that the law of a statistic after a step is the one before, and which test found it. The second
-/// number is how many tests there were.
+/// The strongest evidence of several tests that the law of a statistic after a step is the one before, and which test
+/// found it. The second number is how many tests there were.
 pub(super) fn compare(column: &Column, cells: usize) -> ((LogP, String), usize) {
     let Column { before, after, fresh } = column;
     let pairs = || before.iter().zip(after);
@@ -178,7 +180,8 @@ mod tests {
         values
     }
 
-    /// Under the hypothesis p ≤ 0.01 at most once in a hundred: 100 of 10,000, six standard deviations (10) above that is 160.
+    /// Under the hypothesis p ≤ 0.01 at most once in a hundred: 100 of 10,000, six standard deviations (10) above that
+    /// is 160.
     #[test]
     fn p_values_are_not_too_small() {
         assert!(alarms(|unit| symmetric((0..50).map(|_| unit() - unit()))) <= 160);

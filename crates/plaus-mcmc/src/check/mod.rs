@@ -7,8 +7,9 @@
 //! | [`one_step()`] | exact draws of the target | a kernel that moves the law of exact draws, at a stated false-alarm rate |
 //! | [`early_exit()`] | nothing more | savings (early stops, reuse, scratch memory) that change a state |
 //!
-//! `ratios` alone proves little: a move that proposes from another law than its ratio assumes passes it. `one_step` is the judge; at λ = 1 it
-//! needs nothing but the prior ([`PriorOnly`], [`prior`]), and on a toy [`rejection`] gives it exact draws at λ > 1.
+//! `ratios` alone proves little: a move that proposes from another law than its ratio assumes passes it. `one_step` is
+//! the judge; at λ = 1 it needs nothing but the prior ([`PriorOnly`], [`prior`]), and on a toy [`rejection`] gives it
+//! exact draws at λ > 1.
 //!
 //! ```
 //! use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Stream};
@@ -37,7 +38,8 @@
 //!         *candidate = target.strength.sample(stream);
 //!         Ok(Proposal::SYMMETRIC)
 //!     }
-//!     fn log_ratio(&self, _: &Throw, _: &StateOf<Throw>, _: &StateOf<Throw>, _: Path) -> Result<LogRatio, ModelError> {
+//!     fn log_ratio(&self, _: &Throw, _: &StateOf<Throw>, _: &StateOf<Throw>, _: Path)
+//!         -> Result<LogRatio, ModelError> {
 //!         Ok(LogRatio::ONE)
 //!     }
 //! }

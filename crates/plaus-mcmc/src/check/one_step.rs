@@ -28,9 +28,11 @@ impl<'a, D, O> Statistic<'a, D, O> {
 pub struct OneStep {
     /// Seed of the exact draws and the steps.
     pub seed: Seed,
-    /// Exact draws to step from, and as many to compare with; at least 1000. A shift by a share s of a statistic's standard deviation shows from about 100/s² on.
+    /// Exact draws to step from, and as many to compare with; at least 1000. A shift by a share s of a statistic's
+    /// standard deviation shows from about 100/s² on.
     pub samples: u64,
-    /// Iterations from each; at least 1. One tests the kernel most directly; with a kernel that seldom accepts, several let the drift of a fault add up.
+    /// Iterations from each; at least 1. One tests the kernel most directly; with a kernel that seldom accepts, several
+    /// let the drift of a fault add up.
     pub steps: u64,
     /// Cells of equal probability into which each statistic is cut, at least 2.
     pub cells: usize,
@@ -118,15 +120,15 @@ impl fmt::Display for OneStepReport {
     }
 }
 
-/// Makes real accept steps from exact draws x of `target` to y, and tests that y has the law of x in every statistic, and in log prior and log
-/// constraint: mean, spread about the median, share in each of [`OneStep::cells`] cells, each by the signs of y − x; and the whole law, y against fresh
-/// draws, by Kolmogorov and Smirnov.
+/// Makes real accept steps from exact draws x of `target` to y, and tests that y has the law of x in every statistic,
+/// and in log prior and log constraint: mean, spread about the median, share in each of [`OneStep::cells`] cells, each
+/// by the signs of y − x; and the whole law, y against fresh draws, by Kolmogorov and Smirnov.
 ///
-/// `exact` is an exact sampler: [`super::prior`], [`super::rejection`], or your own. To test one move, give a mixture of it alone; moves that are each
-/// other's reverse (activate and deactivate) only leave the target invariant together.
+/// `exact` is an exact sampler: [`super::prior`], [`super::rejection`], or your own. To test one move, give a mixture
+/// of it alone; moves that are each other's reverse (activate and deactivate) only leave the target invariant together.
 ///
-/// For kernels reversible for the target, which every mixture of Metropolis–Hastings moves is, no p-value relies on an approximation: (x, y) and (y, x)
-/// then have the same law, so the signs of y − x are fair coins.
+/// For kernels reversible for the target, which every mixture of Metropolis–Hastings moves is, no p-value relies on an
+/// approximation: (x, y) and (y, x) then have the same law, so the signs of y − x are fair coins.
 ///
 /// # Errors
 /// [`CheckError`] where the model, a move, a statistic or `exact` fails, or a setting is out of range.

@@ -18,8 +18,8 @@ pub struct Branch<D> {
     pub path: Path,
 }
 
-/// A move on a toy world small enough that all its proposals from a state can be listed. Write the list from what the move is meant to
-/// do, not by calling [`Move::propose`]: the check holds one against the other.
+/// A move on a toy world small enough that all its proposals from a state can be listed. Write the list from what the
+/// move is meant to do, not by calling [`Move::propose`]: the check holds one against the other.
 pub trait Enumerable<T: Target>: Move<T> {
     /// All ways from `state`. Their probabilities add up to 1; the same candidate may come more than once.
     ///

@@ -13,8 +13,8 @@ pub struct Ratios {
     pub seed: Seed,
     /// Number of pairs, at least 1.
     pub pairs: u64,
-    /// Largest allowed disagreement in nats. 1e-9 leaves room for the rounding of sums of some 10⁶ nats (one unit in the last place there is
-    /// 1.2e-10) and none for a forgotten term.
+    /// Largest allowed disagreement in nats. 1e-9 leaves room for the rounding of sums of some 10⁶ nats (one unit in
+    /// the last place there is 1.2e-10) and none for a forgotten term.
     pub tolerance: f64,
 }
 
@@ -40,7 +40,8 @@ pub struct Pair<D, O> {
 /// The ratios of one pair along one path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairRatios {
-    /// What the accept step uses: the ratio that `propose` gave, times what [`Move::log_ratio_after`] adds where it was announced.
+    /// What the accept step uses: the ratio that `propose` gave, times what [`Move::log_ratio_after`] adds where it was
+    /// announced.
     pub used: LogRatio,
     /// [`Move::log_ratio`] from `from` to `to`.
     pub forth: LogRatio,
@@ -155,8 +156,9 @@ fn gap(a: f64, b: f64) -> f64 {
     if a == b { 0.0 } else { (a - b).abs() }
 }
 
-/// Compares, over many pairs, the ratio that the accept step uses with [`Move::log_ratio`], and the latter's two directions with each other; and what
-/// a later part may be with what it is. `states` gives the state each pair starts from, e.g. [`super::prior`] or [`super::any_of`].
+/// Compares, over many pairs, the ratio that the accept step uses with [`Move::log_ratio`], and the latter's two
+/// directions with each other; and what a later part may be with what it is. `states` gives the state each pair starts
+/// from, e.g. [`super::prior`] or [`super::any_of`].
 ///
 /// A move that is consistent but wrong about what it proposes passes: see [`super::one_step()`].
 ///

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 /// Sokal's constant c: the sum over lags stops at the first lag M ≥ c·τ(M).
 ///
-/// With exponentially decaying correlations the sum then misses a share e⁻⁵ ≈ 0.7% of τ, and its variance is about (2M + 1) 2τ²/N. Sokal advises
-/// 4 to 6 for one exponential, up to 10 for several; 5 is also what emcee takes.
+/// With exponentially decaying correlations the sum then misses a share e⁻⁵ ≈ 0.7% of τ, and its variance is about (2M
+/// + 1) 2τ²/N. Sokal advises 4 to 6 for one exponential, up to 10 for several; 5 is also what emcee takes.
 pub const SOKAL_WINDOW: f64 = 5.0;
 
 /// Iterations that an independent draw costs.
@@ -17,19 +17,21 @@ pub const SOKAL_WINDOW: f64 = 5.0;
 pub struct AutocorrelationTime {
     /// τ = 1 + 2 Σ ρ_t, in iterations: 1 for independent draws, below 1 where neighbours repel each other.
     ///
-    /// The variance of the mean of N draws is their variance times τ/N, so N/τ is an effective sample size of the mean. [`ess_mean`](super::ess_mean)
-    /// estimates the same quantity by Geyer's rule instead of Sokal's: τ ≈ N / `ess_mean`, to within the noise of either.
+    /// The variance of the mean of N draws is their variance times τ/N, so N/τ is an effective sample size of the mean.
+    /// [`ess_mean`](super::ess_mean) estimates the same quantity by Geyer's rule instead of Sokal's: τ ≈ N /
+    /// `ess_mean`, to within the noise of either.
     pub tau: f64,
     /// The last lag summed.
     pub window: usize,
-    /// Whether the window closed and the chain is at least 50 τ long (emcee's rule of thumb); otherwise τ is likely to be too low.
+    /// Whether the window closed and the chain is at least 50 τ long (emcee's rule of thumb); otherwise τ is likely to
+    /// be too low.
     pub settled: bool,
 }
 
 /// Correlation of the draws of one chain with those 0, 1, 2, …, `max_lag` iterations later.
 ///
-/// Starts with 1; the normalisation is 1/n at every lag, so far lags shrink towards 0. Lags stop at the last one the chain has. `None`
-/// where all draws are equal.
+/// Starts with 1; the normalisation is 1/n at every lag, so far lags shrink towards 0. Lags stop at the last one the
+/// chain has. `None` where all draws are equal.
 ///
 /// # Errors
 /// [`DiagnoseError`] where the draws are not finite or too few.
@@ -45,12 +47,12 @@ pub fn autocorrelation(chain: &[f64], max_lag: usize) -> Result<Option<Vec<f64>>
 
 /// Integrated autocorrelation time over all chains, by Sokal's automatic window with c = [`SOKAL_WINDOW`].
 ///
-/// Correlations are taken about the mean of **all** chains: chains that disagree never decorrelate, and τ approaches their length. For one chain with
-/// positive correlations the value is that of `emcee.autocorr.integrated_time`.
+/// Correlations are taken about the mean of **all** chains: chains that disagree never decorrelate, and τ approaches
+/// their length. For one chain with positive correlations the value is that of `emcee.autocorr.integrated_time`.
 ///
-/// Deviation: where neighbours repel each other (ρ₁ < 0) Sokal's rule would stop at once with a negative τ. There the window is chosen on
-/// (−1)ᵗ ρ_t, which are the correlations of the chain with every other deviation negated; τ itself stays the sum of ρ_t. It is kept above 1/log₁₀ N,
-/// the bound ArviZ sets on τ.
+/// Deviation: where neighbours repel each other (ρ₁ < 0) Sokal's rule would stop at once with a negative τ. There the
+/// window is chosen on (−1)ᵗ ρ_t, which are the correlations of the chain with every other deviation negated; τ itself
+/// stays the sum of ρ_t. It is kept above 1/log₁₀ N, the bound ArviZ sets on τ.
 ///
 /// `None` where all draws are equal.
 ///
@@ -96,7 +98,8 @@ fn correlation_about(rows: &[&[f64]], centre: f64, lags: usize) -> Vec<f64> {
     covariance.iter().map(|c| c / covariance[0]).collect()
 }
 
-/// Autocovariance at lags 0 .. `lags`, each row about its centre and divided by its length n (not n − t), averaged over the rows.
+/// Autocovariance at lags 0 .. `lags`, each row about its centre and divided by its length n (not n − t), averaged over
+/// the rows.
 ///
 /// The spectra of the rows are added before the one transform back, so memory is that of one row.
 pub(super) fn mean_autocovariance(rows: &[&[f64]], centres: &[f64], lags: usize) -> Vec<f64> {

@@ -7,9 +7,10 @@ use super::rank::{normal_scores, quantile};
 
 /// Effective sample size of the bulk: of the mean of the rank-normalised draws (Vehtari et al. 2021, section 4.1).
 ///
-/// How many independent draws would locate the centre of the distribution as well as these do, over all chains together. In (0, N·log₁₀ N] for N
-/// draws: above N where neighbours repel each other. Below 100 per chain neither it nor [`rhat`](super::rhat()) is reliable.
-/// The number of draws where all are equal (the middle one of an odd number per chain is not counted).
+/// How many independent draws would locate the centre of the distribution as well as these do, over all chains
+/// together. In (0, N·log₁₀ N] for N draws: above N where neighbours repel each other. Below 100 per chain neither it
+/// nor [`rhat`](super::rhat()) is reliable. The number of draws where all are equal (the middle one of an odd number
+/// per chain is not counted).
 ///
 /// # Errors
 /// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
@@ -18,9 +19,11 @@ pub fn ess_bulk<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
     Ok(ess_of_rows(&as_rows(&normal_scores(&halves), halves[0].len())))
 }
 
-/// Effective sample size of the tails: the smaller of those of the 5% and the 95% quantile (Vehtari et al. 2021, section 4.3).
+/// Effective sample size of the tails: the smaller of those of the 5% and the 95% quantile (Vehtari et al. 2021,
+/// section 4.3).
 ///
-/// That of a quantile is the effective sample size of the share of draws not above it. Range and constant draws as for [`ess_bulk`].
+/// That of a quantile is the effective sample size of the share of draws not above it. Range and constant draws as for
+/// [`ess_bulk`].
 ///
 /// # Errors
 /// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
@@ -31,7 +34,8 @@ pub fn ess_tail<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
     Ok(ess_of_ends(&chains.halves(), ends))
 }
 
-/// Effective sample size of the mean of the draws as they are: the one that belongs to [`mcse_mean`](super::mcse_mean()).
+/// Effective sample size of the mean of the draws as they are: the one that belongs to
+/// [`mcse_mean`](super::mcse_mean()).
 ///
 /// Needs a finite variance; with heavy tails look at [`ess_bulk`]. Range and constant draws as there.
 ///
@@ -54,10 +58,12 @@ pub(super) fn ess_of_ends(halves: &[&[f64]], ends: [f64; 2]) -> f64 {
     ess[0].min(ess[1])
 }
 
-/// Number of draws divided by τ, the autocorrelation summed by Geyer's initial monotone sequence over all (half) chains.
+/// Number of draws divided by τ, the autocorrelation summed by Geyer's initial monotone sequence over all (half)
+/// chains.
 ///
-/// Correlations at lag t are 1 − (W − mean autocovariance) / var⁺, where W is the variance within and var⁺ that over all rows (Vehtari et al.,
-/// equation 10): rows that disagree leave correlations that never decay. Values of the order of one; at least two per row.
+/// Correlations at lag t are 1 − (W − mean autocovariance) / var⁺, where W is the variance within and var⁺ that over
+/// all rows (Vehtari et al., equation 10): rows that disagree leave correlations that never decay. Values of the order
+/// of one; at least two per row.
 pub(super) fn ess_of_rows(rows: &[&[f64]]) -> f64 {
     let length = rows[0].len();
     let draws = rows.len() * length;
@@ -74,8 +80,8 @@ pub(super) fn ess_of_rows(rows: &[&[f64]]) -> f64 {
     draws as f64 / tau.max(least_tau(draws))
 }
 
-/// τ = −1 + 2 Σ ρ_t: pairs ρ_2k + ρ_2k+1 are summed while they are positive and made to decrease; the first even term behind them is
-/// added once if positive. Which terms count is ArviZ's rule (and Stan's), kept to the letter.
+/// τ = −1 + 2 Σ ρ_t: pairs ρ_2k + ρ_2k+1 are summed while they are positive and made to decrease; the first even term
+/// behind them is added once if positive. Which terms count is ArviZ's rule (and Stan's), kept to the letter.
 fn geyer_tau(length: usize, correlation: impl Fn(usize) -> f64) -> f64 {
     // ρ_0 is set to 1, not computed: the formula gives slightly less.
     let mut rho = vec![0.0; length];

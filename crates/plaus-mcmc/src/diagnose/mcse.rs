@@ -6,8 +6,8 @@ use super::moments::{Standardised, mean_and_variance, sum};
 
 /// Monte Carlo standard error of the mean: standard deviation / √[`ess_mean`](super::ess_mean()).
 ///
-/// In the unit of the draws, ≥ 0; 0 where all draws are equal. The true mean lies within two of them in about 95 runs of 100,
-/// provided the variance is finite and the chains have converged.
+/// In the unit of the draws, ≥ 0; 0 where all draws are equal. The true mean lies within two of them in about 95 runs
+/// of 100, provided the variance is finite and the chains have converged.
 ///
 /// # Errors
 /// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
@@ -18,8 +18,9 @@ pub fn mcse_mean<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
 
 /// Monte Carlo standard error of the standard deviation.
 ///
-/// The error of the mean of the squared deviations (with an effective sample size of their own), carried to their root by the
-/// delta method, as ArviZ does. In the unit of the draws, ≥ 0. Needs a finite fourth moment. 0 where all draws are equal.
+/// The error of the mean of the squared deviations (with an effective sample size of their own), carried to their root
+/// by the delta method, as ArviZ does. In the unit of the draws, ≥ 0. Needs a finite fourth moment. 0 where all draws
+/// are equal.
 ///
 /// # Errors
 /// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.

@@ -1,7 +1,8 @@
 //! Convergence diagnostics of one scalar over several chains.
 //!
-//! Everything is a pure function of the draws, given as chains of one length (`&[Vec<f64>]`, `&[&[f64]]`, `&[[f64; N]]`).
-//! [`summarize`] computes the usual table row at once; the single functions are there for whoever needs one number.
+//! Everything is a pure function of the draws, given as chains of one length (`&[Vec<f64>]`, `&[&[f64]]`,
+//! `&[[f64; N]]`). [`summarize`] computes the usual table row at once; the single functions are there for whoever needs
+//! one number.
 //!
 //! ```
 //! use plaus_mcmc::diagnose;
@@ -32,24 +33,29 @@
 //!
 //! # Source
 //!
-//! A. Vehtari, A. Gelman, D. Simpson, B. Carpenter, P.-C. Bürkner, "Rank-Normalization, Folding, and Localization: An Improved R̂ for
-//! Assessing Convergence of MCMC", Bayesian Analysis 16(2), 2021; C. Geyer, "Practical Markov Chain Monte Carlo", Statistical Science 7, 1992
-//! (initial monotone sequence); A. Sokal, "Monte Carlo Methods in Statistical Mechanics", 1997 (automatic window). The values agree with
-//! ArviZ 0.23 on stored draws to 1e-9 (`tests/arviz_reference.rs`).
+//! A. Vehtari, A. Gelman, D. Simpson, B. Carpenter, P.-C. Bürkner, "Rank-Normalization, Folding, and Localization: An
+//! Improved R̂ for Assessing Convergence of MCMC", Bayesian Analysis 16(2), 2021; C. Geyer, "Practical Markov Chain
+//! Monte Carlo", Statistical Science 7, 1992 (initial monotone sequence); A. Sokal, "Monte Carlo Methods in Statistical
+//! Mechanics", 1997 (automatic window). The values agree with ArviZ 0.23 on stored draws to 1e-9
+//! (`tests/arviz_reference.rs`).
 //!
-//! Deviation: results do not depend on the unit of the draws. ArviZ takes draws that differ by less than 1e-15 for constant; here draws
-//! are constant only where they are all equal, and squares neither overflow at 1e300 nor vanish at 1e-300.
+//! Deviation: results do not depend on the unit of the draws. ArviZ takes draws that differ by less than 1e-15 for
+//! constant; here draws are constant only where they are all equal, and squares neither overflow at 1e300 nor vanish at
+//! 1e-300.
 //!
 //! # Draws that carry no information
 //!
-//! * NaN or ±∞ among the draws, fewer than [`MIN_DRAWS`] draws, no chain, chains of different lengths: a [`DiagnoseError`]. Nothing panics.
-//! * All draws equal: R̂, autocorrelation and its time are `None`, since there is no variance to compare; every ESS is the number of
-//!   draws (ArviZ's convention), every MCSE is 0. A variable that should move and has this is **stuck**: look at `sd` too.
+//! * NaN or ±∞ among the draws, fewer than [`MIN_DRAWS`] draws, no chain, chains of different lengths: a
+//!   [`DiagnoseError`]. Nothing panics.
+//! * All draws equal: R̂, autocorrelation and its time are `None`, since there is no variance to compare; every ESS is
+//!   the number of draws (ArviZ's convention), every MCSE is 0. A variable that should move and has this is **stuck**:
+//!   look at `sd` too.
 //! * Each chain constant, but not the same constant: R̂ is `Some(+∞)`, ESS about half a draw per chain.
 //! * One chain: R̂ is `None` (it compares chains); everything else is defined.
 //!
-//! The Fourier transforms come from `realfft`, which picks vector instructions by the machine it runs on: the last bits of ESS, MCSE and
-//! autocorrelations may differ between machines. They are for reading: nothing that must be reproducible may depend on them.
+//! The Fourier transforms come from `realfft` without its vector instructions, which it would pick by the machine it
+//! runs on. Their sines are the platform's, so the last bits of ESS, MCSE and autocorrelations may still differ between
+//! platforms. They are for reading: nothing that must be reproducible may depend on them.
 
 mod autocorrelation;
 mod chains;

@@ -9,7 +9,8 @@ pub(super) fn sum(values: &[f64]) -> f64 {
     sum(left) + sum(right)
 }
 
-/// Mean, and variance over n − 1, of at least two values: the same to the last bit in whatever order they come, and the variance also of the negated values.
+/// Mean, and variance over n − 1, of at least two values: the same to the last bit in whatever order they come, and the
+/// variance also of the negated values.
 pub(super) fn unordered_mean_and_variance(values: &[f64]) -> (f64, f64) {
     let centre = if is_constant(values) { values[0] } else { unordered_sum(values) / values.len() as f64 };
     let squares: Vec<f64> = values.iter().map(|x| (x - centre) * (x - centre)).collect();

@@ -3,10 +3,12 @@
 use super::moments::extremes;
 use plaus_dist::normal_quantile;
 
-/// Replaces every draw by the normal quantile of its rank among all draws (Vehtari et al., section 4.1), row after row in one table.
+/// Replaces every draw by the normal quantile of its rank among all draws (Vehtari et al., section 4.1), row after row
+/// in one table.
 ///
-/// Equal draws share the mean of their ranks. The rank r of S draws becomes the quantile at (r − 3/8) / (S + 1/4), Blom's offset. It
-/// is taken from the nearer end, so that the scores of the negated draws are exactly the negated scores.
+/// Equal draws share the mean of their ranks. The rank r of S draws becomes the quantile at (r − 3/8) / (S + 1/4),
+/// Blom's offset. It is taken from the nearer end, so that the scores of the negated draws are exactly the negated
+/// scores.
 pub(super) fn normal_scores(rows: &[&[f64]]) -> Vec<f64> {
     scores_of(rows.iter().flat_map(|row| row.iter().copied()).collect())
 }
@@ -62,11 +64,11 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The quantile at `probability` by linear interpolation between order statistics (type 7 of Hyndman & Fan 1996, the usual default);
-/// reorders `values`, of which there are at least two.
+/// The quantile at `probability` by linear interpolation between order statistics (type 7 of Hyndman & Fan 1996, the
+/// usual default); reorders `values`, of which there are at least two.
 ///
-/// The sequence of roundings is that of `scipy.stats.mstats.mquantiles`, which ArviZ calls: draws are counted as below the quantile
-/// or not, so a last bit matters where many draws are equal.
+/// The sequence of roundings is that of `scipy.stats.mstats.mquantiles`, which ArviZ calls: draws are counted as below
+/// the quantile or not, so a last bit matters where many draws are equal.
 pub(super) fn quantile(values: &mut [f64], probability: f64) -> f64 {
     let last = values.len() - 1;
     let place = values.len() as f64 * probability + (1.0 - probability);

@@ -4,13 +4,15 @@ use super::chains::{Chains, DiagnoseError, as_rows};
 use super::moments::{mean_and_variance, unordered_mean_and_variance};
 use super::rank::{folded_scores, normal_scores};
 
-/// Rank-normalised split R̂, the larger of the plain and the folded one (Vehtari et al. 2021, equations 3 to 5 and section 4).
+/// Rank-normalised split R̂, the larger of the plain and the folded one (Vehtari et al. 2021, equations 3 to 5 and
+/// section 4).
 ///
-/// About 1 where all chains, and both halves of each, sample the same law; the authors advise to trust draws below 1.01. It may
-/// come out slightly below 1 by chance. The plain part compares locations, the folded part (distances from the common median) spreads.
+/// About 1 where all chains, and both halves of each, sample the same law; the authors advise to trust draws below
+/// 1.01. It may come out slightly below 1 by chance. The plain part compares locations, the folded part (distances from
+/// the common median) spreads.
 ///
-/// `None` for a single chain, as there is nothing to compare, and where all draws are equal. `Some(f64::INFINITY)` where every half chain
-/// is constant and they differ.
+/// `None` for a single chain, as there is nothing to compare, and where all draws are equal. `Some(f64::INFINITY)`
+/// where every half chain is constant and they differ.
 ///
 /// # Errors
 /// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
@@ -27,7 +29,8 @@ pub(super) fn rank_rhat(chains: &Chains<'_>, halves: &[&[f64]], scores: &[f64]) 
     }
     let length = halves[0].len();
     let plain = scale_reduction(&as_rows(scores, length))?;
-    // No variance in the distances (two values, equally often) says nothing about the spread: the plain part stands alone.
+    // No variance in the distances (two values, equally often) says nothing about the spread: the plain part stands
+    // alone.
     let folded = scale_reduction(&as_rows(&folded_scores(halves), length));
     Some(folded.map_or(plain, |folded| plain.max(folded)))
 }

@@ -36,9 +36,11 @@ pub struct Summary {
     pub ess_bulk: f64,
     /// Effective sample size of the tails, see [`ess_tail`](super::ess_tail()).
     pub ess_tail: f64,
-    /// Rank-normalised split R̂, see [`rhat`](super::rhat()); `None` for one chain or equal draws. JSON has no infinity: +∞ is written as `null` too.
+    /// Rank-normalised split R̂, see [`rhat`](super::rhat()); `None` for one chain or equal draws. JSON has no
+    /// infinity: +∞ is written as `null` too.
     pub rhat: Option<f64>,
-    /// Iterations per independent draw, see [`integrated_autocorrelation_time`](super::integrated_autocorrelation_time()).
+    /// Iterations per independent draw, see
+    /// [`integrated_autocorrelation_time`](super::integrated_autocorrelation_time()).
     pub autocorrelation_time: Option<AutocorrelationTime>,
 }
 

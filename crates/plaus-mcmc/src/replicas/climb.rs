@@ -85,8 +85,9 @@ impl Climb {
         &self.ladder
     }
 
-    /// How often a replica came to the last rung that had been at the first since it was there before: each brings a state that shares nothing with those the
-    /// target's chain had of that replica before. The first arrivals count. Since the end of the warm-up.
+    /// How often a replica came to the last rung that had been at the first since it was there before: each brings a
+    /// state that shares nothing with those the target's chain had of that replica before. The first arrivals count.
+    /// Since the end of the warm-up.
     #[must_use]
     pub fn restarts(&self) -> u64 {
         self.restarts

@@ -1,11 +1,13 @@
-//! Parallel tempering: chains between the prior and the target exchange their places, so that the target's chain is restarted again and again from
-//! fresh draws, and is still exact.
+//! Parallel tempering: chains between the prior and the target exchange their places, so that the target's chain is
+//! restarted again and again from fresh draws, and is still exact.
 //!
-//! Rung 0 samples the prior (restricted to what the constraint does not forbid) by drawing anew, the last rung the target, those between them `p_w p_c^β`. Every so
-//! many iterations neighbours swap with probability `min(1, exp((β_b − β_a)(log p_c(x_a) − log p_c(x_b))))`, which leaves the product of all rungs invariant.
-//! Pairs (0,1), (2,3), … alternate with (1,2), (3,4), …: a replica then keeps its direction until a swap is rejected, and makes the way in a time that grows
-//! like the number of rungs, not its square (Okabe et al. 2001; Syed et al. 2022, see [`Ladder::barrier`](crate::Ladder::barrier)). During the warm-up the ladder is spaced anew a few
-//! times, by what was rejected so far; then it stays, as it must for the chain to be exact.
+//! Rung 0 samples the prior (restricted to what the constraint does not forbid) by drawing anew, the last rung the
+//! target, those between them `p_w p_c^β`. Every so many iterations neighbours swap with probability
+//! `min(1, exp((β_b − β_a)(log p_c(x_a) − log p_c(x_b))))`, which leaves the product of all rungs invariant. Pairs
+//! (0,1), (2,3), … alternate with (1,2), (3,4), …: a replica then keeps its direction until a swap is rejected, and
+//! makes the way in a time that grows like the number of rungs, not its square (Okabe et al. 2001; Syed et al. 2022,
+//! see [`Ladder::barrier`](crate::Ladder::barrier)). During the warm-up the ladder is spaced anew a few times, by what
+//! was rejected so far; then it stays, as it must for the chain to be exact.
 
 mod climb;
 
@@ -72,7 +74,8 @@ pub struct Course<'a, T: Target> {
     pub target: &'a T,
     /// Moves of all rungs but the first.
     pub moves: &'a Mixture<T>,
-    /// Moves of the first rung, which should draw anew, so that what comes from there shares nothing with what went there.
+    /// Moves of the first rung, which should draw anew, so that what comes from there shares nothing with what went
+    /// there.
     pub fresh: &'a Mixture<T>,
     /// Rungs and swaps.
     pub tempering: Tempering,
@@ -130,8 +133,8 @@ impl<'a, T: Target> Replicas<'a, T> {
         Ok(Self { course, chains, climb, swaps: streams(seed, chain, 0) })
     }
 
-    /// The same replicas, which adapt the scales of each rung's moves in the iterations before `until` and keep them from then on: see [`Chain::adapting`]. To be said of
-    /// replicas that have just started.
+    /// The same replicas, which adapt the scales of each rung's moves in the iterations before `until` and keep them
+    /// from then on: see [`Chain::adapting`]. To be said of replicas that have just started.
     #[must_use]
     pub fn adapting(self, until: u64) -> Self {
         let chains = self.chains.into_iter().map(|chain| chain.adapting(until)).collect();
@@ -193,8 +196,9 @@ impl<'a, T: Target> Replicas<'a, T> {
         }
     }
 
-    /// Advances all replicas to `iteration`; tells `watch` of every step of the last rung's chain, and of every swap that changes its state. Replicas run in
-    /// parallel on the current pool of threads; their number has no influence on the result.
+    /// Advances all replicas to `iteration`; tells `watch` of every step of the last rung's chain, and of every swap
+    /// that changes its state. Replicas run in parallel on the current pool of threads; their number has no influence
+    /// on the result.
     ///
     /// # Errors
     /// [`ChainError`] where a replica fails.
@@ -297,7 +301,8 @@ impl<'a, T: Target> Replicas<'a, T> {
     }
 }
 
-/// Log of the ratio by which a swap is accepted, of states with these log constraints (at β = 1) at these inverse temperatures.
+/// Log of the ratio by which a swap is accepted, of states with these log constraints (at β = 1) at these inverse
+/// temperatures.
 fn log_alpha(betas: [f64; 2], log_constraints: [f64; 2]) -> f64 {
     (betas[1] - betas[0]) * (log_constraints[0] - log_constraints[1])
 }
@@ -306,7 +311,8 @@ fn log_alpha(betas: [f64; 2], log_constraints: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// `π_a(x) π_b(y) α(x,y) = π_a(y) π_b(x) α(y,x)` with `π_β ∝ p_c^β`, for all pairs of weights and of rungs; and the wrong sign is seen.
+    /// `π_a(x) π_b(y) α(x,y) = π_a(y) π_b(x) α(y,x)` with `π_β ∝ p_c^β`, for all pairs of weights and of rungs; and the
+    /// wrong sign is seen.
     #[test]
     fn swaps_balance_in_detail() {
         let weights = [0.0, 1.0, 2.5, 7.0];

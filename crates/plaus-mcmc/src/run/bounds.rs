@@ -1,10 +1,12 @@
-//! Where blocks end: early ones soon, so that a run can be looked at, stopped and resumed from its first iterations on, however slow they are.
+//! Where blocks end: early ones soon, so that a run can be looked at, stopped and resumed from its first iterations on,
+//! however slow they are.
 
-/// Blocks grow with what is done, until they have full size: what a run loses that is cut short is at most this part of what it has.
+/// Blocks grow with what is done, until they have full size: what a run loses that is cut short is at most this part of
+/// what it has.
 const PART: u64 = 8;
 
-/// End of the block that begins after iterations `0 .. done`; full blocks end at multiples of `block`. A function of these two alone, so that a run that was stopped and goes
-/// on records what one that was never stopped does.
+/// End of the block that begins after iterations `0 .. done`; full blocks end at multiples of `block`. A function of
+/// these two alone, so that a run that was stopped and goes on records what one that was never stopped does.
 pub(super) fn end_of_block(done: u64, block: u64) -> u64 {
     let grown = (done / PART).max(1);
     let size = if grown >= block { block } else { 1 << grown.ilog2() };

@@ -1,7 +1,9 @@
-//! Solutions found within a round: chains tell each other, so that none goes far beyond the iteration that completes what is demanded.
+//! Solutions found within a round: chains tell each other, so that none goes far beyond the iteration that completes
+//! what is demanded.
 //!
-//! The iteration that completes it follows from the chains alone. What is known of it while they work is never too early: another
-//! solution can only bring it forward. So a chain that stops behind it has made everything that the run will hold.
+//! The iteration that completes it follows from the chains alone. What is known of it while they work is never too
+//! early: another solution can only bring it forward. So a chain that stops behind it has made everything that the run
+//! will hold.
 
 use super::pulse::Pulse;
 use crate::solutions::{Distinct, FirstOfClass};

@@ -1,8 +1,9 @@
 //! Several chains in parallel, in rounds, with the same bits whatever the number of threads.
 //!
-//! Every chain advances to the end of a block of iterations, then all wait: rounds are where the caller receives records and
-//! snapshots, in order of chain, and says whether to go on. A run that goes on from its last snapshots gives the bits of one that was never interrupted.
-//! Between rounds a [`Pulse`] shows how far the chains are, and stops them.
+//! Every chain advances to the end of a block of iterations, then all wait: rounds are where the caller receives
+//! records and snapshots, in order of chain, and says whether to go on. A run that goes on from its last snapshots
+//! gives the bits of one that was never interrupted. Between rounds a [`Pulse`] shows how far the chains are, and stops
+//! them.
 
 mod bounds;
 mod hunt;
@@ -40,12 +41,14 @@ pub struct Plan {
     pub iterations: u64,
     /// Every `thin`-th iteration is recorded; at least 1.
     pub thin: u64,
-    /// Most iterations between two points at which the run can stop and later go on; at least 1. A run begins with shorter blocks, of about an eighth of what is done.
+    /// Most iterations between two points at which the run can stop and later go on; at least 1. A run begins with
+    /// shorter blocks, of about an eighth of what is done.
     pub block: u64,
-    /// Stop at the first iteration by which the chains together have recorded this many distinct solutions after the warm-up.
+    /// Stop at the first iteration by which the chains together have recorded this many distinct solutions after the
+    /// warm-up.
     pub solutions: Option<u64>,
-    /// Rungs between the prior and the target that each chain climbs and descends, 1 for none, and iterations between two swaps. Only states of the target are
-    /// recorded, and iterations are those of each rung.
+    /// Rungs between the prior and the target that each chain climbs and descends, 1 for none, and iterations between
+    /// two swaps. Only states of the target are recorded, and iterations are those of each rung.
     pub rungs: u32,
     /// See `rungs`.
     pub swap_every: u64,
@@ -237,11 +240,12 @@ pub enum RunError<E> {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Runs, or goes on with, the chains of `plan` on `threads` threads (0: one a core). `starts` is empty, or holds one start a chain, all at the same
-/// iteration.
+/// Runs, or goes on with, the chains of `plan` on `threads` threads (0: one a core; never more than there are replicas
+/// of chains, see [`useful_threads`]). `starts` is empty, or holds one start a chain, all at the same iteration.
 ///
 /// # Errors
-/// [`RunError`] where the plan makes no run, or a chain or the sink fails. Everything the sink received before stays valid.
+/// [`RunError`] where the plan makes no run, or a chain or the sink fails. Everything the sink received before stays
+/// valid.
 pub fn run<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     target: &T,
     moves: &Mixture<T>,
@@ -253,7 +257,8 @@ pub fn run<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     run_watched(target, moves, plan, starts, threads, sink, &Pulse::default())
 }
 
-/// As [`run()`], with counters that other threads can read meanwhile, and through which they can stop it. The first round of a new run, which is the start, is always made.
+/// As [`run()`], with counters that other threads can read meanwhile, and through which they can stop it. The first
+/// round of a new run, which is the start, is always made.
 ///
 /// # Errors
 /// As [`run()`].
@@ -269,8 +274,8 @@ pub fn run_watched<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     run_some(target, moves, plan, 0..plan.chains, starts, threads, sink, pulse)
 }
 
-/// As [`run_watched()`], only the chains `some` of the plan's: they leave the same bits as they do among all. Distinct solutions, and the demand
-/// for them, are those of these chains together.
+/// As [`run_watched()`], only the chains `some` of the plan's: they leave the same bits as they do among all. Distinct
+/// solutions, and the demand for them, are those of these chains together.
 ///
 /// # Errors
 /// As [`run()`], and where `some` are none of the plan's chains.
@@ -286,7 +291,7 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     pulse: &Pulse,
 ) -> Result<Ending, RunError<S::Error>> {
     plan.check(&some, &starts)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(useful_threads(threads, &plan, &some)).build()?;
     let fresh = Mixture::of(Box::new(Redraw));
     let mut fleet = Fleet::new(Job { target, moves, fresh: &fresh, plan, first: some.start }, some, starts, pulse);
     while fleet.done < plan.end() && !fleet.has_enough() {
@@ -304,6 +309,12 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
         }
     }
     Ok(if fleet.has_enough() { Ending::EnoughSolutions } else { Ending::Complete })
+}
+
+/// As many of `threads` as the chains `some` of a plan can keep busy: one a replica. 0, which is one a core, stays.
+#[must_use]
+pub fn useful_threads(threads: usize, plan: &Plan, some: &Range<u32>) -> usize {
+    threads.min(some.len().max(1).saturating_mul(plan.rungs.max(1) as usize))
 }
 
 /// Which chain failed, and how.
@@ -341,8 +352,8 @@ impl<'a, T: Goal> Fleet<'a, T> {
         fleet
     }
 
-    /// Advances to the end of the block, or to the iteration that completes the demanded solutions; `None` where the pulse was stopped before all chains were there:
-    /// they are then in no common state.
+    /// Advances to the end of the block, or to the iteration that completes the demanded solutions; `None` where the
+    /// pulse was stopped before all chains were there: they are then in no common state.
     fn round(&mut self) -> Result<Option<Vec<MadeOf<T>>>, Failed> {
         let plan = self.job.plan;
         let mut end = end_of_block(self.done, plan.block).min(plan.end());
@@ -354,8 +365,8 @@ impl<'a, T: Goal> Fleet<'a, T> {
         let mut made: Vec<_> = self.workers.par_iter_mut().map(|worker| worker.advance(job, end, &hunt)).collect();
         self.merge(made.iter().flat_map(|made| made.firsts.iter().copied()).collect());
         if let Some(last) = self.completed() {
-            // Some chains ran past the iteration that completed the demanded number: they redo the round up to there, so that the result does not depend on the
-            // block, nor on who was faster.
+            // Some chains ran past the iteration that completed the demanded number: they redo the round up to there,
+            // so that the result does not depend on the block, nor on who was faster.
             end = last + 1;
             self.distinct.truncate(last);
             let (job, hunt) = (&self.job, Hunt::new(pulse, &self.distinct, None));

@@ -3,8 +3,8 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
-/// Counters of one run that its chains keep up to date in every iteration, and a request to stop. Nothing that is recorded depends on who reads them, or when; a
-/// request to stop says only where the records end.
+/// Counters of one run that its chains keep up to date in every iteration, and a request to stop. Nothing that is
+/// recorded depends on who reads them, or when; a request to stop says only where the records end.
 #[derive(Debug, Default)]
 pub struct Pulse {
     chains: OnceLock<Box<[Beat]>>,
@@ -30,7 +30,8 @@ pub struct ChainPulse {
 }
 
 impl Pulse {
-    /// Asks the chains to stop where they are. What they did since the last round is dropped, so that what was recorded before is the beginning of the whole run.
+    /// Asks the chains to stop where they are. What they did since the last round is dropped, so that what was recorded
+    /// before is the beginning of the whole run.
     pub fn stop(&self) {
         self.stopped.store(true, Relaxed);
     }
@@ -49,7 +50,8 @@ impl Pulse {
         self.chains.get().map(|beats| beats.iter().map(read).collect()).unwrap_or_default()
     }
 
-    /// Distinct solutions recorded after the warm-up by all chains together. It may fall by what a chain found beyond the end of a run.
+    /// Distinct solutions recorded after the warm-up by all chains together. It may fall by what a chain found beyond
+    /// the end of a run.
     #[must_use]
     pub fn distinct(&self) -> u64 {
         self.distinct.load(Relaxed)

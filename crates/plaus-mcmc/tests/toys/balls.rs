@@ -12,7 +12,8 @@ pub struct Balls {
     pub bins: usize,
     /// Size of the strip, in whatever unit.
     pub area: f64,
-    /// Where a ball may drop: the middles of this many equal cells (then `area` is their number, so that the density is a probability), or anywhere.
+    /// Where a ball may drop: the middles of this many equal cells (then `area` is their number, so that the density is
+    /// a probability), or anywhere.
     pub cells: Option<usize>,
     pub goal: Gibbs,
     /// Whether a simulation stops early where it may.

@@ -8,8 +8,8 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
 type S = StateOf<Balls>;
 
-/// Activates: each inactive ball drops somewhere with probability η. Its reverse deactivates: each active ball leaves with probability η. One move that
-/// does either with probability ½, or only one of the two.
+/// Activates: each inactive ball drops somewhere with probability η. Its reverse deactivates: each active ball leaves
+/// with probability η. One move that does either with probability ½, or only one of the two.
 #[derive(Clone, Copy)]
 pub struct Toggle {
     pub eta: f64,
@@ -146,8 +146,9 @@ impl Enumerable<Balls> for ChangeAll {
     }
 }
 
-/// Drops one of the *useless* balls, those not alone in their bin, somewhere else. Which balls these are only the outcome tells: so the ratio is known
-/// after the simulation, and it is 0 where the ball becomes useful by it (it can't be chosen again then).
+/// Drops one of the *useless* balls, those not alone in their bin, somewhere else. Which balls these are only the
+/// outcome tells: so the ratio is known after the simulation, and it is 0 where the ball becomes useful by it (it can't
+/// be chosen again then).
 pub struct Redrop {
     pub fault: Fault,
 }

@@ -1,4 +1,5 @@
-//! Worlds small enough to know everything about, and wrong twins of their moves. Shared by several test binaries, none of which uses all of it.
+//! Worlds small enough to know everything about, and wrong twins of their moves. Shared by several test binaries, none
+//! of which uses all of it.
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 pub mod balls;

@@ -1,4 +1,5 @@
-//! The balls again, with a memory of where the current state's balls lie, from which those that did not move are looked up.
+//! The balls again, with a memory of where the current state's balls lie, from which those that did not move are looked
+//! up.
 
 use super::balls::{Balls, Drops};
 use plaus_dist::{LogDensity, LogPotential, Stream};

@@ -64,6 +64,38 @@ fn absurd_claims_inside_the_payload_fail() {
     }
 }
 
+/// Gives at most so many bytes at a time, as a pipe or a network's disk may.
+struct Slow<'a>(&'a [u8], usize);
+
+impl Read for Slow<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let most = self.1.min(buffer.len());
+        self.0.read(&mut buffer[..most])
+    }
+}
+
+/// Frames shorter and longer than what is read at a time: handed on in parts, they are the file.
+#[test]
+fn what_passes_is_the_file() {
+    let lengths = [0, 3, 40_000, 1, 2, 33_000, 32_760, 32_761, 32_762, 0, 90_000, 5];
+    let values: Vec<Value> = (0..).zip(lengths).map(|(k, length)| (k, vec![0.5; length], None)).collect();
+    let bytes = file(&values);
+    for at_a_time in [7_777, usize::MAX] {
+        let mut frames = Frames::<(), _>::new(KIND, Slow(&bytes, at_a_time), bytes.len() as u64);
+        let (mut passed, mut parts, mut count) = (Vec::new(), 0, 0);
+        while let Some(frame) = frames.next_raw() {
+            assert_eq!(decode::<Value>(KIND, frame.unwrap()).unwrap(), values[count]);
+            count += 1;
+            if let Some(part) = frames.passed() {
+                passed.extend_from_slice(part);
+                parts += 1;
+            }
+        }
+        assert_eq!(count, values.len());
+        assert!(passed == bytes && parts < count, "{parts} parts of {count} frames");
+    }
+}
+
 fn values() -> impl Strategy<Value = Vec<Value>> {
     let value = (any::<u64>(), prop::collection::vec(-1e300..1e300, 0..9), any::<Option<String>>());
     prop::collection::vec(value, 1..5)

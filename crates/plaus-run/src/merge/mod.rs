@@ -18,9 +18,6 @@ use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
-/// Bytes that are gathered before they are written.
-const AT_A_TIME: usize = 4 << 20;
-
 /// How far a merge is, for other threads, and a request to stop it.
 #[derive(Debug, Default)]
 pub struct MergePulse {
@@ -125,19 +122,11 @@ fn copy_chain(
 ) -> Result<(), Error> {
     let (from, to) = (piece.folder.records(chain), draft.records(chain));
     let extent = Extent { run: pieces.run, chain, thin: pieces.manifest.plan.thin, bytes, end_iteration };
-    let mut gathered = Vec::with_capacity(AT_A_TIME.min(bytes as usize) + (1 << 16));
-    let flush = |gathered: &mut Vec<u8>| -> Result<(), RunFileError> {
-        merging.disk.append(&to, gathered).map_err(RunFileError::io(&to, "write"))?;
-        merging.pulse.written.fetch_add(gathered.len() as u64, Relaxed);
-        gathered.clear();
-        Ok(())
-    };
-    records::copy(&from, extent, |frame| {
-        gathered.extend_from_slice(frame);
-        if gathered.len() >= AT_A_TIME { flush(&mut gathered) } else { Ok(()) }
-    })?;
-    flush(&mut gathered)?;
-    Ok(())
+    records::copy(&from, extent, |frames| {
+        merging.disk.append(&to, frames).map_err(RunFileError::io(&to, "write"))?;
+        merging.pulse.written.fetch_add(frames.len() as u64, Relaxed);
+        merging.pulse.go_on()
+    })
 }
 
 /// Makes a chain's records durable, and writes its checkpoint.

@@ -6,14 +6,15 @@ use serde::{Deserialize, Serialize};
 /// Most collisions a draw can hold.
 pub const MAX_COLLISIONS: u32 = 64;
 
-/// A ball bounces on a table whose surface normal is uncertain at every bounce (Chenney & Forsyth 2000, sections 3 and 5.1).
+/// A ball bounces on a table whose surface normal is uncertain at every bounce (Chenney & Forsyth 2000, sections 3 and
+/// 5.1).
 ///
 /// Lengths are in ball diameters D. The ball is a point for its collisions with the plane, as in the paper.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// How far the ball falls before its first bounce, in D. The paper's "height of 4.5 D" reads as 4.5 where the height is the
-    /// bottom's, or the ball a point, and as 4 where it is the centre's.
+    /// How far the ball falls before its first bounce, in D. The paper's "height of 4.5 D" reads as 4.5 where the
+    /// height is the bottom's, or the ball a point, and as 4 where it is the centre's.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub drop_height: f64,
     /// Number of bounces before the resting place; each has a random normal.
@@ -46,7 +47,8 @@ pub struct Config {
     /// Two solutions are the same where all their bounces fall into the same cells of this width, in D.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub distinct_cell: f64,
-    /// The ball's diameter in metres: fixes the size and, with gravity, the time of exported animations. No influence on what is sampled.
+    /// The ball's diameter in metres: fixes the size and, with gravity, the time of exported animations. No influence
+    /// on what is sampled.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 1000.0, "x-unit" = "m"))]
     pub diameter_m: f64,
 }
@@ -71,8 +73,8 @@ impl Default for Config {
     }
 }
 
-/// What happens where the reflected velocity still points into the table, or along it: the normal leans so far that the reflection does not
-/// lift the ball.
+/// What happens where the reflected velocity still points into the table, or along it: the normal leans so far that the
+/// reflection does not lift the ball.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Downward {

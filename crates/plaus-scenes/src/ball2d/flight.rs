@@ -27,8 +27,8 @@ pub(super) fn normal(degrees: f64) -> DVec2 {
 }
 
 impl Table {
-    /// Reflects `incoming` about `normal` and scales the normal component by the restitution (paper, section 5.1). `None`: the draw is
-    /// rejected.
+    /// Reflects `incoming` about `normal` and scales the normal component by the restitution (paper, section 5.1).
+    /// `None`: the draw is rejected.
     #[inline]
     pub(super) fn bounce(&self, incoming: DVec2, normal: DVec2) -> Option<Bounce> {
         let velocity = incoming - (1.0 + self.restitution) * incoming.dot(normal) * normal;
@@ -64,8 +64,8 @@ pub(super) fn landing(velocity: DVec2) -> DVec2 {
     DVec2::new(velocity.x, -velocity.y)
 }
 
-/// Flies the ball over bounces about `normals`: the place of rest, or `None` where a bounce rejects the draw. `visit` sees each bounce's place, normal
-/// and velocity after it.
+/// Flies the ball over bounces about `normals`: the place of rest, or `None` where a bounce rejects the draw. `visit`
+/// sees each bounce's place, normal and velocity after it.
 #[inline]
 pub(super) fn fly(
     table: &Table,

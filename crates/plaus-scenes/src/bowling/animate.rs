@@ -85,7 +85,8 @@ fn begin(world: &Rigid, trace: &Trace<Turning>, shown: f64) -> f64 {
     let after = ball.partition_point(|motion| motion.path.x.y < -shown);
     let Some(motion) = after.checked_sub(1).and_then(|k| ball.get(k)) else { return 0.0 };
     let until = ball.get(after).map_or(motion.path.t, |next| next.path.t);
-    // The ball is before that place at the motion's start and beyond it at its end: halve what is between, to a microsecond.
+    // The ball is before that place at the motion's start and beyond it at its end: halve what is between, to a
+    // microsecond.
     let (mut low, mut high) = (motion.path.t, until);
     while high - low > 1e-6 {
         let middle = 0.5 * (low + high);
@@ -94,7 +95,8 @@ fn begin(world: &Rigid, trace: &Trace<Turning>, shown: f64) -> f64 {
     low
 }
 
-/// The motions of a body from `begin` on. `ratio` is its moment of inertia about its third axis over that about the others.
+/// The motions of a body from `begin` on. `ratio` is its moment of inertia about its third axis over that about the
+/// others.
 fn pieces(world: &Rigid, index: usize, motions: &[Turning], begin: f64, ratio: f64) -> Vec<Piece> {
     let first = motions.partition_point(|motion| motion.path.t <= begin).saturating_sub(1);
     let mut pieces: Vec<Piece> = Vec::with_capacity(motions.len() - first);
@@ -104,7 +106,8 @@ fn pieces(world: &Rigid, index: usize, motions: &[Turning], begin: f64, ratio: f
         let start = body.path.t - begin;
         let [v, a] = if moves { [body.path.v, body.path.a] } else { [DVec3::ZERO; 2] };
         let spin = if moves { body.spin } else { DVec3::ZERO };
-        // A free top precesses about its angular momentum, here over its moment about the other axes, while it spins about its own axis.
+        // A free top precesses about its angular momentum, here over its moment about the other axes, while it spins
+        // about its own axis.
         let axis = body.turn * DVec3::Z;
         let own = if matches!(body.phase, Phase::Flight | Phase::Step) { spin.dot(axis) * (1.0 - ratio) } else { 0.0 };
         let turn = Turn { orientation: (UPRIGHT * body.turn).normalize(), spin: upright(spin - axis * own), own };
@@ -115,7 +118,8 @@ fn pieces(world: &Rigid, index: usize, motions: &[Turning], begin: f64, ratio: f
         }
         pieces.push(piece);
     }
-    // Friction changes a body's spin while it touches something, and a piece has one spin: the one that leads to where the next begins.
+    // Friction changes a body's spin while it touches something, and a piece has one spin: the one that leads to where
+    // the next begins.
     for index in 1..pieces.len() {
         let (next, piece) = (pieces[index], &mut pieces[index - 1]);
         if piece.turn.spin != DVec3::ZERO {

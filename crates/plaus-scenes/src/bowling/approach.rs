@@ -10,8 +10,9 @@ use plaus_sim::trace::Observer;
 use plaus_sim::{Scratch, State};
 
 impl Lane {
-    /// By how much the ball has come to the side when its centre is first at each of these distances beyond the head pin's spot, in m, in ascending order; `None` where it does not
-    /// get there while a shot lasts. It depends on neither the place across the lane nor the pins.
+    /// By how much the ball has come to the side when its centre is first at each of these distances beyond the head
+    /// pin's spot, in m, in ascending order; `None` where it does not get there while a shot lasts. It depends on
+    /// neither the place across the lane nor the pins.
     pub(super) fn approach(&self, draw: &Shot, distances: &[f64]) -> Result<Option<Vec<f64>>, ModelError> {
         let mut draw = draw.clone();
         draw.ball[Quantity::Across as usize] = 0.0;

@@ -5,10 +5,11 @@ use crate::accuracy::AccuracyPreset;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A ball is bowled at ten-pins, and those pins should be left standing that are asked for (Chenney & Forsyth 2000, section 5.2 and appendix A).
+/// A ball is bowled at ten-pins, and those pins should be left standing that are asked for (Chenney & Forsyth 2000,
+/// section 5.2 and appendix A).
 ///
-/// Pins have their usual numbers: 1 is the head pin, 7 to 10 the last row from the bowler's left. x runs across the lane to the bowler's right, y along it;
-/// the head pin's spot is the origin.
+/// Pins have their usual numbers: 1 is the head pin, 7 to 10 the last row from the bowler's left. x runs across the
+/// lane to the bowler's right, y along it; the head pin's spot is the origin.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
@@ -18,17 +19,19 @@ pub struct Config {
     /// Pins, of those, that should stand at the end; none for a strike or a spare.
     #[schemars(length(min = 0, max = 10), inner(range(min = 1, max = 10)))]
     pub leave: Vec<u32>,
-    /// ln λ, the reward in nats for each pin that ends as it should, and for each that stands as it should and has not moved far.
+    /// ln λ, the reward in nats for each pin that ends as it should, and for each that stands as it should and has not
+    /// moved far.
     #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat"))]
     pub ln_lambda: f64,
-    /// How far a pin may stand from where it was set to be rewarded for not having moved far. The default is the radius of a pin's base.
+    /// How far a pin may stand from where it was set to be rewarded for not having moved far. The default is the radius
+    /// of a pin's base.
     #[schemars(extend("minimum" = 0.0, "maximum" = 2000.0, "x-unit" = "mm"))]
     pub moved_far_mm: f64,
     /// Which pins are rewarded for not having moved far.
     pub rewarded: Rewarded,
     /// Which laws the ball's delivery has: the paper's, or that of the real game.
     pub delivery: Delivery,
-    /// What of the delivery's laws is otherwise.
+    /// Changes to the laws of the delivery.
     pub release: Release,
     /// Standard deviation of each coordinate of a pin's place about its spot.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 20.0, "x-unit" = "mm"))]
@@ -84,7 +87,8 @@ pub enum Rewarded {
     /// Pins that should stand.
     #[default]
     MeantToStand,
-    /// Any pin that stands, as the paper's text can be read. It then rewards a ball in the gutter, which moves no pin, as much as a strike.
+    /// Any pin that stands, as the paper's text can be read. It then rewards a ball in the gutter, which moves no pin,
+    /// as much as a strike.
     AnyStanding,
 }
 
@@ -92,8 +96,9 @@ pub enum Rewarded {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Delivery {
-    /// The paper's appendix A.1: a solid ball of 176 to 220 mm, released anywhere across the lane without spin but a little about the vertical, on a lane with the same friction
-    /// everywhere. Its largest ball is larger than the rules allow.
+    /// The paper's appendix A.1: a solid ball of 176 to 220 mm, released anywhere across the lane without spin but a
+    /// little about the vertical, on a lane with the same friction everywhere. Its largest ball is larger than the
+    /// rules allow.
     #[default]
     Paper,
     /// Balls within the rules, at speeds and with the spin of good players, on a lane that is oiled for its first 12 m.
@@ -104,7 +109,8 @@ pub enum Delivery {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contact {
-    /// Coulomb's coefficient of friction between the ball and the lane, where there is no oil. Unset: 0.12 for the paper's delivery, 0.2 for regulation.
+    /// Coulomb's coefficient of friction between the ball and the lane, where there is no oil. Unset: 0.12 for the
+    /// paper's delivery, 0.2 for regulation.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub lane_friction: Option<f64>,
     /// Length of the lane, from the foul line on, that is oiled. Unset: 0 for the paper's delivery, 12 for regulation.
@@ -134,8 +140,8 @@ pub struct Contact {
     /// Restitution between a pin and lane, gutters and walls.
     #[schemars(range(min = 0.0, max = 0.95))]
     pub pin_lane_restitution: f64,
-    /// Resistance to rolling of a pin: torque over load times the distance from its centre of gravity to where it touches. Without any, a nudged pin runs around on the rim of its foot for
-    /// ever.
+    /// Resistance to rolling of a pin: torque over load times the distance from its centre of gravity to where it
+    /// touches. Without any, a nudged pin runs around on the rim of its foot for ever.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub pin_rolling: f64,
     /// Resistance to spinning about the vertical of a pin, likewise.
@@ -207,7 +213,8 @@ pub struct Weights {
     /// The ball is released from where it should meet a pin of the first row.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub aim: f64,
-    /// Everything is shifted a little, by steps of any size down to a ten-thousandth of the paper's: what a shot that has many collisions hangs on.
+    /// Everything is shifted a little, by steps of any size down to a ten-thousandth of the paper's: what a shot that
+    /// has many collisions hangs on.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub refine: f64,
     /// Left and right are exchanged. Without effect where the pins to stand are not the same from both sides.
@@ -255,7 +262,8 @@ impl Default for Weights {
     }
 }
 
-/// Sizes of the moves' steps. The paper's are the defaults: each of its steps is a half of the standard deviation, or a fifth of the interval, of what it shifts.
+/// Sizes of the moves' steps. The paper's are the defaults: each of its steps is a half of the standard deviation, or a
+/// fifth of the interval, of what it shifts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Steps {

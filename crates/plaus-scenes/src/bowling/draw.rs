@@ -79,7 +79,8 @@ impl Prior {
         self.offset.log_density(offset)
     }
 
-    /// A draw of the prior; with the paper's recipe for pins (a random direction, a Gaussian distance) where `as_printed`, which is another law.
+    /// A draw of the prior; with the paper's recipe for pins (a random direction, a Gaussian distance) where
+    /// `as_printed`, which is another law.
     pub fn sample(&self, as_printed: bool, draw: &mut Shot, stream: &mut Stream) {
         for quantity in Quantity::ALL {
             draw.ball[quantity as usize] = self.laws.sample(quantity, &draw.ball, stream);

@@ -48,7 +48,8 @@ pub struct Rest {
     pub entry: Option<Entry>,
     /// Numbers of the pins that the ball itself struck, in the order in which it did.
     pub struck: Vec<u8>,
-    /// Whether the simulation came to its end within the simulator's budget of events. Where it did not, the draw has probability 0.
+    /// Whether the simulation came to its end within the simulator's budget of events. Where it did not, the draw has
+    /// probability 0.
     pub complete: bool,
 }
 
@@ -88,7 +89,8 @@ fn way(pin: &Turning, start: &Start, time: f64) -> f64 {
     (pin.path.at(time) - start.position).truncate().length()
 }
 
-/// Whether the ball has left the lane before its end. By the rules of the game it is dead then, whatever it may still do.
+/// Whether the ball has left the lane before its end. By the rules of the game it is dead then, whatever it may still
+/// do.
 fn is_in_gutter(ball: &Turning) -> bool {
     ball.path.x.x.abs() >= 0.5 * WIDTH && ball.path.x.y < 0.0
 }
@@ -196,8 +198,8 @@ impl Lane {
         Ok((self.alley(draw).world_of(&self.pin)?, starts))
     }
 
-    /// Bowls from `distance` m before the head pin's spot. Stops as soon as no pin's fate can change, or `hopeless` says so of the pins that are down; then there is no
-    /// answer.
+    /// Bowls from `distance` m before the head pin's spot. Stops as soon as no pin's fate can change, or `hopeless`
+    /// says so of the pins that are down; then there is no answer.
     pub(super) fn bowl(
         &self,
         draw: &Shot,

@@ -1,4 +1,5 @@
-//! Bowling (section 5.2, appendix A): which pins are left is demanded; the ball, its delivery and the places of the pins are uncertain.
+//! Bowling (section 5.2, appendix A): which pins are left is demanded; the ball, its delivery and the places of the
+//! pins are uncertain.
 
 mod animate;
 mod approach;
@@ -27,7 +28,8 @@ use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
 use plaus_sim::rigid::{Rigid, Start};
 
-/// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, k the pins that end as they should, m those that stand as they should and have not moved far.
+/// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, k the pins that end as they should, m those that stand as they
+/// should and have not moved far.
 #[derive(Debug)]
 pub struct Bowling {
     config: Config,
@@ -69,7 +71,8 @@ impl Bowling {
         &self.prior
     }
 
-    /// The simulator's world of a draw, and how everything starts: the ball, then the pins that are set up, in ascending order of their numbers.
+    /// The simulator's world of a draw, and how everything starts: the ball, then the pins that are set up, in
+    /// ascending order of their numbers.
     ///
     /// # Errors
     /// [`ModelError`] where the draw's numbers make no world.
@@ -90,8 +93,8 @@ impl Bowling {
         (k, m)
     }
 
-    /// What a shot leaves whose ball begins `distance` m before the head pin's spot, in the place and with the velocities of the draw: for deliveries that are to meet the pins just
-    /// so.
+    /// What a shot leaves whose ball begins `distance` m before the head pin's spot, in the place and with the
+    /// velocities of the draw: for deliveries that are to meet the pins just so.
     ///
     /// # Errors
     /// [`ModelError`] where there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
@@ -160,7 +163,8 @@ impl Target for Bowling {
     }
 }
 
-/// Two solutions are the same where the ball met the first pin on the same board of the lane and struck the same pins in the same order.
+/// Two solutions are the same where the ball met the first pin on the same board of the lane and struck the same pins
+/// in the same order.
 impl Goal for Bowling {
     fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
         let rest = &state.outcome;
@@ -172,7 +176,8 @@ impl Goal for Bowling {
 /// Boards of a lane.
 const BOARDS: f64 = 39.0;
 
-/// The board, counted from the bowler's right as bowlers do, over which the ball's centre was when it met the first pin; 0 where it met none.
+/// The board, counted from the bowler's right as bowlers do, over which the ball's centre was when it met the first
+/// pin; 0 where it met none.
 fn board(rest: &Rest) -> f64 {
     rest.entry.map_or(0.0, |entry| ((0.5 - entry.across / lane::WIDTH) * BOARDS).floor() + 1.0)
 }

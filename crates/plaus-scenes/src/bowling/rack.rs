@@ -51,7 +51,8 @@ impl Rack {
         &self.leave
     }
 
-    /// The place in [`Rack::pins`] of each one's mirror image; `None` where what is asked is not the same in the mirror.
+    /// The place in [`Rack::pins`] of each one's mirror image; `None` where what is asked is not the same in the
+    /// mirror.
     #[must_use]
     pub fn mirrored(&self) -> Option<&[usize]> {
         self.mirrored.as_deref()

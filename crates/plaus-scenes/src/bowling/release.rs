@@ -8,8 +8,8 @@ use plaus_dist::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What differs from the chosen delivery's laws. Unset keys are the delivery's own; a standard deviation of 0, or an interval of one value, means that the quantity is
-/// not uncertain.
+/// What differs from the chosen delivery's laws. Unset keys are the delivery's own; a standard deviation of 0, or an
+/// interval of one value, means that the quantity is not uncertain.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Release {
@@ -52,13 +52,15 @@ pub struct Release {
     /// Standard deviation of the speed across the lane.
     #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "m/s"))]
     pub drift_sd: Option<f64>,
-    /// Mean angular velocity about the axis across the lane, of forward roll: a ball that rolls has its speed over its radius.
+    /// Mean angular velocity about the axis across the lane, of forward roll: a ball that rolls has its speed over its
+    /// radius.
     #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
     pub roll_mean: Option<f64>,
     /// Standard deviation of the forward roll.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
     pub roll_sd: Option<f64>,
-    /// Mean angular velocity about the axis along the lane: what makes the ball hook, to the bowler's right where positive.
+    /// Mean angular velocity about the axis along the lane: what makes the ball hook, to the bowler's right where
+    /// positive.
     #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
     pub hook_mean: Option<f64>,
     /// Standard deviation of the hook.
@@ -244,7 +246,8 @@ impl Laws {
         }
     }
 
-    /// Log density of one quantity's value, given those of the others; 0 for one that is not uncertain and has its value.
+    /// Log density of one quantity's value, given those of the others; 0 for one that is not uncertain and has its
+    /// value.
     ///
     /// # Errors
     /// [`NotANumber`] where a value is NaN.

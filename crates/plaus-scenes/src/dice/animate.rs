@@ -16,6 +16,16 @@ const PIPS: [u8; 6] = [3, 4, 2, 5, 1, 6];
 const WOBBLE: f64 = 0.004;
 
 pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError> {
+    let (motion, [low, high]) = motion(scene, draw)?;
+    let room = DVec3::new(0.03, 0.03, 0.0);
+    let [low, high] = [low - room, high + room];
+    let scenery = props::props(scene, draw, [low, high]).map_err(ModelError::new)?;
+    let view = View::from(-0.25, 0.75, 1.0).showing(upright(low.with_z(0.0)), upright(high));
+    Ok(motion.with_scenery(scenery).with_view(view))
+}
+
+/// The dice alone, and the corners of a box that holds the ways of their middles, in the simulator's axes.
+pub(super) fn motion(scene: &Dice, draw: &Draw) -> Result<(Animation, [DVec3; 2]), ModelError> {
     let (mut tracks, mut impacts, mut duration) = (Vec::new(), Vec::new(), 0.0_f64);
     let (mut contacts, half) = (Vec::new(), scene.plan.cuboid.half());
     let mass = 8.0 * half.x * half.y * half.z * scene.plan.density;
@@ -56,14 +66,7 @@ pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError
     impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
     // One frame at least.
     let duration = duration.max(0.04);
-    let room = DVec3::new(0.03, 0.03, 0.0);
-    let [low, high] = [extent[0] - room, extent[1] + room];
-    let scenery = props::props(scene, draw, [low, high]).map_err(ModelError::new)?;
-    let view = View::from(-0.25, 0.75, 1.0).showing(upright(low.with_z(0.0)), upright(high));
-    Ok(Animation::new(duration, tracks, impacts)
-        .with_contacts(in_order(contacts))
-        .with_scenery(scenery)
-        .with_view(view))
+    Ok((Animation::new(duration, tracks, impacts).with_contacts(in_order(contacts)), extent))
 }
 
 /// The motions of one die, body `body` of its world, as pieces, with the orientation of its pips.

@@ -10,25 +10,26 @@ use crate::accuracy::AccuracyPreset;
 /// Most dice.
 pub const MOST_DICE: u32 = 24;
 
-/// Dice are thrown onto a table whose height, restitution and friction are random, and should end where and as `constraints` demand (Chenney &
-/// Forsyth 2000, section 5.4).
+/// Dice are thrown onto a table whose height, restitution and friction are random, and should end where and as
+/// `constraints` demand (Chenney & Forsyth 2000, section 5.4).
 ///
-/// The table lies at z = 0 with its middle at x = y = 0; z points up. Lengths are in millimetres, speeds in metres per second.
+/// The table lies at z = 0 with its middle at x = y = 0; z points up. Lengths are in millimetres, speeds in metres per
+/// second.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
     /// How many dice are thrown.
     #[schemars(range(min = 1, max = 24))]
     pub dice: u32,
-    /// Whether the dice are thrown onto one table, where they meet. Without it each is thrown alone, onto a random table of its own, and the
-    /// animations are laid over each other, as in the paper's figure 9.
+    /// Whether the dice are thrown onto one table, where they meet. Without it each is thrown alone, onto a random
+    /// table of its own, and the animations are laid over each other, as in the paper's figure 9.
     pub together: bool,
-    /// What is demanded: a list of tables, of which each holds one of `rest_at`, `face_up`, `pose_at`, `passes` and `first_impact`. Their log
-    /// densities add up. An animation is a solution where all are met.
+    /// What is demanded: a list of tables, of which each holds one of `rest_at`, `face_up`, `pose_at`, `passes` and
+    /// `first_impact`. Their log densities add up. An animation is a solution where all are met.
     #[schemars(length(max = 256))]
     pub constraints: Vec<Constraint>,
-    /// Two solutions are the same where every die, looked at every `distinct_every_s` until it is at rest, lies in the same cell of this width
-    /// with the same face uppermost.
+    /// Two solutions are the same where every die, looked at every `distinct_every_s` until it is at rest, lies in the
+    /// same cell of this width with the same face uppermost.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1e6, "x-unit" = "mm"))]
     pub distinct_cell_mm: f64,
     /// Time between two looks at the dice, for telling solutions apart.
@@ -76,7 +77,8 @@ impl Default for Config {
     }
 }
 
-/// A die. Its faces 1, 2 and 3 lie along its third, second and first axis, and opposite faces add up to seven. Edges that differ make it a cuboid.
+/// A die. Its faces 1, 2 and 3 lie along its third, second and first axis, and opposite faces add up to seven. Edges
+/// that differ make it a cuboid.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Die {
@@ -137,7 +139,8 @@ pub struct Throwing {
     /// Standard deviation of each component of the angular velocity; its mean is 0.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 500.0, "x-unit" = "rad/s"))]
     pub spin_sd: f64,
-    /// How far the mean places of release of two dice that follow each other are apart along y; the middle of the row is at `y_mm`.
+    /// How far the mean places of release of two dice that follow each other are apart along y; the middle of the row
+    /// is at `y_mm`.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub apart_mm: f64,
 }
@@ -160,8 +163,8 @@ impl Default for Throwing {
     }
 }
 
-/// The table: its height, restitution and friction are uniform cubic b-splines over control points on a square grid, each control point
-/// random and independent of the others. A die that leaves the table makes the draw impossible.
+/// The table: its height, restitution and friction are uniform cubic b-splines over control points on a square grid,
+/// each control point random and independent of the others. A die that leaves the table makes the draw impossible.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
@@ -174,7 +177,8 @@ pub struct Table {
     /// Distance between neighbouring control points; the paper leaves it open. The default is half a die's edge.
     #[schemars(extend("minimum" = 0.1, "maximum" = 1e4, "x-unit" = "mm"))]
     pub grid_mm: f64,
-    /// Standard deviation of the height of a control point about 0; 0 for a flat table. Heights beyond six of it have density 0.
+    /// Standard deviation of the height of a control point about 0; 0 for a flat table. Heights beyond six of it have
+    /// density 0.
     #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "mm"))]
     pub bumps_mm: f64,
     /// Mean of a control point's restitution (Stronge's, of energy), before it is cut off at 0 and at 1.

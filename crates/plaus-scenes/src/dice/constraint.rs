@@ -50,7 +50,8 @@ impl Default for RestAt {
     }
 }
 
-/// A die comes to rest with a face up: `−ln_lambda` where it does not, `−½ (angle/angle_sd_deg)²` besides where that is given.
+/// A die comes to rest with a face up: `−ln_lambda` where it does not, `−½ (angle/angle_sd_deg)²` besides where that is
+/// given.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FaceUp {
@@ -77,7 +78,8 @@ impl Default for FaceUp {
     }
 }
 
-/// A die's state at a time: minus half the sum of squares of its distance, its angle and its difference in velocity, each over its spread.
+/// A die's state at a time: minus half the sum of squares of its distance, its angle and its difference in velocity,
+/// each over its spread.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PoseAt {
@@ -102,8 +104,8 @@ pub struct PoseAt {
     /// A die closer than this meets it.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
     pub within_mm: f64,
-    /// How its pips are turned from face 1 up, face 2 along y and face 3 along x: a rotation vector, whose direction is the axis and whose length the
-    /// angle; this is its part along x.
+    /// How its pips are turned from face 1 up, face 2 along y and face 3 along x: a rotation vector, whose direction is
+    /// the axis and whose length the angle; this is its part along x.
     #[schemars(extend("minimum" = -360.0, "maximum" = 360.0, "x-unit" = "degree"))]
     pub turn_x_deg: f64,
     /// Its part along y.
@@ -249,7 +251,8 @@ impl Constraint {
         }
     }
 
-    /// How well a die's trip, moved by `offset`, meets it. `slot` is the place of what it asked for in the trip's `frames` or `nearest`.
+    /// How well a die's trip, moved by `offset`, meets it. `slot` is the place of what it asked for in the trip's
+    /// `frames` or `nearest`.
     pub(super) fn mark(&self, trip: &Trip, pips: &Rotation, slot: usize, offset: DVec3) -> Mark {
         match self {
             Self::RestAt(at) => {

@@ -1,8 +1,10 @@
-//! What is random: how each die is thrown, and the tables' control points, which are made only where they are looked at.
+//! What is random: how each die is thrown, and the tables' control points, which are made only where they are looked
+//! at.
 //!
-//! A control point is held as its *score*, a standard normal number that the law of its place turns into a height, a restitution or a friction. The score
-//! of a point that no move has changed is a pure function of the table's key, the field and the point's indices, as if it had been drawn at the start;
-//! so a draw holds only the points that moves have changed, and yet the whole table.
+//! A control point is held as its *score*, a standard normal number that the law of its place turns into a height, a
+//! restitution or a friction. The score of a point that no move has changed is a pure function of the table's key, the
+//! field and the point's indices, as if it had been drawn at the start; so a draw holds only the points that moves have
+//! changed, and yet the whole table.
 
 use glam::{DQuat, DVec3};
 use plaus_dist::stream::ChainStreams;
@@ -73,8 +75,8 @@ pub struct Site {
 pub struct Realisation {
     /// From which the scores of unchanged points follow.
     pub key: u64,
-    /// By how many cells the table, with the die thrown onto it, has been shifted along x and y. Indices of points and positions of throws are those without
-    /// the shift, so that it changes no bit of a motion.
+    /// By how many cells the table, with the die thrown onto it, has been shifted along x and y. Indices of points and
+    /// positions of throws are those without the shift, so that it changes no bit of a motion.
     pub shifted: [i32; 2],
     /// Points that moves have changed, with their scores, in order.
     changed: Vec<(Site, f64)>,
@@ -129,7 +131,8 @@ fn streams(key: u64) -> ChainStreams {
     Seed(key).chain(0)
 }
 
-/// The score that a point has at first: a standard normal number within [`LARGEST_SCORE`], whose stream's address are field and indices.
+/// The score that a point has at first: a standard normal number within [`LARGEST_SCORE`], whose stream's address are
+/// field and indices.
 fn fresh(streams: &ChainStreams, site: Site) -> f64 {
     // Indices repeat after 2²⁴ cells, farther than any table is large.
     let index = |k: i32| u64::from(k.cast_unsigned() & 0x00ff_ffff);
@@ -263,7 +266,8 @@ mod tests {
         assert_eq!(table.differing(&other), None);
     }
 
-    /// Mean, variance and correlation of neighbours over 10⁵ points: five standard errors, a false alarm in 10⁶ for all.
+    /// Mean, variance and correlation of neighbours over 10⁵ points: five standard errors, a false alarm in 10⁶ for
+    /// all.
     #[test]
     fn unchanged_points_are_independent_standard_normal_numbers() {
         let table = table(2);

@@ -1,4 +1,5 @@
-//! What a throw leaves behind: where its die comes to rest, where it touched the table, and what the constraints ask about the way.
+//! What a throw leaves behind: where its die comes to rest, where it touched the table, and what the constraints ask
+//! about the way.
 
 use super::Rotation;
 use crate::way::{Way, follow};
@@ -40,7 +41,8 @@ pub struct Trip {
     pub end: End,
     /// When, in s.
     pub time: f64,
-    /// Where its middle was then, in m; it stands farther on where its table has been shifted, as do all places of this trip.
+    /// Where its middle was then, in m; it stands farther on where its table has been shifted, as do all places of this
+    /// trip.
     pub position: DVec3,
     /// How its body was turned.
     pub orientation: DQuat,
@@ -58,8 +60,8 @@ pub struct Trip {
     extent: [[f64; 2]; 2],
 }
 
-/// Where a die is, and its body's orientation to the nearest of those with a face uppermost: the face that would show with the pips along the
-/// body's axes.
+/// Where a die is, and its body's orientation to the nearest of those with a face uppermost: the face that would show
+/// with the pips along the body's axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Look {
     at: [f64; 2],
@@ -81,7 +83,8 @@ impl Trip {
         self.extent.iter().all(|[x, y]| is_on(edge, DVec3::new(*x, *y, 0.0) + offset))
     }
 
-    /// The class that this trip, moved by `offset`, continues another's by, with the pips as given and cells of a width.
+    /// The class that this trip, moved by `offset`, continues another's by, with the pips as given and cells of a
+    /// width.
     pub(super) fn class(&self, class: SolutionClass, pips: &Rotation, cell: f64, offset: DVec3) -> SolutionClass {
         // Which face shows where the body's own face `f` is uppermost.
         let shown = |face: u8| i64::from(pips.uppermost(super::symmetry::facing(face)).0);
@@ -151,7 +154,8 @@ impl<'a> Watch<'a> {
         Self { rigid, last: vec![None; trips.len()], asked, looking, trips, paths, offset, left: false }
     }
 
-    /// The trips, after a run that ended with the bodies as given; and the ways, on which a die at rest lies there until the time `longest`.
+    /// The trips, after a run that ended with the bodies as given; and the ways, on which a die at rest lies there
+    /// until the time `longest`.
     pub(super) fn finish(mut self, bodies: &[Turning], longest: f64) -> (Vec<Trip>, Vec<Way>) {
         let mut ways = Vec::with_capacity(bodies.len());
         for (k, body) in bodies.iter().enumerate() {

@@ -1,13 +1,14 @@
-//! Dice on a random table (section 5.4): where they come to rest and which face comes up are demanded; how they are thrown and the table's height,
-//! restitution and friction are uncertain.
+//! Dice on a random table (section 5.4): where they come to rest and which face comes up are demanded; how they are
+//! thrown and the table's height, restitution and friction are uncertain.
 //!
-//! **A table of any size.** Control points are made where a die comes near them and nowhere else. The value of a point that no move has changed is a pure
-//! function of its address (the table's key, which the seed, the chain and the iteration that drew it give; the field; the indices), so it does not matter when, or
-//! whether, it is looked at. The target's density is taken with respect to the law of the whole table: a point that no die touches drops out of every ratio, and
-//! a chain that holds all points from the start makes the same states.
+//! **A table of any size.** Control points are made where a die comes near them and nowhere else. The value of a point
+//! that no move has changed is a pure function of its address (the table's key, which the seed, the chain and the
+//! iteration that drew it give; the field; the indices), so it does not matter when, or whether, it is looked at. The
+//! target's density is taken with respect to the law of the whole table: a point that no die touches drops out of every
+//! ratio, and a chain that holds all points from the start makes the same states.
 //!
-//! **What makes two solutions distinct.** Every tenth of a second each die is looked at: in which square of 20 mm it is, and which face is uppermost. Where
-//! that agrees at all times, two solutions count as one.
+//! **What makes two solutions distinct.** Every tenth of a second each die is looked at: in which square of 20 mm it
+//! is, and which face is uppermost. Where that agrees at all times, two solutions count as one.
 
 mod animate;
 mod config;
@@ -82,7 +83,8 @@ impl Dice {
     /// The scene of a configuration.
     ///
     /// # Errors
-    /// [`ConfigError`] where what is demanded lies off the table or is about a die there is not, or the numbers make no world.
+    /// [`ConfigError`] where what is demanded lies off the table or is about a die there is not, or the numbers make no
+    /// world.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let plan = Plan::new(config)?;
         let prior = plan.prior(config)?;
@@ -131,7 +133,8 @@ impl Dice {
         self.plan.surface.value(table.shifted, site, table.score(site))
     }
 
-    /// How many control points the dice of a draw came near, over all tables and fields, and the memory that all they made takes, in bytes.
+    /// How many control points the dice of a draw came near, over all tables and fields, and the memory that all they
+    /// made takes, in bytes.
     ///
     /// # Errors
     /// [`ModelError`] where the simulation fails.
@@ -145,8 +148,8 @@ impl Dice {
         Ok((sites.len(), bytes))
     }
 
-    /// The same scene, whose move [`Turn`] takes every die for a cube: wrong for any other cuboid, where it no longer leaves the target as it is. For tests of
-    /// whether a test sees that.
+    /// The same scene, whose move [`Turn`] takes every die for a cube: wrong for any other cuboid, where it no longer
+    /// leaves the target as it is. For tests of whether a test sees that.
     #[doc(hidden)]
     #[must_use]
     pub fn taken_for_cubes(mut self) -> Self {
@@ -266,6 +269,10 @@ impl Scene for Dice {
 
     fn animate(&self, draw: &Draw) -> Result<Animation, ModelError> {
         animate::animate(self, draw)
+    }
+
+    fn motion(&self, draw: &Draw) -> Result<Animation, ModelError> {
+        animate::motion(self, draw).map(|(motion, _)| motion)
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {

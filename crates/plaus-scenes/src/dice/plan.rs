@@ -55,7 +55,15 @@ impl Plan {
             ));
         }
         let edges = edges(config);
-        let cuboid = Cuboid::new(edges, config.die.rounding_mm * 1e-3)
+        let (rounding, shortest) = (config.die.rounding_mm, edges.min_element() * 1e3);
+        if 2.0 * rounding >= shortest {
+            let message = format!(
+                "{rounding} mm is too much: it must be less than half the shortest edge, {} mm",
+                0.5 * shortest
+            );
+            return Err(ConfigError::new("world.dice.die.rounding_mm", message));
+        }
+        let cuboid = Cuboid::new(edges, rounding * 1e-3)
             .map_err(|error| ConfigError::new("world.dice.die.rounding_mm", error))?;
         let demands = demands(config)?;
         let mut asked = vec![Asked::default(); config.dice as usize];

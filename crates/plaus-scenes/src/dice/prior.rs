@@ -8,11 +8,13 @@ use plaus_dist::{
     Density, Gaussian, LogDensity, NotANumber, ParamError, Sample, Stream, TruncatedGaussian, standard_normal,
 };
 
-/// How many numbers the initial conditions of a die have besides its orientation: place, velocity and angular velocity along three axes.
+/// How many numbers the initial conditions of a die have besides its orientation: place, velocity and angular velocity
+/// along three axes.
 pub const NUMBERS: usize = 9;
 
-/// The prior of a draw. Its density is taken with respect to the law of the tables themselves, so that these count 1 whatever they are: a control point
-/// that no die touches drops out by itself, and the ratio of a move that changes one is taken with respect to its law, too.
+/// The prior of a draw. Its density is taken with respect to the law of the tables themselves, so that these count 1
+/// whatever they are: a control point that no die touches drops out by itself, and the ratio of a move that changes one
+/// is taken with respect to its law, too.
 #[derive(Debug, Clone)]
 pub struct Prior {
     /// Of each die: place, velocity, angular velocity.

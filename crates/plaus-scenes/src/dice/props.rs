@@ -16,8 +16,8 @@ const MOST: usize = 160;
 /// Corners around a puddle.
 const CORNERS: u32 = 48;
 
-/// All that stands still, in metres. The table is drawn with its bumps between two corners of a box; where every die has a table of its own, each place
-/// shows that of the die that lies nearest.
+/// All that stands still, in metres. The table is drawn with its bumps between two corners of a box; where every die
+/// has a table of its own, each place shows that of the die that lies nearest.
 pub(super) fn props(scene: &Dice, draw: &Draw, [low, high]: [DVec3; 2]) -> Result<Vec<Prop>, WorldError> {
     let plan = &scene.plan;
     let mut props = Vec::new();

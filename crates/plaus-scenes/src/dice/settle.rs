@@ -1,8 +1,10 @@
-//! Dice on one table, group by group: every die is simulated alone; those that would come near each other are simulated together, until no two groups do.
+//! Dice on one table, group by group: every die is simulated alone; those that would come near each other are simulated
+//! together, until no two groups do.
 //!
-//! Dice that never touch do not influence each other, so this is the simulation of all at once, up to rounding; and by this procedure, which knows nothing of the
-//! chain, it is defined to the last bit. What a candidate leaves as it is need not be simulated again: groups of the same dice, thrown alike, that came near no
-//! control point that has changed.
+//! Dice that never touch do not influence each other, so this is the simulation of all at once, up to rounding; and by
+//! this procedure, which knows nothing of the chain, it is defined to the last bit. What a candidate leaves as it is
+//! need not be simulated again: groups of the same dice, thrown alike, that came near no control point that has
+//! changed.
 
 use super::draw::{Draw, Site};
 use super::flight::Trip;
@@ -13,7 +15,8 @@ use crate::way::{Way, merge};
 use plaus_mcmc::ModelError;
 use std::sync::Arc;
 
-/// Centres nearer than this many times the reach of a die are simulated together: 2, and more than the gap at which bodies touch.
+/// Centres nearer than this many times the reach of a die are simulated together: 2, and more than the gap at which
+/// bodies touch.
 const NEAR: f64 = 2.0 * 1.01;
 
 /// Dice of one group, from their throws to the end.
@@ -66,7 +69,8 @@ impl<'a> Differing<'a> {
 }
 
 impl Work {
-    /// The trips of dice thrown onto one table. `known`: a draw from whose simulation, made now unless it is remembered, parts may be taken.
+    /// The trips of dice thrown onto one table. `known`: a draw from whose simulation, made now unless it is
+    /// remembered, parts may be taken.
     pub(super) fn throw_together(
         &mut self,
         plan: &Plan,
@@ -150,8 +154,9 @@ mod tests {
     use plaus_dist::{Purpose, Seed};
     use plaus_mcmc::Target;
 
-    /// Group by group, dice end where they do when all are simulated at once. Both round differently, and dice that hit each other or the edges of bumps amplify
-    /// that without bound: the places of one die in fifty may differ by more than a micrometre.
+    /// Group by group, dice end where they do when all are simulated at once. Both round differently, and dice that hit
+    /// each other or the edges of bumps amplify that without bound: the places of one die in fifty may differ by more
+    /// than a micrometre.
     #[test]
     fn groups_end_as_all_at_once() {
         let config = Config { dice: 4, together: true, ..Config::default() };
@@ -181,7 +186,8 @@ mod tests {
         assert!(50 * differing <= dice, "{differing} of {dice} differ");
     }
 
-    /// Another state is simulated as far as it differs from the current one, and comes to the same as when it is simulated from scratch.
+    /// Another state is simulated as far as it differs from the current one, and comes to the same as when it is
+    /// simulated from scratch.
     #[test]
     fn only_what_differs_is_simulated_again() {
         let scene = Dice::new(&Config { dice: 3, together: true, ..Config::default() }).unwrap();

@@ -33,17 +33,20 @@ pub struct Weights {
     /// One die's throw is drawn anew, and so is its table where it has one of its own.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub rethrow: f64,
-    /// A die gets a fresh throw, and a fresh table where it has one of its own, from the place from where, tried out, it comes to rest near its target with a demanded
-    /// face up.
+    /// A die gets a fresh throw, and a fresh table where it has one of its own, from the place from where, tried out,
+    /// it comes to rest near its target with a demanded face up.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub recast: f64,
-    /// Like recast, with throws that are tried until one is likely under the prior and comes to rest near its target; for dice thrown onto one table.
+    /// Like recast, with throws that are tried until one is likely under the prior and comes to rest near its target;
+    /// for dice thrown onto one table.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub pick: f64,
-    /// A die's throw begins in another of the orientations that its symmetry makes equal: another face comes up, and nothing else changes.
+    /// A die's throw begins in another of the orientations that its symmetry makes equal: another face comes up, and
+    /// nothing else changes.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub turn: f64,
-    /// A die's throw is shifted so that it comes to rest near its target, and so is its table where it has one of its own.
+    /// A die's throw is shifted so that it comes to rest near its target, and so is its table where it has one of its
+    /// own.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub shift: f64,
 }
@@ -72,8 +75,9 @@ impl Default for Weights {
     }
 }
 
-/// Sizes of the moves' steps. A change leaves the prior as it is: a number at z standard deviations from its mean goes to `√(1 − s²) z + s ξ`, with
-/// ξ a standard normal number, and s drawn anew for each change between the two ends given here, uniformly in its logarithm.
+/// Sizes of the moves' steps. A change leaves the prior as it is: a number at z standard deviations from its mean goes
+/// to `√(1 − s²) z + s ξ`, with ξ a standard normal number, and s drawn anew for each change between the two ends given
+/// here, uniformly in its logarithm.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Steps {
@@ -92,10 +96,12 @@ pub struct Steps {
     /// Standard deviation, about the target, of the place that a shift aims at.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub shift_sd_mm: f64,
-    /// The same for a recast. Where dice meet, or bumps are large, it should be about as large as what these make of where a die comes to rest.
+    /// The same for a recast. Where dice meet, or bumps are large, it should be about as large as what these make of
+    /// where a die comes to rest.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub recast_sd_mm: f64,
-    /// How near its target a die must come to rest, alone on its table, for a throw to be picked: the standard deviation of the chance that it is.
+    /// How near its target a die must come to rest, alone on its table, for a throw to be picked: the standard
+    /// deviation of the chance that it is.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub pick_sd_mm: f64,
 }

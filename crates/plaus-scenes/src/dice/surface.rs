@@ -23,7 +23,8 @@ struct Values {
     sd: f64,
     low: f64,
     high: f64,
-    /// Below the cuts: the share of the Gaussian below `low`, and between the cuts. `None` where no score within [`LARGEST_SCORE`] reaches a cut.
+    /// Below the cuts: the share of the Gaussian below `low`, and between the cuts. `None` where no score within
+    /// [`LARGEST_SCORE`] reaches a cut.
     cut: Option<[f64; 2]>,
 }
 
@@ -154,7 +155,8 @@ impl Surface {
         })
     }
 
-    /// The value of a control point of a table that has been shifted by so many cells: metres for heights, else a pure number.
+    /// The value of a control point of a table that has been shifted by so many cells: metres for heights, else a pure
+    /// number.
     pub(super) fn value(&self, shifted: [i32; 2], site: Site, score: f64) -> f64 {
         let patched = match site.field {
             Field::Height => return self.height.at(score),
@@ -260,8 +262,8 @@ mod tests {
     use super::*;
     use plaus_dist::{Density, Purpose, Seed, standard_normal};
 
-    /// Values of normal scores have the truncated law: the share below x, by Kolmogorov's distance over 10⁵ values. A distance of 0.0095 has a
-    /// probability below 1e-7 (Dvoretzky, Kiefer, Wolfowitz, Massart).
+    /// Values of normal scores have the truncated law: the share below x, by Kolmogorov's distance over 10⁵ values. A
+    /// distance of 0.0095 has a probability below 1e-7 (Dvoretzky, Kiefer, Wolfowitz, Massart).
     #[test]
     fn values_have_the_truncated_law() {
         for (mean, sd, high) in [(0.9, 0.06, 1.0), (0.1, 0.06, f64::INFINITY), (0.5, 0.05, 1.0)] {

@@ -1,7 +1,7 @@
 //! The rotations that leave a cuboid as it is, and the faces of a die.
 //!
-//! A draw holds, besides the orientation of a die's body, which of these rotations its pips are turned by. The body moves as if it had no pips, so that
-//! another rotation changes which face comes up and no bit of the motion.
+//! A draw holds, besides the orientation of a die's body, which of these rotations its pips are turned by. The body
+//! moves as if it had no pips, so that another rotation changes which face comes up and no bit of the motion.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -12,7 +12,8 @@ pub struct Rotation {
     sign: [f64; 3],
 }
 
-/// Face 1 lies along the third of the pips' axes, 2 along the second, 3 along the first; opposite faces add up to seven.
+/// Face 1 lies along the third of the pips' axes, 2 along the second, 3 along the first; opposite faces add up to
+/// seven.
 fn face_along(axis: usize, sign: f64) -> u8 {
     let front = 3 - axis as u8;
     if sign > 0.0 { front } else { 7 - front }
@@ -35,7 +36,8 @@ impl Rotation {
     /// Pips along the body's own axes.
     pub const IDENTITY: Self = Self { axis: [0, 1, 2], sign: [1.0; 3] };
 
-    /// The proper rotations that map a cuboid of these edges onto itself, the identity first: 24 for a cube, 8 where two edges are equal, else 4.
+    /// The proper rotations that map a cuboid of these edges onto itself, the identity first: 24 for a cube, 8 where
+    /// two edges are equal, else 4.
     #[must_use]
     pub fn of_cuboid(edges: DVec3) -> Vec<Self> {
         let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
@@ -59,7 +61,8 @@ impl Rotation {
         DVec3::from_array(std::array::from_fn(|k| self.sign[k] * body[self.axis[k]]))
     }
 
-    /// The uppermost face of a body with this orientation, and the cosine of the angle between its normal and the vertical.
+    /// The uppermost face of a body with this orientation, and the cosine of the angle between its normal and the
+    /// vertical.
     #[must_use]
     pub fn uppermost(&self, orientation: DQuat) -> (u8, f64) {
         let up = self.seen(orientation.conjugate() * DVec3::Z);

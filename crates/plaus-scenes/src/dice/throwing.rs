@@ -31,7 +31,8 @@ pub struct Work {
     scratch: Scratch<RigidScratch>,
     runs: u64,
     dice: u64,
-    /// Of dice thrown onto one table: what is known about the chain's state, and about the candidate that was simulated last.
+    /// Of dice thrown onto one table: what is known about the chain's state, and about the candidate that was simulated
+    /// last.
     pub(super) current: Falls,
     pub(super) candidate: Falls,
 }
@@ -205,7 +206,8 @@ fn known<'a>(plan: &Plan, state: &'a StateOf<Dice>, draw: &Draw, die: usize) -> 
     (old.shifted == new.shifted || moved()).then_some(trip)
 }
 
-/// Whether no outcome of the trips still to be made can lift the constraints above `floor`. Unknown terms are at most 0, and sums round monotonically.
+/// Whether no outcome of the trips still to be made can lift the constraints above `floor`. Unknown terms are at most
+/// 0, and sums round monotonically.
 fn cannot_exceed(plan: &Plan, draw: &Draw, trips: &[Option<Trip>], floor: LogPotential) -> Result<bool, ModelError> {
     if floor.is_zero() {
         return Ok(false);

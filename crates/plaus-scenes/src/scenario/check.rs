@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::nearest::{any_of, nearest, shown};
-use super::problem::Problem;
+use super::problem::{Problem, SHOWN};
 use super::shape::{Kind, Shape, join};
 use super::tree::{Data, Tree};
 use super::value;
@@ -53,7 +53,9 @@ impl Check {
         for (name, inner) in entries {
             if !keys.iter().any(|(known, _)| known == name) {
                 let problem = Problem::new(join(path, &shown(name)), format!("unknown key `{}`", shown(name)));
-                self.problems.push(inner.place.blame_key(problem.with_help(self.advice(keys, name, path))));
+                // Comparing a name with all others takes time, and nobody reads so much advice.
+                let advice = if self.problems.len() < SHOWN { self.advice(keys, name, path) } else { None };
+                self.problems.push(inner.place.blame_key(problem.with_help(advice)));
             }
         }
         Value::Table(table)
@@ -107,6 +109,12 @@ impl Check {
                 let message = format!("no {path}: exactly one must be chosen");
                 self.problems
                     .push(tree.place.blame_key(Problem::new(path, message).with_help(Some(add_one(keys, path)))));
+                None
+            }
+            [(first, ..), (second, ..), ..] if path.ends_with(']') => {
+                let message = format!("`{first}` and `{second}` in one table: each needs a table of its own");
+                let help = format!("write {{ {first} = … }}, {{ {second} = … }}");
+                self.problems.push(tree.place.blame_value(Problem::new(path, message).with_help(Some(help))));
                 None
             }
             [(first, ..), ..] => {

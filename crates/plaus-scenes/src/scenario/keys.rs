@@ -1,7 +1,7 @@
 //! What each key means: for `plaus explain`, and as the comments of a new file.
 
 use super::Scenario;
-use super::overrides::{NoKey, resolve};
+use super::overrides::{NoKey, key_of};
 use super::shape::{Kind, Shape, scenario};
 use std::fmt::Write;
 
@@ -15,7 +15,8 @@ pub struct KeyDoc {
     pub key: String,
     /// The kind of value, with its article: "a number", "an integer", "a boolean", "a word", "a table".
     pub kind: String,
-    /// The default, as TOML; "unset" for a key that may be left out and then means something of its own; empty for tables.
+    /// The default, as TOML; "unset" for a key that may be left out and then means something of its own; empty for
+    /// tables.
     pub default: String,
     /// Allowed values, in words, e.g. "above 0 and at most 90"; empty where anything of the kind goes.
     pub range: String,
@@ -32,17 +33,14 @@ pub fn keys() -> Vec<KeyDoc> {
     all.filter(|(shape, _)| !shape.is_table()).map(|(shape, key)| doc(shape, key)).collect()
 }
 
-/// What a key means, or a table. `key` is its full dotted name, or an end of it that no other key has: `sigma_d`, `weights.aim`.
+/// What a key means, or a table. `key` is its full dotted name, or an end of it that no other key has: `sigma_d`,
+/// `weights.aim`, `rest_at`. Any place of a list stands for all: `constraints[0].rest_at` is `constraints[].rest_at`.
 ///
 /// # Errors
-/// The nearest known key, if any is near; where several end in `key`, the first of them.
-pub fn explain(key: &str) -> Result<KeyDoc, Option<String>> {
-    let all = scenario().paths(None);
-    let found = resolve(key.trim(), &all, &all).map_err(|error| match error {
-        NoKey::Unknown(nearest) => nearest,
-        NoKey::Ambiguous(keys) => keys.into_iter().next(),
-    })?;
-    scenario().at(&found).map(|shape| doc(shape, found)).ok_or(None)
+/// [`NoKey`]: the nearest known key, if any is near, or all keys that end so.
+pub fn explain(key: &str) -> Result<KeyDoc, NoKey> {
+    let (found, _) = key_of(key.trim(), scenario(), None)?;
+    scenario().at(&found).map(|shape| doc(shape, found)).ok_or(NoKey::Unknown(None))
 }
 
 fn doc(shape: &Shape, key: String) -> KeyDoc {
@@ -95,7 +93,8 @@ fn default(shape: &Shape) -> Option<String> {
     })
 }
 
-/// A commented scenario file: every key with its default, its meaning, unit and range. Reading it gives the scene's default scenario.
+/// A commented scenario file: every key with its default, its meaning, unit and range. Reading it gives the scene's
+/// default scenario.
 #[must_use]
 pub fn template(scene: &str) -> Option<String> {
     let given = Scenario::default_of(scene)?;

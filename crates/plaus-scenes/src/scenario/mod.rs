@@ -12,7 +12,9 @@ mod tree;
 mod value;
 
 pub use keys::{KeyDoc, explain, keys, template};
-pub use problem::{Problem, ScenarioError, Source};
+pub use nearest::nearest;
+pub use overrides::NoKey;
+pub use problem::{Problem, SHOWN, ScenarioError, Source};
 pub use schema::{SCHEMA_FILE, SCHEMA_ID, published_schema, schema};
 
 use crate::registry::{Visitor, World};
@@ -52,11 +54,13 @@ pub struct Sampler {
     /// Record every `thin`-th iteration.
     #[schemars(range(min = 1, max = 1_000_000_000_u64))]
     pub thin: u64,
-    /// Most iterations between two points at which a run can be stopped and gone on with; it begins with fewer, about an eighth of those done.
+    /// Most iterations between two points at which a run can be stopped and gone on with; it begins with fewer, about
+    /// an eighth of those done.
     #[schemars(range(min = 1, max = 1_000_000_000_u64))]
     pub checkpoint_every: u64,
-    /// Whether the sizes of moves' steps are adapted in the warm-up, each until a good share of its proposals is accepted, and kept from then on. Unset: as
-    /// measurement says is better for the scene (dice: yes; others: no). Without a warm-up, and where steps are hardly tried in it, they are as configured.
+    /// Whether the sizes of moves' steps are adapted in the warm-up, each until a good share of its proposals is
+    /// accepted, and kept from then on. Unset: as measurement says is better for the scene (dice: yes; others: no).
+    /// Without a warm-up, and where steps are hardly tried in it, they are as configured.
     pub adapt: Option<bool>,
     /// Exact acceptance, or the paper's as printed.
     pub rules: Rules,
@@ -64,13 +68,13 @@ pub struct Sampler {
     pub tempering: Tempering,
 }
 
-/// Parallel tempering: each chain climbs and descends a ladder of constraints that count less and less, down to none, where everything is drawn anew. What comes up
-/// again shares nothing with what went down, and the chain stays exact.
+/// Parallel tempering: each chain climbs and descends a ladder of constraints that count less and less, down to none,
+/// where everything is drawn anew. What comes up again shares nothing with what went down, and the chain stays exact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Tempering {
-    /// Rungs of the ladder, each as much work as a chain; 1: no tempering. About twice the barrier that a run reports, and one more, serve best. The rungs
-    /// are spaced during the warm-up, and stay from then on.
+    /// Rungs of the ladder, each as much work as a chain; 1: no tempering. About twice the barrier that a run reports,
+    /// and one more, serve best. The rungs are spaced during the warm-up, and stay from then on.
     #[schemars(range(min = 1, max = 256))]
     pub rungs: u32,
     /// Iterations between two swaps of neighbouring rungs.
@@ -101,14 +105,18 @@ impl Default for Sampler {
 }
 
 impl Scenario {
-    /// Reads a scenario: a file called `name` with the contents `text`, and `key=value` strings that override it, in order.
+    /// Reads a scenario: a file called `name` with the contents `text`, and `key=value` strings that override it, in
+    /// order.
     ///
-    /// An override's key is a full dotted name (`world.ball2d.sigma_d`) or an end of it that no other key of the file's world has
-    /// (`sigma_d`, `weights.aim`). Its value is TOML, else a bare string: `moves=paper`. Tables that the file lacks are made.
+    /// An override's key is a full dotted name (`world.ball2d.sigma_d`) or an end of it that no other key of the file's
+    /// world has (`sigma_d`, `weights.aim`). Places in lists are counted from 0: `constraints[0].rest_at.x_mm`; where
+    /// only one table of the list has the key, the place may be left out: `rest_at.x_mm`. The value is TOML, else a
+    /// bare string: `moves=paper`. Tables that the file lacks are made.
     ///
     /// # Errors
-    /// [`ScenarioError`] with all that is wrong, each in its place. Only where the text is no TOML is nothing else looked at, and what one
-    /// key alone does not show (weights that are all zero) is found where each key by itself is right.
+    /// [`ScenarioError`] with all that is wrong, each in its place. Only where the text is no TOML is nothing else
+    /// looked at, and what one key alone does not show (weights that are all zero) is found where each key by itself is
+    /// right.
     pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, ScenarioError> {
         let fail = |problems| Err(ScenarioError::new(name, text, problems));
         let (mut tree, syntax) = Tree::parse(text);
@@ -158,10 +166,12 @@ impl Scenario {
         self.world.visit(Build(&self.sampler.rules))?
     }
 
-    /// The whole effective scenario as TOML: every key that is set, in full precision. Reading it back gives an equal scenario.
+    /// The whole effective scenario as TOML: every key that is set, in full precision. Reading it back gives an equal
+    /// scenario.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        // Tables, numbers, booleans and strings can all be written, so this cannot fail; an empty text would be refused when read.
+        // Tables, numbers, booleans and strings can all be written, so this cannot fail; an empty text would be refused
+        // when read.
         toml::to_string(self).unwrap_or_default()
     }
 

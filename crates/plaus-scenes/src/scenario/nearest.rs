@@ -1,11 +1,12 @@
 //! Names near a misspelt one, and lists of names in a sentence.
 
-/// Names longer than this are not compared: nobody misspells that far, and comparing takes time in the square of the length.
+/// Names longer than this are not compared: nobody misspells that far, and comparing takes time in the square of the
+/// length.
 const LONGEST: usize = 64;
 
-/// The candidate nearest to `name`: at most a third of its letters differ (swapped neighbours count once, case and hyphens not at all), or it is
-/// the only one that contains `name`.
-pub(super) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> Option<&'a str> {
+/// The candidate nearest to `name`: at most a third of its letters differ (swapped neighbours count once, case and
+/// hyphens not at all), or it is the only one that contains `name`.
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> Option<&'a str> {
     let plain = |name: &str| name.to_lowercase().replace('-', "_");
     let sought = plain(name);
     if sought.is_empty() || name.chars().count() > LONGEST {

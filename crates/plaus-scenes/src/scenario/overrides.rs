@@ -2,17 +2,17 @@
 
 use super::nearest::{any_of, nearest, shown};
 use super::problem::{Problem, Source};
-use super::shape::Shape;
+use super::shape::{Shape, join};
 use super::tree::{Data, Place, Tree};
 use std::collections::BTreeMap;
 use toml::de::DeValue;
 
 /// Why a name stands for no key.
-#[derive(Debug, PartialEq, Eq)]
-pub(super) enum NoKey {
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum NoKey {
     /// No key is called so; perhaps this one was meant.
     Unknown(Option<String>),
-    /// Several keys end so.
+    /// All keys that end so: at least two.
     Ambiguous(Vec<String>),
 }
 
@@ -26,13 +26,92 @@ pub(super) fn apply(said: &str, shape: &Shape, tree: &mut Tree) -> Result<(), Bo
         return Err(blame(Problem::new(shown(said), "an override is `key=value`, and this has no `=`")));
     };
     let name = name.trim();
-    let key = resolve(name, &shape.paths(Some(tree)), &shape.paths(None))
-        .map_err(|error| blame(error.problem(name, shape)))?;
-    insert(tree, &key, value_of(value.trim(), said), said);
-    Ok(())
+    let (key, places) = key_of(name, shape, Some(tree)).map_err(|error| blame(error.problem(name, shape)))?;
+    let key = with_places(&key, &places, shape, tree).map_err(|problem| blame(*problem))?;
+    insert(tree, shape, &key, "", value_of(value.trim(), said), said).map_err(|problem| blame(*problem))
 }
 
-/// The key that `name` stands for: its full dotted name, or an end of it that no other of `keys` has. Full names may be any of `all`.
+/// The key that `name` stands for, with `[]` for each place in a list, and the places that `name` gives.
+///
+/// # Errors
+/// [`NoKey`].
+pub(super) fn key_of(name: &str, shape: &Shape, tree: Option<&Tree>) -> Result<(String, Vec<usize>), NoKey> {
+    let (plain, places) = without_places(name);
+    let found = resolve(&plain, &shape.paths(tree), &shape.paths(None));
+    let found = match found {
+        Err(NoKey::Unknown(near)) => {
+            let inside = resolve(&plain, &shape.paths_in_lists(tree), &shape.paths_in_lists(None));
+            inside.map_err(|error| match error {
+                NoKey::Unknown(inside) => NoKey::Unknown(near.or(inside)),
+                ambiguous @ NoKey::Ambiguous(_) => ambiguous,
+            })
+        }
+        found => found,
+    };
+    found.map(|key| (key, places))
+}
+
+/// `constraints[0].rest_at` as `constraints[].rest_at` and 0.
+fn without_places(name: &str) -> (String, Vec<usize>) {
+    let mut places = Vec::new();
+    let parts = name.split('.').map(|part| {
+        let place = part.strip_suffix(']').and_then(|part| part.split_once('['));
+        match place.and_then(|(list, place)| Some((list, place.parse().ok()?))) {
+            Some((list, place)) => {
+                places.push(place);
+                format!("{list}[]")
+            }
+            None => part.to_owned(),
+        }
+    });
+    let plain = parts.collect::<Vec<_>>().join(".");
+    (plain, places)
+}
+
+/// `key` with a place for each `[]`. Those that `places` lacks are where the tree has the only table with what follows.
+fn with_places(key: &str, places: &[usize], shape: &Shape, tree: &Tree) -> Result<String, Box<Problem>> {
+    let lists = key.matches("[]").count();
+    let Some((before, after)) = key.split_once("[]").filter(|_| lists > places.len()) else {
+        return Ok(places.iter().fold(key.to_owned(), |key, place| key.replacen("[]", &format!("[{place}]"), 1)));
+    };
+    let wanted = after.trim_start_matches('.').split('.').next().unwrap_or_default();
+    let (path, list) = tree.nearest(before);
+    let given = match &list.data {
+        Data::List(items) if path == before => items.clone(),
+        _ => default_items(shape, before),
+    };
+    let having: Vec<String> = (0..given.len())
+        .filter(|&place| wanted.is_empty() || given[place].get(wanted).is_some())
+        .map(|place| format!("{before}[{place}]{after}"))
+        .collect();
+    match having.as_slice() {
+        [one] => Ok(one.clone()),
+        [] => {
+            let message = format!("no table of `{before}` has `{wanted}`");
+            let places = (0..given.len()).map(|place| format!("`{before}[{place}]`"));
+            let help = (!given.is_empty()).then(|| format!("there are {}", any_of(places).replace(" or ", " and ")));
+            Err(Box::new(Problem::new(key, message).with_help(help)))
+        }
+        several => {
+            let several = any_of(several.iter().map(|key| format!("`{key}`")));
+            let message = "several places of the list may be meant";
+            Err(Box::new(Problem::new(key, message).with_help(Some(format!("write {several}")))))
+        }
+    }
+}
+
+/// What stands in the list at `key` where a scenario does not say.
+fn default_items(shape: &Shape, key: &str) -> Vec<Tree> {
+    let default = shape.at(key).and_then(|shape| shape.default.as_ref());
+    let text = default.and_then(|value| toml::Value::try_from(value).ok()).map(|value| value.to_string());
+    match text.map(|text| value_of(&text, "").data) {
+        Some(Data::List(items)) => items,
+        _ => Vec::new(),
+    }
+}
+
+/// The key that `name` stands for: its full dotted name, or an end of it that no other of `keys` has. Full names may be
+/// any of `all`.
 ///
 /// # Errors
 /// [`NoKey`].
@@ -95,16 +174,59 @@ fn value_of(value: &str, said: &str) -> Tree {
     }
 }
 
-/// Puts `value` at the dotted `key`. Something other than a table in the way stays: it is wrong itself, and will be reported.
-fn insert(tree: &mut Tree, key: &str, value: Tree, said: &str) {
-    let Data::Table(entries) = &mut tree.data else { return };
-    match key.split_once('.') {
-        None => {
-            entries.insert(key.into(), value);
+/// Puts `value` at the dotted `key` of `tree`, which stands at `path`. Something other than a table in the way stays:
+/// it is wrong itself, and will be reported.
+fn insert(tree: &mut Tree, shape: &Shape, key: &str, path: &str, value: Tree, said: &str) -> Result<(), Box<Problem>> {
+    let Data::Table(entries) = &mut tree.data else { return Ok(()) };
+    let (first, rest) = key.split_once('.').map_or((key, None), |(first, rest)| (first, Some(rest)));
+    let place = first.strip_suffix(']').and_then(|part| part.split_once('['));
+    let place = place.and_then(|(list, place)| Some((list, place.parse::<usize>().ok()?)));
+    let (name, place) = place.map_or((first, None), |(list, place)| (list, Some(place)));
+    let here = join(path, name);
+    let empty = || match place {
+        Some(_) => Data::List(default_items(shape, &without_places(&here).0)),
+        None => Data::Table(BTreeMap::new()),
+    };
+    let empty = || Tree { place: Place::of_override(said), data: empty() };
+    let inner = match (place, rest) {
+        (None, None) => {
+            entries.insert(name.into(), value);
+            return Ok(());
         }
-        Some((first, rest)) => {
-            let table = || Tree { place: Place::of_override(said), data: Data::Table(BTreeMap::new()) };
-            insert(entries.entry(first.into()).or_insert_with(table), rest, value, said);
+        _ => entries.entry(name.into()).or_insert_with(empty),
+    };
+    let here = join(path, first);
+    let inner = match (place, &mut inner.data) {
+        (None, _) => inner,
+        (Some(place), Data::List(items)) => {
+            let count = items.len();
+            items.get_mut(place).ok_or_else(|| Box::new(beyond(&here, name, count)))?
+        }
+        (Some(_), _) => return Ok(()),
+    };
+    let Some(rest) = rest else {
+        inner.data = value.data;
+        inner.place = value.place;
+        return Ok(());
+    };
+    if place.is_some() {
+        let wanted = rest.split('.').next().unwrap_or_default();
+        let other = inner.first_key().filter(|_| inner.get(wanted).is_none());
+        if let Some(other) = other {
+            let message = format!("`{here}` is `{other}`, not `{wanted}`");
+            let help = "`plaus check` shows what stands where in the scenario".to_owned();
+            return Err(Box::new(Problem::new(here, message).with_help(Some(help))));
         }
     }
+    insert(inner, shape, rest, &here, value, said)
+}
+
+/// A place beyond the end of a list.
+fn beyond(key: &str, name: &str, count: usize) -> Problem {
+    let help = match count {
+        0 => format!("`{name}` is empty"),
+        1 => format!("`{name}` has one entry, `{name}[0]`"),
+        _ => format!("`{name}` has {count} entries, `{name}[0]` to `{name}[{}]`", count - 1),
+    };
+    Problem::new(key, "there is no such place in the list").with_help(Some(help))
 }

@@ -5,9 +5,13 @@ use crate::scene::ConfigError;
 use std::fmt;
 use std::ops::Range;
 
+/// Problems of one scenario that are shown, and given advice; more are counted.
+pub const SHOWN: usize = 20;
+
 /// A scenario that cannot be sampled: every problem found in it, in the order of the file.
 ///
-/// [`Display`](fmt::Display) gives one line a problem: `file:line:column: key: message; help`.
+/// [`Display`](fmt::Display) gives one line a problem: `file:line:column: key: message; help`; after [`SHOWN`] of them
+/// it says how many more there are.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScenarioError {
     /// What the file is called.
@@ -50,7 +54,7 @@ impl std::error::Error for ScenarioError {}
 
 impl fmt::Display for ScenarioError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, problem) in self.problems.iter().enumerate() {
+        for (index, problem) in self.problems.iter().take(SHOWN).enumerate() {
             if index > 0 {
                 writeln!(f)?;
             }
@@ -61,7 +65,10 @@ impl fmt::Display for ScenarioError {
             }
             write!(f, "{problem}")?;
         }
-        Ok(())
+        match self.problems.len().saturating_sub(SHOWN) {
+            0 => Ok(()),
+            more => write!(f, "\n{}: and {more} more problems", self.name),
+        }
     }
 }
 
@@ -106,17 +113,19 @@ impl Problem {
 }
 
 impl ScenarioError {
-    /// Gives each problem its line and column, and puts them in order: those of the file, those of what it lacks, those of overrides.
+    /// Gives each problem its line and column, and puts them in order: those of the file, those of what it lacks, those
+    /// of overrides.
     pub(super) fn new(name: &str, text: &str, mut problems: Vec<Problem>) -> Self {
+        let start = |problem: &Problem| problem.span.as_ref().map_or(usize::MAX, |span| span.start);
+        problems.sort_by(|a, b| a.source.cmp(&b.source).then(start(a).cmp(&start(b))));
+        let mut cursor = Cursor::new(text);
         for problem in &mut problems {
             if let Some(span) = &mut problem.span {
                 *span = inside(text, span.clone());
-                let (line, column) = line_column(text, span.start);
+                let (line, column) = cursor.advance(span.start);
                 (problem.line, problem.column) = (Some(line), Some(column));
             }
         }
-        let place = |problem: &Problem| (problem.source.clone(), problem.span.is_none(), problem.line, problem.column);
-        problems.sort_by_key(place);
         problems.dedup();
         Self { name: name.into(), text: text.into(), problems }
     }
@@ -158,10 +167,30 @@ fn inside(text: &str, span: Range<usize>) -> Range<usize> {
     start..text.ceil_char_boundary(span.end.max(start))
 }
 
-/// Line and column of a byte, both from 1; columns count characters, and a byte order mark is none.
-fn line_column(text: &str, offset: usize) -> (usize, usize) {
-    let before = &text[..offset];
-    let before = before.strip_prefix('\u{feff}').unwrap_or(before);
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+/// Goes through a text once, and says where it is: lines and columns, both from 1. Columns count characters, and a byte
+/// order mark is none.
+struct Cursor<'a> {
+    text: &'a str,
+    offset: usize,
+    line: usize,
+    column: usize,
+}
+
+impl<'a> Cursor<'a> {
+    fn new(text: &'a str) -> Self {
+        Self { text, offset: 0, line: 1, column: 1 }
+    }
+
+    /// Line and column of a byte at a character's boundary, not before the last one asked for.
+    fn advance(&mut self, offset: usize) -> (usize, usize) {
+        let passed = self.text.get(self.offset..offset).unwrap_or_default();
+        for character in passed.strip_prefix('\u{feff}').filter(|_| self.offset == 0).unwrap_or(passed).chars() {
+            match character {
+                '\n' => (self.line, self.column) = (self.line + 1, 1),
+                _ => self.column += 1,
+            }
+        }
+        self.offset = self.offset.max(offset);
+        (self.line, self.column)
+    }
 }

@@ -4,11 +4,13 @@ use schemars::transform::{Transform, transform_subschemas};
 use schemars::{Schema, schema_for};
 use serde_json::{Map, Value, json};
 
-/// The JSON Schema of scenario files, draft 2020-12, for editors and for [`Scenario::read`](super::Scenario::read) alike.
+/// The JSON Schema of scenario files, draft 2020-12, for editors and for [`Scenario::read`](super::Scenario::read)
+/// alike.
 ///
-/// What an enum of scenes makes by itself, a `oneOf` of objects, lets an editor say no more than "matches none"; here it is one object
-/// with an optional property a scene and `minProperties = maxProperties = 1`. Units stand in `x-unit`. Whole numbers have the bounds of their
-/// type, and never exceed 9,223,372,036,854,775,807, the largest that TOML promises to hold.
+/// What an enum of scenes makes by itself, a `oneOf` of objects, lets an editor say no more than "matches none"; here
+/// it is one object with an optional property a scene and `minProperties = maxProperties = 1`. Units stand in `x-unit`.
+/// Whole numbers have the bounds of their type, and never exceed 9,223,372,036,854,775,807, the largest that TOML
+/// promises to hold.
 #[must_use]
 pub fn schema() -> Value {
     let mut schema = schema_for!(super::Scenario);

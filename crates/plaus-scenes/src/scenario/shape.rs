@@ -1,4 +1,5 @@
-//! The schema as the rest of this folder uses it: typed, its references resolved, its keys in the order of their definition.
+//! The schema as the rest of this folder uses it: typed, its references resolved, its keys in the order of their
+//! definition.
 
 use super::bounds::Bounds;
 use super::schema::schema;
@@ -107,9 +108,31 @@ impl Shape {
         self.keys().iter().find(|(name, _)| name == key).map(|(_, shape)| shape)
     }
 
-    /// The shape at a dotted key.
+    /// What stands in a list.
+    fn item(&self) -> Option<&Self> {
+        match &self.kind {
+            Kind::List(item, _) => Some(item),
+            _ => None,
+        }
+    }
+
+    /// The shape at a dotted key; `name[]` is what stands in the list `name`.
     pub(super) fn at(&self, key: &str) -> Option<&Self> {
-        key.split('.').try_fold(self, Self::get)
+        key.split('.').try_fold(self, |shape, name| match name.strip_suffix("[]") {
+            Some(list) => shape.get(list)?.item(),
+            None => shape.get(name),
+        })
+    }
+
+    /// All dotted keys in lists: `constraints[]`, `constraints[].rest_at`, …. Of a choice that `tree` has made, only
+    /// what it chose.
+    pub(super) fn paths_in_lists(&self, tree: Option<&Tree>) -> Vec<String> {
+        let lists = self.paths(tree).into_iter().filter_map(|key| Some((self.at(&key)?.item()?, key)));
+        let inside = |(item, key): (&Self, String)| {
+            let keys = item.paths(None).into_iter().map(|inner| format!("{key}[].{inner}")).collect::<Vec<_>>();
+            std::iter::once(format!("{key}[]")).chain(keys)
+        };
+        lists.flat_map(inside).collect()
     }
 
     /// All dotted keys, tables before what they hold, in order. Of a choice that `tree` has made, only what it chose.
@@ -130,7 +153,8 @@ impl Shape {
         paths
     }
 
-    /// The allowed values in words, without the unit: "above 0 and at most 90", "\"mixed\" or \"paper\""; empty where anything goes.
+    /// The allowed values in words, without the unit: "above 0 and at most 90", "\"mixed\" or \"paper\""; empty where
+    /// anything goes.
     pub(super) fn range(&self) -> String {
         match &self.kind {
             Kind::Integer(bounds) => bounds.words(),

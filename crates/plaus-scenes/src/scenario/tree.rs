@@ -79,6 +79,14 @@ impl Tree {
         }
     }
 
+    /// The key that comes first, where this is a table with any.
+    pub(super) fn first_key(&self) -> Option<&str> {
+        match &self.data {
+            Data::Table(entries) => entries.keys().next().map(String::as_str),
+            _ => None,
+        }
+    }
+
     /// The value of a key, or of a place in a list as in `name[2]`.
     fn get_indexed(&self, name: &str) -> Option<&Self> {
         let Some((list, place)) = name.strip_suffix(']').and_then(|name| name.split_once('[')) else {

@@ -12,10 +12,12 @@ use plaus_sim::scenery::Scenery;
 use plaus_sim::worlds::Bins;
 use plaus_sim::{Accuracy, Law, Laws, Material, WorldError};
 
-/// Standard deviations of an offset's coordinate beyond which an offset has density 0: its length exceeds 8 with probability 8e-14.
+/// Standard deviations of an offset's coordinate beyond which an offset has density 0: its length exceeds 8 with
+/// probability 8e-14.
 const LONGEST: f64 = 8.0;
 
-/// Largest share of the partitions' thickness that an offset can be: less than half, so that no vertex leaves its partition.
+/// Largest share of the partitions' thickness that an offset can be: less than half, so that no vertex leaves its
+/// partition.
 const SHARE: f64 = 0.45;
 
 /// Metres in a millimetre.
@@ -147,7 +149,8 @@ impl Arena {
         })
     }
 
-    /// The bin in which a ball lies, once everything has come to rest: its lowest point is less than halfway up the partitions.
+    /// The bin in which a ball lies, once everything has come to rest: its lowest point is less than halfway up the
+    /// partitions.
     pub(super) fn bin_of(&self, ball: &Marble) -> Option<u16> {
         let x = ball.path.x;
         if ball.phase != Phase::Rest || x.z - self.bins.marble >= 0.5 * self.bins.height {
@@ -166,7 +169,8 @@ const BOX: Material = Material(1);
 fn laws(config: &Config) -> Result<Laws, WorldError> {
     let contact = &config.contact;
     let mut laws = Laws::new(2, Law::new(contact.ball_friction, contact.ball_restitution))?;
-    // Spinning about the normal dies by the same resistance, half as strong: a ball that only spins is at rest for the eye.
+    // Spinning about the normal dies by the same resistance, half as strong: a ball that only spins is at rest for the
+    // eye.
     let on_box = Law::new(contact.box_friction, contact.box_restitution);
     laws.set(BALL, BOX, on_box.with_resistance(contact.rolling_resistance, 0.5 * contact.rolling_resistance))?;
     Ok(laws)

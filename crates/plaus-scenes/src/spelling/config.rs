@@ -1,6 +1,7 @@
 //! Scenario keys of the balls that spell.
 
 use crate::accuracy::AccuracyPreset;
+use plaus_dist::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,17 +10,19 @@ pub const MOST_COLUMNS: u32 = 64;
 /// Most bins along the other side.
 pub const MOST_ROWS: u32 = 16;
 
-/// Balls are dropped one after the other into a box of bins, and should come to rest so that they spell a word (Chenney & Forsyth 2000, section
-/// 5.3 and appendix B).
+/// Balls are dropped one after the other into a box of bins, and should come to rest so that they spell a word (Chenney
+/// & Forsyth 2000, section 5.3 and appendix B).
 ///
 /// The box is seen from above: x along the word, y from its last row of bins to its first. Lengths are in millimetres.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// The word: letters A to Z, digits, spaces and `.-+!?=*` of a small built-in font. Case does not matter.
-    pub text: String,
-    /// A picture in place of a word: one line a row of bins, where `#`, `X`, `x`, `1` or `*` is a bin to fill and `.`, `_`, `0`, `-` or a space one
-    /// to leave empty. Empty: `text` counts.
+    /// The word: letters A to Z, digits, spaces and `.-+!?=*` of a small built-in font. Case does not matter. Unset:
+    /// HI, where there is no `bitmap` either. Both together are refused.
+    #[schemars(extend("x-example" = "HI"))]
+    pub text: Option<String>,
+    /// A picture in place of a word: one line a row of bins, where `#`, `X`, `x`, `1` or `*` is a bin to fill and `.`,
+    /// `_`, `0`, `-` or a space one to leave empty. Empty: no picture.
     pub bitmap: String,
     /// Which font.
     pub letters: Letters,
@@ -29,17 +32,19 @@ pub struct Config {
     /// Rows of bins. 0: as many as the word needs, with an empty one above and below.
     #[schemars(range(min = 0, max = 16))]
     pub rows: u32,
-    /// Balls at most, of which each may be dropped or not. 0: as many as there are bins to fill, as in the paper; fewer can't spell the word.
+    /// Balls at most, of which each may be dropped or not. 0: as many as there are bins to fill, as in the paper; fewer
+    /// can't spell the word.
     #[schemars(range(min = 0, max = 1024))]
     pub balls: u32,
-    /// ln λ, the reward in nats for each filled bin. The paper's: 5 for HI, 7.25 for ACM. The more bins, the more ways there are to fill a few less, and
-    /// the larger it must be.
-    #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat"))]
-    pub ln_lambda: f64,
+    /// ln λ, the reward in nats for each filled bin. The more bins, the more ways there are to fill a few less, and the
+    /// larger it must be. Unset: 5 + 2.25 ln(N/10) / ln 3 for N bins to fill, which is the paper's 5 for HI and 7.25
+    /// for ACM.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat", "x-example" = 5.0))]
+    pub ln_lambda: Option<f64>,
     /// What is counted.
     pub count: Count,
-    /// Standard deviation of each coordinate of a partition vertex's offset. Offsets beyond 8 of it, or beyond 9/20 of the partitions' thickness, have
-    /// density 0: the partitions stay whole.
+    /// Standard deviation of each coordinate of a partition vertex's offset. Offsets beyond 8 of it, or beyond 9/20 of
+    /// the partitions' thickness, have density 0: the partitions stay whole.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 0.5, "x-unit" = "mm"))]
     pub sigma_mm: f64,
     /// Which vertices of the partitions are random.
@@ -53,10 +58,12 @@ pub struct Config {
     /// Height above the bottom of the box from which a ball's centre falls.
     #[schemars(extend("minimum" = 1.0, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub drop_height_mm: f64,
-    /// How much smaller than the box the rectangle is over which balls are dropped, on each side. 0: a ball at its edge just touches the wall.
+    /// How much smaller than the box the rectangle is over which balls are dropped, on each side. 0: a ball at its edge
+    /// just touches the wall.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub drop_inset_mm: f64,
-    /// Time between two drops. The default lets a ball make one bounce or two before the next one falls; less makes balls meet more often.
+    /// Time between two drops. The default lets a ball make one bounce or two before the next one falls; less makes
+    /// balls meet more often.
     #[schemars(extend("minimum" = 0.01, "maximum" = 10.0, "x-unit" = "s"))]
     pub drop_interval_s: f64,
     /// When which ball falls.
@@ -84,13 +91,13 @@ pub struct Config {
 impl Default for Config {
     fn default() -> Self {
         Self {
-            text: "HI".into(),
+            text: None,
             bitmap: String::new(),
             letters: Letters::default(),
             columns: 0,
             rows: 0,
             balls: 0,
-            ln_lambda: 5.0,
+            ln_lambda: None,
             count: Count::default(),
             sigma_mm: 0.1,
             vertices: Vertices::default(),
@@ -110,6 +117,13 @@ impl Default for Config {
             steps: Steps::default(),
         }
     }
+}
+
+/// ln λ where a scenario does not say: the power law through the paper's two choices, λ = e⁵ for 10 bins and e^7.25 for
+/// 30; never below 0.
+#[must_use]
+pub fn usual_ln_lambda(bins: usize) -> f64 {
+    (5.0 + 2.25 * math::ln(bins as f64 / 10.0) / math::ln(3.0)).max(0.0)
 }
 
 /// A built-in font.
@@ -138,7 +152,8 @@ pub enum Count {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Vertices {
-    /// The tops of all crossings of partitions, those along the walls too: 48 for 7 × 5 bins. No ball reaches those along the walls.
+    /// The tops of all crossings of partitions, those along the walls too: 48 for 7 × 5 bins. No ball reaches those
+    /// along the walls.
     #[default]
     Crossings,
     /// The tops of the crossings that are not along a wall: 24 for 7 × 5 bins.
@@ -149,7 +164,8 @@ pub enum Vertices {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Order {
-    /// Ball i falls in the i-th time slot, and a slot stays empty where its ball is not dropped: adding a ball changes no other one's time.
+    /// Ball i falls in the i-th time slot, and a slot stays empty where its ball is not dropped: adding a ball changes
+    /// no other one's time.
     #[default]
     Slots,
     /// The balls that are dropped fall one after the other without gaps.
@@ -193,7 +209,8 @@ pub struct Contact {
     /// Coulomb's coefficient of friction between a ball and the box.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub box_friction: f64,
-    /// Rolling resistance on the box: torque over load times radius. Without any, balls roll in their bowls for ever and never rest.
+    /// Rolling resistance on the box: torque over load times radius. Without any, balls roll in their bowls for ever
+    /// and never rest.
     #[schemars(range(min = 0.0001, max = 1.0))]
     pub rolling_resistance: f64,
     /// Restitution between two balls.
@@ -303,7 +320,8 @@ pub struct Steps {
     /// Probability that `redraw_vertices` draws a vertex anew.
     #[schemars(range(min = 0.000001, max = 1.0))]
     pub redraw_chance: f64,
-    /// Standard deviation of the length of `change_ball`'s shift, in a random direction; the paper's is the side of a bin.
+    /// Standard deviation of the length of `change_ball`'s shift, in a random direction; the paper's is the side of a
+    /// bin.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub ball_mm: f64,
     /// Probability that `toggle` toggles a ball.

@@ -33,14 +33,16 @@ impl Clone for Drops {
     }
 }
 
-/// The prior: vertex offsets Gaussian, cut off far out; each ball dropped with probability ½, uniformly over a rectangle.
+/// The prior: vertex offsets Gaussian, cut off far out; each ball dropped with probability ½, uniformly over a
+/// rectangle.
 ///
 /// The paper's `Π 1/a` over the balls that are dropped is this law: a ball has weight ∫ 1/a = 1 in either state.
 #[derive(Debug, Clone)]
 pub struct Prior {
     offset: IsotropicGaussian<3>,
     fresh_as_printed: Radial<3>,
-    /// Offsets longer than this have density 0. The factor that this cut puts on the density is the same for every draw, and left out.
+    /// Offsets longer than this have density 0. The factor that this cut puts on the density is the same for every
+    /// draw, and left out.
     longest: f64,
     vertices: usize,
     balls: usize,
@@ -50,7 +52,8 @@ pub struct Prior {
 }
 
 impl Prior {
-    /// `vertices` offsets of standard deviation `sigma` an axis, not longer than `longest`; `balls` over a rectangle given by its lower and upper ends along each axis.
+    /// `vertices` offsets of standard deviation `sigma` an axis, not longer than `longest`; `balls` over a rectangle
+    /// given by its lower and upper ends along each axis.
     ///
     /// # Errors
     /// [`ParamError`] where a scale is no scale or a side is no interval.
@@ -114,7 +117,8 @@ impl Prior {
         offset
     }
 
-    /// A draw of the prior; with the paper's recipe for offsets (a random direction, a Gaussian length) where `as_printed`, which is another law.
+    /// A draw of the prior; with the paper's recipe for offsets (a random direction, a Gaussian length) where
+    /// `as_printed`, which is another law.
     pub fn sample(&self, as_printed: bool, draw: &mut Drops, stream: &mut Stream) {
         draw.offsets.clear();
         for _ in 0..self.vertices {

@@ -85,8 +85,8 @@ impl Fall {
 
     /// Whether the simulation could have other bits once the vertices `moved` have moved.
     ///
-    /// A ball alone depends on the vertices near its way. What several do can also depend on features that they were deflected from before they came
-    /// there, wherever those are.
+    /// A ball alone depends on the vertices near its way. What several do can also depend on features that they were
+    /// deflected from before they came there, wherever those are.
     pub(super) fn depends_on(&self, moved: &[usize]) -> bool {
         match self.members.len() {
             1 => moved.iter().any(|&k| (self.touched[k / 64] >> (k % 64)) & 1 == 1),
@@ -102,8 +102,9 @@ impl Fall {
 
 /// Which vertices a way can depend on.
 ///
-/// Moving a vertex changes the tops of the partitions that meet in it, up to the next crossings. Their features are looked at where a ball's way, as far as
-/// the cell of the broad phase in which a motion ends, passes within its radius of where they can be.
+/// Moving a vertex changes the tops of the partitions that meet in it, up to the next crossings. Their features are
+/// looked at where a ball's way, as far as the cell of the broad phase in which a motion ends, passes within its radius
+/// of where they can be.
 struct Footprint {
     side: f64,
     /// How far from the middle of a partition's top, along and across it, a ball's centre can be to see a change.
@@ -114,7 +115,8 @@ struct Footprint {
 
 impl Footprint {
     fn new(bins: &Bins) -> Self {
-        // The broad phase makes its cells a quarter as large as a typical feature with its surroundings, but at least 1/128 of all.
+        // The broad phase makes its cells a quarter as large as a typical feature with its surroundings, but at least
+        // 1/128 of all.
         let around = 2.0 * (bins.margin + bins.marble);
         let largest = (bins.side + bins.thickness).max(2.0 * bins.height) + around;
         let extent = bins.extent();

@@ -12,8 +12,8 @@ impl Letters {
         }
     }
 
-    /// The rows of a letter, the uppermost first; `None` for a character that the font lacks. The paper's HI takes 10 bins of the short font, its ACM 30 of
-    /// the tall one.
+    /// The rows of a letter, the uppermost first; `None` for a character that the font lacks. The paper's HI takes 10
+    /// bins of the short font, its ACM 30 of the tall one.
     #[must_use]
     pub fn glyph(self, letter: char) -> Option<Vec<&'static str>> {
         let rows = match self {

@@ -1,4 +1,5 @@
-//! Balls that spell a word (section 5.3, appendix B): which bins are filled is demanded; the shape of the partitions and the drops are uncertain.
+//! Balls that spell a word (section 5.3, appendix B): which bins are filled is demanded; the shape of the partitions
+//! and the drops are uncertain.
 
 mod animate;
 mod arena;
@@ -13,6 +14,7 @@ mod word;
 
 pub use config::{
     Config, Contact, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Moves, Order, Steps, Vertices, Weights,
+    usual_ln_lambda,
 };
 pub use draw::{Drops, Prior};
 pub use moves::{BirthDeath, ChangeAll, ChangeBall, ChangeVertices, RedrawVertices, Redrop, Swap, Toggle};
@@ -29,7 +31,8 @@ use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream, math};
 use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
 use serde::{Deserialize, Serialize};
 
-/// The balls that spell: `p ∝ λ^k · Π exp(−½‖offset‖²/σ²) · Π 1/a`, the first product over vertices, the second over the balls that are dropped.
+/// The balls that spell: `p ∝ λ^k · Π exp(−½‖offset‖²/σ²) · Π 1/a`, the first product over vertices, the second over
+/// the balls that are dropped.
 #[derive(Debug)]
 pub struct Spelling {
     config: Config,
@@ -43,9 +46,11 @@ pub struct Spelling {
 /// Where the balls came to rest.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Rest {
-    /// Each ball's bin; `None` where it was not dropped, lies on a partition or on another ball above it, or still moves.
+    /// Each ball's bin; `None` where it was not dropped, lies on a partition or on another ball above it, or still
+    /// moves.
     pub bins: Vec<Option<u16>>,
-    /// Whether the simulation came to its end within the simulator's budget of events. Where it did not, the draw has probability 0.
+    /// Whether the simulation came to its end within the simulator's budget of events. Where it did not, the draw has
+    /// probability 0.
     pub complete: bool,
 }
 
@@ -61,14 +66,16 @@ impl Spelling {
         let word = Word::new(config)?;
         let balls = arena::balls(config, &word)?;
         let arena = Arena::new(config, &word, balls)?;
-        let goal = Gibbs::from_ln_lambda(config.ln_lambda).map_err(|error| blame("ln_lambda")(&error))?;
+        let ln_lambda = config.ln_lambda.unwrap_or_else(|| usual_ln_lambda(word.designated().len()));
+        let goal = Gibbs::from_ln_lambda(ln_lambda).map_err(|error| blame("ln_lambda")(&error))?;
         let offsets = (arena.vertices().len(), config.sigma_mm, arena::longest_offset(config));
         let prior =
             Prior::new(offsets, balls, arena::rectangle(config, &word)?).map_err(|error| blame("sigma_mm")(&error))?;
         Ok(Self { config: config.clone(), word, prior, goal, arena, savings: Savings::ALL })
     }
 
-    /// The same scene with some of the work that its simulation saves switched off or on. It has no influence on any state.
+    /// The same scene with some of the work that its simulation saves switched off or on. It has no influence on any
+    /// state.
     #[must_use]
     pub fn with_savings(mut self, savings: Savings) -> Self {
         self.savings = savings;
@@ -79,6 +86,12 @@ impl Spelling {
     #[must_use]
     pub fn config(&self) -> &Config {
         &self.config
+    }
+
+    /// ln λ: the configuration's, or what is usual for so many bins.
+    #[must_use]
+    pub fn ln_lambda(&self) -> f64 {
+        self.goal.ln_lambda()
     }
 
     /// Which bins are to be filled.
@@ -93,7 +106,8 @@ impl Spelling {
         &self.prior
     }
 
-    /// Lower and upper ends, along x and y, of the part of the drop rectangle that lies over a bin, in mm; `None` where none does.
+    /// Lower and upper ends, along x and y, of the part of the drop rectangle that lies over a bin, in mm; `None` where
+    /// none does.
     #[must_use]
     pub fn over(&self, bin: u16) -> Option<[[f64; 2]; 2]> {
         let side = self.config.dimensions.bin_mm;

@@ -1,4 +1,5 @@
-//! What is seen of the box: partitions with their vertices where the draw has them, bowls, glass walls, and marks in the bins to fill.
+//! What is seen of the box: partitions with their vertices where the draw has them, bowls, glass walls, and marks in
+//! the bins to fill.
 
 use super::Word;
 use super::arena::Arena;

@@ -1,8 +1,9 @@
-//! What becomes of a draw: every ball is simulated alone; those that would meet are simulated together, until no two groups meet.
+//! What becomes of a draw: every ball is simulated alone; those that would meet are simulated together, until no two
+//! groups meet.
 //!
-//! Balls that never touch do not influence each other, so this is the simulation of all of them at once, up to rounding; and by this procedure, which knows
-//! nothing of the chain, it is defined to the last bit. What a candidate leaves as it is need not be simulated again: groups of the same balls with the
-//! same starts among the same vertices.
+//! Balls that never touch do not influence each other, so this is the simulation of all of them at once, up to
+//! rounding; and by this procedure, which knows nothing of the chain, it is defined to the last bit. What a candidate
+//! leaves as it is need not be simulated again: groups of the same balls with the same starts among the same vertices.
 
 use super::Rest;
 use super::arena::Arena;
@@ -87,7 +88,8 @@ impl Work {
         self.counts
     }
 
-    /// The ways of the balls of the draw that was simulated last, until it is settled: each piece with its ball and the time at which it ends, in m and s.
+    /// The ways of the balls of the draw that was simulated last, until it is settled: each piece with its ball and the
+    /// time at which it ends, in m and s.
     pub fn ways(&self) -> impl Iterator<Item = (usize, &Parabola, f64)> {
         let groups = self.candidate.groups.iter();
         let balls = groups.flat_map(|group| group.members.iter().zip(&group.ways));
@@ -106,7 +108,8 @@ impl Work {
         }
     }
 
-    /// Where the balls of `draw` come to rest. `known`: a draw from whose simulation, made now unless it is remembered, parts may be taken.
+    /// Where the balls of `draw` come to rest. `known`: a draw from whose simulation, made now unless it is remembered,
+    /// parts may be taken.
     pub(super) fn simulate(&mut self, arena: &Arena, draw: &Drops, known: Option<&Drops>) -> Result<Rest, ModelError> {
         let Some(known) = known else {
             let nothing = Falls::default();
@@ -276,11 +279,11 @@ mod tests {
     use plaus_dist::{Purpose, Seed};
     use plaus_mcmc::Target;
 
-    /// Group by group, balls end where they do when all are simulated at once. Both round differently, and balls that hit several others amplify that without
-    /// bound: one draw in a hundred may differ, and hardly any does.
+    /// Group by group, balls end where they do when all are simulated at once. Both round differently, and balls that
+    /// hit several others amplify that without bound: one draw in a hundred may differ, and hardly any does.
     #[test]
     fn groups_end_as_all_at_once() {
-        let acm = Config { text: "ACM".into(), letters: Letters::Tall, ..Config::default() };
+        let acm = Config { text: Some("ACM".into()), letters: Letters::Tall, ..Config::default() };
         for (config, draws) in [(Config::default(), 300), (acm, 30)] {
             let scene = Spelling::new(&config).unwrap();
             let (mut work, mut together) = (Work::default(), Work::default());

@@ -18,14 +18,17 @@ impl Word {
     /// The word or picture of a configuration, in the middle of its grid.
     ///
     /// # Errors
-    /// [`ConfigError`] for a character that the font lacks, a picture or word that does not fit, or one without any bin to fill.
+    /// [`ConfigError`] for a character that the font lacks, a picture or word that does not fit, or one without any bin
+    /// to fill.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
-        let (key, picture) = if config.bitmap.is_empty() {
-            ("text", write(&config.text, config.letters)?)
-        } else {
-            ("bitmap", read(&config.bitmap)?)
-        };
         let blame = |key: &str, message: String| Err(ConfigError::new(format!("world.spelling.{key}"), message));
+        let (key, picture) = match (&config.text, config.bitmap.as_str()) {
+            (Some(text), bitmap) if !text.is_empty() && !bitmap.is_empty() => {
+                return blame("text", "there is a `bitmap` besides: leave one of them out, or set it to \"\"".into());
+            }
+            (text, "") => ("text", write(text.as_deref().unwrap_or("HI"), config.letters)?),
+            (_, bitmap) => ("bitmap", read(bitmap)?),
+        };
         if !picture.iter().flatten().any(|&fill| fill) {
             return blame(key, "no bin is to be filled: at least one must be".into());
         }
@@ -142,7 +145,7 @@ mod tests {
         let hi = word(|_| ()).unwrap();
         assert_eq!(drawn(&hi), ".......\n.#.#.#.\n.###.#.\n.#.#.#.\n.......\n");
         assert_eq!(hi.designated().len(), 10);
-        let acm = word(|config| (config.text, config.letters) = ("acm".into(), Letters::Tall)).unwrap();
+        let acm = word(|config| (config.text, config.letters) = (Some("acm".into()), Letters::Tall)).unwrap();
         assert_eq!((acm.columns(), acm.rows(), acm.designated().len()), (15, 7, 30));
         assert_eq!(
             drawn(&acm),
@@ -175,17 +178,17 @@ mod tests {
         let too_few = "world.spelling.columns: 4 columns are too few: `text` is 5 bins wide";
         assert_eq!(said(|config| config.columns = 4), too_few);
         assert_eq!(
-            said(|config| config.text = "HELLO, HELLO".into()),
+            said(|config| config.text = Some("HELLO, HELLO".into())),
             "world.spelling.text: the font has no ',': it has A to Z, 0 to 9, space and . - + ! ? = *"
         );
         let long = "world.spelling.text: 79 bins wide, but the box has 64 columns at most";
-        assert_eq!(said(|config| config.text = "H".repeat(20)), long);
+        assert_eq!(said(|config| config.text = Some("H".repeat(20))), long);
         assert_eq!(
-            said(|config| config.text = "  ".into()),
+            said(|config| config.text = Some("  ".into())),
             "world.spelling.text: no bin is to be filled: at least one must be"
         );
         assert_eq!(
-            said(|config| config.text = String::new()),
+            said(|config| config.text = Some(String::new())),
             "world.spelling.text: no bin is to be filled: at least one must be"
         );
         assert!(said(|config| config.bitmap = "#?".into()).starts_with("world.spelling.bitmap: '?' is no bin"));

@@ -1,4 +1,5 @@
-//! Every key of the scenario schema, read from its JSON by other code than the library's, so that the two check each other.
+//! Every key of the scenario schema, read from its JSON by other code than the library's, so that the two check each
+//! other.
 
 #![allow(dead_code, reason = "each test uses its own part")]
 

@@ -14,8 +14,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     let seeds = work.size(5, 1);
     let mut rows = Vec::new();
     let cases: [(&str, &[f64], At); 2] = [
-        ("HI", &[4.0, 5.0, 6.0], |ln_lambda| hi(|config| config.ln_lambda = ln_lambda)),
-        ("ACM", &[6.0, 7.25, 8.0], |ln_lambda| acm(|config| config.ln_lambda = ln_lambda)),
+        ("HI", &[4.0, 5.0, 6.0], |ln_lambda| hi(|config| config.ln_lambda = Some(ln_lambda))),
+        ("ACM", &[6.0, 7.25, 8.0], |ln_lambda| acm(|config| config.ln_lambda = Some(ln_lambda))),
     ];
     for (name, lambdas, word_at) in cases {
         for &ln_lambda in lambdas {

@@ -24,7 +24,7 @@ fn hi(change: impl FnOnce(&mut Config)) -> Result<Word> {
 /// The paper's second: thirty of 15 × 7 bins, λ = e^7.25.
 fn acm(change: impl FnOnce(&mut Config)) -> Result<Word> {
     hi(|config| {
-        (config.text, config.letters, config.ln_lambda) = ("ACM".into(), Letters::Tall, 7.25);
+        (config.text, config.letters) = (Some("ACM".into()), Letters::Tall);
         change(config);
     })
 }

@@ -8,15 +8,11 @@ use crate::report::{significant, table};
 use crate::stats::shown;
 use crate::{Result, Work};
 use plaus_dist::math;
+use plaus_scenes::spelling::usual_ln_lambda;
 use plotters::prelude::*;
 
 const WORDS: [&str; 8] = ["I", "HI", "ACM", "DICE", "HELLO", "BOUNCE", "MARBLES", "SOLUTION"];
 const SIZE: (u32, u32) = (900, 560);
-
-/// ln λ for a word of `bins` bins: the power law through the paper's two choices, e⁵ for ten and e^7.25 for thirty.
-fn ln_lambda(bins: usize) -> f64 {
-    5.0 + 2.25 * math::ln(bins as f64 / 10.0) / math::ln(3.0)
-}
 
 /// One word.
 struct Row {
@@ -36,12 +32,12 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     let words = &WORDS[..work.size(8, 3)];
     let mut rows = Vec::new();
     for text in words {
-        let bins = hi(|config| config.text = (*text).into())?.bins();
-        let ln_lambda = ln_lambda(bins);
+        let bins = hi(|config| config.text = Some((*text).into()))?.bins();
+        let ln_lambda = usual_ln_lambda(bins);
         work.say(format_args!(
             "words: {text}, {bins} balls, ln λ = {ln_lambda:.2}: {seeds} chains until the first full word"
         ));
-        let word: Word = hi(|config| (config.text, config.ln_lambda) = ((*text).into(), ln_lambda))?;
+        let word: Word = hi(|config| config.text = Some((*text).into()))?;
         let chains = word.run(Length { seeds, iterations: limit, until_first: true })?;
         let (time, steps) = chains.0.iter().fold((0.0, 0), |sum, seen| (sum.0 + seen.seconds, sum.1 + seen.iterations));
         rows.push(Row {

@@ -31,7 +31,7 @@ impl Word {
     }
 
     pub(crate) fn acm() -> Result<Self> {
-        let config = Config { text: "ACM".into(), letters: Letters::Tall, ln_lambda: 7.25, ..Config::default() };
+        let config = Config { text: Some("ACM".into()), letters: Letters::Tall, ..Config::default() };
         Self::new("acm", "Balls that spell ACM", &config)
     }
 

@@ -23,8 +23,8 @@ const DRAWS: [(Format, Row); 2] = [
             name: "csv",
             ending: "csv",
             about: "a table of draws: one row per chain and draw",
-            help: "Columns chain, draw (from 0), log_p, satisfied (true or false), then one a scalar of the scene, in its \
-                units; for ball2d: rest_x in ball diameters D, theta_1 ... in degrees.",
+            help: "Columns chain, draw (from 0), log_p, satisfied (true or false), then one a scalar of the scene, in \
+                its units; for ball2d: rest_x in ball diameters D, theta_1 ... in degrees.",
         },
     ),
     (
@@ -33,8 +33,8 @@ const DRAWS: [(Format, Row); 2] = [
             name: "zarr",
             ending: "zarr",
             about: "a Zarr v3 folder of draws for ArviZ and xarray",
-            help: "az.from_zarr(PATH) with ArviZ 1.x, az.from_datatree(xarray.open_datatree(PATH, engine=\"zarr\")) with \
-                0.23. Scalars of one name that are numbered are one variable with a named dimension.",
+            help: "az.from_zarr(PATH) with ArviZ 1.x, \
+                az.from_datatree(xarray.open_datatree(PATH, engine=\"zarr\")) with 0.23. Scalars of one name that are numbered are one variable with a named dimension.",
         },
     ),
 ];
@@ -58,6 +58,9 @@ pub(super) fn parser() -> impl TypedValueParser<Value = Format> {
 pub(super) fn help() -> String {
     let rows = all().into_iter().map(|(_, row)| format!("{}: {}. {}", row.name, row.about, row.help));
     let mut text = rows.collect::<Vec<_>>().join("\n");
-    text.push_str("\nTimes count from the beginning of --time-range. One sample makes a file; several make a folder, or a table, or one file with --into.");
+    text.push_str(
+        "\nTimes count from the beginning of --time-range. One sample makes a file; several make a folder, or a table, \
+        or one file with --into.",
+    );
     text
 }

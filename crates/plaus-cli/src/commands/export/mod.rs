@@ -24,7 +24,7 @@ pub(crate) struct Args {
     #[arg(long, value_parser = formats::parser())]
     format: Format,
     /// File or folder to make; `-` writes csv, poses and events to standard output
-    #[arg(long, value_name = "PATH", required_unless_present = "into")]
+    #[arg(long, alias = "output", value_name = "PATH", required_unless_present = "into")]
     out: Option<PathBuf>,
     /// Write all samples into this one file: clips of a GLB, variants of a USD prim
     #[arg(long, value_name = "FILE", conflicts_with = "out")]
@@ -43,7 +43,7 @@ pub(crate) struct Args {
     /// Replace what is there, if such an export made it
     #[arg(long)]
     force: bool,
-    /// Read a damaged run up to its first damage
+    /// Read a damaged run as far as it is intact, and say what is lost
     #[arg(long)]
     salvage: bool,
 }
@@ -197,6 +197,7 @@ impl Args {
         let mut run = Run::open(&Folder::new(&self.run))?;
         if self.salvage {
             run = run.salvaged();
+            console::note_line(&run.visit(super::Salvage)?);
         } else if run.folder().is_being_written() {
             console::note_line("note: the run is being written; this exports it as of its last checkpoint");
         }
@@ -204,7 +205,11 @@ impl Args {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         let written = run.visit(&self)?;
-        written.map_err(|error| Failure::from(error).about(&self.path().display().to_string()))?;
+        let out = self.path().display().to_string();
+        written.map_err(|error| Failure::from(error).about(&out))?;
+        if self.path() != Path::new("-") {
+            console::note_line(&format!("wrote {out}"));
+        }
         Ok(Outcome::Done)
     }
 
@@ -226,7 +231,7 @@ impl Args {
                 );
                 return Err(Failure::Message(message));
             }
-            return Ok(());
+            return self.check_name(if matches!(self.format, Format::Csv) { "csv" } else { "zarr" });
         };
         if !chosen {
             let message = "an animation needs a sample: --sample CHAIN:DRAW, --all-distinct, or --confirmed";

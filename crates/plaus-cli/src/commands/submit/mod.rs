@@ -34,7 +34,7 @@ pub(crate) struct Args {
     /// Submit those pieces of a job that are not finished and not at work: they go on from their checkpoints
     #[arg(long, value_name = "JOB", conflicts_with_all = ["scenario", "to", "shards", "out", "program"])]
     again: Option<PathBuf>,
-    /// Submit it. Without this, the job is only written and shown
+    /// Submit the job. Without this, it is only written and shown
     #[arg(long)]
     go: bool,
     /// Threads of each piece

@@ -1,11 +1,13 @@
 //! Redraw some normals and solve for another, so that the ball lands near the target all the same.
 //!
-//! The move redraws some angles from their prior, draws a pattern of downward bounces (mostly the one the other angles have together with a
-//! probe angle), draws a place x from the constraint's own Gaussian, finds all angles that land the ball there and whose bounces follow the
-//! pattern, and chooses one with probability in proportion to `w = φ(θ)/|dx/dθ|`, φ the angle's prior. The density of the
-//! result is `h(θ) = P(pattern) · N(x(θ); target, σ_d) · φ(θ) / S(x(θ))`, `S` the sum of `w` over the angles found. Together with the redrawn
-//! angles the acceptance ratio becomes `S/P(pattern)` of the candidate over that of the current state: nearly an independence sampler of
-//! the target. Which angles are redrawn, which one is solved for and the probe are drawn without looking at the state: they are the path.
+//! The move redraws some angles from their prior, draws a pattern of downward bounces (mostly the one the other angles
+//! have together with a probe angle), draws a place x from the constraint's own Gaussian, finds all angles that land
+//! the ball there and whose bounces follow the pattern, and chooses one with probability in proportion to
+//! `w = φ(θ)/|dx/dθ|`, φ the angle's prior. The density of the result is
+//! `h(θ) = P(pattern) · N(x(θ); target, σ_d) · φ(θ) / S(x(θ))`, `S` the sum of `w` over the angles found. Together with
+//! the redrawn angles the acceptance ratio becomes `S/P(pattern)` of the candidate over that of the current state:
+//! nearly an independence sampler of the target. Which angles are redrawn, which one is solved for and the probe are
+//! drawn without looking at the state: they are the path.
 
 use super::landing::{Course, Landing};
 use super::roots::Roots;
@@ -128,7 +130,8 @@ impl<'a> Aiming<'a> {
         })
     }
 
-    /// Roots that land at `x` and follow `pattern`, each with its weight `exp(−½(θ/sd)²)/|dx/dθ|`, and the sum of the weights.
+    /// Roots that land at `x` and follow `pattern`, each with its weight `exp(−½(θ/sd)²)/|dx/dθ|`, and the sum of the
+    /// weights.
     fn roots(&self, landing: &Landing, pattern: Pattern, x: f64) -> (Roots, [f64; 4], f64) {
         let roots = landing.tangents(x, self.scene.reach);
         let mut weights = [0.0; 4];
@@ -141,7 +144,8 @@ impl<'a> Aiming<'a> {
         (roots, weights, weights.iter().sum())
     }
 
-    /// Draws an angle in degrees, with the log of its density up to a constant of the scene; `None` where the drawn place cannot be reached.
+    /// Draws an angle in degrees, with the log of its density up to a constant of the scene; `None` where the drawn
+    /// place cannot be reached.
     fn sample(&self, stream: &mut Stream) -> Option<(f64, f64)> {
         let pattern = self.draw_pattern(stream);
         let off = standard_normal(stream);
@@ -173,7 +177,8 @@ impl<'a> Aiming<'a> {
 
     fn ln_density_of(&self, degrees: f64, off: f64, pattern: Pattern, sum: f64) -> f64 {
         if sum == 0.0 {
-            // The angle itself was lost among the roots, at a turning point or the edge of a pattern: it cannot be proposed.
+            // The angle itself was lost among the roots, at a turning point or the edge of a pattern: it cannot be
+            // proposed.
             return f64::NEG_INFINITY;
         }
         let z = degrees / self.scene.config.sigma_theta_deg;

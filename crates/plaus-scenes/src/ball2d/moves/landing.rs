@@ -1,9 +1,10 @@
 //! Where the ball comes to rest as a function of one normal's angle, and that function's inverse.
 //!
-//! With every other normal held, the place of rest is a trigonometric polynomial of degree two in twice the angle θ of one normal: the
-//! bounce maps the incoming velocity to one affine in (cos 2θ, sin 2θ), all later bounces are linear maps, and each hop's length is a
-//! quadratic form of its velocity. So the angles that land the ball at a given x are the roots of a quartic in tan θ. Where a bounce is
-//! downward, the rule for it is another linear map: a *pattern* says which bounces are.
+//! With every other normal held, the place of rest is a trigonometric polynomial of degree two in twice the angle θ of
+//! one normal: the bounce maps the incoming velocity to one affine in (cos 2θ, sin 2θ), all later bounces are linear
+//! maps, and each hop's length is a quadratic form of its velocity. So the angles that land the ball at a given x are
+//! the roots of a quartic in tan θ. Where a bounce is downward, the rule for it is another linear map: a *pattern* says
+//! which bounces are.
 
 use super::roots::{Roots, quartic};
 use crate::ball2d::config::{Downward, MAX_COLLISIONS};
@@ -33,8 +34,8 @@ impl<'a> Course<'a> {
         self.collisions
     }
 
-    /// Which bounces after the aimed one are downward where that one's normal is `normal`; `None` where it is downward itself, or the
-    /// draw rejected.
+    /// Which bounces after the aimed one are downward where that one's normal is `normal`; `None` where it is downward
+    /// itself, or the draw rejected.
     pub(super) fn pattern(&self, normal: DVec2) -> Option<Pattern> {
         let turned = |(index, &other)| if index == self.aimed { normal } else { other };
         let normals = self.normals[..self.collisions].iter().enumerate().map(turned);
@@ -134,7 +135,8 @@ mod tests {
     }
 
     proptest! {
-        /// The polynomial is the flight, whatever the rule, as long as the bounces follow the pattern: to 1e-10 of the largest hop (v² ≤ 2 · 4.5 · 2, tens of rounded products).
+        /// The polynomial is the flight, whatever the rule, as long as the bounces follow the pattern: to 1e-10 of the
+        /// largest hop (v² ≤ 2 · 4.5 · 2, tens of rounded products).
         #[test]
         fn the_polynomial_lands_where_the_ball_does(
             degrees in prop::collection::vec(-30.0_f64..30.0, 1..12),
@@ -153,7 +155,8 @@ mod tests {
                 prop_assert!((landing.at(t).0 - x.unwrap()).abs() < 1e-10);
                 let (up, down) = (landing.at(t + 1e-6).0, landing.at(t - 1e-6).0);
                 let slope = (up - down) / 2e-6 * (1.0 + t * t);
-                // A central difference: truncation 1e-12 times a third derivative of at most a few thousand, rounding 1e-13/1e-6.
+                // A central difference: truncation 1e-12 times a third derivative of at most a few thousand, rounding
+                // 1e-13/1e-6.
                 prop_assert!((landing.at(t).1 - slope).abs() < 1e-4);
             }
         }
@@ -168,8 +171,10 @@ mod tests {
             if let Some(pattern) = course.pattern(flight::normal(degrees[aimed])) {
                 let landing = course.landing(pattern).unwrap();
                 let (x, slope) = landing.at(t);
-                let nearest = landing.tangents(x, 2.0).as_slice().iter().fold(f64::INFINITY, |near, root| near.min((root - t).abs()));
-                // The rounding of x, some 1e-14, over the slope; below a slope of 1e-3 the curvature matters and the bound is left.
+                let roots = landing.tangents(x, 2.0);
+                let nearest = roots.as_slice().iter().map(|root| (root - t).abs()).fold(f64::INFINITY, f64::min);
+                // The rounding of x, some 1e-14, over the slope; below a slope of 1e-3 the curvature matters and the
+                // bound is left.
                 prop_assert!(slope.abs() < 1e-3 || nearest < 1e-9, "off by {}", nearest);
             }
         }

@@ -5,7 +5,8 @@ use plaus_dist::{LogRatio, Stream, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, Scale, StateOf};
 use rand::Rng;
 
-/// Every angle, with probability ½, gets a step uniform on (−`half_width`, `half_width`) degrees (paper, section 5.1.2). Symmetric.
+/// Every angle, with probability ½, gets a step uniform on (−`half_width`, `half_width`) degrees (paper, section
+/// 5.1.2). Symmetric.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Perturb {
     half_width: f64,

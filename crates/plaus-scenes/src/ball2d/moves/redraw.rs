@@ -5,8 +5,8 @@ use plaus_dist::stream::below;
 use plaus_dist::{Density, LogRatio, Sample, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// One angle, each as likely, is drawn anew from its prior. Ratio: prior of the old angle over prior of the new one. It frees chains from
-/// solutions with an unlikely normal that no small step improves.
+/// One angle, each as likely, is drawn anew from its prior. Ratio: prior of the old angle over prior of the new one. It
+/// frees chains from solutions with an unlikely normal that no small step improves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Redraw {
     /// Count as symmetric, as the paper treats moves of this kind (erratum; samples another law).

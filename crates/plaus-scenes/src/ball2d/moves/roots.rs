@@ -1,8 +1,8 @@
 //! Real roots of small polynomials on an interval, every simple one of them.
 //!
-//! Between neighbouring roots of its derivative a polynomial is monotone: there a change of sign brackets exactly one root, which a
-//! safeguarded Newton iteration finds to the last bits. No root is chosen by how small its imaginary part is. A double root, which touches zero
-//! without crossing, may be missed.
+//! Between neighbouring roots of its derivative a polynomial is monotone: there a change of sign brackets exactly one
+//! root, which a safeguarded Newton iteration finds to the last bits. No root is chosen by how small its imaginary part
+//! is. A double root, which touches zero without crossing, may be missed.
 
 /// Up to four roots, in increasing order.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -132,7 +132,8 @@ mod tests {
     }
 
     proptest! {
-        /// Four roots at least 0.05 apart are found to 1e-9: the coefficients' rounding, 1e-16 of up to 10⁴, over a slope of at least 0.05³.
+        /// Four roots at least 0.05 apart are found to 1e-9: the coefficients' rounding, 1e-16 of up to 10⁴, over a
+        /// slope of at least 0.05³.
         #[test]
         fn planted_roots_are_found(gaps in prop::array::uniform4(0.05_f64..3.0), start in -5.0_f64..0.0) {
             let mut at = start;

@@ -5,18 +5,21 @@ use plaus_dist::stream::below;
 use plaus_dist::{Density, LogDensity, LogRatio, NotANumber, Sample, Stream, WrappedUniform, math, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// How often the place across the lane is drawn from its law instead, so that places from where no pin is met are left and come back.
+/// How often the place across the lane is drawn from its law instead, so that places from where no pin is met are left
+/// and come back.
 const STRAY: f64 = 0.1;
 
 /// Radius of a pin where it is widest, in m. Only where one aims depends on it.
 const PIN: f64 = 0.0605;
 
-/// The ball is released from where it should meet a pin of the first row: with its centre at a uniform distance to the side from that pin's at which the two touch. To see by
-/// how much it comes to the side on its way there, the ball is tried out on a lane without pins and gutters. With probability `anew` all else is drawn from the
-/// prior before that, and else it stays.
+/// The ball is released from where it should meet a pin of the first row: with its centre at a uniform distance to the
+/// side from that pin's at which the two touch. To see by how much it comes to the side on its way there, the ball is
+/// tried out on a lane without pins and gutters. With probability `anew` all else is drawn from the prior before that,
+/// and else it stays.
 ///
-/// The density of the place depends on all else and not on the place before, so the ratio is that of the old place and of all else, over that of the new. Where that law is
-/// not uniform, or a ball does not reach the pins, the chain stays.
+/// The density of the place depends on all else and not on the place before, so the ratio is that of the old place and
+/// of all else, over that of the new. Where that law is not uniform, or a ball does not reach the pins, the chain
+/// stays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aim {
     /// Probability that all else is drawn from the prior.

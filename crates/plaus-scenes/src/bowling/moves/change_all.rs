@@ -4,7 +4,8 @@ use crate::bowling::{Bowling, Shot};
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf, Target};
 
-/// A fresh draw of the prior. The ratio is the old draw's prior density over the new one's, so that acceptance compares the constraint alone.
+/// A fresh draw of the prior. The ratio is the old draw's prior density over the new one's, so that acceptance compares
+/// the constraint alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ChangeAll {
     /// Count as symmetric, as the paper does (erratum; samples another law).

@@ -5,8 +5,9 @@ use crate::bowling::{Bowling, Quantity, Shot, Steps};
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, Scale, StateOf};
 
-/// Each of the quantities is shifted by a Gaussian step: by `steps.gaussian` of its law's standard deviation, or `steps.uniform` of its interval, which it leaves on one
-/// side to enter it on the other. Symmetric. Where none of them is uncertain the chain stays.
+/// Each of the quantities is shifted by a Gaussian step: by `steps.gaussian` of its law's standard deviation, or
+/// `steps.uniform` of its interval, which it leaves on one side to enter it on the other. Symmetric. Where none of them
+/// is uncertain the chain stays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChangeBall {
     /// The move's name.

@@ -4,8 +4,9 @@ use crate::bowling::{Bowling, Quantity, Shot};
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// The whole shot as seen in a mirror along the lane. It is its own reverse and keeps volumes, hence symmetric; where the delivery's laws are not the same from both sides,
-/// the prior says so. Where the pins that are set up, or those to be left, are not the same in the mirror, the chain stays: the mirrored shot is an answer to another question.
+/// The whole shot as seen in a mirror along the lane. It is its own reverse and keeps volumes, hence symmetric; where
+/// the delivery's laws are not the same from both sides, the prior says so. Where the pins that are set up, or those to
+/// be left, are not the same in the mirror, the chain stays: the mirrored shot is an answer to another question.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Mirror;
 

@@ -5,8 +5,9 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// One uncertain quantity, each as likely, is drawn anew from its law. Ratio: density of the old value over that of the new one. A new radius may leave the ball inside the
-/// lane; such a draw has density 0. Without any uncertain quantity the chain stays.
+/// One uncertain quantity, each as likely, is drawn anew from its law. Ratio: density of the old value over that of the
+/// new one. A new radius may leave the ball inside the lane; such a draw has density 0. Without any uncertain quantity
+/// the chain stays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Redraw {
     /// Count as symmetric, as the paper treats moves of this kind (erratum; samples another law).

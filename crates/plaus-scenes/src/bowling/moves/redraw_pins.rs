@@ -4,7 +4,8 @@ use crate::bowling::{Bowling, Shot};
 use plaus_dist::{LogRatio, Stream, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// Each pin, with probability `chance`, is set anew from its law. Ratio: density of the old offsets over that of the new ones; pins that stay cancel.
+/// Each pin, with probability `chance`, is set anew from its law. Ratio: density of the old offsets over that of the
+/// new ones; pins that stay cancel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RedrawPins {
     /// Probability that a pin is set anew.

@@ -6,8 +6,9 @@ use crate::walk;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, Scale, StateOf};
 
-/// All quantities of the ball and all pins are shifted by their usual steps times one factor, whose logarithm is uniform between that of `steps.finest` and 0. Symmetric, since
-/// the factor does not depend on the state. What pins do after many collisions changes with the slightest change of the delivery: small factors find what stays.
+/// All quantities of the ball and all pins are shifted by their usual steps times one factor, whose logarithm is
+/// uniform between that of `steps.finest` and 0. Symmetric, since the factor does not depend on the state. What pins do
+/// after many collisions changes with the slightest change of the delivery: small factors find what stays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Refine {
     /// Sizes of the steps.

@@ -9,13 +9,14 @@ use plaus_dist::stream::below;
 use plaus_dist::{Density, LogRatio, Stream, standard_normal};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// One of the numbers of one die's initial conditions makes a step that leaves its law as it is; or, a quarter of the time, its orientation is turned about
-/// a random axis, which is as likely as turning it back.
+/// One of the numbers of one die's initial conditions makes a step that leaves its law as it is; or, a quarter of the
+/// time, its orientation is turned about a random axis, which is as likely as turning it back.
 ///
 /// The ratio is the old value's density over the new one's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Component {
-    /// Sizes of the steps: of numbers of the place, of the velocity and of the spin, over their standard deviations; and of turns, over half a turn.
+    /// Sizes of the steps: of numbers of the place, of the velocity and of the spin, over their standard deviations;
+    /// and of turns, over half a turn.
     pub scales: [Scale; KINDS],
 }
 

@@ -4,12 +4,12 @@ use crate::dice::{Dice, Draw};
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf, Target};
 
-/// A fresh draw of the prior: all throws, and all tables. The ratio is the old draw's prior density over the new one's, so that acceptance compares the
-/// constraints alone.
+/// A fresh draw of the prior: all throws, and all tables. The ratio is the old draw's prior density over the new one's,
+/// so that acceptance compares the constraints alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Everything {
-    /// Count as symmetric, as the paper does (erratum; samples another law). The throws alone tell: over all the tables' points the printed ratio has no
-    /// value, and those that no die touches would decide it.
+    /// Count as symmetric, as the paper does (erratum; samples another law). The throws alone tell: over all the
+    /// tables' points the printed ratio has no value, and those that no die touches would decide it.
     pub symmetric: bool,
 }
 

@@ -1,6 +1,7 @@
 //! The moves of the dice, one a file. The first three are the paper's (its section 5.4).
 //!
-//! Ratios are taken with respect to the law of the tables, as the prior's density is: a change of a control point that leaves its law as it is has ratio 1.
+//! Ratios are taken with respect to the law of the tables, as the prior's density is: a change of a control point that
+//! leaves its law as it is has ratio 1.
 
 mod component;
 mod everything;
@@ -120,7 +121,8 @@ fn site(path: Path) -> (usize, Site) {
 mod tests {
     use super::*;
 
-    /// Against Simpson's rule with 2,000 steps h, far out too: where the integrand falls as exp(−az) its relative error is (ah)⁴/180, 1.4e-8 at a = 50.
+    /// Against Simpson's rule with 2,000 steps h, far out too: where the integrand falls as exp(−az) its relative error
+    /// is (ah)⁴/180, 1.4e-8 at a = 50.
     #[test]
     fn shares_between_are_right() {
         for (a, width) in [(-0.8, 1.6), (-3.0, 1.0), (0.0, 0.5), (2.0, 1.6), (-40.0, 1.6), (50.0, 1.6), (300.0, 0.1)] {

@@ -6,10 +6,12 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// One of the places where a die touched its table, or lies at last, the k-th of a die with a weight of 1/k: early ones steer, and there are many late ones; one
-/// of the sixteen control points that a field there depends on; and one of the random fields. That point makes a step that leaves its law as it is.
+/// One of the places where a die touched its table, or lies at last, the k-th of a die with a weight of 1/k: early ones
+/// steer, and there are many late ones; one of the sixteen control points that a field there depends on; and one of the
+/// random fields. That point makes a step that leaves its law as it is.
 ///
-/// After the step the die touches elsewhere. The ratio is the point's share in the weights of the new animation's places over that in the old one's.
+/// After the step the die touches elsewhere. The ratio is the point's share in the weights of the new animation's
+/// places over that in the old one's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
     /// Sizes of the steps, of heights, restitutions and frictions.

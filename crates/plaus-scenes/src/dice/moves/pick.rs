@@ -7,13 +7,17 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogRatio, Stream, math, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// Of dice thrown onto one table one, two or three that stand in a row are recast at once, each by tries that are made until one is picked: a try whose place of release is likely under the
-/// prior, and which, alone on its table, comes to rest near its target. Where dice hold each other off their places several have to go at once, and each only to where it is good: tries
-/// picked die by die find that in a time that adds up, where whole candidates at random would need the product.
+/// Of dice thrown onto one table one, two or three that stand in a row are recast at once, each by tries that are made
+/// until one is picked: a try whose place of release is likely under the prior, and which, alone on its table, comes to
+/// rest near its target. Where dice hold each other off their places several have to go at once, and each only to where
+/// it is good: tries picked die by die find that in a time that adds up, where whole candidates at random would need
+/// the product.
 ///
-/// A try is a recast's (see [`Recast`]), led more often; it is picked with a probability g that depends on the try and on its table, and is never 0. So a picked one has the density q g/Z of its
-/// throw, Z being the same for the way back, as is the chance that none of `TRIES` tries is picked; that leaves the ratio `q(old) g(old) / (q(new) g(new))`. This is rejection sampling (von
-/// Neumann 1951) inside of an independence move (Tierney, "Markov chains for exploring posterior distributions", Annals of Statistics 22, 1994).
+/// A try is a recast's (see [`Recast`]), led more often; it is picked with a probability g that depends on the try and
+/// on its table, and is never 0. So a picked one has the density q g/Z of its throw, Z being the same for the way back,
+/// as is the chance that none of `TRIES` tries is picked; that leaves the ratio `q(old) g(old) / (q(new) g(new))`. This
+/// is rejection sampling (von Neumann 1951) inside of an independence move (Tierney, "Markov chains for exploring
+/// posterior distributions", Annals of Statistics 22, 1994).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pick {
     /// Standard deviation of the place that tries aim at, along each axis, in m.
@@ -24,7 +28,8 @@ pub struct Pick {
 
 /// Most tries for a die.
 const TRIES: usize = 300;
-/// Share of tries left where the prior has them. It must not be 0: what another die pushed to its place was led anywhere, and there must be a way back to it.
+/// Share of tries left where the prior has them. It must not be 0: what another die pushed to its place was led
+/// anywhere, and there must be a way back to it.
 const LEFT: f64 = 0.1;
 /// The least g of the place of release, and of the place of rest: what a state that nobody would pick costs to leave.
 const LEAST: [f64; 2] = [0.01, 0.01];

@@ -6,7 +6,8 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// The paper's move: one control point of one table, each as likely, makes a step that leaves its law as it is. Most points are far from any die.
+/// The paper's move: one control point of one table, each as likely, makes a step that leaves its law as it is. Most
+/// points are far from any die.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// Sizes of the steps, of heights, restitutions and frictions.

@@ -8,20 +8,24 @@ use plaus_dist::stream::below;
 use plaus_dist::{Density, Gaussian, LogDensity, LogRatio, Sample, Stream, math, open_unit, standard_normal};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// A die gets a fresh throw from the prior, and a fresh table where it has one of its own, from a place from where it should come to rest near its target, with its pips
-/// turned so that a demanded face is likely to be up.
+/// A die gets a fresh throw from the prior, and a fresh table where it has one of its own, from a place from where it
+/// should come to rest near its target, with its pips turned so that a demanded face is likely to be up.
 ///
-/// The throw is tried out to see how far it leads. A die with a random table of its own is tried out on that: it begins at a uniform place within a cell, the table goes
-/// with it by whole cells, and it comes to rest just where it is led. Any other die, and any where something was spilt, is tried out alone on a plain table, and led by any
-/// length; then alone on its own table from there, which tells how its pips have to be turned. What other dice do to it is seen when it is simulated.
+/// The throw is tried out to see how far it leads. A die with a random table of its own is tried out on that: it begins
+/// at a uniform place within a cell, the table goes with it by whole cells, and it comes to rest just where it is led.
+/// Any other die, and any where something was spilt, is tried out alone on a plain table, and led by any length; then
+/// alone on its own table from there, which tells how its pips have to be turned. What other dice do to it is seen when
+/// it is simulated.
 ///
-/// The density of such a proposal is that of the throw under the prior, but for its place; times that of the error of the place aimed at; times the chance that the
-/// pips are turned so. It depends on the state led to and not on that led from, so the ratio is that of the old state over that of the new one. A die whose try-out does
-/// not come to rest is neither led to nor from.
+/// The density of such a proposal is that of the throw under the prior, but for its place; times that of the error of
+/// the place aimed at; times the chance that the pips are turned so. It depends on the state led to and not on that led
+/// from, so the ratio is that of the old state over that of the new one. A die whose try-out does not come to rest is
+/// neither led to nor from.
 ///
-/// Of dice thrown onto one table one, two or three that stand in a row are recast at once, as likely whatever the state: dice that are in each other's way hold each
-/// other where they are, for neither comes to its own place before the other goes. Half of those are not led, but thrown from where the prior has them: what they
-/// leave may be led anywhere, as a die is that another one pushed to its place, and there must be a way back to it.
+/// Of dice thrown onto one table one, two or three that stand in a row are recast at once, as likely whatever the
+/// state: dice that are in each other's way hold each other where they are, for neither comes to its own place before
+/// the other goes. Half of those are not led, but thrown from where the prior has them: what they leave may be led
+/// anywhere, as a die is that another one pushed to its place, and there must be a way back to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recast {
     /// Standard deviation of the place aimed at, along each axis, in m.
@@ -66,8 +70,8 @@ pub(super) fn led(target: &Dice, draw: &Draw, rest: Option<&Rest>, die: usize) -
     led_on_table(target, draw, die, (start + offset + plain.position, plain.orientation))
 }
 
-/// Where and how a die lies at last that is thrown alone onto its table; `None` where it does not come to rest. `plain`: where and how it does on a plain one, where it was
-/// led.
+/// Where and how a die lies at last that is thrown alone onto its table; `None` where it does not come to rest.
+/// `plain`: where and how it does on a plain one, where it was led.
 pub(super) fn led_on_table(
     target: &Dice,
     draw: &Draw,
@@ -139,7 +143,8 @@ impl Recast {
         Ok(led)
     }
 
-    /// Throws one die anew and leads it to its place, or, that share of the time where dice meet, leaves it where it was drawn: where and how it comes to rest, if it does.
+    /// Throws one die anew and leads it to its place, or, that share of the time where dice meet, leaves it where it
+    /// was drawn: where and how it comes to rest, if it does.
     pub(super) fn lead(
         self,
         target: &Dice,

@@ -6,8 +6,8 @@ use plaus_dist::stream::below;
 use plaus_dist::{Density, LogDensity, LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// One die, each as likely, gets a fresh throw from the prior, and a fresh table where it has one of its own. The ratio is the old throw's density over
-/// the new one's.
+/// One die, each as likely, gets a fresh throw from the prior, and a fresh table where it has one of its own. The ratio
+/// is the old throw's density over the new one's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rethrow;
 

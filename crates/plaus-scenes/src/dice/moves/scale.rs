@@ -3,8 +3,8 @@
 use crate::walk::{NARROW, WIDE_SHARE};
 use plaus_dist::{Stream, math, open_unit, standard_normal};
 
-/// Sizes of steps: uniform in their logarithm between two ends within (0, 1]. Steps of all sizes are tried all the time, so that none has to be tuned; or, once a
-/// chain has adapted the scale, most of them about that.
+/// Sizes of steps: uniform in their logarithm between two ends within (0, 1]. Steps of all sizes are tried all the
+/// time, so that none has to be tuned; or, once a chain has adapted the scale, most of them about that.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     low: f64,
@@ -41,8 +41,9 @@ impl Scale {
         (math::exp(log).min(1.0), is_wide)
     }
 
-    /// A step that leaves the standard normal law as it is: as likely from z to z' as back, weighed by that law (Neal, "Regression and classification using
-    /// Gaussian process priors", 1998; the autoregressive proposal). And whether its size comes from the whole range.
+    /// A step that leaves the standard normal law as it is: as likely from z to z' as back, weighed by that law (Neal,
+    /// "Regression and classification using Gaussian process priors", 1998; the autoregressive proposal). And whether
+    /// its size comes from the whole range.
     pub(super) fn step(self, z: f64, stream: &mut Stream) -> (f64, bool) {
         let (s, is_wide) = self.sample(stream);
         ((1.0 - s * s).max(0.0).sqrt() * z + s * standard_normal(stream), is_wide)

@@ -6,12 +6,14 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, standard_normal};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// A die's throw is shifted along the table so that, if all goes as before, it comes to rest near its target: at a place Gaussian about it.
+/// A die's throw is shifted along the table so that, if all goes as before, it comes to rest near its target: at a
+/// place Gaussian about it.
 ///
-/// A die with a random table of its own is shifted by whole cells together with the table: the same animation elsewhere, bit by bit, but for what was spilt. Any
-/// other is shifted alone, by any length; on a flat table without fields that is the same animation elsewhere, but for rounding. The way back aims from
-/// where the candidate came to rest, so the ratio is `q(−shift | candidate)/q(shift | current)`, of densities or of probabilities of cells; both kinds of shift keep
-/// volumes.
+/// A die with a random table of its own is shifted by whole cells together with the table: the same animation
+/// elsewhere, bit by bit, but for what was spilt. Any other is shifted alone, by any length; on a flat table without
+/// fields that is the same animation elsewhere, but for rounding. The way back aims from where the candidate came to
+/// rest, so the ratio is `q(−shift | candidate)/q(shift | current)`, of densities or of probabilities of cells; both
+/// kinds of shift keep volumes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shift {
     /// Standard deviation of the place aimed at, along each axis, in m.
@@ -19,7 +21,8 @@ pub struct Shift {
 }
 
 impl Shift {
-    /// Log probability, or density per m², of the shift from one draw to another, given where the die of the first came to rest.
+    /// Log probability, or density per m², of the shift from one draw to another, given where the die of the first came
+    /// to rest.
     fn log_q(self, target: &Dice, from: &StateOf<Dice>, to: &Draw, die: usize) -> f64 {
         let Some(place) = target.plan.places[die] else { return f64::NEG_INFINITY };
         let rest = from.outcome.trips[die].position + target.offset(&from.draw, die);

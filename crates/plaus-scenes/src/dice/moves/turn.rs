@@ -5,9 +5,10 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// One die's pips are turned by another of the rotations that leave its body as it is, each as likely: the throw begins in another orientation, the body moves as
-/// before bit by bit, and another face comes up. Symmetric. A cube has 24 such rotations, a cuboid with two equal edges 8, any other 4: a face of a cuboid
-/// comes up only in place of one of its size.
+/// One die's pips are turned by another of the rotations that leave its body as it is, each as likely: the throw begins
+/// in another orientation, the body moves as before bit by bit, and another face comes up. Symmetric. A cube has 24
+/// such rotations, a cuboid with two equal edges 8, any other 4: a face of a cuboid comes up only in place of one of
+/// its size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Turn;
 

@@ -4,8 +4,9 @@ use crate::spelling::{Rest, Spelling};
 use plaus_dist::stream::below;
 use plaus_dist::{Stream, math};
 
-/// The law of an aimed drop: with probability `aimed` over a designated bin that no ball but `apart` fills, each such bin as likely and each position over it; else
-/// anywhere in the drop rectangle. Anywhere too where no such bin lies under the rectangle.
+/// The law of an aimed drop: with probability `aimed` over a designated bin that no ball but `apart` fills, each such
+/// bin as likely and each position over it; else anywhere in the drop rectangle. Anywhere too where no such bin lies
+/// under the rectangle.
 pub(super) struct Aim<'a> {
     target: &'a Spelling,
     aimed: f64,

@@ -7,11 +7,11 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// Half of the time a birth: one of the N − n balls that are not dropped, each as likely, is, at a position that mostly lies over an empty designated
-/// bin. Else a death: one of the n balls that are dropped, each as likely, no longer is.
+/// Half of the time a birth: one of the N − n balls that are not dropped, each as likely, is, at a position that mostly
+/// lies over an empty designated bin. Else a death: one of the n balls that are dropped, each as likely, no longer is.
 ///
-/// A birth has density `h(position)/(N−n)` and the death that undoes it probability `1/(n+1)`. The law h is that of the state with one ball less, so a
-/// death knows its ratio after the simulation.
+/// A birth has density `h(position)/(N−n)` and the death that undoes it probability `1/(n+1)`. The law h is that of the
+/// state with one ball less, so a death knows its ratio after the simulation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BirthDeath {
     /// Share of positions that aim.

@@ -4,12 +4,13 @@ use crate::spelling::{Drops, Spelling};
 use plaus_dist::{LogRatio, Stream, math};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf, Target};
 
-/// A fresh draw of the prior: all vertices, which balls are dropped, and where. The ratio is the old draw's prior density over the new one's, so that
-/// acceptance compares the constraint alone.
+/// A fresh draw of the prior: all vertices, which balls are dropped, and where. The ratio is the old draw's prior
+/// density over the new one's, so that acceptance compares the constraint alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ChangeAll {
-    /// Count as symmetric, as the paper does (erratum; samples another law). Taken at its word that would also depend on the unit of area, by the number of
-    /// balls: with mm² a chain finds the box emptied by every such move. So the area of the drop rectangle is the unit here; the vertices alone tell.
+    /// Count as symmetric, as the paper does (erratum; samples another law). Taken at its word that would also depend
+    /// on the unit of area, by the number of balls: with mm² a chain finds the box emptied by every such move. So the
+    /// area of the drop rectangle is the unit here; the vertices alone tell.
     pub symmetric: bool,
     /// Draw offsets in a random direction with a Gaussian length, as the paper prints it (erratum: not the prior).
     pub radial_offsets: bool,

@@ -6,8 +6,9 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// One of the balls that are dropped, each as likely, is dropped elsewhere: shifted in a random direction by a length N(0, `sd`) mm, leaving the rectangle
-/// on one side and entering it on the other. Symmetric. Without any such ball the chain stays.
+/// One of the balls that are dropped, each as likely, is dropped elsewhere: shifted in a random direction by a length
+/// N(0, `sd`) mm, leaving the rectangle on one side and entering it on the other. Symmetric. Without any such ball the
+/// chain stays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChangeBall {
     /// Standard deviation of the length, mm.

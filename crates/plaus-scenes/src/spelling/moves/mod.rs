@@ -1,4 +1,5 @@
-//! The moves of the balls that spell, one a file. The first four are the paper's (its appendix B.2), activate and deactivate being one.
+//! The moves of the balls that spell, one a file. The first four are the paper's (its appendix B.2), activate and
+//! deactivate being one.
 
 mod aim;
 mod birth_death;

@@ -5,8 +5,9 @@ use crate::spelling::{Drops, Spelling};
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf, Target};
 
-/// Each vertex, with probability `chance`, is drawn anew from its prior. The ratio is the old offsets' prior density over the new ones', so that acceptance compares
-/// the constraint alone: most vertices matter to few balls, and forget at once where small steps need thousands.
+/// Each vertex, with probability `chance`, is drawn anew from its prior. The ratio is the old offsets' prior density
+/// over the new ones', so that acceptance compares the constraint alone: most vertices matter to few balls, and forget
+/// at once where small steps need thousands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RedrawVertices {
     /// Probability that a vertex is drawn anew.

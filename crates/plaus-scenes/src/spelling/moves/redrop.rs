@@ -8,10 +8,12 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 /// How much likelier a ball that fills no designated bin by itself is chosen than one that does.
 const USELESS: f64 = 10.0;
 
-/// A ball that is dropped, mostly a useless one, is dropped elsewhere, mostly over a designated bin that no other ball fills.
+/// A ball that is dropped, mostly a useless one, is dropped elsewhere, mostly over a designated bin that no other ball
+/// fills.
 ///
 /// Which balls are useless and which bins empty, the outcome tells; the way back asks the candidate's. So the ratio is
-/// `w'(ball)/Σw' · h'(old position) / (w(ball)/Σw · h(new position))`, with the primed factors known after the simulation.
+/// `w'(ball)/Σw' · h'(old position) / (w(ball)/Σw · h(new position))`, with the primed factors known after the
+/// simulation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Redrop {
     /// Share of positions that aim.

@@ -5,8 +5,8 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// Two balls, each pair as likely, exchange where they are dropped, or that they are not. Symmetric, and of equal prior density: what changes is the order
-/// in which balls fall, so that they mostly land where the other did.
+/// Two balls, each pair as likely, exchange where they are dropped, or that they are not. Symmetric, and of equal prior
+/// density: what changes is the order in which balls fall, so that they mostly land where the other did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Swap;
 

@@ -5,11 +5,13 @@ use crate::spelling::{Drops, Spelling};
 use plaus_dist::{LogRatio, Stream, math};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
-/// Half of the time activates: each ball that is not dropped is, with probability η, at a uniform position. Else deactivates: each ball that is dropped no
-/// longer is, with probability η. The paper's last two strategies, each the other's reverse.
+/// Half of the time activates: each ball that is not dropped is, with probability η, at a uniform position. Else
+/// deactivates: each ball that is dropped no longer is, with probability η. The paper's last two strategies, each the
+/// other's reverse.
 ///
-/// With N balls of which n are dropped, activating s of them has density `η^s (1−η)^(N−n−s) a^−s`, and the way back `η^s (1−η)^n`. The prior's a^−s
-/// cancels, so that `α = min(1, λ^Δk (1−η)^(n+n'−N))`, and the inverse power for deactivating.
+/// With N balls of which n are dropped, activating s of them has density `η^s (1−η)^(N−n−s) a^−s`, and the way back
+/// `η^s (1−η)^n`. The prior's a^−s cancels, so that `α = min(1, λ^Δk (1−η)^(n+n'−N))`, and the inverse power for
+/// deactivating.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Toggle {
     /// η.

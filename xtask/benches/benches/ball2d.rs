@@ -1,7 +1,8 @@
 //! What an iteration of the 2D ball costs, and where the time goes: `cargo bench -p plaus-scenes --bench ball2d`.
 //!
-//! `run` is the whole engine with all bookkeeping: counts, hits, classes of solutions, records. Its parts are timed on the draws of a real
-//! chain. The last lines give iterations per second and the simulator's share, from one process, so that a busy machine slows all of them.
+//! `run` is the whole engine with all bookkeeping: counts, hits, classes of solutions, records. Its parts are timed on
+//! the draws of a real chain. The last lines give iterations per second and the simulator's share, from one process, so
+//! that a busy machine slows all of them.
 #![allow(missing_docs, clippy::print_stdout, clippy::disallowed_methods, clippy::unwrap_used)]
 
 use criterion::{Criterion, Throughput, criterion_group};

@@ -1,0 +1,19 @@
+//! Everything that is tried of the command from outside, as one program.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+mod accuracy;
+mod adapting;
+mod animations;
+mod bad_input;
+mod every_format;
+mod first_hour;
+#[cfg(unix)]
+mod jobs;
+mod mutated;
+mod output;
+mod pieces;
+#[cfg(unix)]
+mod same_bytes;
+mod tempering;

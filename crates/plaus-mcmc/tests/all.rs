@@ -1,0 +1,15 @@
+//! Everything that is tried of the sampler from outside, as one program.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod toys;
+
+mod adapt;
+mod arviz_reference;
+mod check_balls;
+mod check_ring;
+mod check_vertices;
+mod diagnose_properties;
+mod engine_chain;
+mod engine_run;
+mod replicas;
+mod required;

@@ -1,0 +1,10 @@
+//! Everything that is tried of runs from outside, as one program.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+mod damaged;
+mod killed;
+mod merged;
+mod mixing;
+mod refused;

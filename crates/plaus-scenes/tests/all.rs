@@ -1,0 +1,8 @@
+//! Everything that is tried of scenarios from outside, as one program.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+mod scenario_bad;
+mod scenario_properties;
+mod scenario_schema;

@@ -1,0 +1,30 @@
+//! Everything that is tried of the simulator from outside, as one program: `cargo test -p plaus-sim --test all laws_random`
+//! runs one file's tests.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+#[path = "common/laws/mod.rs"]
+mod laws;
+#[path = "common/small_steps/mod.rs"]
+mod small_steps;
+
+mod drops;
+mod extremes;
+mod field;
+mod laws_random;
+mod laws_symmetry;
+mod laws_truths;
+mod marble_laws;
+mod marble_truth;
+mod marble_worlds;
+mod marbles_exact;
+mod metamorphic;
+mod restart;
+mod rigid_boxes;
+mod rigid_die;
+mod rigid_extremes;
+mod rigid_hulls;
+mod rigid_ledges;
+mod rigid_mirror;
+mod rigid_pins;
+mod rigid_roll;
