@@ -29,7 +29,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "plaus-sim",
         ],
     ),
-    ("plaus-figures", &["plaus-dist", "plaus-export", "plaus-mcmc", "plaus-scenes"]),
+    ("plaus-figures", &["plaus-dist", "plaus-export", "plaus-mcmc", "plaus-scenes", "plaus-sim"]),
     ("plaus-tradeoff", &["plaus-dist", "plaus-figures", "plaus-mcmc", "plaus-scenes", "plaus-sim"]),
     ("plaus-benches", &[]),
     ("plaus-tests", &["plaus-dist"]),

@@ -33,7 +33,9 @@ usage: cargo xtask CHORE
   reproduce-figures [--out FOLDER] [--quick] [--only SCENE]
                        the paper's figures and claims, sampled anew, into out/figures
   plausibility [--out FOLDER] [--quick] [--only SCENE]
-                       dice and bowling beside what was published of real ones, into out/plausibility
+                       tosses, dice and bowling beside what was published of real ones, into out/plausibility
+  accuracy [--out FOLDER] [--quick]
+                       how far each preset is from truths of contact, into out/accuracy
   golden               compare golden traces with fresh runs
   golden --bless       make golden traces anew
   tradeoff [...]       compare with peers: cargo run --release -p plaus-tradeoff
@@ -52,6 +54,7 @@ fn main() -> ExitCode {
         Some((&"wheel", rest)) => wheel::run(rest),
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"plausibility", rest)) => plausibility(rest),
+        Some((&"accuracy", rest)) => accuracy(rest),
         Some((&"golden", rest)) => golden::run(rest),
         Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),
         Some((&"bench", rest)) => cargo(&["bench", "--package", "plaus-benches"]).args(rest).run(),
@@ -80,4 +83,16 @@ fn figures(arguments: &[&str]) -> Result<(), Failure> {
 fn plausibility(arguments: &[&str]) -> Result<(), Failure> {
     let program = ["run", "--release", "--package", "plaus-figures", "--", "plausibility"];
     cargo(&program).args(arguments).run()
+}
+
+/// Measures by an example of the simulator, which leaves a table; then draws that.
+fn accuracy(arguments: &[&str]) -> Result<(), Failure> {
+    let folder = arguments.windows(2).find(|pair| pair[0] == "--out").map_or("out/accuracy", |pair| pair[1]);
+    std::fs::create_dir_all(folder).map_err(Failure::new)?;
+    let table = format!("{folder}/convergence.csv");
+    // Seconds for a run on the wall, throws, part of a name.
+    let [seconds, throws] = if arguments.contains(&"--quick") { ["0.05", "2"] } else { ["20", "20"] };
+    let measuring = ["run", "--release", "--package", "plaus-sim", "--example", "convergence", "--"];
+    cargo(&measuring).args([seconds, throws, "", &table]).run()?;
+    cargo(&["run", "--release", "--package", "plaus-figures", "--", "accuracy"]).args(arguments).run()
 }

@@ -2,7 +2,7 @@
 
 use crate::laws::worlds::Dice;
 use crate::small_steps::impact::impulse;
-use crate::small_steps::tosses::{Toss, smooth, wild};
+use crate::small_steps::tosses::{Toss, dice, pin, smooth, wild};
 use glam::{DMat3, DVec3};
 use plaus_sim::resolve::{ContactMatrix, stronge_impulse};
 use plaus_sim::{Accuracy, Preset};
@@ -62,6 +62,28 @@ fn impacts_converge_to_the_truth() {
         let bound = 0.25 * off[0].max(off[1]) + 3.0 * unknown;
         assert!(off[3] <= bound, "{}: {off:?}, truth known to {unknown:.1e}", toss.name);
     }
+}
+
+/// Bodies that touch the floor by rounded corners and by rings: a point of contact that goes round the body.
+#[test]
+fn pins_and_dice_converge_to_the_truth() {
+    let toss = pin();
+    let (off, unknown) = errors(&toss);
+    // Of the first order at least, as in other lasting contact.
+    let bound =
+        off[0].max(off[1]) * (Accuracy::preset(Preset::Reference).step / Accuracy::preset(Preset::Standard).step);
+    assert!(off[3] <= bound + 3.0 * unknown, "{off:?}, truth known to {unknown:.1e}");
+    // A body that is another is seen: a twentieth more inertia.
+    let mut heavy = toss.clone();
+    heavy.body.mass.inertia *= 1.05;
+    let [(twin, ..), (truth, ..)] = [&heavy, &toss].map(|t| t.truth_and_doubt(&toss.starts[0], STEP));
+    let far = twin.iter().zip(&truth).map(|(a, b)| a.off(b, toss.length())).fold(0.0, f64::max);
+    assert!(far > 3.0 * off[3] + 3.0 * unknown, "{far:.1e} beside {off:?}");
+    let mut toss = dice(4);
+    toss.looks = vec![0.1, 0.12];
+    let (off, unknown) = errors(&toss);
+    let bound = 0.25 * off[0].max(off[1]) + 3.0 * unknown;
+    assert!(off[3] <= bound, "{}: {off:?}, truth known to {unknown:.1e}", toss.name);
 }
 
 /// The impact law itself, by two makes: random bodies struck at random points. Nine in ten agree to a tenth of the square

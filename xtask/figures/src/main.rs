@@ -1,10 +1,12 @@
-//! The paper's figures and claims, sampled anew: `cargo xtask reproduce-figures`; and what is simulated beside what was published of the real thing: `cargo xtask plausibility`.
+//! The paper's figures and claims, sampled anew: `cargo xtask reproduce-figures`; and what is simulated beside what was published of the real thing: `cargo xtask plausibility`; and how exact contact is:
+//! `cargo xtask accuracy`.
 //!
 //! Each scene is a folder of its own that adds figures and rows of the report; [`SCENES`] lists them, [`plausibility::SCENES`] those of the second. Everything but the times that are measured follows from fixed
 //! seeds, so the same version makes the same files.
 
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 
+mod accuracy;
 mod ball2d;
 mod bowling;
 mod dice;
@@ -43,6 +45,9 @@ const PLAUSIBILITY: Chore = Chore {
     heading: plausibility::HEADING,
     scenes: plausibility::SCENES,
 };
+
+const ACCURACY: Chore =
+    Chore { name: "accuracy", folder: "out/accuracy", heading: accuracy::HEADING, scenes: accuracy::SCENES };
 
 impl Chore {
     fn usage(&self) -> String {
@@ -100,7 +105,9 @@ impl Work {
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1).peekable();
-    let chore = if arguments.next_if(|first| first == PLAUSIBILITY.name).is_some() { PLAUSIBILITY } else { FIGURES };
+    let named = [PLAUSIBILITY, ACCURACY].into_iter().find(|chore| arguments.peek().is_some_and(|a| a == chore.name));
+    let chore = named.unwrap_or(FIGURES);
+    arguments.next_if(|first| first == chore.name);
     let mut out = PathBuf::from(chore.folder);
     let (mut quick, mut only) = (false, None);
     while let Some(argument) = arguments.next() {

@@ -27,6 +27,14 @@ impl Estimate {
         Self { value, error: (value * (1.0 - value) / cases as f64).sqrt() }
     }
 
+    /// The mean of independent values.
+    pub(crate) fn mean(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let value = values.iter().sum::<f64>() / n;
+        let spread: f64 = values.iter().map(|x| square(x - value)).sum();
+        Self { value, error: (spread / (n * (n - 1.0).max(1.0))).sqrt() }
+    }
+
     /// How many standard errors apart two are.
     pub(crate) fn z(self, other: Self) -> f64 {
         (self.value - other.value) / (square(self.error) + square(other.error)).sqrt()
@@ -143,6 +151,13 @@ mod tests {
         assert_eq!(shown(0.683_12, 0.000_61), "0.68312 ± 0.00061");
         assert_eq!(shown(0.683_12, 0.012), "0.683 ± 0.012");
         assert_eq!(shown(1.0, 0.0), "1");
+    }
+
+    #[test]
+    fn means_have_the_error_of_a_mean() {
+        // By hand: variance of the sample 5/3, over 4.
+        let Estimate { value, error } = Estimate::mean(&[1.0, 2.0, 3.0, 4.0]);
+        assert!((value - 2.5).abs() < 1e-15 && (error - (5.0_f64 / 12.0).sqrt()).abs() < 1e-15);
     }
 
     #[test]

@@ -6,6 +6,7 @@
 mod bowling;
 mod chance;
 mod dice;
+mod tosses;
 
 use crate::Make;
 
@@ -14,4 +15,5 @@ pub(crate) const HEADING: &str = "# What is simulated beside what was published 
     Made by one command from fixed seeds; a second run of the same version gives the same bytes:\n\n    cargo xtask plausibility\n\n";
 
 /// Scenes with published statistics.
-pub(crate) const SCENES: &[(&str, Make)] = &[("dice", dice::make), ("bowling", bowling::make)];
+pub(crate) const SCENES: &[(&str, Make)] =
+    &[("tosses", tosses::make), ("dice", dice::make), ("bowling", bowling::make)];

@@ -56,7 +56,11 @@ pub fn heavy(s: &Setting<'_>, ratio: f64) -> Found {
     // At rest nothing may overlap by more than the gap that a preset tells apart.
     let honest = !is_called_rest || left <= 10.0 * s.accuracy().gap;
     let holds = honest && !went.cut && (deep < 0.01 || ratio > 1e6);
-    Found::new(holds, format!("overlap {deep:.1e} r, {left:.1e} r in the end, {}", went.told()))
+    Found::new(
+        holds,
+        if went.cut { f64::NAN } else { deep },
+        format!("overlap {deep:.1e} r, {left:.1e} r in the end, {}", went.told()),
+    )
 }
 
 /// Counts impacts that are more than the beginning of rest.
@@ -88,10 +92,12 @@ pub fn galperin(s: &Setting<'_>, n: i32) -> Found {
     let mut count = Count::default();
     let went = go(&world, &[at(3.0 * R, 0.0), at(8.0 * R, -1.0)], 10.0, s.guard, &mut count);
     let all = count.pairs + count.walls;
-    let digits = [3, 31, 314, 3141, 31415];
+    let digits = [3_u32, 31, 314, 3141, 31415];
     let end = world.at(1, &went.state.bodies()[1], went.state.time()).path.v.x;
-    let holds = all == digits[n as usize] && !went.cut && went.outcome != Outcome::OutOfEvents;
-    Found::new(holds, format!("{all} impacts, heavy ball leaves at {end:.6}, {}", went.told()))
+    let holds = all == u64::from(digits[n as usize]) && !went.cut && went.outcome != Outcome::OutOfEvents;
+    let far = (all as f64 / f64::from(digits[n as usize]) - 1.0).abs();
+    let far = if went.cut { f64::NAN } else { far };
+    Found::new(holds, far, format!("{all} impacts, heavy ball leaves at {end:.6}, {}", went.told()))
 }
 
 /// Five touching balls on a floor with e = 1, two more come in: as many leave.
@@ -110,7 +116,8 @@ pub fn cradle(s: &Setting<'_>) -> Found {
     let off = v.iter().zip([0.0, 0.0, 0.0, 1.0, 1.0]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     // Places, and so directions of impact, are known to the gap.
     let holds = off < 10.0 * s.accuracy().gap && !went.cut;
-    Found::new(holds, format!("({:.3}, {:.3}, {:.3}, {:.3}, {:.3}), {}", v[0], v[1], v[2], v[3], v[4], went.told()))
+    let text = format!("({:.3}, {:.3}, {:.3}, {:.3}, {:.3}), {}", v[0], v[1], v[2], v[3], v[4], went.told());
+    Found::new(holds, if went.cut { f64::NAN } else { off }, text)
 }
 
 /// A ball that lies on a floor with e = 1: exactly, a little in it, and a little over it, but within the gap at which
@@ -122,5 +129,6 @@ pub fn at_rest(s: &Setting<'_>) -> Found {
         .map(|above| go(&world, &[Start::at_rest(DVec3::Z * (R * (1.0 + above)))], 5.0, s.guard, &mut ()));
     let holds = went.iter().all(|w| w.outcome == Outcome::AllAtRest && w.state.counts().events < 100);
     let told: Vec<String> = went.iter().map(|w| format!("{:?} after {}", w.outcome, w.state.counts().events)).collect();
-    Found::new(holds, format!("on, in, over the floor: {} events", told.join(", ")))
+    let most = went.iter().map(|w| w.state.counts().events).max().unwrap_or(0) as f64;
+    Found::new(holds, most, format!("on, in, over the floor: {} events", told.join(", ")))
 }

@@ -40,7 +40,9 @@ pub fn on_balls(s: &Setting<'_>) -> Found {
     let lid = pace(25);
     // Load sharing within 1 %.
     let holds = (lid - 1.2).abs() < 0.012 && low > 0.594 && high < 0.606 && !went.cut;
-    Found::new(holds, format!("box {lid:.4}, balls {low:.4} to {high:.4} g_x, {}", went.told()))
+    let off = (lid / 1.2 - 1.0).abs().max((low / 0.6 - 1.0).abs()).max((high / 0.6 - 1.0).abs());
+    let off = if went.cut { f64::NAN } else { off };
+    Found::new(holds, off, format!("box {lid:.4}, balls {low:.4} to {high:.4} g_x, {}", went.told()))
 }
 
 /// Whether cubes that stand upon each other come to rest where they stand.
@@ -54,7 +56,8 @@ fn stands(s: &Setting<'_>, places: &[DVec3], edge: f64) -> Found {
     let shift = ends.iter().zip(&starts).map(|(e, s)| (e.path.x - s.position).length()).fold(0.0, f64::max) / edge;
     let deep = deepest(&world, &ends) / edge;
     let holds = went.outcome == Outcome::AllAtRest && shift < 0.01;
-    Found::new(holds, format!("shift {shift:.1e}, overlap {deep:.1e} edges at {t:.3} s, {}", went.told()))
+    let off = if went.cut { f64::NAN } else { shift };
+    Found::new(holds, off, format!("shift {shift:.1e}, overlap {deep:.1e} edges at {t:.3} s, {}", went.told()))
 }
 
 /// The deepest overlap of any two bodies, or of one with the floor.
@@ -135,6 +138,7 @@ pub fn dominoes(s: &Setting<'_>, gap: f64, truth: f64) -> Found {
     // The goal for the simulator: within 3 %.
     let near = speed.is_some_and(|v| (v / truth - 1.0).abs() < 0.03);
     let holds = near && !went.cut && went.outcome != Outcome::OutOfEvents;
+    let off = speed.map_or(f64::NAN, |v| (v / truth - 1.0).abs());
     let speed = speed.map_or("no wave".to_owned(), |v| format!("{v:.3} for {truth:.3}"));
-    Found::new(holds, format!("{speed}, {}", went.told()))
+    Found::new(holds, off, format!("{speed}, {}", went.told()))
 }

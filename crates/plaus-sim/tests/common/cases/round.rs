@@ -106,7 +106,8 @@ fn follow(s: &Setting<'_>, disk: &Disk, steady: &Steady, until: f64) -> Found {
     );
     // Neutral stability lets errors of the start and of the gap grow with the angle turned: about the gap × that.
     let holds = !went.cut && (tilt - steady.tilt).abs() < 0.01 * steady.tilt && lost.abs() < 1e-3 && off.abs() < 0.1;
-    Found::new(holds, text)
+    let far = if went.cut { f64::NAN } else { off.abs() + (tilt / steady.tilt - 1.0).abs() };
+    Found::new(holds, far, text)
 }
 
 /// Euler's disk at about 7°.

@@ -1,15 +1,46 @@
-//! One body with sharp corners over a level floor at height 0.
+//! One body over a level floor at height 0: corners, sharp or rounded, and rings.
 
 use super::impact::{friction_of, impulse};
 use glam::{DMat2, DMat3, DQuat, DVec3};
+
+/// What of a body can touch a floor: of each its lowest point. That of a ring, and of a ball, is not the same point of
+/// the body at all times; the velocity there is that of the body all the same, and its height changes as that has it.
+#[derive(Debug, Clone, Copy)]
+pub enum Knob {
+    /// Centre about the centre of gravity, in the body's axes, and radius; 0 for a sharp corner.
+    Ball(DVec3, f64),
+    /// About the body's z axis: height over the centre of gravity, radius of the circle, radius of the section.
+    Ring(f64, f64, f64),
+}
+
+impl Knob {
+    /// From the centre of gravity to the lowest point, in world axes.
+    pub fn arm(&self, r: &DMat3) -> DVec3 {
+        match *self {
+            Self::Ball(centre, radius) => *r * centre - DVec3::Z * radius,
+            Self::Ring(height, circle, radius) => {
+                let axis = r.z_axis;
+                // Across the axis and down; any of them where the axis is upright.
+                let down = (axis * axis.z - DVec3::Z).normalize_or(r.x_axis);
+                axis * height + down * circle - DVec3::Z * radius
+            }
+        }
+    }
+
+    fn reach(&self) -> f64 {
+        match *self {
+            Self::Ball(centre, radius) => centre.length() + radius,
+            Self::Ring(height, circle, radius) => (height * height + circle * circle).sqrt() + radius,
+        }
+    }
+}
 
 /// What does not change.
 #[derive(Debug, Clone)]
 pub struct Solid {
     pub mass: f64,
     pub inertia: DVec3,
-    /// Corners about the centre of gravity, in the body's axes.
-    pub corners: Vec<DVec3>,
+    pub knobs: Vec<Knob>,
     pub friction: f64,
     pub restitution: f64,
     pub gravity: DVec3,
@@ -53,8 +84,8 @@ const STILL: f64 = 1e-9;
 
 impl<'s> Run<'s> {
     pub fn new(solid: &'s Solid, state: State) -> Self {
-        let size = solid.corners.iter().map(|c| c.length()).fold(0.0, f64::max);
-        let n = solid.corners.len();
+        let size = solid.knobs.iter().map(Knob::reach).fold(0.0, f64::max);
+        let n = solid.knobs.len();
         let settle = SETTLE * (solid.gravity.length() * size).sqrt();
         let mut run = Self {
             solid,
@@ -121,8 +152,8 @@ impl<'s> Run<'s> {
     fn opening(&self) -> bool {
         let r = DMat3::from_quat(self.state.turn);
         let inverse = self.inverse_inertia(self.state.turn);
-        (0..self.solid.corners.len()).filter(|&k| !self.closed[k]).any(|k| {
-            let arm = r * self.solid.corners[k];
+        (0..self.solid.knobs.len()).filter(|&k| !self.closed[k]).any(|k| {
+            let arm = self.solid.knobs[k].arm(&r);
             self.state.x.z + arm.z < 0.0 && self.velocity(&inverse, arm).z < 0.0
         })
     }
@@ -133,9 +164,10 @@ impl<'s> Run<'s> {
         let r = DMat3::from_quat(s.turn);
         let inverse = self.inverse_inertia(s.turn);
         let mut now = Velocity { v: s.v + solid.gravity * dt, spin: s.spin };
-        let points: Vec<(usize, DVec3, DMat3)> = (0..solid.corners.len())
+        let points: Vec<(usize, DVec3, DMat3)> = (0..solid.knobs.len())
             .filter(|&k| self.closed[k])
-            .map(|k| (k, r * solid.corners[k], response(solid.mass, &inverse, r * solid.corners[k])))
+            .map(|k| (k, solid.knobs[k].arm(&r)))
+            .map(|(k, arm)| (k, arm, response(solid.mass, &inverse, arm)))
             .collect();
         for (k, arm, _) in &points {
             now.push(solid.mass, *arm, self.loads[*k]);
@@ -184,7 +216,7 @@ impl<'s> Run<'s> {
         for _ in 0..20 {
             let mut worst = 0.0_f64;
             for (k, ..) in points.iter().filter(|p| self.loads[p.0].z > 0.0) {
-                let arm = self.state.turn * solid.corners[*k];
+                let arm = solid.knobs[*k].arm(&DMat3::from_quat(self.state.turn));
                 let gap = self.state.x.z + arm.z;
                 worst = worst.max(gap.abs());
                 let inverse = self.inverse_inertia(self.state.turn);
@@ -199,7 +231,7 @@ impl<'s> Run<'s> {
         }
         for (k, ..) in points {
             // What has left, left: it may come down again.
-            let arm = self.state.turn * solid.corners[*k];
+            let arm = solid.knobs[*k].arm(&DMat3::from_quat(self.state.turn));
             if self.state.x.z + arm.z > self.touch && self.loads[*k].z == 0.0 {
                 self.closed[*k] = false;
             }
@@ -212,8 +244,8 @@ impl<'s> Run<'s> {
         let r = DMat3::from_quat(self.state.turn);
         let inverse = self.inverse_inertia(self.state.turn);
         for _ in 0..1000 {
-            let touching = (0..solid.corners.len()).filter_map(|k| {
-                let arm = r * solid.corners[k];
+            let touching = (0..solid.knobs.len()).filter_map(|k| {
+                let arm = solid.knobs[k].arm(&r);
                 let u = self.velocity(&inverse, arm);
                 (self.state.x.z + arm.z <= self.touch).then_some((k, arm, u))
             });
@@ -235,9 +267,9 @@ impl<'s> Run<'s> {
 
     /// Slow corners on the floor stay; what parts fast enough flies.
     fn close(&mut self) {
-        let inverse = self.inverse_inertia(self.state.turn);
-        for k in 0..self.solid.corners.len() {
-            let arm = self.state.turn * self.solid.corners[k];
+        let (r, inverse) = (DMat3::from_quat(self.state.turn), self.inverse_inertia(self.state.turn));
+        for k in 0..self.solid.knobs.len() {
+            let arm = self.solid.knobs[k].arm(&r);
             let near = self.state.x.z + arm.z <= self.touch;
             self.closed[k] = near && self.velocity(&inverse, arm).z <= self.settle;
             if !self.closed[k] {

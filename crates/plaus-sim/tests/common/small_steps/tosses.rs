@@ -1,14 +1,14 @@
 //! The same toss by the simulator and in small steps.
 
-use super::body::{Run, Solid, State};
+use super::body::{Knob, Run, Solid, State};
 use crate::laws::worlds::{Dice, G, M, on_floor};
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use plaus_sim::rigid::{BodySpec, Rigid, Start};
-use plaus_sim::shape::{ConvexHull, Cuboid, Shape, Solid as Regular};
+use plaus_sim::shape::{ConvexHull, Cuboid, Profile, Revolution, Shape, Solid as Regular};
 use plaus_sim::{Law, Preset, Scratch};
 use std::sync::Arc;
 
-/// A body with sharp corners, how it touches the floor, and when it is looked at.
+/// A body, how it touches the floor, and when it is looked at.
 #[derive(Debug, Clone)]
 pub struct Toss {
     pub name: &'static str,
@@ -48,13 +48,22 @@ impl Toss {
         2.0 * self.body.shape.size()
     }
 
+    fn knobs(&self) -> Vec<Knob> {
+        let rings = match &self.body.shape {
+            Shape::Revolution(r) => r.rings().iter().map(|r| Knob::Ring(r.height, r.circle, r.radius)).collect(),
+            _ => Vec::new(),
+        };
+        let balls = self.body.shape.feelers().into_iter().map(|f| Knob::Ball(f.centre, f.radius));
+        balls.chain(rings).collect()
+    }
+
     /// In small steps; and how many impacts there were.
     pub fn truth(&self, start: &Start, dt: f64) -> (Vec<Look>, u64) {
         let mass = self.body.mass;
         let solid = Solid {
             mass: mass.mass,
             inertia: mass.inertia,
-            corners: self.body.shape.feelers().iter().map(|f| f.centre).collect(),
+            knobs: self.knobs(),
             friction: self.law.friction,
             restitution: self.law.restitution,
             gravity: DVec3::new(0.0, 0.0, -G),
@@ -116,6 +125,33 @@ pub fn wild(count: u64) -> Vec<Toss> {
         toss("cube, e 0.5, µ 0.35", DVec3::splat(0.1), Law::new(0.35, 0.5)),
         toss("cuboid, e 0.3, µ 0.3", DVec3::new(0.06, 0.08, 0.1), Law::new(0.3, 0.3)),
     ]
+}
+
+/// Throws of a die with rounded edges, as hands throw them.
+pub fn dice(count: u64) -> Toss {
+    let start = |k: u64| {
+        let mut dice = Dice::new(23, k);
+        let velocity = DVec3::new(dice.between(0.6, 1.2), dice.between(-0.2, 0.2), dice.between(-0.3, 0.3));
+        let position = DVec3::Z * dice.between(0.03, 0.05);
+        Start { orientation: dice.turn(), velocity, spin: dice.in_cube() * 25.0, ..Start::at_rest(position) }
+    };
+    let shape = Shape::Cuboid(Cuboid::new(DVec3::splat(0.016), 0.001).expect("a die"));
+    let body = BodySpec::solid(shape, 1200.0, M);
+    let starts = (0..count).map(start).collect();
+    Toss { name: "die, e 0.5, µ 0.35", body, law: Law::new(0.35, 0.5), starts, looks: vec![0.12, 0.16, 0.2, 1.0] }
+}
+
+/// A pin that stands on the rim of its foot, leaning too far, falls over and rolls on the rim as it does.
+pub fn pin() -> Toss {
+    let shape = Revolution::new(&Profile::pin(), 40).expect("a pin");
+    let body = BodySpec::solid(Shape::Revolution(Arc::new(shape)), 700.0, M);
+    let mut toss = Toss { name: "pin falls over", body, law: Law::new(0.25, 0.0), starts: vec![], looks: vec![] };
+    let orientation = DQuat::from_rotation_y(0.35) * DQuat::from_rotation_z(0.3);
+    let low = toss.knobs().iter().map(|k| k.arm(&DMat3::from_quat(orientation)).z).fold(f64::INFINITY, f64::min);
+    let spin = DVec3::Z * 3.0;
+    toss.starts = vec![Start { orientation, spin, ..Start::at_rest(DVec3::Z * -low) }];
+    toss.looks = vec![0.05, 0.1, 0.15, 0.2];
+    toss
 }
 
 /// A tetrahedron on a face, at height 0: three points, whose loads are determined.

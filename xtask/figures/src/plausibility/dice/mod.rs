@@ -76,7 +76,7 @@ fn compare(work: &mut Work, rolled: &[Rolled], defaults: &Compared, chosen: &Com
     });
     let (least, freedom) = smooth::misfit(rolled);
     text += &format!(
-        "\nHow often a square face was uppermost; {} throws of each, y = 16 mm, sharp edges, seeds {SEED} and {} on. Errors are binomial. z: difference in standard errors of both; p: Fisher's exact \
+        "\nHow often a square face was uppermost; {} throws of each, y = 16 mm, edges sharp by default, seeds {SEED} and {} on. Errors are binomial. z: difference in standard errors of both; p: Fisher's exact \
          test. Published: fifteen cuboids cut out of a steel bar and rolled by students (The Mathematical Gazette, March 2013, note 97.16); how and onto what is not said. Conditions were chosen by the \
          cuboids with † alone (below); chosen: {}.\n\nΣ z² (how many), probability of more by chance:\n\n{}\n\nNor does a smooth curve agree: the best polynomial of fourth degree in ln(x/y) for \
          ln(p/(1 − p)), with a cube's third, leaves {least:.1} with {freedom} degrees of freedom (more by chance: {}).\n",

@@ -19,6 +19,9 @@ fn tried() -> Vec<Conditions> {
         Conditions { speed: 2.0, ..own },
         Conditions { spin: 5.0, ..own },
         Conditions { spin: 45.0, ..own },
+        Conditions { rounding_mm: 0.5, ..own },
+        Conditions { rounding_mm: 1.0, ..own },
+        Conditions { rounding_mm: 2.0, ..own },
     ];
     let tables = BOUNCES.into_iter().flat_map(|bounce| GRIPS.map(|grip| Conditions { bounce, grip, ..own }));
     throws.into_iter().chain(tables).collect()
@@ -26,14 +29,17 @@ fn tried() -> Vec<Conditions> {
 
 /// Conditions in words.
 pub(super) fn name(conditions: &Conditions) -> String {
-    let Conditions { bounce, grip, height_mm, speed, spin } = conditions;
-    format!("restitution {bounce}, friction {grip}, from {height_mm} mm, at {speed} m/s, spin {spin} rad/s")
+    let Conditions { bounce, grip, height_mm, speed, spin, rounding_mm } = conditions;
+    format!(
+        "restitution {bounce}, friction {grip}, from {height_mm} mm, at {speed} m/s, spin {spin} rad/s, \
+         edges rounded by {rounding_mm} mm"
+    )
 }
 
 /// Tables of what follows from each condition; those that fit best.
 pub(super) fn make(work: &mut Work, rolled: &[Rolled]) -> Result<Conditions> {
     let throws = work.size(1_200, 10);
-    let all = if work.quick { tried().split_off(16) } else { tried() };
+    let all = if work.quick { tried().split_off(19) } else { tried() };
     work.say(format_args!("dice: {} conditions, {} throws of each cuboid", all.len(), thousands(throws)));
     let mut compared = Vec::new();
     for (k, conditions) in all.into_iter().enumerate() {
@@ -41,12 +47,12 @@ pub(super) fn make(work: &mut Work, rolled: &[Rolled]) -> Result<Conditions> {
         compared.push(Compared { conditions, ours });
     }
     let rows = compared.iter().map(|compared| {
-        let Conditions { bounce, grip, height_mm, speed, spin } = compared.conditions;
+        let Conditions { bounce, grip, height_mm, speed, spin, rounding_mm } = compared.conditions;
         let share = |ratio: f64| {
             let k = rolled.iter().position(|rolled| rolled.ratio == ratio).unwrap_or(0);
             format!("{:.1}", 100.0 * compared.ours[k].share())
         };
-        let mut cells = [bounce, grip, height_mm, speed, spin].map(|value| value.to_string()).to_vec();
+        let mut cells = [bounce, grip, height_mm, speed, spin, rounding_mm].map(|value| value.to_string()).to_vec();
         cells.extend([0.47, 0.75, 1.16, 1.44, 1.87].map(share));
         cells.extend([false, true].map(|held_out| compared.shown(rolled, held_out)));
         cells
@@ -57,6 +63,7 @@ pub(super) fn make(work: &mut Work, rolled: &[Rolled]) -> Result<Conditions> {
         "height, mm",
         "speed, m/s",
         "spin, rad/s",
+        "rounding, mm",
         "0.47",
         "0.75",
         "1.16",

@@ -21,22 +21,31 @@ pub(super) struct Conditions {
     pub(super) speed: f64,
     /// Standard deviation of each component of the angular velocity in rad/s.
     pub(super) spin: f64,
+    /// Radius of the edges in mm, of cuboids with y = 16 mm.
+    pub(super) rounding_mm: f64,
 }
 
 impl Default for Conditions {
-    /// The scene's.
+    /// The scene's, and sharp edges.
     fn default() -> Self {
         let Config { throw, table, .. } = Config::default();
-        Self { bounce: table.bounce, grip: table.grip, height_mm: throw.z_mm, speed: throw.vx, spin: throw.spin_sd }
+        Self {
+            bounce: table.bounce,
+            grip: table.grip,
+            height_mm: throw.z_mm,
+            speed: throw.vx,
+            spin: throw.spin_sd,
+            rounding_mm: 0.0,
+        }
     }
 }
 
 impl Conditions {
-    /// The scene with one cuboid x × y × y, sharp as those cut out of a bar, y as the scene's die, on a flat table that it can't leave.
+    /// The scene with one cuboid x × y × y, y as the scene's die, on a flat table that it can't leave.
     fn scene(self, ratio: f64) -> Result<Dice> {
         let mut config = Config { constraints: Vec::new(), ..Config::default() };
         config.die.edge_x_mm = ratio * config.die.edge_y_mm;
-        config.die.rounding_mm = 0.0;
+        config.die.rounding_mm = self.rounding_mm;
         (config.table.length_mm, config.table.width_mm) = (1e5, 1e5);
         (config.table.bumps_mm, config.table.bounce_sd, config.table.grip_sd) = (0.0, 0.0, 0.0);
         (config.table.bounce, config.table.grip) = (self.bounce, self.grip);
