@@ -34,7 +34,8 @@ const DRAWS: [(Format, Row); 2] = [
             ending: "zarr",
             about: "a Zarr v3 folder of draws for ArviZ and xarray",
             help: "az.from_zarr(PATH) with ArviZ 1.x, \
-                az.from_datatree(xarray.open_datatree(PATH, engine=\"zarr\")) with 0.23. Scalars of one name that are numbered are one variable with a named dimension.",
+                az.from_datatree(xarray.open_datatree(PATH, engine=\"zarr\")) with 0.23. \
+                Scalars of one name that are numbered are one variable with a named dimension.",
         },
     ),
 ];
