@@ -10,9 +10,10 @@ const EDGES: &[(&str, &[&str])] = &[
     ("plaus-dist", &[]),
     ("plaus-sim", &["plaus-dist"]),
     ("plaus-mcmc", &["plaus-dist"]),
-    ("plaus-scenes", &["plaus-dist", "plaus-mcmc", "plaus-sim"]),
+    ("plaus-animation", &["plaus-dist"]),
+    ("plaus-scenes", &["plaus-animation", "plaus-dist", "plaus-mcmc", "plaus-sim"]),
     ("plaus-run", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
-    ("plaus-export", &["plaus-dist", "plaus-scenes"]),
+    ("plaus-export", &["plaus-animation", "plaus-dist"]),
     ("plaus-gallery", &["plaus-dist", "plaus-export", "plaus-run", "plaus-scenes"]),
     ("plaus-cli", &["plaus-dist", "plaus-export", "plaus-gallery", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
     (
@@ -42,13 +43,12 @@ const ONLY_IN: &[(&str, &str)] = &[("bincode", "crates/plaus-run/src/codec.rs")]
 const WIDEST: usize = 120;
 
 /// Where lines are longer still, of before this was held: none is to be added, and each that is wrapped leaves.
-const STILL_WIDE: [&str; 8] = [
+const STILL_WIDE: [&str; 7] = [
     "crates/plaus-sim/",
     "crates/plaus-run/",
     "crates/plaus-export/",
     "crates/plaus-python/",
     "crates/plaus-gallery/",
-    "crates/plaus-scenes/src/animation",
     "xtask/figures/",
     "xtask/tradeoff/",
 ];

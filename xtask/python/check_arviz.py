@@ -56,6 +56,20 @@ def read_csv(path: Path):
     return columns
 
 
+def of_scalar(dataset, name):
+    """The values of a scalar: `theta_2` is the second of the variable `theta`, along the dimension of its own."""
+    if name in dataset:
+        return dataset[name]
+    variable, number = name.rsplit("_", 1)
+    (dimension,) = set(dataset[variable].dims) - {"chain", "draw"}
+    return dataset[variable].sel({dimension: int(number)}, drop=True)
+
+
+def row_of(summary, dataset, name):
+    """Where ArviZ's summary has a scalar: `theta[2]`."""
+    return summary.loc[name if name in dataset else "{}[{}]".format(*name.rsplit("_", 1))]
+
+
 def check(arguments) -> int:
     import arviz as az
     import numpy as np
@@ -70,26 +84,29 @@ def check(arguments) -> int:
     chains, draws = len(table["chain"]), len(table["chain"][0])
     for group in ["posterior", "sample_stats", "warmup_posterior", "warmup_sample_stats"]:
         comparison.equal(f"group {group}", group in data.groups(), True)
-    comparison.equal("variables", sorted(data.posterior.data_vars), sorted(scalars))
+    comparison.equal("variables", sorted(data.posterior.data_vars), ["rest_x", "theta"])
+    comparison.equal("dimensions", data.posterior["theta"].dims, ("chain", "draw", "bounce"))
+    comparison.equal("bounces", data.posterior["bounce"].values.tolist(), [1, 2, 3, 4, 5])
+    comparison.equal("unit", data.posterior["theta"].attrs["unit"], "degree")
+    comparison.equal("scene", data.posterior.attrs["scene"], "ball2d")
     for name in scalars:
-        comparison.equal(f"dimensions of {name}", data.posterior[name].dims, ("chain", "draw"))
-        comparison.equal(f"shape of {name}", data.posterior[name].shape, (chains, draws))
+        comparison.equal(f"shape of {name}", of_scalar(data.posterior, name).shape, (chains, draws))
     comparison.equal("chain numbers", data.posterior["chain"].values.tolist(), list(range(chains)))
     comparison.equal("draw numbers", data.posterior["draw"].values.tolist(), list(range(draws)))
 
-    def same(group, variable, column, read):
+    def same(values, column, read):
         expected = np.array([[read(text) for text in table[column][chain]] for chain in range(chains)])
-        comparison.equal(f"{column}, bit for bit", np.array_equal(group[variable].values, expected), True)
+        comparison.equal(f"{column}, bit for bit", np.array_equal(values, expected), True)
 
     for name in scalars:
-        same(data.posterior, name, name, float)
-    same(data.sample_stats, "lp", "log_p", float)
-    same(data.sample_stats, "satisfied", "satisfied", lambda text: text == "true")
+        same(of_scalar(data.posterior, name).values, name, float)
+    same(data.sample_stats["lp"].values, "log_p", float)
+    same(data.sample_stats["satisfied"].values, "satisfied", lambda text: text == "true")
 
     summary = az.summary(data, round_to="none")
     for row in diagnosis["scalars"]:
         name, ours = row["name"], row["summary"]
-        theirs = summary.loc[name]
+        theirs = row_of(summary, data.posterior, name)
         for field, column in [("mean", "mean"), ("sd", "sd"), ("ess_bulk", "ess_bulk"), ("ess_tail", "ess_tail"), ("rhat", "r_hat")]:
             # plaus may have read every n-th draw of a long run, which this run is not.
             comparison.close(f"{field} of {name}", float(theirs[column]), ours[field], 1e-6)

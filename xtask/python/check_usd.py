@@ -7,6 +7,7 @@ Exit codes: 0 sound, 1 not, 77 the packages could not be installed.
 
 import argparse
 import csv
+import math
 import os
 import subprocess
 import sys
@@ -33,7 +34,7 @@ def check(path: str, poses: str) -> list[str]:
         wrong.append("geometry is not uniquely named")
     facts = stage.GetRootLayer().customLayerData
     wrong += [f"no fact {name}" for name in ("plaus:sample", "plaus:seed", "plaus:log_p") if name not in facts]
-    rate, worst, count = stage.GetTimeCodesPerSecond(), 0.0, 0
+    rate, worst, turned, count = stage.GetTimeCodesPerSecond(), 0.0, 0.0, 0
     ops = {}
     with open(poses, newline="") as table:
         for row in csv.DictReader(table):
@@ -43,10 +44,17 @@ def check(path: str, poses: str) -> list[str]:
                 ops[body] = {op.GetOpType(): op for op in prim.GetOrderedXformOps()}
             found = ops[body][UsdGeom.XformOp.TypeTranslate].Get(float(row["t"]) * rate)
             worst = max(worst, (Gf.Vec3d(*(float(row[axis]) for axis in "xyz")) - found).GetLength())
+            orient = ops[body].get(UsdGeom.XformOp.TypeOrient)
+            if orient:
+                turn = Gf.Quatd(*(float(row[part]) for part in ("qw", "qx", "qy", "qz"))).GetNormalized()
+                found = Gf.Quatd(orient.Get(float(row["t"]) * rate)).GetNormalized()
+                cosine = abs(turn.GetReal() * found.GetReal() + Gf.Dot(turn.GetImaginary(), found.GetImaginary()))
+                turned = max(turned, 2.0 * math.degrees(math.acos(min(1.0, cosine))))
             count += 1
-    if not count or worst > 1e-6:
-        wrong.append(f"{count} poses compared, the worst is off by {worst} m")
-    print(f"{path}: {len(ops)} bodies, {count} poses, off by at most {worst:.1e} m; {len(wrong)} findings", flush=True)
+    # What every program must reach.
+    if not count or worst > 5e-4 or turned > 0.1:
+        wrong.append(f"{count} poses compared, the worst is off by {worst} m, {turned} degrees")
+    print(f"{path}: {len(ops)} bodies, {count} poses, off by at most {worst * 1e3:.3f} mm and {turned:.3f} degrees; {len(wrong)} findings", flush=True)
     return wrong
 
 

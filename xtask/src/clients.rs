@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// Keys a second of the exports, and of the tables that poses between keys are compared with.
 const FPS: [&str; 2] = ["60", "240"];
+/// Poses a second of the table that Blender is compared with at any time.
+const DENSE: &str = "960";
 /// Samples of each scene that are exported.
 const SAMPLES: [&str; 2] = ["0:0", "0:10"];
 
@@ -44,7 +46,7 @@ pub(crate) fn steps() -> Vec<Step> {
 }
 
 /// Samples every scenario, and exports some of each in every format.
-fn export() -> Result<Done, Failure> {
+pub(crate) fn export() -> Result<Done, Failure> {
     let exports = folder().join("exports");
     if exports.exists() {
         fs::remove_dir_all(&exports).map_err(Failure::new)?;
@@ -73,6 +75,7 @@ fn export() -> Result<Done, Failure> {
                 command.args([exports.join(file)]).args(["--fps", fps]).shown_and_run()
             };
             export("glb", format!("{stem}.glb"), FPS[0])?;
+            export("json", format!("{stem}.json"), FPS[0])?;
             export("usda", format!("{stem}.usda"), FPS[0])?;
             export("poses", format!("{stem}.poses.csv"), FPS[0])?;
             export("poses", format!("{stem}.between.csv"), FPS[1])?;
@@ -105,7 +108,9 @@ fn with_ending(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, Failure> {
 /// Exports with the tables that belong to them.
 fn with_tables(ending: &str, table: &str) -> Result<Vec<PathBuf>, Failure> {
     let files = with_ending(&folder().join("exports"), ending)?;
-    let table_of = |file: &PathBuf| PathBuf::from(file.to_string_lossy().replace(ending, table));
+    // What of the ending belongs to the sample stays.
+    let (own, _) = ending.split_once('.').unwrap_or((ending, ""));
+    let table_of = |file: &PathBuf| PathBuf::from(file.to_string_lossy().replace(ending, &format!("{own}{table}")));
     Ok(files.iter().flat_map(|file| [file.clone(), table_of(file)]).collect())
 }
 
@@ -113,6 +118,9 @@ fn with_tables(ending: &str, table: &str) -> Result<Vec<PathBuf>, Failure> {
 fn gltf() -> Result<Done, Failure> {
     let Some(node) = node()? else { return registry::absent(NO_PACKAGES) };
     let script = Command::new("node").args([node.join("check_glb.mjs")]).args(with_tables(".glb", ".between.csv")?);
+    script.run()?;
+    let script =
+        Command::new("node").args([node.join("check_motion.mjs")]).args(with_tables("-0.json", ".between.csv")?);
     script.run().map(|()| Done::Passed)
 }
 
@@ -120,8 +128,25 @@ fn gltf() -> Result<Done, Failure> {
 fn usd() -> Result<Done, Failure> {
     let script =
         Command::new("python3").args(["xtask/python/check_usd.py", "--venv"]).args([target().join("usd-venv")]);
-    let script = script.args(with_tables(".usda", ".poses.csv")?);
+    let script = script.args(with_tables(".usda", ".between.csv")?);
     registry::outcome(script.status()?, "USD does not read what plaus wrote")
+}
+
+/// Blender imports one GLB and one USDA of each scene, and plays them.
+pub(crate) fn blender() -> Result<Done, Failure> {
+    let exports = folder().join("exports");
+    let mut files = Vec::new();
+    for scenario in GALLERIES {
+        let [run, poses] = ["run", "dense.csv"].map(|end| exports.join(format!("{scenario}.{end}")));
+        let export = plaus(&["export"]).args([&run]).args(["--format", "poses", "--sample", SAMPLES[0], "--force"]);
+        export.args(["--fps", DENSE, "--out"]).args([&poses]).shown_and_run()?;
+        for end in ["glb", "usda"] {
+            files.extend([exports.join(format!("{scenario}-0-0.{end}")), poses.clone()]);
+        }
+    }
+    let script = Command::new("python3").args(["xtask/python/check_blender.py", "--venv"]);
+    let script = script.args([target().join("blender-venv")]).args(files);
+    registry::outcome(script.status()?, "Blender does not play what plaus wrote")
 }
 
 /// Chromium opens every gallery from disk, offline, and uses it.
@@ -145,7 +170,7 @@ fn bundle() -> Result<Done, Failure> {
 
 /// A folder with our scripts and the packages they need; `None` where those cannot be installed.
 fn node() -> Result<Option<PathBuf>, Failure> {
-    packages("xtask/node", "node", &["check_glb.mjs", "check_gallery.mjs"])
+    packages("xtask/node", "node", &["check_glb.mjs", "check_gallery.mjs", "check_motion.mjs", "motion.mjs"])
 }
 
 /// Copies scripts to a folder under target/ and installs the packages they need there.

@@ -23,6 +23,7 @@ usage: cargo xtask CHORE
   test                 everything that must pass of the code
   test --quick         of that, what says within a minute or so whether a change is sound
   clients              figures, and what other programs make of runs, exports and galleries
+  blender              whether Blender plays exports as they are (installs bpy, on Python 3.11 only)
   ci                   both: what CI runs
   shown                every command that README, docs and scenario files show
   engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Some((&"ci", [])) => test::ci(),
         Some((&"clients", [])) => test::clients(),
         Some((&"shown", [])) => test::shown(),
+        Some((&"blender", [])) => test::blender(),
         Some((&"engines", [])) => engines::run(),
         Some((&"wheel", rest)) => wheel::run(rest),
         Some((&"reproduce-figures", rest)) => figures(rest),

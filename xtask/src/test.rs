@@ -53,6 +53,16 @@ pub(crate) fn clients() -> Result<(), Failure> {
     steps::run(all)
 }
 
+/// Whether Blender plays exports as they are.
+pub(crate) fn blender() -> Result<(), Failure> {
+    steps::run(vec![
+        Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"])),
+        Step::command("every shape", cargo(&["build", "--package", "plaus-export", "--example", "tumbling"])),
+        Step::new("exports of every scene", clients::export),
+        Step::new("Blender plays them", clients::blender),
+    ])
+}
+
 fn format() -> Step {
     Step::command("format", cargo(&["fmt", "--all", "--", "--check"]))
 }

@@ -35,5 +35,5 @@ pub fn of(manifest: &Manifest, replay: &Replay) -> Label {
         facts.insert("recorded_log_p".to_owned(), json!(recorded.log_p));
         facts.insert("recorded_satisfied".to_owned(), json!(recorded.satisfied));
     }
-    Label { name: format!("sample_{}_{}", replay.sample.chain, replay.sample.draw), facts }
+    Label { name: format!("{}_{}_{}", manifest.scene, replay.sample.chain, replay.sample.draw), facts }
 }

@@ -11,9 +11,15 @@ fn sampled() -> Place {
 #[test]
 fn every_format_is_written_and_nothing_is_overwritten_unasked() {
     let place = sampled();
-    for (format, file) in
-        [("glb", "a.glb"), ("usda", "a.usda"), ("poses", "p.csv"), ("events", "e.csv"), ("events", "e.json")]
-    {
+    for (format, file) in [
+        ("glb", "a.glb"),
+        ("usda", "a.usda"),
+        ("poses", "p.csv"),
+        ("events", "e.csv"),
+        ("events", "e.json"),
+        ("json", "m.json"),
+        ("wav", "s.wav"),
+    ] {
         let export = format!("export run --format {format} --sample 1:17 --out {file}");
         place.ok(&export);
         let bytes = std::fs::read(place.path(file)).unwrap();
@@ -42,11 +48,15 @@ fn events_are_the_impacts_of_the_replay() {
     for (event, hit) in events.iter().zip(replay["impacts"].as_array().unwrap()) {
         assert_eq!((&event["t"], &event["point"]), (&hit["time"], &hit["point"]));
         assert_eq!(event["pair"], serde_json::json!(["ball_0", "table"]));
-        assert!(event["speed"].as_f64().unwrap() > 0.0);
+        assert!(event["speed"].as_f64().unwrap() > 0.0 && event["impulse"].as_f64().unwrap() > 0.0);
+        assert_eq!(event["materials"], serde_json::json!(["glossy orange", "maple"]));
     }
     let table = place.ok("export run --format events --sample 2:5 --sample 0:3 --out -").out;
     assert_eq!(table.lines().count(), 1 + 2 * 5);
-    assert!(table.starts_with("chain,draw,t,body,other,x,y,z,nx,ny,nz,speed,impulse\n2,5,"));
+    assert!(table.starts_with("chain,draw,kind,t,end,body,other,body_material,other_material,x,"), "{table}");
+    assert!(table.lines().nth(1).unwrap().starts_with("2,5,impact,"), "{table}");
+    let fewer = place.ok("export run --format events --sample 2:5 --merge 60s --out -").out;
+    assert_eq!(fewer.lines().count(), 2, "{fewer}");
 }
 
 #[test]
@@ -75,6 +85,58 @@ fn all_distinct_solutions_make_a_folder() {
 }
 
 #[test]
+fn all_distinct_solutions_go_into_one_file() {
+    let place = sampled();
+    let count = place.ok("export run --format poses --all-distinct --fps 1 --out -").out;
+    let sample = |row: &str| row.splitn(3, ',').take(2).map(str::to_owned).collect::<Vec<_>>();
+    let samples: std::collections::BTreeSet<_> = count.lines().skip(1).map(sample).collect();
+    place.ok("export run --format glb --all-distinct --into all.glb");
+    let glb = gltf_json(&std::fs::read(place.path("all.glb")).unwrap());
+    let clips = glb["animations"].as_array().unwrap();
+    assert_eq!(clips.len(), samples.len());
+    assert!(clips[0]["name"].as_str().unwrap().starts_with("ball2d_"));
+    let balls = glb["nodes"].as_array().unwrap().iter().filter(|node| node["name"] == "ball_0").count();
+    assert_eq!(balls, 1, "one ball for all");
+    place.ok("export run --format usda --all-distinct --into all.usda");
+    let usda = std::fs::read_to_string(place.path("all.usda")).unwrap();
+    assert_eq!(usda.matches("def Xform \"ball_0\"").count(), 1);
+    assert_eq!(usda.matches("over \"ball_0\"").count(), samples.len());
+}
+
+/// The description in a GLB.
+fn gltf_json(bytes: &[u8]) -> serde_json::Value {
+    let length = u32::from_le_bytes([bytes[12], bytes[13], bytes[14], bytes[15]]) as usize;
+    serde_json::from_slice(&bytes[20..20 + length]).unwrap()
+}
+
+#[test]
+fn clips_end_where_they_are_asked_to() {
+    let place = sampled();
+    let last = |until: &str| -> f64 {
+        let rows = place.ok(&format!("export run --format poses --sample 0:3 --out - {until}")).out;
+        rows.lines().last().unwrap().split(',').nth(2).unwrap().parse().unwrap()
+    };
+    let rest = last("");
+    assert_eq!(last("--until rest"), rest);
+    assert_eq!(last("--until 5s"), 5.0);
+    assert_eq!(last("--until 100ms"), 0.1);
+    assert!(rest > 0.1 && rest < 5.0);
+}
+
+/// The one table of formats is what help, completions and the README show.
+#[test]
+fn every_format_is_in_help_completions_and_readme() {
+    let place = Place::new();
+    let (help, completions) = (place.ok("export --help").out, place.ok("completions fish").out);
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md")).unwrap();
+    for format in plaus_export::format::ALL {
+        let row = format.row();
+        assert!(help.contains(row.name) && completions.contains(row.about), "{}", row.name);
+        assert!(readme.contains(&format!("| `{}` |", row.name)), "README.md has no row of `{}`", row.name);
+    }
+}
+
+#[test]
 fn wrong_requests_are_refused() {
     let place = sampled();
     for (arguments, says) in [
@@ -86,6 +148,13 @@ fn wrong_requests_are_refused() {
         ("export run --format glb --sample 0:0 --out a.glb --fps 0", "--fps 0"),
         ("export run --format glb --sample 0:0 --out a.glb --time-range 90:91", "--time-range 90:91"),
         ("export run --format glb --sample 0:0 --out a.glb --time-range x", "FROM:TO"),
+        ("export run --format glb --sample 0:0 --out a.gltf", "did you mean a.glb?"),
+        ("export run --format events --sample 0:0 --out a.glb", "did you mean a.csv?"),
+        ("export run --format gbl --sample 0:0 --out a.glb", "'glb'"),
+        ("export run --format usda --sample 0:0 --out a.usda --keys exact", "--keys goes with glb, not with usda"),
+        ("export run --format glb --sample 0:0 --out a.glb --until soon", "rest, decided, or a time"),
+        ("export run --format glb --sample 0:0 --out a.glb --scale 0", "--scale 0"),
+        ("export run --format csv --into a.csv", "csv and zarr hold all draws"),
         ("gallery nowhere --out g.html", "no such run"),
     ] {
         place.ends(arguments, 2).says(&[says]);

@@ -95,8 +95,8 @@ fn names_that_are_not_quite_right_get_a_hint() {
     place.ends("new bowl", 2).says(&["there is no scene `bowl`; did you mean `bowling`?"]);
     place.ends("sample ball.toml --ouput run", 2).says(&["'--output'"]);
     place.ok("sample ball.toml --output run");
-    place.ends("export run --format glb --sample 0:0 --out x.gltf", 2).says(&["x.gltf", "glTF as text"]);
-    place.ends("export run --format usda --sample 0:0 --out x.glb", 2).says(&["x.glb", "--format glb"]);
+    place.ends("export run --format glb --sample 0:0 --out x.gltf", 2).says(&["x.gltf", "did you mean x.glb?"]);
+    place.ends("export run --format usda --sample 0:0 --out x.glb", 2).says(&["x.glb", "did you mean x.usda?"]);
     place.ok("export run --format glb --sample 0:0 --out x.glb").says(&["wrote x.glb"]);
     let table = place.ok("export run --format csv --out -");
     assert!(table.err.is_empty(), "{}", table.err);

@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         label.facts.insert(key.to_owned(), value);
     }
     let clip = |fps: f64| -> Result<Clip<'_>, plaus_export::ExportError> {
-        Ok(Clip { animation: &animation, label: &label, cut: Cut::new(fps, None, &animation)? })
+        Ok(Clip::new(&animation, &label, Cut::new(fps, None, &animation)?))
     };
     fs::write(folder.join("tumbling.glb"), glb::to_vec(&clip(60.0)?)?)?;
     fs::write(folder.join("tumbling.glb.import"), glb::godot_import("tumbling.glb", 60.0))?;

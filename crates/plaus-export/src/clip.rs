@@ -1,6 +1,6 @@
 //! What is exported: an animation, a part of its time, and what is to be said about it.
 
-use plaus_scenes::Animation;
+use plaus_animation::Animation;
 use serde_json::{Map, Value};
 
 /// Most poses of all bodies together in one file.
@@ -15,6 +15,64 @@ pub struct Clip<'a> {
     pub label: &'a Label,
     /// Which part of it.
     pub cut: Cut,
+    /// How it is written.
+    pub style: Style,
+}
+
+impl<'a> Clip<'a> {
+    /// A part of an animation, in the usual style.
+    #[must_use]
+    pub fn new(animation: &'a Animation, label: &'a Label, cut: Cut) -> Self {
+        Self { animation, label, cut, style: Style::default() }
+    }
+
+    /// The same in another style.
+    #[must_use]
+    pub fn styled(self, style: Style) -> Self {
+        Self { style, ..self }
+    }
+}
+
+/// How animations are written, where a format leaves a choice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Style {
+    /// What is between keys.
+    pub keys: Between,
+    /// Time codes a second of USD: the frame rate of the scene that a program without a clock of its own opens it in.
+    /// Default 24, which Blender's scenes have.
+    pub time_codes: f64,
+    /// Which axis points up.
+    pub up: Up,
+    /// Units a metre: 100 for programs that count in centimetres.
+    pub scale: f64,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self { keys: Between::Linear, time_codes: 24.0, up: Up::Y, scale: 1.0 }
+    }
+}
+
+/// What programs that read a file are to do between two keys.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Between {
+    /// Straight lines, with keys as dense as the motion asks for: right in every program, to the tolerances of
+    /// [`crate::keys`].
+    #[default]
+    Linear,
+    /// Cubic splines with exact tangents, where the format has them: exact in programs that evaluate them as glTF
+    /// says. Blender does not.
+    Exact,
+}
+
+/// The axis that points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Up {
+    /// As in glTF, Blender's importer, Godot and Unity.
+    #[default]
+    Y,
+    /// As in Unreal, Blender's own axes and much of robotics.
+    Z,
 }
 
 /// A name, and facts that travel with the file.
@@ -78,6 +136,12 @@ impl Cut {
         self.to
     }
 
+    /// Its length in s.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.to - self.from
+    }
+
     /// Whether a time of the animation is in it.
     #[must_use]
     pub fn holds(&self, time: f64) -> bool {
@@ -86,7 +150,7 @@ impl Cut {
 }
 
 /// Why something cannot be exported.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// Too few or too many frames.
     #[error("--fps {0}: must be above 0 and make at most {MOST_POSES} poses")]
@@ -105,10 +169,13 @@ pub enum ExportError {
     },
     /// More bytes than the format can hold.
     #[error(
-        "the file would be longer than 4 GiB, the most that glTF can hold: choose fewer --fps or a shorter --time-range"
+        "the file would be longer than 4 GiB, the most that it can hold: choose fewer --fps, fewer samples or a shorter --time-range"
     )]
     TooLong,
     /// A value that the format cannot hold.
     #[error("cannot be written as JSON: {0}")]
     Json(String),
+    /// What the disk says.
+    #[error("{0}")]
+    Output(#[from] std::io::Error),
 }

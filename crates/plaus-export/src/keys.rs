@@ -2,7 +2,7 @@
 
 use crate::clip::Cut;
 use glam::{DQuat, DVec3};
-use plaus_scenes::animation::{Animation, Piece, Track};
+use plaus_animation::{Animation, Piece, Track};
 
 /// Largest angle between two keys of an orientation, in rad: interpolation goes the short way, and is exact for constant angular velocity.
 const LARGEST_TURN: f64 = 1.0;
@@ -79,7 +79,7 @@ pub fn orientations(track: &Track, keys: &[Key]) -> Vec<(f64, DQuat)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plaus_scenes::animation::{Impact, Look, Shape, Turn};
+    use plaus_animation::{Impact, Look, Shape, Turn};
 
     fn two_bodies() -> Animation {
         let zero = Piece::resting(0.0, DVec3::ZERO);

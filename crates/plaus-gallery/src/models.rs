@@ -111,5 +111,5 @@ fn of_part(bytes: &mut Bytes, part: &Part) -> Value {
 }
 
 fn look(look: Look) -> Value {
-    json!({"colour": look.colour, "material": look.material})
+    json!({"colour": look.colour, "material": look.material, "name": look.name()})
 }

@@ -4,7 +4,7 @@ use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::read::{Phase, RunOf};
 use crate::tally::SampleId;
 use plaus_mcmc::{State, StateOf};
-use plaus_scenes::{AccuracyPreset, Animation, Scene};
+use plaus_scenes::{AccuracyPreset, Animation, Scene, Until};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -49,7 +49,7 @@ pub struct Recorded {
 /// [`Error`] where there is no such draw, or this program makes something else of it than the one that sampled it.
 pub fn replay<S: Scene>(run: &RunOf<'_, S>, sample: SampleId) -> Result<Replay, Error> {
     let entry = run.sample(sample.chain, sample.draw)?;
-    rebuild(run, sample, &entry.state, entry.class.is_some())
+    rebuild(run, sample, &entry.state, entry.class.is_some(), Until::Rest)
 }
 
 /// What becomes of a recorded draw at another accuracy. That the recorded state is what this program makes of the draw at the run's own is made sure first.
@@ -64,7 +64,7 @@ pub fn replay_at<S: Scene>(run: &RunOf<'_, S>, sample: SampleId, accuracy: Accur
     let state = State::evaluate(&scene, entry.state.draw.clone(), &mut S::Scratch::default())?;
     let satisfied = scene.class(&state).is_some();
     let recorded = Recorded { accuracy, log_p: entry.state.log_p().value(), satisfied: entry.class.is_some() };
-    Ok(Replay { recorded: Some(recorded), ..shown(run, &scene, sample, &state, satisfied)? })
+    Ok(Replay { recorded: Some(recorded), ..shown(run, &scene, (sample, satisfied), &state, Until::Rest)? })
 }
 
 /// A scene at another accuracy, or why there is none.
@@ -83,9 +83,23 @@ pub fn replay_each<S: Scene, T: Send>(
     samples: &[SampleId],
     make: impl Fn(Replay) -> T + Sync,
 ) -> Result<Vec<T>, Error> {
+    replay_each_until(run, samples, Until::Rest, make)
+}
+
+/// The same, with animations that end as asked for.
+///
+/// # Errors
+/// As [`replay`].
+pub fn replay_each_until<S: Scene, T: Send>(
+    run: &RunOf<'_, S>,
+    samples: &[SampleId],
+    until: Until,
+    make: impl Fn(Replay) -> T + Sync,
+) -> Result<Vec<T>, Error> {
     let states = states(run, samples)?;
-    let rebuilt =
-        states.par_iter().map(|(index, state, satisfied)| rebuild(run, samples[*index], state, *satisfied).map(&make));
+    let rebuilt = states
+        .par_iter()
+        .map(|(index, state, satisfied)| rebuild(run, samples[*index], state, *satisfied, until).map(&make));
     rebuilt.collect()
 }
 
@@ -120,9 +134,10 @@ fn rebuild<S: Scene>(
     sample: SampleId,
     stored: &StateOf<S>,
     satisfied: bool,
+    until: Until,
 ) -> Result<Replay, Error> {
     let state = same(run, sample, stored)?;
-    shown(run, run.scene(), sample, &state, satisfied)
+    shown(run, run.scene(), (sample, satisfied), &state, until)
 }
 
 /// The state evaluated again, which must have the stored bits.
@@ -137,9 +152,9 @@ fn same<S: Scene>(run: &RunOf<'_, S>, sample: SampleId, stored: &StateOf<S>) -> 
 fn shown<S: Scene>(
     run: &RunOf<'_, S>,
     scene: &S,
-    sample: SampleId,
+    (sample, satisfied): (SampleId, bool),
     state: &StateOf<S>,
-    satisfied: bool,
+    until: Until,
 ) -> Result<Replay, Error> {
     let names = scene.scalars().into_iter().map(|scalar| scalar.name);
     let mut values = vec![0.0; names.len()];
@@ -152,7 +167,7 @@ fn shown<S: Scene>(
         log_constraint: state.log_constraint.value(),
         satisfied,
         scalars: names.zip(values).collect(),
-        animation: scene.animate(&state.draw)?,
+        animation: scene.animate_until(&state.draw, until)?,
         recorded: None,
     })
 }

@@ -24,7 +24,6 @@
 //! files; [`rules`] says whether acceptance is exact or as the paper prints it.
 
 pub mod accuracy;
-pub mod animation;
 pub mod ball2d;
 pub mod bowling;
 pub mod dice;
@@ -33,14 +32,16 @@ pub mod rules;
 pub mod scenario;
 pub mod scene;
 pub mod spelling;
+mod touch;
 mod walk;
 mod way;
 pub mod world;
 
 pub use accuracy::AccuracyPreset;
-pub use animation::Animation;
+pub use plaus_animation as animation;
+pub use plaus_animation::Animation;
 pub use registry::{Visitor, World};
 pub use rules::Rules;
 pub use scenario::Scenario;
-pub use scene::{ConfigError, Role, Scalar, Scene};
+pub use scene::{ConfigError, Role, Scalar, Scene, Until};
 pub use world::{Physical, PlainWorld};

@@ -18,6 +18,12 @@ pub trait Scene:
     /// measured to be better.
     const ADAPTS: bool = false;
 
+    /// What the numbers at the ends of scalars' names count: `die` where `x_2` is the x of the second die.
+    const NUMBERED: &'static str = "index";
+
+    /// Scalars whose values are whole numbers, by their names without the number at the end.
+    const WHOLE: &'static [&'static str] = &[];
+
     /// The moves this scene is sampled with, under `rules`.
     ///
     /// # Errors
@@ -36,6 +42,18 @@ pub trait Scene:
     /// # Errors
     /// [`ModelError`] where the simulation fails.
     fn animate(&self, draw: &Self::Draw) -> Result<Animation, ModelError>;
+
+    /// The same, ending as asked for. A scene whose simulations may end before all is at rest overrides this for
+    /// [`Until::Rest`], one that knows when a draw is decided for [`Until::Decided`].
+    ///
+    /// # Errors
+    /// [`ModelError`] where the simulation fails.
+    fn animate_until(&self, draw: &Self::Draw, until: Until) -> Result<Animation, ModelError> {
+        match until {
+            Until::Rest | Until::Decided => self.animate(draw),
+            Until::Time(end) => Ok(self.animate_until(draw, Until::Rest)?.until(end)),
+        }
+    }
 
     /// Bodies and impacts of [`Scene::animate`], for those who need not see what stands still. A scene in which that is
     /// dear to build overrides this.
@@ -65,6 +83,18 @@ pub trait Scene:
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
         Ok(None)
     }
+}
+
+/// Where an animation ends.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Until {
+    /// When all is at rest, or after half a minute.
+    #[default]
+    Rest,
+    /// As soon as it is certain whether the draw satisfies the constraint.
+    Decided,
+    /// After so many seconds above 0, whatever moves; what rests before stays as it is.
+    Time(f64),
 }
 
 /// A number that every state of a scene has: a column of a table, a variable of the diagnostics.

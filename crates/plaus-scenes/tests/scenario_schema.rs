@@ -137,6 +137,27 @@ fn the_schema_uses_only_words_that_are_enforced() {
     walk(&scenario::schema(), false);
 }
 
+/// Strict validators refuse words that JSON Schema does not define.
+#[test]
+fn what_is_published_has_a_name_and_no_words_of_our_own() {
+    fn walk(value: &Value) {
+        match value {
+            Value::Object(object) => {
+                assert!(!object.keys().any(|name| name.starts_with("x-")), "{object:?}");
+                assert!(!object.get("format").is_some_and(Value::is_string), "{object:?}");
+                object.values().for_each(walk);
+            }
+            Value::Array(items) => items.iter().for_each(walk),
+            _ => {}
+        }
+    }
+    let published = scenario::published_schema();
+    walk(&published);
+    assert_eq!(published["$id"], scenario::SCHEMA_ID);
+    let units = published.to_string().matches("Unit: ").count();
+    assert_eq!(units, scenario::schema().to_string().matches("\"x-unit\"").count());
+}
+
 #[test]
 fn the_world_is_one_object_with_a_property_a_scene() {
     let schema = scenario::schema();

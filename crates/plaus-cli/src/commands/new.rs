@@ -4,7 +4,7 @@ use super::sample::quoted;
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use plaus_scenes::registry::NAMES;
-use plaus_scenes::scenario;
+use plaus_scenes::scenario::{self, SCHEMA_FILE};
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -26,6 +26,8 @@ impl Args {
             Failure::Message(format!("there is no scene `{}`; {near}known: {}", self.scene, NAMES.join(", ")))
         };
         let text = scenario::template(&self.scene).ok_or_else(unknown)?;
+        // Editors that know TOML read the schema that this line names.
+        let text = format!("#:schema ./{SCHEMA_FILE}\n{text}");
         match self.file.filter(|file| file != Path::new("-")) {
             None => console::print(&text)?,
             Some(file) => {
@@ -38,9 +40,22 @@ impl Args {
                 };
                 let mut out = File::create_new(&file).map_err(refuse)?;
                 out.write_all(text.as_bytes()).map_err(refuse)?;
+                write_schema(&file);
                 console::note_line(&format!("wrote {0}; next: plaus sample {0} --out run", quoted(&file)));
             }
         }
         Ok(Outcome::Done)
+    }
+}
+
+/// Writes the schema beside a scenario, where there is none: with it an editor completes and explains keys, without
+/// it nothing is lost.
+fn write_schema(scenario: &Path) {
+    let path = scenario.with_file_name(SCHEMA_FILE);
+    if let Ok(mut out) = File::create_new(&path) {
+        let written = out.write_all(format!("{:#}\n", scenario::published_schema()).as_bytes());
+        if written.is_ok() {
+            console::note_line(&format!("wrote {}, which editors complete keys by", quoted(&path)));
+        }
     }
 }

@@ -55,7 +55,8 @@ impl Args {
         let run = Run::open(&Folder::new(&self.run))?;
         let replay = run.visit(Rebuild(self.sample, self.accuracy))??;
         let cut = Cut::new(self.fps, None, &replay.animation).map_err(|error| Failure::Message(error.to_string()))?;
-        let clip = Clip { animation: &replay.animation, label: &Label::default(), cut };
+        let label = Label::default();
+        let clip = Clip::new(&replay.animation, &label, cut);
         match self.format {
             Format::Csv => {
                 let mut rows = format!("{}\n", table::POSES).into_bytes();
@@ -92,6 +93,7 @@ fn to_json(manifest: &Manifest, replay: &Replay, poses: serde_json::Value) -> se
     let mut all = label::of(manifest, replay).facts;
     let motion = [
         ("impacts", json!(replay.animation.impacts)),
+        ("contacts", json!(replay.animation.contacts)),
         ("poses", poses),
         ("tracks", json!(replay.animation.tracks)),
         ("scenery", json!(replay.animation.scenery)),

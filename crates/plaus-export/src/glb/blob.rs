@@ -29,6 +29,14 @@ impl Blob {
         self.push(root, floats(points.as_flattened()), content)
     }
 
+    /// Texture coordinates.
+    pub(super) fn uvs(&mut self, root: &mut Root, uvs: &[[f32; 2]]) -> Index<Accessor> {
+        let target = Some(Target::ArrayBuffer);
+        let content =
+            Content { component: ComponentType::F32, type_: Type::Vec2, count: uvs.len(), target, range: None };
+        self.push(root, floats(uvs.as_flattened()), content)
+    }
+
     /// Corners of triangles, in two bytes each where that is enough.
     pub(super) fn indices(&mut self, root: &mut Root, indices: &[u32]) -> Index<Accessor> {
         let short: Option<Vec<u16>> =

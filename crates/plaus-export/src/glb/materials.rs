@@ -3,8 +3,8 @@
 use gltf_json::material::{AlphaMode, PbrBaseColorFactor, PbrMetallicRoughness, StrengthFactor};
 use gltf_json::validation::Checked::Valid;
 use gltf_json::{Index, Root};
+use plaus_animation::{Colour, Look, Material};
 use plaus_dist::math::exp;
-use plaus_scenes::animation::{Colour, Look, Material};
 
 /// Materials made so far: one a look.
 #[derive(Default)]
@@ -15,10 +15,19 @@ impl Materials {
         if let Some((_, index)) = self.0.iter().find(|(known, _)| *known == look) {
             return *index;
         }
-        let index = root.push(material(look));
+        // Two colours may have one name.
+        let name =
+            unique(&look.name(), " ", |name| root.materials.iter().any(|known| known.name.as_deref() == Some(name)));
+        let index = root.push(material(look, name));
         self.0.push((look, index));
         index
     }
+}
+
+/// A name that is not taken: the wanted one, or the first of it with a number from 2 on.
+pub(crate) fn unique(wanted: &str, before_number: &str, taken: impl Fn(&str) -> bool) -> String {
+    let numbered = (2..).map(|number| format!("{wanted}{before_number}{number}"));
+    std::iter::once(wanted.to_owned()).chain(numbered).find(|name| !taken(name)).unwrap_or_default()
 }
 
 /// Metalness, roughness and opacity.
@@ -43,13 +52,11 @@ pub(crate) fn linear(Colour(channels): Colour) -> [f32; 3] {
     })
 }
 
-fn material(look: Look) -> gltf_json::Material {
+fn material(look: Look, name: String) -> gltf_json::Material {
     let (metal, rough, opacity) = surface(look.material);
     let [r, g, b] = linear(look.colour);
-    let Colour([red, green, blue]) = look.colour;
-    let kind = format!("{:?}", look.material).to_lowercase();
     gltf_json::Material {
-        name: Some(format!("{kind}_{red:02x}{green:02x}{blue:02x}")),
+        name: Some(name),
         alpha_mode: Valid(if opacity < 1.0 { AlphaMode::Blend } else { AlphaMode::Opaque }),
         double_sided: matches!(look.material, Material::Glass),
         pbr_metallic_roughness: PbrMetallicRoughness {

@@ -1,70 +1,125 @@
-//! Keys of bodies as channels of one animation.
+//! Keys of bodies as channels of animations.
 
-use super::Document;
-use crate::clip::Clip;
+use super::file::Document;
+use crate::clip::{Between, Clip};
 use crate::keys::{Key, of_track, orientations};
+use crate::thin;
 use glam::{DQuat, DVec3};
 use gltf_json::animation::{Animation, Channel, Interpolation, Property, Sampler, Target};
 use gltf_json::extras::Extras;
 use gltf_json::scene::UnitQuaternion;
 use gltf_json::validation::Checked::Valid;
 use gltf_json::{Index, Mesh, Node, accessor::Accessor};
-use plaus_scenes::animation::Track;
+use plaus_animation::Track;
+
+/// The animation of one clip in the making.
+pub(super) struct Channels(Animation);
+
+impl Channels {
+    pub(super) fn new(name: &str, extras: Extras) -> Self {
+        let name = Some(name.to_owned());
+        Self(Animation { extensions: None, extras, channels: Vec::new(), name, samplers: Vec::new() })
+    }
+
+    /// Whether it says how a node turns.
+    pub(super) fn turns(&self, node: Index<Node>) -> bool {
+        let turns = |channel: &Channel| channel.target.node == node && channel.target.path == Valid(Property::Rotation);
+        self.0.channels.iter().any(turns)
+    }
+
+    /// A value that a node has all the time.
+    pub(super) fn still<const N: usize>(
+        &mut self,
+        document: &mut Document,
+        node: Index<Node>,
+        path: Property,
+        value: &[f32; N],
+    ) {
+        let io = document.still(value);
+        self.push(node, path, io, Interpolation::Step);
+    }
+
+    fn push(
+        &mut self,
+        node: Index<Node>,
+        path: Property,
+        [input, output]: [Index<Accessor>; 2],
+        interpolation: Interpolation,
+    ) {
+        let sampler = Sampler { extensions: None, extras: None, input, interpolation: Valid(interpolation), output };
+        let sampler = Index::push(&mut self.0.samplers, sampler);
+        let target = Target { extensions: None, extras: None, node, path: Valid(path) };
+        self.0.channels.push(Channel { sampler, target, extensions: None, extras: None });
+    }
+
+    /// Puts it into the document, if anything is animated.
+    pub(super) fn finish(self, document: &mut Document) {
+        if !self.0.channels.is_empty() {
+            document.root.push(self.0);
+        }
+    }
+}
 
 /// The node of a body, where the body is at `time`.
 pub(super) fn node_at(track: &Track, time: f64, mesh: Option<Index<Mesh>>) -> Node {
     Node {
         mesh,
-        name: Some(track.name.clone()),
         translation: Some(vector(track.position(time))),
         rotation: track.turns().then(|| UnitQuaternion(quaternion(track.orientation(time)))),
         ..Node::default()
     }
 }
 
-/// Adds the animation of all bodies, whose nodes are `nodes`.
-pub(super) fn animate(document: &mut Document, clip: &Clip<'_>, nodes: &[Index<Node>], extras: Extras) {
-    let mut animation = Animation {
-        extensions: None,
-        extras,
-        channels: Vec::new(),
-        name: Some(clip.label.name.clone()),
-        samplers: Vec::new(),
-    };
-    let begin = clip.cut.from();
-    for (track, &node) in clip.animation.tracks.iter().zip(nodes) {
-        let keys = of_track(clip.animation, track, &clip.cut);
-        let (times, splines) = translation(&keys, begin);
-        let input = document.blob.times(&mut document.root, &times);
-        let output = document.blob.values(&mut document.root, &splines);
-        channel(&mut animation, node, Property::Translation, [input, output], Interpolation::CubicSpline);
-        if track.turns() {
-            let (times, values) = rotation(&orientations(track, &keys), begin);
-            let input = document.blob.times(&mut document.root, &times);
-            let output = document.blob.values(&mut document.root, &values);
-            channel(&mut animation, node, Property::Rotation, [input, output], Interpolation::Linear);
+/// Adds the motion of a body to a clip's animation.
+pub(super) fn animate(
+    document: &mut Document,
+    channels: &mut Channels,
+    clip: &Clip<'_>,
+    track: &Track,
+    node: Index<Node>,
+) {
+    let (begin, keys) = (clip.cut.from(), of_track(clip.animation, track, &clip.cut));
+    let (times, values, interpolation) = match clip.style.keys {
+        Between::Exact => {
+            let (times, splines) = splines(&keys, begin);
+            (times, splines, Interpolation::CubicSpline)
         }
-    }
-    if !animation.channels.is_empty() {
-        document.root.push(animation);
+        Between::Linear => {
+            let (times, places) = each(&thin::places(track, &keys, thin::APART), begin, vector);
+            (times, places, Interpolation::Linear)
+        }
+    };
+    let io = document.keys(&times, &values);
+    channels.push(node, Property::Translation, io, interpolation);
+    if track.turns() {
+        let turns = match clip.style.keys {
+            Between::Exact => orientations(track, &keys),
+            Between::Linear => thin::turns(track, &keys, thin::APART),
+        };
+        let (times, values) = each(&turns, begin, quaternion);
+        let io = document.keys(&times, &values);
+        channels.push(node, Property::Rotation, io, Interpolation::Linear);
     }
 }
 
-fn channel(
-    animation: &mut Animation,
-    node: Index<Node>,
-    path: Property,
-    [input, output]: [Index<Accessor>; 2],
-    interpolation: Interpolation,
-) {
-    let sampler = Sampler { extensions: None, extras: None, input, interpolation: Valid(interpolation), output };
-    let sampler = Index::push(&mut animation.samplers, sampler);
-    let target = Target { extensions: None, extras: None, node, path: Valid(path) };
-    animation.channels.push(Channel { sampler, target, extensions: None, extras: None });
+impl Document {
+    fn keys<const N: usize>(&mut self, times: &[f32], values: &[[f32; N]]) -> [Index<Accessor>; 2] {
+        [self.blob.times(&mut self.root, times), self.blob.values(&mut self.root, values)]
+    }
+
+    /// One key at the beginning, stored once for all that have this value.
+    fn still<const N: usize>(&mut self, value: &[f32; N]) -> [Index<Accessor>; 2] {
+        let found = self.stills.iter().find(|(known, _)| known == value).map(|(_, io)| *io);
+        found.unwrap_or_else(|| {
+            let io = self.keys(&[0.0], &[*value]);
+            self.stills.push((value.to_vec(), io));
+            io
+        })
+    }
 }
 
 /// Times, and per key the tangent on arrival, the value, and the tangent on leaving. Keys that single precision cannot tell apart become one.
-fn translation(keys: &[Key], begin: f64) -> (Vec<f32>, Vec<[f32; 3]>) {
+fn splines(keys: &[Key], begin: f64) -> (Vec<f32>, Vec<[f32; 3]>) {
     let (mut times, mut splines) = (Vec::<f32>::new(), Vec::<[f32; 3]>::new());
     for key in keys {
         let time = (key.time - begin) as f32;
@@ -80,16 +135,21 @@ fn translation(keys: &[Key], begin: f64) -> (Vec<f32>, Vec<[f32; 3]>) {
     (times, splines)
 }
 
-fn rotation(turns: &[(f64, DQuat)], begin: f64) -> (Vec<f32>, Vec<[f32; 4]>) {
-    let (mut times, mut values) = (Vec::<f32>::new(), Vec::<[f32; 4]>::new());
-    for &(time, orientation) in turns {
+/// Times and values. Keys that single precision cannot tell apart become one: the last.
+fn each<T: Copy, const N: usize>(
+    keys: &[(f64, T)],
+    begin: f64,
+    value: impl Fn(T) -> [f32; N],
+) -> (Vec<f32>, Vec<[f32; N]>) {
+    let (mut times, mut values) = (Vec::<f32>::new(), Vec::<[f32; N]>::new());
+    for &(time, what) in keys {
         let time = (time - begin) as f32;
         if times.last() == Some(&time) {
             values.pop();
         } else {
             times.push(time);
         }
-        values.push(quaternion(orientation));
+        values.push(value(what));
     }
     (times, values)
 }

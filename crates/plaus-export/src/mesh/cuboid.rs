@@ -1,7 +1,7 @@
 //! Boxes with rounded edges, and the pips of dice.
 
 use super::Mesh;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Radius of the edges, as a share of half the shortest side.
 const ROUND: f64 = 0.2;
@@ -23,7 +23,8 @@ pub(super) fn rounded(half: DVec3) -> Mesh {
     let round = ROUND * half.min_element();
     let inner = half - DVec3::splat(round);
     let mut mesh = Mesh::default();
-    for [across, up, out] in faces() {
+    for (number, [across, up, out]) in faces().into_iter().enumerate() {
+        let corner = DVec2::new((number % 3) as f64 / 3.0, (number / 3) as f64 / 2.0);
         let lines = |axis: DVec3| {
             let inner = inner.dot(axis.abs());
             let low = TANGENTS.iter().rev().map(move |tangent| -inner - round * tangent);
@@ -36,7 +37,11 @@ pub(super) fn rounded(half: DVec3) -> Mesh {
                 let face = *column * across + *row * up + half.dot(out.abs()) * out;
                 let core = face.clamp(-inner, inner);
                 let normal = (face - core).normalize();
-                mesh.corner(core + round * normal, normal);
+                let place = core + round * normal;
+                let shares =
+                    DVec2::new(place.dot(across) / half.dot(across.abs()), -place.dot(up) / half.dot(up.abs()));
+                let uv = corner + (0.5 * (shares + DVec2::ONE)) / DVec2::new(3.0, 2.0);
+                mesh.corner(place, normal, uv);
             }
         }
         let width = columns.len() as u32;

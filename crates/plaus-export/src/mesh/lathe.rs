@@ -2,8 +2,8 @@
 
 use super::{Mesh, Part};
 use glam::{DVec2, DVec3};
+use plaus_animation::{Look, Stripe};
 use plaus_dist::math::sin_cos;
-use plaus_scenes::animation::{Look, Stripe};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Corners around the axis.
@@ -15,6 +15,9 @@ const EDGE: u32 = 4;
 /// Neighbouring parts of a profile that turn by more than this cosine says meet at an edge.
 const SMOOTH: f64 = 0.8;
 
+/// A texture from the lower end to the upper.
+const WHOLE: [f64; 2] = [0.0, 1.0];
+
 /// A point of a profile with the surface's normal there: both are (distance from the axis, height).
 type Rim = (DVec2, DVec2);
 
@@ -24,7 +27,7 @@ pub(super) fn sphere(radius: f64) -> Mesh {
         let normal = DVec2::new(if k == 0 || k == ALONG { 0.0 } else { sin }, -cos);
         (radius * normal, normal)
     });
-    turned(&rims.collect::<Vec<_>>())
+    turned(&rims.collect::<Vec<_>>(), WHOLE)
 }
 
 /// A coin with rounded edges.
@@ -41,7 +44,7 @@ pub(super) fn coin(radius: f64, thickness: f64) -> Mesh {
         }
     }
     rims.push((DVec2::new(0.0, 0.5 * thickness), DVec2::Y));
-    turned(&rims)
+    turned(&rims, WHOLE)
 }
 
 /// A profile from its lowest height to its highest, closed at both ends, with painted rings.
@@ -55,10 +58,12 @@ pub(super) fn striped(profile: &[[f64; 2]], stripes: &[Stripe], look: Look) -> V
     edges.sort_by(f64::total_cmp);
     let segments = segments(&points, &edges);
     let paint = |height: f64| stripes.iter().find(|stripe| stripe.from < height && height < stripe.to);
+    let (low, high) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.y), b.max(p.y)));
+    let size = (high - low).max(f64::MIN_POSITIVE);
     let mut parts: Vec<Part> = Vec::new();
     for [(a, na), (b, nb)] in segments {
         let look = paint(0.5 * (a.y + b.y)).map_or(look, |stripe| stripe.look);
-        let ring = turned(&[(a, na), (b, nb)]);
+        let ring = turned(&[(a, na), (b, nb)], [a.y, b.y].map(|height| (height - low) / size));
         match parts.iter_mut().find(|part| part.look == look) {
             Some(part) => append(&mut part.mesh, &ring),
             None => parts.push(Part { look, mesh: ring }),
@@ -89,14 +94,19 @@ fn segments(points: &[DVec2], edges: &[f64]) -> Vec<[Rim; 2]> {
     segments
 }
 
-/// Turns a profile about the axis.
-fn turned(rims: &[Rim]) -> Mesh {
+/// Turns a profile about the axis. `heights` are its ends on the texture, from 0 at the lower edge to 1.
+fn turned(rims: &[Rim], heights: [f64; 2]) -> Mesh {
     let mut mesh = Mesh::default();
-    for &(place, normal) in rims {
+    let lengths: Vec<f64> = rims.windows(2).map(|pair| pair[0].0.distance(pair[1].0)).collect();
+    let whole: f64 = lengths.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+    for (number, &(place, normal)) in rims.iter().enumerate() {
+        let along = lengths[..number].iter().sum::<f64>() / whole;
         for k in 0..=AROUND {
             let (sin, cos) = sin_cos(TAU * f64::from(k % AROUND) / f64::from(AROUND));
             let about = |v: DVec2| DVec3::new(v.x * cos, v.x * sin, v.y);
-            mesh.corner(about(place), about(normal));
+            let up = heights[0] + along * (heights[1] - heights[0]);
+            let uv = DVec2::new(f64::from(k) / f64::from(AROUND), 1.0 - up);
+            mesh.corner(about(place), about(normal), uv);
         }
     }
     let row = AROUND + 1;
@@ -119,5 +129,6 @@ fn append(mesh: &mut Mesh, more: &Mesh) {
     let first = mesh.positions.len() as u32;
     mesh.positions.extend(&more.positions);
     mesh.normals.extend(&more.normals);
+    mesh.uvs.extend(&more.uvs);
     mesh.triangles.extend(more.triangles.iter().map(|triangle| triangle.map(|corner| corner + first)));
 }

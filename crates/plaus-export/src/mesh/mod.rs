@@ -4,9 +4,9 @@ mod cuboid;
 mod lathe;
 mod scenery;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use plaus_animation::{Form, Look, Material, Shape};
 use plaus_dist::math::sin_cos;
-use plaus_scenes::animation::{Form, Look, Material, Shape};
 use std::f64::consts::TAU;
 
 /// Triangles with one normal a corner; metres, counter-clockwise as seen from outside.
@@ -16,6 +16,10 @@ pub struct Mesh {
     pub positions: Vec<[f32; 3]>,
     /// A unit vector a corner.
     pub normals: Vec<[f32; 3]>,
+    /// Texture coordinates a corner, from the upper left as glTF has them. A body of revolution: once around, and from
+    /// its lower end to its upper. A box that moves: its six faces in three columns and two rows. Spots: a disc in the
+    /// unit square. What stands still: metres.
+    pub uvs: Vec<[f32; 2]>,
     /// Three corners each.
     pub triangles: Vec<[u32; 3]>,
 }
@@ -62,9 +66,10 @@ pub fn of_form(form: &Form, look: Look) -> Part {
 }
 
 impl Mesh {
-    fn corner(&mut self, position: DVec3, normal: DVec3) -> u32 {
+    fn corner(&mut self, position: DVec3, normal: DVec3, uv: DVec2) -> u32 {
         self.positions.push(position.as_vec3().to_array());
         self.normals.push(normal.normalize_or(DVec3::Z).as_vec3().to_array());
+        self.uvs.push(uv.as_vec2().to_array());
         self.positions.len() as u32 - 1
     }
 
@@ -72,10 +77,11 @@ impl Mesh {
     fn spot(&mut self, centre: DVec3, normal: DVec3, radius: f64) {
         const CORNERS: u32 = 20;
         let (right, up) = normal.any_orthonormal_pair();
-        let first = self.corner(centre, normal);
+        let first = self.corner(centre, normal, DVec2::splat(0.5));
         for k in 0..CORNERS {
             let (sin, cos) = sin_cos(TAU * f64::from(k) / f64::from(CORNERS));
-            self.corner(centre + radius * (cos * right + sin * up), normal);
+            let uv = 0.5 * DVec2::new(1.0 + cos, 1.0 - sin);
+            self.corner(centre + radius * (cos * right + sin * up), normal, uv);
         }
         self.triangles.extend((0..CORNERS).map(|k| [first, first + 1 + k, first + 1 + (k + 1) % CORNERS]));
     }
@@ -114,7 +120,7 @@ fn contrast(look: Look) -> Look {
 mod tests {
     use super::*;
     use glam::Vec3;
-    use plaus_scenes::animation::Stripe;
+    use plaus_animation::Stripe;
 
     fn volume(mesh: &Mesh) -> f64 {
         let corner = |index: u32| Vec3::from(mesh.positions[index as usize]).as_dvec3();
@@ -129,6 +135,8 @@ mod tests {
             let face = (q - p).cross(r - p);
             assert!(face.dot(normal) > 0.0, "{p} {q} {r}");
         }
+        assert_eq!(mesh.uvs.len(), mesh.positions.len());
+        assert!(mesh.uvs.as_flattened().iter().all(|part| part.is_finite()));
         assert!(mesh.normals.iter().all(|normal| (Vec3::from(*normal).length() - 1.0).abs() < 1e-5));
     }
 

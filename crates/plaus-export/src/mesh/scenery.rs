@@ -1,8 +1,8 @@
 //! What stands still.
 
 use super::Mesh;
-use glam::{DQuat, DVec3};
-use plaus_scenes::animation::Form;
+use glam::{DQuat, DVec2, DVec3};
+use plaus_animation::Form;
 
 pub(super) fn mesh(form: &Form) -> Mesh {
     match form {
@@ -25,18 +25,36 @@ fn flat(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Mesh {
         let [Some(a), Some(b), Some(c)] = triangle.map(|index| vertices.get(index as usize).copied()) else { continue };
         let normal = (b - a).cross(c - a);
         if normal.length_squared() > 0.0 {
-            let corners = [a, b, c].map(|corner| mesh.corner(corner, normal));
+            let corners = [a, b, c].map(|corner| mesh.corner(corner, normal, across(corner, normal)));
             mesh.triangles.push(corners);
         }
     }
     mesh
 }
 
+/// Metres across the plane of the two axes that the normal leans to least.
+fn across(place: DVec3, normal: DVec3) -> DVec2 {
+    let lean = normal.abs();
+    if lean.y >= lean.x && lean.y >= lean.z {
+        DVec2::new(place.x, place.z)
+    } else if lean.x >= lean.z {
+        DVec2::new(place.z, -place.y)
+    } else {
+        DVec2::new(place.x, -place.y)
+    }
+}
+
 /// A rectangle with two of its half sides; seen from where their cross product points to.
 fn quad(mesh: &mut Mesh, centre: DVec3, right: DVec3, up: DVec3) {
     let normal = right.cross(up);
-    let corners = [-right - up, right - up, right + up, -right + up];
-    let [a, b, c, d] = corners.map(|corner| mesh.corner(centre + corner, normal));
+    let (width, height) = (2.0 * right.length(), 2.0 * up.length());
+    let corners = [
+        (-right - up, DVec2::new(0.0, height)),
+        (right - up, DVec2::new(width, height)),
+        (right + up, DVec2::new(width, 0.0)),
+        (-right + up, DVec2::ZERO),
+    ];
+    let [a, b, c, d] = corners.map(|(corner, uv)| mesh.corner(centre + corner, normal, uv));
     mesh.triangles.extend([[a, b, c], [a, c, d]]);
 }
 
@@ -62,7 +80,7 @@ fn field(origin: DVec3, [dx, dz]: [f64; 2], columns: usize, heights: &[f64]) -> 
             let slope_x = (height(column + 1, row) - height(column.saturating_sub(1), row)) / (2.0 * dx);
             let slope_z = (height(column, row + 1) - height(column, row.saturating_sub(1))) / (2.0 * dz);
             let place = DVec3::new(column as f64 * dx, height(column, row), row as f64 * dz);
-            mesh.corner(origin + place, DVec3::new(-slope_x, 1.0, -slope_z));
+            mesh.corner(origin + place, DVec3::new(-slope_x, 1.0, -slope_z), DVec2::new(place.x, place.z));
         }
     }
     for row in 1..rows {

@@ -1,33 +1,34 @@
 //! Materials, spheres and meshes.
 
-use super::Text;
-use crate::glb::{linear, surface};
+use super::text::{Text, identifier};
+use crate::glb::{linear, surface, unique};
 use crate::mesh::{self, Mesh, Part};
-use plaus_scenes::animation::{Animation, Colour, Form, Look, Shape};
+use plaus_animation::{Form, Look, Shape};
 
-/// All looks of an animation, each a material.
-pub(super) struct Looks(Vec<Look>);
+/// All looks of a layer, each a material.
+#[derive(Default)]
+pub(super) struct Looks(Vec<(Look, String)>);
 
 impl Looks {
-    pub(super) fn of(animation: &Animation) -> Self {
-        let bodies = animation.tracks.iter().flat_map(|track| {
-            mesh::of_shape(&track.shape, track.look).into_iter().map(|part| part.look).collect::<Vec<_>>()
-        });
-        let mut looks: Vec<Look> = bodies.chain(animation.scenery.iter().map(|prop| prop.look)).collect();
-        looks.sort();
-        looks.dedup();
-        Self(looks)
+    pub(super) fn add(&mut self, look: Look) {
+        if !self.0.iter().any(|(known, _)| *known == look) {
+            let wanted = identifier(&look.name());
+            let name = unique(&wanted, "_", |name| self.0.iter().any(|(_, known)| known == name));
+            self.0.push((look, name));
+        }
     }
 
-    fn name(look: Look) -> String {
-        let Colour([r, g, b]) = look.colour;
-        format!("{:?}_{r:02x}{g:02x}{b:02x}", look.material)
+    pub(super) fn add_shape(&mut self, shape: &Shape, look: Look) {
+        mesh::of_shape(shape, look).iter().for_each(|part| self.add(part.look));
+    }
+
+    fn name(&self, look: Look) -> &str {
+        self.0.iter().find(|(known, _)| *known == look).map_or("", |(_, name)| name)
     }
 
     pub(super) fn write(&self, text: &mut Text) {
         text.line(1, "def Scope \"Looks\"\n    {");
-        for &look in &self.0 {
-            let name = Self::name(look);
+        for (look, name) in &self.0 {
             let (metal, rough, opacity) = surface(look.material);
             let [r, g, b] = linear(look.colour);
             text.line(2, &format!("def Material \"{name}\"\n        {{"));
@@ -50,39 +51,31 @@ impl Looks {
 pub(super) fn shape(text: &mut Text, name: &str, shape: &Shape, look: Look, looks: &Looks) {
     for (number, part) in mesh::of_shape(shape, look).iter().enumerate() {
         let name = if number == 0 { format!("{name}_shape") } else { format!("{name}_shape_{number}") };
-        match shape {
-            Shape::Sphere { radius, .. } if number == 0 => sphere(text, &name, *radius, look),
-            _ => triangles(text, &name, part),
-        }
+        triangles(text, &name, part, false, looks);
     }
-    debug_assert!(looks.0.contains(&look));
 }
 
-/// A part of the scenery: `NAME_shape`.
-pub(super) fn form(text: &mut Text, name: &str, form: &Form, look: Look, looks: &Looks) {
-    triangles(text, &format!("{name}_shape"), &mesh::of_form(form, look));
-    debug_assert!(looks.0.contains(&look));
+/// A part of the scenery: `NAME_shape`. What is solid is for others to collide with.
+pub(super) fn form(text: &mut Text, name: &str, form: &Form, look: Look, solid: bool, looks: &Looks) {
+    triangles(text, &format!("{name}_shape"), &mesh::of_form(form, look), solid, looks);
 }
 
-/// Opens a prim that is drawn with a look.
-fn begin(text: &mut Text, kind: &str, name: &str, look: Look) {
-    text.line(2, &format!("def {kind} \"{name}\" ("));
-    text.line(3, "prepend apiSchemas = [\"MaterialBindingAPI\"]");
+/// Opens a mesh that is drawn with a look.
+fn begin(text: &mut Text, name: &str, look: Look, solid: bool, looks: &Looks) {
+    text.line(2, &format!("def Mesh \"{name}\" ("));
+    let solid_too = if solid { ", \"PhysicsCollisionAPI\", \"PhysicsMeshCollisionAPI\"" } else { "" };
+    text.line(3, &format!("prepend apiSchemas = [\"MaterialBindingAPI\"{solid_too}]"));
     text.line(2, ")\n        {");
-    text.line(3, &format!("rel material:binding = </plaus/Looks/{}>", Looks::name(look)));
+    text.line(3, &format!("rel material:binding = </plaus/Looks/{}>", looks.name(look)));
     let [r, g, b] = linear(look.colour);
     text.line(3, &format!("color3f[] primvars:displayColor = [({r}, {g}, {b})]"));
+    if solid {
+        text.line(3, "uniform token physics:approximation = \"none\"");
+    }
 }
 
-fn sphere(text: &mut Text, name: &str, radius: f64, look: Look) {
-    begin(text, "Sphere", name, look);
-    text.line(3, &format!("double radius = {radius}"));
-    text.line(3, &format!("float3[] extent = [({0}, {0}, {0}), ({1}, {1}, {1})]", -radius as f32, radius as f32));
-    text.line(2, "}");
-}
-
-fn triangles(text: &mut Text, name: &str, part: &Part) {
-    let Mesh { positions, normals, triangles } = &part.mesh;
+fn triangles(text: &mut Text, name: &str, part: &Part, solid: bool, looks: &Looks) {
+    let Mesh { positions, normals, uvs, triangles } = &part.mesh;
     if triangles.is_empty() {
         return;
     }
@@ -100,7 +93,7 @@ fn triangles(text: &mut Text, name: &str, part: &Part) {
             high[axis] = high[axis].max(position[axis]);
         }
     }
-    begin(text, "Mesh", name, part.look);
+    begin(text, name, part.look, solid, looks);
     text.line(3, "uniform token subdivisionScheme = \"none\"");
     text.line(3, &format!("float3[] extent = [{}]", vectors(&[low, high])));
     text.line(3, &format!("point3f[] points = [{}]", vectors(positions)));
@@ -111,6 +104,11 @@ fn triangles(text: &mut Text, name: &str, part: &Part) {
             vectors(normals)
         ),
     );
+    // USD's textures begin at the lower left.
+    let pairs = uvs.iter().map(|[u, v]| format!("({u}, {})", 1.0 - v)).collect::<Vec<_>>().join(", ");
+    let uvs =
+        format!("texCoord2f[] primvars:st = [{pairs}] (\n                interpolation = \"vertex\"\n            )");
+    text.line(3, &uvs);
     text.line(3, &format!("int[] faceVertexCounts = [{}]", list(&mut triangles.iter().map(|_| 3))));
     text.line(3, &format!("int[] faceVertexIndices = [{}]", list(&mut triangles.as_flattened().iter().copied())));
     text.line(2, "}");

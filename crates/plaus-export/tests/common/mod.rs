@@ -2,9 +2,9 @@
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 use glam::{DQuat, DVec3, Quat, Vec3};
-use gltf::animation::Property;
 use gltf::animation::util::ReadOutputs;
-use plaus_scenes::animation::{Animation, Impact, Look, Material, Piece, Prop, Shape, Stripe, Track, Turn};
+use gltf::animation::{Interpolation, Property};
+use plaus_animation::{Animation, Impact, Look, Material, Piece, Prop, Shape, Stripe, Track, Turn};
 
 /// A die that bounces, a pin that precesses, a ball that rolls fast.
 pub fn tumbling() -> Animation {
@@ -48,7 +48,9 @@ pub struct Glb {
 /// The keys of one body.
 pub struct Body {
     times: Vec<f32>,
-    splines: Vec<Vec3>,
+    /// Values; of splines also the tangents before and after each.
+    values: Vec<Vec3>,
+    cubic: bool,
     turn_times: Vec<f32>,
     turns: Vec<Quat>,
     /// The node's own orientation, of a body that does not turn.
@@ -72,7 +74,7 @@ impl Glb {
     pub fn body(&self, name: &str) -> Body {
         let node = self.document.nodes().find(|node| node.name() == Some(name)).unwrap();
         let still = Quat::from_array(node.transform().decomposed().1);
-        let mut body = Body { times: vec![], splines: vec![], turn_times: vec![], turns: vec![], still };
+        let mut body = Body { times: vec![], values: vec![], cubic: false, turn_times: vec![], turns: vec![], still };
         for channel in self.document.animations().flat_map(|animation| animation.channels()) {
             if channel.target().node().name() != Some(name) {
                 continue;
@@ -82,7 +84,8 @@ impl Glb {
             assert!(times.is_sorted_by(|a, b| a < b), "times strictly increase");
             match (channel.target().property(), reader.read_outputs().unwrap()) {
                 (Property::Translation, ReadOutputs::Translations(values)) => {
-                    body.splines = values.map(Vec3::from).collect();
+                    body.values = values.map(Vec3::from).collect();
+                    body.cubic = channel.sampler().interpolation() == Interpolation::CubicSpline;
                     body.times = times;
                 }
                 (Property::Rotation, ReadOutputs::Rotations(values)) => {
@@ -106,14 +109,24 @@ fn place(times: &[f32], time: f64) -> (usize, f64, f64) {
 impl Body {
     pub fn key_at(&self, time: f64) -> Option<Vec3> {
         let index = self.times.iter().position(|&key| key == time as f32)?;
-        Some(self.splines[3 * index + 1])
+        Some(if self.cubic { self.values[3 * index + 1] } else { self.values[index] })
     }
 
-    /// glTF 2.0, appendix C.5: cubic spline interpolation.
+    pub fn keys(&self) -> usize {
+        self.times.len()
+    }
+
+    /// glTF 2.0, appendix C.4 and C.5: linear and cubic spline interpolation.
     pub fn position(&self, time: f64) -> DVec3 {
+        if self.times.len() == 1 {
+            return self.values[self.values.len() / 2].as_dvec3();
+        }
         let (k, t, length) = place(&self.times, time);
-        let [value, leaving] = [1, 2].map(|part| self.splines[3 * k + part].as_dvec3());
-        let [arriving, next] = [0, 1].map(|part| self.splines[3 * k + 3 + part].as_dvec3());
+        if !self.cubic {
+            return self.values[k].as_dvec3().lerp(self.values[k + 1].as_dvec3(), t);
+        }
+        let [value, leaving] = [1, 2].map(|part| self.values[3 * k + part].as_dvec3());
+        let [arriving, next] = [0, 1].map(|part| self.values[3 * k + 3 + part].as_dvec3());
         let (t2, t3) = (t * t, t * t * t);
         (2.0 * t3 - 3.0 * t2 + 1.0) * value
             + length * (t3 - 2.0 * t2 + t) * leaving
@@ -124,6 +137,9 @@ impl Body {
     pub fn orientation(&self, time: f64) -> DQuat {
         if self.turns.is_empty() {
             return self.still.as_dquat();
+        }
+        if self.turns.len() == 1 {
+            return self.turns[0].as_dquat();
         }
         let (k, t, _) = place(&self.turn_times, time);
         self.turns[k].as_dquat().slerp(self.turns[k + 1].as_dquat(), t)

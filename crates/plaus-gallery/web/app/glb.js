@@ -1,4 +1,4 @@
-// A solution as animated glTF, in the layout that `plaus export --format glb` has: cubic splines that hold parabolas exactly, a key at every impact.
+// A solution as animated glTF, in the layout that `plaus export --format glb` has: straight lines between keys, a key at every impact.
 
 function glbOf({ meta, stage }, solution, fps = 60) {
   const json = {
@@ -29,7 +29,7 @@ function glbOf({ meta, stage }, solution, fps = 60) {
     if (!paints.has(key)) {
       const [metallicFactor, roughnessFactor, opacity] = SURFACES[look.material] ?? SURFACES.matte;
       const { r, g, b } = new THREE.Color().setRGB(...look.colour.map((c) => c / 255), THREE.SRGBColorSpace);
-      const paint = { name: key, pbrMetallicRoughness: { baseColorFactor: [r, g, b, opacity], metallicFactor, roughnessFactor } };
+      const paint = { name: look.name ?? key, pbrMetallicRoughness: { baseColorFactor: [r, g, b, opacity], metallicFactor, roughnessFactor } };
       if (opacity < 1) paint.alphaMode = 'BLEND';
       paints.set(key, json.materials.push(paint) - 1);
     }
@@ -49,21 +49,21 @@ function glbOf({ meta, stage }, solution, fps = 60) {
     const mesh = json.meshes.push({ name, primitives: [primitive(stage.prop(index).userData.whole, look)] }) - 1;
     children.push(json.nodes.push({ name, mesh }) - 1);
   }
-  const animation = { name: `sample_${solution.id.replace(':', '_')}`, channels: [], samplers: [] };
+  const animation = { name: `${meta.scene}_${solution.id.replace(':', '_')}`, channels: [], samplers: [] };
   const models = new Map();
   solution.tracks.forEach(([name, model], track) => {
     if (!models.has(model)) {
       const primitives = meta.models[model].parts.map((part, k) => primitive(stage.parts(model, false)[k].userData.whole, part.look));
       models.set(model, json.meshes.push({ name: meta.names[name], primitives }) - 1);
     }
-    const keys = keysOf(solution, track, fps), node = json.nodes.length;
-    json.nodes.push({ name: meta.names[name], mesh: models.get(model), translation: Array.from(keys.splines.subarray(3, 6)) });
+    const keys = keysOf({ meta }, solution, track, fps), node = json.nodes.length;
+    json.nodes.push({ name: meta.names[name], mesh: models.get(model), translation: Array.from(keys.places.subarray(0, 3)) });
     children.push(node);
     const input = store(keys.times, 'SCALAR', FLOAT, 0, true);
     const channel = (path, output, interpolation) => {
       animation.channels.push({ sampler: animation.samplers.push({ input, output, interpolation }) - 1, target: { node, path } });
     };
-    channel('translation', store(keys.splines, 'VEC3', FLOAT), 'CUBICSPLINE');
+    channel('translation', store(keys.places, 'VEC3', FLOAT), 'LINEAR');
     if (solution.turning) channel('rotation', store(keys.turns, 'VEC4', FLOAT), 'LINEAR');
   });
   const extras = {
@@ -88,32 +88,38 @@ function unit(normals) {
   return out;
 }
 
-// Times, [tangent in, value, tangent out] and orientations: at frames, at begins of pieces, and between where a body turns fast.
-function keysOf(solution, track, fps) {
-  const open = solution.open(), first = open.firsts[track], count = solution.tracks[track][2], end = solution.duration;
+// Farthest that a body may be from a straight line between keys, in m and as a share of its reach; and the largest turn between keys, in rad: as `plaus export` has them.
+const OFF = 2e-4, OFF_SHARE = 0.01, LARGEST_TURN = 0.5;
+
+// Times, positions and orientations: at frames, at begins of pieces, and between where a body falls or turns fast.
+function keysOf({ meta }, solution, track, fps) {
+  const open = solution.open(), [, model, count] = solution.tracks[track], first = open.firsts[track], end = solution.duration;
+  const most = Math.min(OFF, OFF_SHARE * meta.models[model].reach);
   const times = new Set([0, end].map(Math.fround));
   for (let frame = 0; frame / fps < end; frame++) times.add(Math.fround(frame / fps));
   for (let k = first; k < first + count; k++) if (open.start[k] >= 0 && open.start[k] <= end) times.add(Math.fround(open.start[k]));
   const sorted = [...times].sort((a, b) => a - b), dense = [];
   sorted.forEach((time, index) => {
     dense.push(time);
-    const next = sorted[index + 1], k = solution.piece(track, time);
-    if (next === undefined || !open.spin) return;
-    const rate = Math.hypot(...open.spin.subarray(3 * k, 3 * k + 3)) + Math.abs(open.own[k]), parts = Math.ceil(rate * (next - time));
-    for (let part = 1; part < parts; part++) dense.push(Math.fround(time + ((next - time) * part) / parts));
+    const next = sorted[index + 1];
+    if (next === undefined) return;
+    const k = solution.piece(track, time), length = next - time;
+    const bend = length * Math.sqrt(Math.hypot(...open.acceleration.subarray(3 * k, 3 * k + 3)) / (8 * most));
+    const turn = open.spin ? ((Math.hypot(...open.spin.subarray(3 * k, 3 * k + 3)) + Math.abs(open.own[k])) * length) / LARGEST_TURN : 0;
+    const parts = Math.ceil(Math.max(bend, turn));
+    for (let part = 1; part < parts; part++) dense.push(Math.fround(time + (length * part) / parts));
   });
   const distinct = [...new Set(dense)];
-  const splines = new Float32Array(9 * distinct.length), turns = new Float32Array(4 * distinct.length);
-  const p = new THREE.Vector3(), v = new THREE.Vector3(), q = new THREE.Quaternion(), before = new THREE.Quaternion();
+  const places = new Float32Array(3 * distinct.length), turns = new Float32Array(4 * distinct.length);
+  const p = new THREE.Vector3(), q = new THREE.Quaternion(), before = new THREE.Quaternion();
   distinct.forEach((time, index) => {
-    const k = solution.piece(track, time), earlier = open.start[k] === time && k > first ? k - 1 : k;
     solution.pose(track, time, p, q);
-    splines.set([...solution.velocity(track, time, earlier, v), ...p, ...solution.velocity(track, time, k, v)], 9 * index);
+    places.set([p.x, p.y, p.z], 3 * index);
     if (index && q.dot(before) < 0) q.set(-q.x, -q.y, -q.z, -q.w);
     before.copy(q);
     turns.set([q.x, q.y, q.z, q.w], 4 * index);
   });
-  return { times: new Float32Array(distinct), splines, turns };
+  return { times: new Float32Array(distinct), places, turns };
 }
 
 function container(json, chunks, length) {

@@ -66,11 +66,6 @@ class Solution {
     if (orientation) this.turn(k, t, orientation);
   }
 
-  velocity(track, time, k, out) {
-    const open = this.open(), t = Math.max(time - open.start[k], 0), i = 3 * k;
-    return out.set(...[0, 1, 2].map((axis) => open.velocity[i + axis] + t * open.acceleration[i + axis]));
-  }
-
   // Rot(spin·t) · R₀ · Rot(e₃, own·t)
   turn(k, t, q) {
     const open = this.open();

@@ -2,4 +2,5 @@
 
 pub mod csv;
 pub mod output;
+mod variables;
 pub mod zarr;

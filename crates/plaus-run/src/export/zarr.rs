@@ -1,14 +1,17 @@
 //! A Zarr v3 folder that ArviZ reads: groups `posterior` and `sample_stats`, and `warmup_posterior` and `warmup_sample_stats` where there is a
-//! warm-up, all with dimensions (chain, draw).
+//! warm-up, all with dimensions (chain, draw). Scalars of one name that are numbered, `x_1`, `x_2` and so on, are one
+//! variable `x` with a third dimension,
+//! named after what is numbered, as the scene says: `x[die]`. Whole numbers are stored as such.
 //!
 //! Chunks are raw little-endian numbers, one chain each, so that any language reads them without a library. Metadata is consolidated:
 //! `zarr.json` at the root describes every array.
 
+use super::variables::{self, Variable};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::manifest::Manifest;
 use crate::read::{Phase, RunOf, StretchOf};
 use plaus_mcmc::StateOf;
-use plaus_scenes::{Scalar, Scene};
+use plaus_scenes::Scene;
 use serde_json::{Map, Value, json};
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
@@ -19,7 +22,7 @@ struct Array {
     name: String,
     data_type: &'static str,
     fill: Value,
-    dimensions: &'static [&'static str],
+    dimensions: Vec<&'static str>,
     shape: Vec<u64>,
     attributes: Value,
 }
@@ -30,7 +33,14 @@ impl Array {
     }
 
     fn new(name: impl Into<String>, data_type: &'static str, fill: Value, shape: &[u64], attributes: Value) -> Self {
-        Self { name: name.into(), data_type, fill, dimensions: &["chain", "draw"], shape: shape.to_vec(), attributes }
+        Self {
+            name: name.into(),
+            data_type,
+            fill,
+            dimensions: vec!["chain", "draw"],
+            shape: shape.to_vec(),
+            attributes,
+        }
     }
 
     /// One chunk a chain; a coordinate is one chunk.
@@ -76,14 +86,21 @@ pub fn write<S: Scene>(run: &RunOf<'_, S>, out: &Path) -> Result<(), Error> {
         if shape[1] == 0 {
             continue;
         }
-        let scalars = run.scene().scalars().iter().map(|scalar| of_scalar(scalar, &shape)).collect();
+        let variables = variables::of(run.scene());
+        let scalars = variables.iter().map(|variable| of_variable(variable, &shape)).collect();
         let groups = [("posterior", scalars), ("sample_stats", sample_stats(&shape))];
+        let mut numbered: Vec<(&'static str, i64, u64)> = variables.iter().filter_map(Variable::coordinate).collect();
+        numbered.dedup();
         for (name, arrays) in &groups {
-            let first = u64::from(run.chains().start);
-            write_group(out, &format!("{prefix}{name}"), arrays, &shape, first, &mut nodes)?;
+            let mut coordinates = vec![("chain", i64::from(run.chains().start), shape[0]), ("draw", 0, shape[1])];
+            if *name == "posterior" {
+                coordinates.extend(&numbered);
+            }
+            let group = Group { out, name: format!("{prefix}{name}"), about: about(run.run().manifest()) };
+            group.write(arrays, &coordinates, &mut nodes)?;
         }
         let names = groups.map(|(group, arrays)| (format!("{prefix}{group}"), arrays));
-        (0..).zip(run.chains()).try_for_each(|at| write_chain(run, phase, at, out, &names))?;
+        (0..).zip(run.chains()).try_for_each(|at| write_chain(run, phase, at, out, (&names, &variables)))?;
     }
     let consolidated = json!({ "kind": "inline", "must_understand": false, "metadata": nodes });
     let root = json!({
@@ -95,9 +112,16 @@ pub fn write<S: Scene>(run: &RunOf<'_, S>, out: &Path) -> Result<(), Error> {
     write_json(&out.join("zarr.json"), &root)
 }
 
-fn of_scalar(scalar: &Scalar, shape: &[u64]) -> Array {
+fn of_variable(variable: &Variable, shape: &[u64]) -> Array {
     // Not `units`: xarray would turn seconds into time differences.
-    Array::floats(&*scalar.name, shape, json!({ "unit": scalar.unit, "role": scalar.role }))
+    let attributes = json!({ "unit": variable.unit, "role": variable.role });
+    let (data_type, fill) = if variable.whole { ("int64", json!(0)) } else { ("float64", json!("NaN")) };
+    let mut array = Array::new(&*variable.name, data_type, fill, shape, attributes);
+    if let Some((dimension, _, count)) = variable.coordinate() {
+        array.dimensions.push(dimension);
+        array.shape.push(count);
+    }
+    array
 }
 
 fn sample_stats(shape: &[u64]) -> Vec<Array> {
@@ -124,28 +148,37 @@ fn about(manifest: &Manifest) -> Value {
     })
 }
 
-fn write_group(
-    out: &Path,
-    group: &str,
-    arrays: &[Array],
-    shape: &[u64],
-    first_chain: u64,
-    nodes: &mut Map<String, Value>,
-) -> Result<(), Error> {
-    let metadata = json!({ "zarr_format": 3, "node_type": "group", "attributes": {} });
-    make(&out.join(group))?;
-    write_json(&out.join(group).join("zarr.json"), &metadata)?;
-    nodes.insert(group.to_owned(), metadata);
-    for (dimension, &length) in ["chain", "draw"].iter().zip(shape) {
-        let dimensions: &'static [&'static str] = if *dimension == "chain" { &["chain"] } else { &["draw"] };
-        let mut index = Array::new(*dimension, "int64", json!(0), &[length], json!({}));
-        index.dimensions = dimensions;
-        write_array(out, group, &index, nodes)?;
-        let from = if *dimension == "chain" { first_chain } else { 0 };
-        let numbers: Vec<u8> = (from..from + length).flat_map(u64::to_le_bytes).collect();
-        write_bytes(&out.join(group).join(dimension).join("c").join("0"), &numbers)?;
+/// A group to be written.
+struct Group<'a> {
+    out: &'a Path,
+    name: String,
+    about: Value,
+}
+
+impl Group<'_> {
+    /// Writes its metadata, its coordinates (each a name, its first number, and how many there are), and the metadata
+    /// of its arrays.
+    fn write(
+        &self,
+        arrays: &[Array],
+        coordinates: &[(&'static str, i64, u64)],
+        nodes: &mut Map<String, Value>,
+    ) -> Result<(), Error> {
+        let (out, group) = (self.out, self.name.as_str());
+        let metadata = json!({ "zarr_format": 3, "node_type": "group", "attributes": self.about });
+        make(&out.join(group))?;
+        write_json(&out.join(group).join("zarr.json"), &metadata)?;
+        nodes.insert(group.to_owned(), metadata);
+        for &(dimension, first, length) in coordinates {
+            let about = json!({ "description": format!("number of the {dimension}") });
+            let mut index = Array::new(dimension, "int64", json!(0), &[length], about);
+            index.dimensions = vec![dimension];
+            write_array(out, group, &index, nodes)?;
+            let numbers: Vec<u8> = (first..first + length as i64).flat_map(i64::to_le_bytes).collect();
+            write_bytes(&out.join(group).join(dimension).join("c").join("0"), &numbers)?;
+        }
+        arrays.iter().try_for_each(|array| write_array(out, group, array, nodes))
     }
-    arrays.iter().try_for_each(|array| write_array(out, group, array, nodes))
 }
 
 fn write_array(out: &Path, group: &str, array: &Array, nodes: &mut Map<String, Value>) -> Result<(), Error> {
@@ -164,7 +197,9 @@ impl Chunks {
     fn create(out: &Path, groups: &[(String, Vec<Array>)], index: u32) -> Result<Self, Error> {
         let mut files = Vec::new();
         for (group, array) in groups.iter().flat_map(|(group, arrays)| arrays.iter().map(move |array| (group, array))) {
-            let folder = out.join(group).join(&array.name).join("c").join(index.to_string());
+            let mut folder = out.join(group).join(&array.name).join("c").join(index.to_string());
+            // The chunk's place along each further dimension.
+            (2..array.shape.len()).for_each(|_| folder.push("0"));
             make(&folder)?;
             files.push(BufWriter::new(File::create(folder.join("0")).map_err(Error::Output)?));
         }
@@ -182,7 +217,7 @@ fn write_chain<S: Scene>(
     phase: Phase,
     (index, chain): (u32, u32),
     out: &Path,
-    groups: &[(String, Vec<Array>)],
+    (groups, variables): (&[(String, Vec<Array>)], &[Variable]),
 ) -> Result<(), Error> {
     let mut chunks = Chunks::create(out, groups, index)?;
     let thin = run.run().manifest().plan.thin as f64;
@@ -191,13 +226,15 @@ fn write_chain<S: Scene>(
         let state: &StateOf<S> = &stretch.entry.state;
         run.scene().write_scalars(state, &mut values);
         let lp = state.log_p().value();
-        for (index, value) in values.iter().chain([&lp]).enumerate() {
-            chunks.put(index, &value.to_le_bytes(), stretch.draws)?;
+        for (index, variable) in variables.iter().enumerate() {
+            chunks.put(index, &variable.bytes(&values), stretch.draws)?;
         }
+        let stats = variables.len();
+        chunks.put(stats, &lp.to_le_bytes(), stretch.draws)?;
         let rate = (f64::from(stretch.accepted) / thin).min(1.0); // a swap comes on top of an acceptance
-        chunks.put(values.len() + 1, &rate.to_le_bytes(), 1)?;
-        chunks.put(values.len() + 1, &0.0_f64.to_le_bytes(), stretch.draws - 1)?;
-        chunks.put(values.len() + 2, &[u8::from(stretch.entry.class.is_some())], stretch.draws)
+        chunks.put(stats + 1, &rate.to_le_bytes(), 1)?;
+        chunks.put(stats + 1, &0.0_f64.to_le_bytes(), stretch.draws - 1)?;
+        chunks.put(stats + 2, &[u8::from(stretch.entry.class.is_some())], stretch.draws)
     })?;
     chunks.0.iter_mut().try_for_each(BufWriter::flush).map_err(Error::Output)
 }

@@ -8,6 +8,10 @@ use plaus_mcmc::ModelError;
 
 /// Slanted plates: half their lengths, in D.
 const PLATE: DVec3 = DVec3::new(0.22, 0.02, 0.45);
+/// From face to face of the coin that shows the ball, in D.
+const THICK: f64 = 0.3;
+/// Density in kg/m³ of what the ball is shown as, rubber's: only the impulses of its impacts know of it.
+const DENSITY: f64 = 1100.0;
 /// The table reaches that far beyond drop and target, in D.
 const MARGIN: f64 = 4.0;
 
@@ -17,6 +21,7 @@ pub(super) fn animate(config: &Config, table: &Table, draw: &Normals) -> Result<
     // With lengths in D and gravity 1, the unit of time is √(D/g), that of speed √(D·g).
     let (second, speed) = ((size / GRAVITY).sqrt(), (size * GRAVITY).sqrt());
     let gravity = DVec3::new(0.0, -GRAVITY, 0.0);
+    let mass = DENSITY * 0.25 * std::f64::consts::PI * THICK * size * size * size;
     // Collisions are the point's at the ball's bottom; the body's origin is its middle.
     let middle = |x: f64, y: f64| DVec3::new(x * size, (y + 0.5) * size, 0.0);
     let mut pieces = vec![Piece::ballistic(0.0, middle(0.0, height), DVec3::ZERO, gravity)];
@@ -28,14 +33,15 @@ pub(super) fn animate(config: &Config, table: &Table, draw: &Normals) -> Result<
         pieces.push(Piece::ballistic(start, middle(x, 0.0), (bounce.velocity * speed).extend(0.0), gravity));
         let approach = -incoming.dot(normal) * speed;
         let (point, name) = (DVec3::new(x * size, 0.0, 0.0), format!("normal_{}", impacts.len()));
-        impacts.push(Impact::new(start, "ball_0", "table", point, normal.extend(0.0)).with_strength(approach, 0.0));
+        let impulse = mass * (bounce.velocity - incoming).length() * speed;
+        impacts.push(Impact::new(start, "ball_0", "table", point, normal.extend(0.0)).with_strength(approach, impulse));
         scenery.push(plate(name, point, normal.extend(0.0), size));
         time += 2.0 * bounce.velocity.y;
         incoming = flight::landing(bounce.velocity);
     });
     let x = rest.ok_or_else(|| ModelError::new("a downward normal rejects this draw: it has no animation"))?;
     pieces.push(Piece::resting(time * second, middle(x, 0.0)));
-    let shape = Shape::Disc { radius: 0.5 * size, thickness: 0.3 * size };
+    let shape = Shape::Disc { radius: 0.5 * size, thickness: THICK * size };
     let ball = Track::new("ball_0", shape, Look::nth(0), pieces);
     let wide = DVec3::new(1.8, 0.3, 1.3) * size;
     let (left, right) = (config.target.min(0.0) * size, config.target.max(0.0) * size);

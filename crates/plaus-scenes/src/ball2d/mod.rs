@@ -167,6 +167,8 @@ impl Goal for Ball2d {
 }
 
 impl Scene for Ball2d {
+    const NUMBERED: &'static str = "bounce";
+
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         let perturb = Box::new(Perturb::new(self.config.step_deg));
         let Weights { perturb: often, redraw, aim } = self.config.weights;

@@ -4,7 +4,11 @@ use super::draw::Shot;
 use super::lane::{Lane, Work};
 use super::props;
 use super::release::Quantity;
-use crate::animation::{Animation, Impact, Look, Material, Piece, Shape, Stripe, Track, Turn, UPRIGHT, View, upright};
+use crate::animation::{
+    Animation, Contact, Impact, Look, Material, Piece, Shape, Stripe, Track, Turn, UPRIGHT, View, upright,
+};
+use crate::scene::Until;
+use crate::touch::{Toucher, in_order};
 use glam::DVec3;
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
@@ -15,8 +19,8 @@ use plaus_sim::trace::Trace;
 /// Points of a pin's drawn outline.
 const OUTLINE: usize = 40;
 
-pub(super) fn animate(lane: &Lane, draw: &Shot, shown: f64) -> Result<Animation, ModelError> {
-    let (world, trace, end) = lane.record(draw, &mut Work::default())?;
+pub(super) fn animate(lane: &Lane, draw: &Shot, shown: f64, until: Option<Until>) -> Result<Animation, ModelError> {
+    let (world, trace, end) = lane.record(draw, &mut Work::default(), until)?;
     let begin = begin(&world, &trace, shown);
     let pin = lane.pin();
     let look = |body| if body == 0 { Look::new([36, 52, 120], Material::Glossy) } else { Look::IVORY };
@@ -43,7 +47,36 @@ pub(super) fn animate(lane: &Lane, draw: &Shot, shown: f64) -> Result<Animation,
     let [low, high] = props::deck();
     let view = View::from(0.0, 0.55, 1.0).only(upright(low), upright(high));
     let animation = Animation::new(end - begin, tracks.collect(), impacts.collect());
-    Ok(animation.with_scenery(props::props()).with_view(view))
+    let contacts = contacts(lane, draw, &trace, &animation, begin);
+    Ok(animation.with_contacts(contacts).with_scenery(props::props()).with_view(view))
+}
+
+/// What rolls and slides on what.
+fn contacts(lane: &Lane, draw: &Shot, trace: &Trace<Turning>, animation: &Animation, begin: f64) -> Vec<Contact> {
+    let alley = lane.alley(draw);
+    let of_body = |(index, track): (usize, &Track)| {
+        let Track { name, shape, pieces, .. } = track;
+        let mass = if index == 0 { alley.ball_mass } else { alley.pin_mass };
+        let motions = &trace.motions[index];
+        let touches = |piece: usize| {
+            // The motion that the piece was made of: the last that had begun.
+            let time = pieces[piece].start + begin;
+            let motion = motions.partition_point(|motion| motion.path.t <= time).checked_sub(1).map(|k| &motions[k])?;
+            if !matches!(motion.phase, Phase::Glide | Phase::Step) {
+                return None;
+            }
+            let fixed = motion.phase == Phase::Glide || !motion.touching().is_empty();
+            let part = || props::part(motion.path.x, DVec3::Z).to_owned();
+            let hits = animation.impacts.iter().rev().filter(|hit| hit.time <= pieces[piece].start);
+            let pin = || {
+                hits.filter(|hit| hit.involves(name)).map(|hit| if hit.body == *name { &hit.other } else { &hit.body })
+            };
+            let body = || pin().find(|other| animation.tracks.iter().any(|track| track.name == **other)).cloned();
+            if fixed { Some(part()) } else { body().or_else(|| Some(part())) }
+        };
+        Toucher { name, shape, mass, pieces, end: animation.duration }.contacts(touches)
+    };
+    in_order(animation.tracks.iter().enumerate().flat_map(of_body).collect())
 }
 
 /// When the ball is `shown` m before the head pin's spot, or 0 where it starts nearer.

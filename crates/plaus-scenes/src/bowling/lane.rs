@@ -4,6 +4,7 @@ use super::config::{Config, Delivery, Rewarded};
 use super::draw::Shot;
 use super::rack::Rack;
 use super::release::Quantity;
+use crate::scene::Until;
 use crate::world::{Physical, PlainWorld};
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
@@ -23,6 +24,9 @@ pub(super) const WIDTH: f64 = Alley::WIDTH;
 
 /// From the foul line to the head pin's spot in m.
 pub(super) const LENGTH: f64 = Alley::LENGTH;
+
+/// Longest time in s that is shown of a shot.
+const LONGEST: f64 = 30.0;
 
 /// What all shots of a scenario have in common.
 #[derive(Debug)]
@@ -240,14 +244,26 @@ impl Lane {
         Ok(Some(Rest { pins, entry: umpire.entry, struck, complete: outcome != Outcome::OutOfEvents }))
     }
 
-    /// Bowls until everything is at rest, and records it: the world, all motions, and when it ends.
-    pub(super) fn record(&self, draw: &Shot, work: &mut Work) -> Result<(Rigid, Trace<Turning>, f64), ModelError> {
+    /// Bowls and records it: the world, all motions, and when it ends. Unless it is said until when: all that the
+    /// scenario's `duration_s` holds.
+    pub(super) fn record(
+        &self,
+        draw: &Shot,
+        work: &mut Work,
+        until: Option<Until>,
+    ) -> Result<(Rigid, Trace<Turning>, f64), ModelError> {
+        let mut trace = Trace::default();
+        if until == Some(Until::Decided) {
+            let mut clock = Clock(0.0);
+            self.bowl(draw, LENGTH, work, |_| false, (&mut trace, &mut clock))?;
+            return Ok((self.world(draw, LENGTH).map_err(ModelError::new)?.0, trace, clock.0));
+        }
         let (world, starts) = self.world(draw, LENGTH).map_err(ModelError::new)?;
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let mut trace = Trace::default();
-        world.run(&mut state, &mut work.scratch, self.alley.duration, &mut trace).map_err(ModelError::new)?;
+        let longest = until.map_or(self.alley.duration, |_| self.alley.duration.max(LONGEST));
+        let outcome = world.run(&mut state, &mut work.scratch, longest, &mut trace).map_err(ModelError::new)?;
         let last = trace.motions.iter().filter_map(|motions| motions.last()).map(|motion| motion.path.t);
-        let end = last.fold(0.0, f64::max);
+        let end = if until.is_some() && outcome == Outcome::TimeReached { longest } else { last.fold(0.0, f64::max) };
         Ok((world, trace, end))
     }
 
@@ -259,6 +275,16 @@ impl Lane {
     /// The pin's form.
     pub(super) fn pin(&self) -> &Revolution {
         &self.pin
+    }
+}
+
+/// Knows when the last event was.
+struct Clock(f64);
+
+impl Observer<Rigid> for Clock {
+    fn proceed(&mut self, state: &State<Turning>) -> bool {
+        self.0 = state.time();
+        true
     }
 }
 

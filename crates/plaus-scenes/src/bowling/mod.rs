@@ -21,7 +21,7 @@ pub use release::{Law, Laws, Quantity, Release};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::rules::Rules;
-use crate::scene::{ConfigError, Role, Scalar, Scene};
+use crate::scene::{ConfigError, Role, Scalar, Scene, Until};
 use crate::world::PlainWorld;
 use lane::{Lane, Pins};
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
@@ -183,6 +183,9 @@ fn board(rest: &Rest) -> f64 {
 }
 
 impl Scene for Bowling {
+    const NUMBERED: &'static str = "pin";
+    const WHOLE: &'static [&'static str] = &["k", "m", "pinfall"];
+
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         let weights = match self.config.moves {
             Moves::Paper => Weights::paper(),
@@ -216,7 +219,12 @@ impl Scene for Bowling {
     }
 
     fn animate(&self, draw: &Shot) -> Result<Animation, ModelError> {
-        animate::animate(&self.lane, draw, self.config.shown_m)
+        animate::animate(&self.lane, draw, self.config.shown_m, None)
+    }
+
+    fn animate_until(&self, draw: &Shot, until: Until) -> Result<Animation, ModelError> {
+        let animation = animate::animate(&self.lane, draw, self.config.shown_m, Some(until))?;
+        Ok(if let Until::Time(end) = until { animation.until(end) } else { animation })
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {

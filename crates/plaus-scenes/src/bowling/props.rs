@@ -67,12 +67,17 @@ pub(super) fn part(point: DVec3, normal: DVec3) -> &'static str {
         } else if on_lane {
             "lane"
         } else {
-            "gutter"
+            match (point.y < DECK, point.x < 0.0) {
+                (true, true) => "gutter_left",
+                (true, false) => "gutter_right",
+                (false, true) => "flat_gutter_left",
+                (false, false) => "flat_gutter_right",
+            }
         }
     } else if normal.y < -0.5 && point.y > END {
         "cushion"
     } else if point.x.abs() > 0.5 * Alley::WIDTH + 0.1 {
-        "kickback"
+        if point.x < 0.0 { "kickback_left" } else { "kickback_right" }
     } else {
         "lane"
     }

@@ -3,6 +3,7 @@
 use super::throwing::{Recorded, Work};
 use super::{Dice, Draw, props};
 use crate::animation::{Animation, Impact, Look, Piece, Shape, Track, Turn, UPRIGHT, View, upright};
+use crate::touch::{Toucher, in_order};
 use glam::DVec3;
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
@@ -26,6 +27,8 @@ pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError
 /// The dice alone, and the corners of a box that holds the ways of their middles, in the simulator's axes.
 pub(super) fn motion(scene: &Dice, draw: &Draw) -> Result<(Animation, [DVec3; 2]), ModelError> {
     let (mut tracks, mut impacts, mut duration) = (Vec::new(), Vec::new(), 0.0_f64);
+    let (mut contacts, half) = (Vec::new(), scene.plan.cuboid.half());
+    let mass = 8.0 * half.x * half.y * half.z * scene.plan.density;
     let mut extent = [DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)];
     for Recorded { members, world, trace, .. } in Work::default().record(&scene.plan, draw)? {
         let name = |k: usize| format!("die_{}", members[k] + 1);
@@ -38,6 +41,14 @@ pub(super) fn motion(scene: &Dice, draw: &Draw) -> Result<(Animation, [DVec3; 2]
             duration = pieces.last().map_or(duration, |piece| duration.max(piece.start));
             let shape = Shape::Cuboid { half: scene.plan.cuboid.half(), pips: Some(PIPS) };
             let look = if scene.config.dice == 1 { Look::IVORY } else { Look::nth(die) };
+            let touches = |piece: usize| {
+                let time = f64::max(pieces[piece].start, 0.0);
+                let motion = motions[..motions.partition_point(|motion| motion.path.t <= time)].last()?;
+                matches!(motion.phase, Phase::Glide | Phase::Step).then(|| "table".to_owned())
+            };
+            let end = pieces.last().map_or(0.0, |piece| piece.start);
+            let toucher = Toucher { name: &name(k), shape: &shape, mass, pieces: &pieces, end };
+            contacts.extend(toucher.contacts(touches));
             tracks.push((die, Track::new(name(k), shape, look, pieces)));
         }
         impacts.extend(trace.impacts.iter().map(|hit| {
@@ -55,7 +66,7 @@ pub(super) fn motion(scene: &Dice, draw: &Draw) -> Result<(Animation, [DVec3; 2]
     impacts.sort_by(|a, b| a.time.total_cmp(&b.time));
     // One frame at least.
     let duration = duration.max(0.04);
-    Ok((Animation::new(duration, tracks, impacts), extent))
+    Ok((Animation::new(duration, tracks, impacts).with_contacts(in_order(contacts)), extent))
 }
 
 /// The motions of one die, body `body` of its world, as pieces, with the orientation of its pips.

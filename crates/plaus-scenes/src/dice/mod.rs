@@ -241,6 +241,9 @@ const COLUMNS: [(&str, &str, Role); 13] = [
 ];
 
 impl Scene for Dice {
+    const NUMBERED: &'static str = "die";
+    const WHOLE: &'static [&'static str] = &["face", "impacts"];
+
     const ADAPTS: bool = true;
 
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {

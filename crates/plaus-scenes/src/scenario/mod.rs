@@ -15,7 +15,7 @@ pub use keys::{KeyDoc, explain, keys, template};
 pub use nearest::nearest;
 pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};
-pub use schema::schema;
+pub use schema::{SCHEMA_FILE, SCHEMA_ID, published_schema, schema};
 
 use crate::registry::{Visitor, World};
 use crate::rules::Rules;

@@ -18,6 +18,47 @@ pub fn schema() -> Value {
     schema.to_value()
 }
 
+/// Name of the schema of this version's scenario files, and of the file that `plaus new` writes it to.
+pub const SCHEMA_ID: &str = concat!("urn:plaus:scenario:", env!("CARGO_PKG_VERSION"));
+/// See [`SCHEMA_ID`].
+pub const SCHEMA_FILE: &str = "plaus.schema.json";
+
+/// [`schema`] as editors and validators get it: with its name, and with nothing that JSON Schema does not define,
+/// which strict validators refuse. Units are
+/// said in words.
+#[must_use]
+pub fn published_schema() -> Value {
+    let mut schema = schema();
+    plain(&mut schema);
+    if let Some(root) = schema.as_object_mut() {
+        root.insert("$id".into(), SCHEMA_ID.into());
+    }
+    schema
+}
+
+/// Leaves out formats and keywords that only we know.
+fn plain(value: &mut Value) {
+    match value {
+        Value::Object(object) => {
+            // Of a schema, not of a property that happens to be called so.
+            if object.get("format").is_some_and(Value::is_string) {
+                object.remove("format");
+            }
+            if let Some(unit) = object.remove("x-unit") {
+                let meaning = object.get("description").and_then(Value::as_str).unwrap_or_default();
+                let words = format!("{meaning} Unit: {}.", unit.as_str().unwrap_or_default());
+                object.insert("description".into(), words.trim_start().into());
+            }
+            if let Some(example) = object.remove("x-example") {
+                object.insert("examples".into(), vec![example].into());
+            }
+            object.values_mut().for_each(plain);
+        }
+        Value::Array(items) => items.iter_mut().for_each(plain),
+        _ => {}
+    }
+}
+
 /// Makes every part of a schema as [`schema`] says.
 struct ForEditors;
 

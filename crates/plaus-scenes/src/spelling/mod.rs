@@ -194,6 +194,9 @@ impl Goal for Spelling {
 }
 
 impl Scene for Spelling {
+    const NUMBERED: &'static str = "ball";
+    const WHOLE: &'static [&'static str] = &["k", "active", "bin"];
+
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         let weights = match self.config.moves {
             Moves::Paper => Weights::paper(),

@@ -1,18 +1,18 @@
 //! Animations of samples, as files.
 
-use super::{Args, Format};
+use super::Args;
 use crate::label;
-use plaus_export::{Clip, Cut, ExportError, Label, glb, ours, table, usda};
+use plaus_export::{Clip, Cut, ExportError, Exporter, Label, glb, table};
 use plaus_run::export::output;
-use plaus_run::replay::{Replay, replay_each};
+use plaus_run::replay::{Replay, replay_each_until};
 use plaus_run::{Confirmation, Error, RunOf, SampleId, solutions};
 use plaus_scenes::Scene;
 use serde_json::{Value, json};
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Samples that are held in memory at a time while a table is written.
+/// Samples that are held in memory at a time.
 const AT_A_TIME: usize = 64;
 /// What a folder of animations has; only such folders are replaced.
 const INDEX: &str = "plaus-export.json";
@@ -23,11 +23,12 @@ const FPS: f64 = 60.0;
 pub(super) struct Animations<'a, S: Scene> {
     run: &'a RunOf<'a, S>,
     args: &'a Args,
+    format: &'static dyn Exporter,
     samples: Vec<SampleId>,
 }
 
 impl<'a, S: Scene> Animations<'a, S> {
-    pub(super) fn new(run: &'a RunOf<'a, S>, args: &'a Args) -> Result<Self, Error> {
+    pub(super) fn new(run: &'a RunOf<'a, S>, args: &'a Args, format: &'static dyn Exporter) -> Result<Self, Error> {
         let samples = if args.all_distinct {
             solutions::distinct(run)?.iter().map(|solution| solution.sample).collect()
         } else if args.confirmed {
@@ -43,75 +44,75 @@ impl<'a, S: Scene> Animations<'a, S> {
             };
             return Err(Error::Request(none.to_owned()));
         }
-        Ok(Self { run, args, samples })
+        Ok(Self { run, args, format, samples })
     }
 
     pub(super) fn write(&self) -> Result<(), Error> {
-        let out = self.args.out.as_path();
+        let (out, force) = (self.args.path(), self.args.force);
         let one = !self.args.all_distinct && !self.args.confirmed && self.samples.len() == 1;
-        match self.args.format {
-            Format::Poses | Format::Events if out == Path::new("-") => {
-                let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
-                self.table(&mut out, false)?;
-                out.flush().map_err(Error::Output)
+        if out == Path::new("-") {
+            if !self.format.is_table() {
+                return Err(Error::Request("animations are files: name one by --out PATH".to_owned()));
             }
-            Format::Poses | Format::Events => {
-                let json = self.args.format == Format::Events && out.extension().is_some_and(|end| end == "json");
-                let start = if json { "{\"impacts\":".to_owned() } else { self.head() };
-                let is_ours = |path: &Path| ours::begins_with(path, start.as_bytes());
-                output::file(out, self.args.force, is_ours, |out| self.table(out, json))
-            }
-            _ if out == Path::new("-") => {
-                Err(Error::Request("animations are files: name one by --out PATH".to_owned()))
-            }
-            Format::Usda if one => output::file(out, self.args.force, ours::is_usda, |out| self.single(out)),
-            _ if one => {
-                output::file(out, self.args.force, ours::is_glb, |out| self.single(out))?;
-                self.sidecar(out)
-            }
-            _ => output::folder(out, self.args.force, |path| path.join(INDEX).is_file(), |folder| self.fill(folder)),
+            let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
+            self.all(Path::new("-"), &mut out)?;
+            return out.flush().map_err(Error::Output);
         }
+        if one || self.args.into.is_some() || self.format.is_table() {
+            output::file(out, force, |path| self.format.is_ours(path), |file| self.all(out, file))?;
+            return self.beside(out);
+        }
+        output::folder(out, force, |path| path.join(INDEX).is_file(), |folder| self.fill(folder))
     }
 
-    fn head(&self) -> String {
-        format!("chain,draw,{}", if self.args.format == Format::Poses { table::POSES } else { table::EVENTS })
+    /// All samples as one file.
+    fn all(&self, path: &Path, out: &mut dyn Write) -> Result<(), Error> {
+        let mut collection = self.format.begin(path);
+        for samples in self.samples.chunks(AT_A_TIME) {
+            for replay in replay_each_until(self.run, samples, self.until(), |replay| self.heard(replay))? {
+                self.clip(&replay, |clip| collection.add(clip, out))?;
+            }
+        }
+        collection.finish(out).map_err(refused)
     }
 
-    fn cut(&self, replay: &Replay) -> Result<Cut, Error> {
-        Cut::new(self.args.fps.unwrap_or(FPS), self.args.time_range, &replay.animation).map_err(refused)
+    fn until(&self) -> plaus_scenes::Until {
+        self.args.motion.until.unwrap_or_default()
     }
 
-    /// The bytes of one animation.
-    fn bytes(&self, replay: &Replay) -> Result<Vec<u8>, Error> {
-        let cut = self.cut(replay)?;
+    /// The same with the impacts that are asked for.
+    fn heard(&self, mut replay: Replay) -> Replay {
+        let motion = &self.args.motion;
+        if motion.min_impulse.is_some() || motion.merge.is_some() {
+            let impacts = &replay.animation.impacts;
+            replay.animation.impacts =
+                table::fewer(impacts, motion.min_impulse.unwrap_or(0.0), motion.merge.unwrap_or(0.0));
+        }
+        replay
+    }
+
+    /// Hands a sample to `make` as it is to be written.
+    fn clip<T>(&self, replay: &Replay, make: impl FnOnce(&Clip<'_>) -> Result<T, ExportError>) -> Result<T, Error> {
+        let motion = &self.args.motion;
+        let cut = Cut::new(motion.fps.unwrap_or(FPS), motion.time_range, &replay.animation).map_err(refused)?;
         let label = self.label(replay, &cut);
-        let clip = Clip { animation: &replay.animation, label: &label, cut };
-        match self.args.format {
-            Format::Usda => Ok(usda::to_string(&clip).into_bytes()),
-            _ => glb::to_vec(&clip).map_err(refused),
-        }
+        make(&Clip::new(&replay.animation, &label, cut).styled(motion.style())).map_err(refused)
     }
 
     fn label(&self, replay: &Replay, cut: &Cut) -> Label {
         let mut label = label::of(self.run.run().manifest(), replay);
         label.facts.insert("fps".to_owned(), cut.fps().into());
         label.facts.insert("time_range".to_owned(), json!([cut.from(), cut.to()]));
+        // What a scene's frame range is to be set to, where a program does not do that.
+        label.facts.insert("last_frame".to_owned(), json!((cut.length() * cut.fps()).ceil()));
         label
     }
 
-    fn single(&self, out: &mut dyn Write) -> Result<(), Error> {
-        for bytes in replay_each(self.run, &self.samples, |replay| self.bytes(&replay))? {
-            out.write_all(&bytes?).map_err(Error::Output)?;
-        }
-        Ok(())
-    }
-
-    /// A Godot sidecar, where there is none: Godot writes its own notes into it.
-    fn sidecar(&self, glb: &Path) -> Result<(), Error> {
-        let name = glb.file_name().unwrap_or_default().to_string_lossy();
-        let path = glb.with_file_name(format!("{name}.import"));
-        let text = glb::godot_import(&name, self.args.fps.unwrap_or(FPS));
-        match fs::File::create_new(&path) {
+    /// What goes beside a file, where there is none: programs write their own notes into it.
+    fn beside(&self, path: &Path) -> Result<(), Error> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let Some((end, text)) = self.format.beside(&name, self.args.motion.fps.unwrap_or(FPS)) else { return Ok(()) };
+        match File::create_new(path.with_file_name(format!("{name}.{end}"))) {
             Ok(mut file) => file.write_all(text.as_bytes()).map_err(Error::Output),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
             Err(error) => Err(Error::Output(error)),
@@ -120,55 +121,36 @@ impl<'a, S: Scene> Animations<'a, S> {
 
     /// A folder of animations, one a sample, and a list of them.
     fn fill(&self, folder: &Path) -> Result<(), Error> {
-        let end = if self.args.format == Format::Usda { "usda" } else { "glb" };
-        let made = replay_each(self.run, &self.samples, |replay| -> Result<Value, Error> {
-            let file = format!("sample-{}-{}.{end}", replay.sample.chain, replay.sample.draw);
-            fs::write(folder.join(&file), self.bytes(&replay)?).map_err(Error::Output)?;
-            if self.args.format == Format::Glb {
-                self.sidecar(&folder.join(&file))?;
-            }
-            Ok(json!({"file": file, "facts": self.label(&replay, &self.cut(&replay)?).facts}))
-        })?;
-        let list = made.into_iter().collect::<Result<Vec<_>, _>>()?;
+        let mut list = Vec::with_capacity(self.samples.len());
+        for samples in self.samples.chunks(AT_A_TIME) {
+            let made = replay_each_until(self.run, samples, self.until(), |replay| self.file(folder, &replay))?;
+            list.extend(made.into_iter().collect::<Result<Vec<_>, _>>()?);
+        }
         let index = json!({"plaus": glb::GENERATOR, "animations": list});
         fs::write(folder.join(INDEX), format!("{index:#}\n")).map_err(Error::Output)
     }
 
-    /// All samples as one table.
-    fn table(&self, out: &mut dyn Write, json: bool) -> Result<(), Error> {
-        if json {
-            write!(out, "{{\"impacts\":[").map_err(Error::Output)?;
-        } else {
-            writeln!(out, "{}", self.head()).map_err(Error::Output)?;
-        }
-        for (number, samples) in self.samples.chunks(AT_A_TIME).enumerate() {
-            let rows = replay_each(self.run, samples, |replay| self.rows(&replay, json))?;
-            for (index, rows) in rows.into_iter().enumerate() {
-                let comma = if json && number + index > 0 { ",\n" } else { "" };
-                let rows = rows?;
-                out.write_all(comma.as_bytes()).and_then(|()| out.write_all(&rows)).map_err(Error::Output)?;
-            }
-        }
-        if json { writeln!(out, "]}}").map_err(Error::Output) } else { Ok(()) }
-    }
-
-    fn rows(&self, replay: &Replay, json: bool) -> Result<Vec<u8>, Error> {
-        let label = Label::default();
-        let clip = Clip { animation: &replay.animation, label: &label, cut: self.cut(replay)? };
-        let SampleId { chain, draw } = replay.sample;
-        let (prefix, mut rows) = (format!("{chain},{draw},"), Vec::new());
-        if json {
-            let sample = json!({"chain": chain, "draw": draw, "impacts": table::events_to_json(&clip)});
-            rows = sample.to_string().into_bytes();
-        } else if self.args.format == Format::Poses {
-            table::write_poses(&mut rows, &clip, &prefix).map_err(Error::Output)?;
-        } else {
-            table::write_events(&mut rows, &clip, &prefix).map_err(Error::Output)?;
-        }
-        Ok(rows)
+    /// One animation of a folder; what the list says of it.
+    fn file(&self, folder: &Path, replay: &Replay) -> Result<Value, Error> {
+        let (scene, sample) = (&self.run.run().manifest().scene, replay.sample);
+        let name = format!("{scene}-{}-{}.{}", sample.chain, sample.draw, self.format.row().ending);
+        let path = folder.join(&name);
+        let mut out = BufWriter::new(File::create_new(&path).map_err(Error::Output)?);
+        let facts = self.clip(replay, |clip| {
+            let mut collection = self.format.begin(&path);
+            collection.add(clip, &mut out)?;
+            collection.finish(&mut out)?;
+            Ok(clip.label.facts.clone())
+        })?;
+        out.flush().map_err(Error::Output)?;
+        self.beside(&path)?;
+        Ok(json!({"file": name, "facts": facts}))
     }
 }
 
 fn refused(error: ExportError) -> Error {
-    Error::Request(error.to_string())
+    match error {
+        ExportError::Output(error) => Error::Output(error),
+        other => Error::Request(other.to_string()),
+    }
 }

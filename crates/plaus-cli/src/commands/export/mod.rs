@@ -1,41 +1,34 @@
 //! `plaus export`
 
 mod animations;
+mod formats;
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use animations::Animations;
+use formats::Format;
+use plaus_export::{Between, Style, Up};
 use plaus_run::export::{csv, output, zarr};
 use plaus_run::{Error, Folder, Run, RunOf, RunVisitor, SampleId};
-use plaus_scenes::Scene;
+use plaus_scenes::{Scene, Until};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// Which run, in which format, where to.
 #[derive(clap::Args)]
-#[command(
-    after_long_help = "csv: one row per chain and draw of the sampling phase, with columns chain, draw (from 0), log_p, \
-    satisfied (true or false), then one per scalar of the scene. \
-    For ball2d: rest_x in ball diameters D, theta_1 ... in degrees.\n\
-    zarr: a Zarr v3 folder for ArviZ: az.from_zarr(PATH) (1.x), or \
-    az.from_datatree(xarray.open_datatree(PATH, engine=\"zarr\")) (0.23).\n\
-    glb: animated glTF 2.0 with a key at every impact, and beside it PATH.import for Godot. usda: USD as text. \
-    One sample makes a file, several make a folder.\n\
-    poses: one row per sample, body and key: chain, draw, t (s), body, x, y, z (m, y up), a unit quaternion, \
-    and whether it is at an impact.\n\
-    events: one row per impact: chain, draw, t (s), the pair, point (m), normal, speed of approach (m/s), \
-    impulse (N s; 0 where the scene has no masses). As JSON where PATH ends in .json.\n\
-    Times count from the beginning of --time-range."
-)]
+#[command(after_long_help = formats::help())]
 pub(crate) struct Args {
     /// Folder of the run
     run: PathBuf,
     /// What to write
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = formats::parser())]
     format: Format,
     /// File or folder to make; `-` writes csv, poses and events to standard output
-    #[arg(long, alias = "output", value_name = "PATH")]
-    out: PathBuf,
+    #[arg(long, alias = "output", value_name = "PATH", required_unless_present = "into")]
+    out: Option<PathBuf>,
+    /// Write all samples into this one file: clips of a GLB, variants of a USD prim
+    #[arg(long, value_name = "FILE", conflicts_with = "out")]
+    into: Option<PathBuf>,
     /// A sample to animate, its chain and its draw, as in the table, e.g. 0:17; may be given several times
     #[arg(long, value_name = "CHAIN:DRAW")]
     sample: Vec<SampleId>,
@@ -45,12 +38,8 @@ pub(crate) struct Args {
     /// Animate one sample of each distinct solution that `--confirm` found to hold
     #[arg(long, conflicts_with_all = ["sample", "all_distinct"])]
     confirmed: bool,
-    /// Keys per second, besides those at every impact [default: 60]
-    #[arg(long)]
-    fps: Option<f64>,
-    /// Animate only from FROM to TO, in seconds
-    #[arg(long, value_name = "FROM:TO", value_parser = range)]
-    time_range: Option<(f64, f64)>,
+    #[command(flatten)]
+    motion: Motion,
     /// Replace what is there, if such an export made it
     #[arg(long)]
     force: bool,
@@ -59,21 +48,56 @@ pub(crate) struct Args {
     salvage: bool,
 }
 
-/// A format of export.
+/// How motion is written.
+#[derive(clap::Args)]
+struct Motion {
+    /// Frames per second: where keys lie if they may, besides those at every impact [default: 60]
+    #[arg(long)]
+    fps: Option<f64>,
+    /// Animate only from FROM to TO, in seconds
+    #[arg(long, value_name = "FROM:TO", value_parser = range)]
+    time_range: Option<(f64, f64)>,
+    /// Where an animation ends: `rest`, when all is at rest; `decided`, when it is certain whether it satisfies; or
+    /// after a time, e.g. `5s` [default: rest]
+    #[arg(long, value_name = "rest|decided|SECONDSs", value_parser = until)]
+    until: Option<Until>,
+    /// glb: straight lines between keys, right in every program, or cubic splines that are exact where a program
+    /// follows glTF [default: linear]
+    #[arg(long, value_enum)]
+    keys: Option<Keys>,
+    /// usda: time codes per second, the frame rate of the scene that it is opened in [default: 24]
+    #[arg(long, value_name = "RATE")]
+    time_codes: Option<f64>,
+    /// glb and usda: the axis that points up [default: y]
+    #[arg(long, value_enum)]
+    up: Option<UpAxis>,
+    /// glb and usda: units per metre, e.g. 100 for centimetres [default: 1]
+    #[arg(long, value_name = "UNITS")]
+    scale: Option<f64>,
+    /// events and wav: leave out impacts with less impulse, in N s
+    #[arg(long, value_name = "NS")]
+    min_impulse: Option<f64>,
+    /// events and wav: make one of the impacts of a pair that follow the first within this time, e.g. 2ms
+    #[arg(long, value_name = "TIME", value_parser = seconds)]
+    merge: Option<f64>,
+}
+
+/// What is between keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Format {
-    /// A table of draws.
-    Csv,
-    /// A folder of draws for ArviZ.
-    Zarr,
-    /// Animated glTF.
-    Glb,
-    /// Animated USD.
-    Usda,
-    /// A table of poses.
-    Poses,
-    /// A list of impacts.
-    Events,
+enum Keys {
+    /// Cubic splines with exact tangents.
+    Exact,
+    /// Straight lines.
+    Linear,
+}
+
+/// The axis that points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum UpAxis {
+    /// glTF, Godot, Unity.
+    Y,
+    /// Unreal, robotics.
+    Z,
 }
 
 fn range(text: &str) -> Result<(f64, f64), String> {
@@ -81,41 +105,88 @@ fn range(text: &str) -> Result<(f64, f64), String> {
     parts.ok_or_else(|| format!("`{text}` is no range: write FROM:TO in seconds, e.g. 0.5:2"))
 }
 
-impl Format {
-    fn is_animation(self) -> bool {
-        !matches!(self, Self::Csv | Self::Zarr)
+/// A time above 0 with its unit.
+fn seconds(text: &str) -> Result<f64, String> {
+    let units = [("ms", 1e-3), ("s", 1.0)];
+    let number = units.iter().find_map(|(unit, size)| Some(text.strip_suffix(unit)?.parse::<f64>().ok()? * size));
+    let wrong = || format!("`{text}` is no time: write a number above 0 with its unit, e.g. 2ms or 5s");
+    number.filter(|time| *time > 0.0 && time.is_finite()).ok_or_else(wrong)
+}
+
+/// Where an animation ends.
+pub(super) fn until(text: &str) -> Result<Until, String> {
+    match text {
+        "rest" => Ok(Until::Rest),
+        "decided" => Ok(Until::Decided),
+        _ => seconds(text)
+            .ok()
+            .filter(|time| *time <= LONGEST)
+            .map(Until::Time)
+            .ok_or_else(|| format!("`{text}`: write rest, decided, or a time of at most {LONGEST} s such as 5s")),
+    }
+}
+
+/// Longest clip in s.
+const LONGEST: f64 = 3600.0;
+
+impl Motion {
+    fn style(&self) -> Style {
+        let usual = Style::default();
+        Style {
+            keys: if self.keys == Some(Keys::Exact) { Between::Exact } else { Between::Linear },
+            time_codes: self.time_codes.unwrap_or(usual.time_codes),
+            up: if self.up == Some(UpAxis::Z) { Up::Z } else { Up::Y },
+            scale: self.scale.unwrap_or(usual.scale),
+        }
     }
 
-    /// What a program would take a file of this name for, and this format is not.
-    fn contradicts(self, out: &Path) -> Option<(String, &'static str)> {
-        let end = out.extension()?.to_str()?.to_ascii_lowercase();
-        let (holds, fits) = match end.as_str() {
-            "glb" => ("binary glTF, which --format glb writes", self == Self::Glb),
-            "gltf" => ("glTF as text: --format glb writes it as one binary file, .glb", false),
-            "usda" => ("USD as text, which --format usda writes", self == Self::Usda),
-            "usd" | "usdc" | "usdz" => ("USD in another form: --format usda writes it as text, .usda", false),
-            "csv" => ("a table: --format csv, poses or events", !matches!(self, Self::Zarr | Self::Glb | Self::Usda)),
-            "json" => ("JSON, which --format events writes", self == Self::Events),
-            "zarr" => ("draws for ArviZ, which --format zarr writes", self == Self::Zarr),
-            _ => return None,
-        };
-        (!fits).then_some((end, holds))
+    /// Flags that were given, and the formats that know them; none: all formats of animations.
+    fn given(&self) -> Vec<(&'static str, &'static [&'static str])> {
+        let layers: &[&str] = &["glb", "usda"];
+        let all = [
+            (self.fps.is_some(), "--fps", &[][..]),
+            (self.time_range.is_some(), "--time-range", &[]),
+            (self.until.is_some(), "--until", &[]),
+            (self.keys.is_some(), "--keys", &["glb"]),
+            (self.time_codes.is_some(), "--time-codes", &["usda"]),
+            (self.up.is_some(), "--up", layers),
+            (self.scale.is_some(), "--scale", layers),
+            (self.min_impulse.is_some(), "--min-impulse", &["events", "wav"]),
+            (self.merge.is_some(), "--merge", &["events", "wav"]),
+        ];
+        all.into_iter().filter(|(given, ..)| *given).map(|(_, flag, formats)| (flag, formats)).collect()
+    }
+
+    /// Numbers that can be meant.
+    fn check(&self) -> Result<(), Failure> {
+        for (flag, value, low, high) in [
+            ("--time-codes", self.time_codes, 1e-3, 1e6),
+            ("--scale", self.scale, 1e-6, 1e6),
+            ("--min-impulse", self.min_impulse, 0.0, f64::MAX),
+        ] {
+            if let Some(value) = value.filter(|value| !(low..=high).contains(value)) {
+                let most = if high == f64::MAX { String::new() } else { format!(" and at most {high}") };
+                return Err(Failure::Message(format!("{flag} {value}: must be at least {low}{most}")));
+            }
+        }
+        Ok(())
     }
 }
 
 impl RunVisitor for &Args {
     type Output = Result<(), Error>;
     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        match (self.format, self.out == Path::new("-")) {
+        let out = self.path();
+        match (self.format, out == Path::new("-")) {
             (Format::Csv, true) => {
                 let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
                 csv::write(&run, &mut out)?;
                 out.flush().map_err(Error::Output)
             }
-            (Format::Csv, false) => output::file(&self.out, self.force, csv::is_ours, |out| csv::write(&run, out)),
+            (Format::Csv, false) => output::file(out, self.force, csv::is_ours, |out| csv::write(&run, out)),
             (Format::Zarr, true) => Err(Error::Request("a Zarr export is a folder: name one by --out PATH".to_owned())),
-            (Format::Zarr, false) => output::folder(&self.out, self.force, zarr::is_ours, |out| zarr::write(&run, out)),
-            _ => Animations::new(&run, self)?.write(),
+            (Format::Zarr, false) => output::folder(out, self.force, zarr::is_ours, |out| zarr::write(&run, out)),
+            (Format::Animation(format), _) => Animations::new(&run, self, format)?.write(),
         }
     }
 }
@@ -134,31 +205,66 @@ impl Args {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         let written = run.visit(&self)?;
-        let out = self.out.display().to_string();
+        let out = self.path().display().to_string();
         written.map_err(|error| Failure::from(error).about(&out))?;
-        if self.out != Path::new("-") {
+        if self.path() != Path::new("-") {
             console::note_line(&format!("wrote {out}"));
         }
         Ok(Outcome::Done)
     }
 
+    /// The file or folder to make.
+    fn path(&self) -> &Path {
+        self.into.as_deref().or(self.out.as_deref()).unwrap_or(Path::new("-"))
+    }
+
     /// Whether the flags go together.
     fn check(&self) -> Result<(), Failure> {
         let chosen = !self.sample.is_empty() || self.all_distinct || self.confirmed;
-        let timed = self.fps.is_some() || self.time_range.is_some();
-        if self.format.is_animation() && !chosen {
+        let given = self.motion.given();
+        let Format::Animation(format) = self.format else {
+            if chosen || self.into.is_some() || !given.is_empty() {
+                let flags: Vec<&str> = given.iter().map(|(flag, _)| *flag).collect();
+                let message = format!(
+                    "--sample, --all-distinct, --confirmed and {} go with animations: csv and zarr hold all draws",
+                    if flags.is_empty() { "--into".to_owned() } else { flags.join(", ") }
+                );
+                return Err(Failure::Message(message));
+            }
+            return self.check_name(if matches!(self.format, Format::Csv) { "csv" } else { "zarr" });
+        };
+        if !chosen {
             let message = "an animation needs a sample: --sample CHAIN:DRAW, --all-distinct, or --confirmed";
             return Err(Failure::Message(message.to_owned()));
         }
-        if let Some((end, holds)) = self.format.contradicts(&self.out) {
-            let message =
-                format!("{}: a file that ends in .{end} holds {holds}; choose another name", self.out.display());
-            return Err(Failure::Message(message));
+        let row = format.row();
+        for (flag, formats) in given {
+            if !formats.is_empty() && !formats.contains(&row.name) {
+                let message = format!("{flag} goes with {}, not with {}", formats.join(" and "), row.name);
+                return Err(Failure::Message(message));
+            }
         }
-        if !self.format.is_animation() && (chosen || timed) {
-            let message = "--sample, --all-distinct, --confirmed, --fps and --time-range go with glb, usda, poses and events: csv and zarr hold all draws";
-            return Err(Failure::Message(message.to_owned()));
+        self.motion.check()?;
+        self.check_name(row.name)
+    }
+
+    /// A name that ends as files of another format do is a slip.
+    fn check_name(&self, name: &str) -> Result<(), Failure> {
+        let path = self.path();
+        let end = path.extension().map(|end| end.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let known = ["glb", "gltf", "usda", "usd", "usdc", "usdz", "csv", "json", "zarr"];
+        let fits = match name {
+            "events" => ["csv", "json"].contains(&end.as_str()),
+            _ => formats::all().iter().any(|(_, row)| row.name == name && row.ending == end),
+        };
+        if fits || !known.contains(&end.as_str()) {
+            return Ok(());
         }
-        Ok(())
+        let row = formats::all().into_iter().find(|(_, row)| row.name == name);
+        let ending = row.map_or("", |(_, row)| row.ending);
+        let right = path.with_extension(ending);
+        let message =
+            format!("{}: --format {name} does not make .{end}; did you mean {}?", path.display(), right.display());
+        Err(Failure::Message(message))
     }
 }

@@ -37,8 +37,8 @@ pub struct Piece {
 
 /// Turning in closed form: `R(t) = Rot(spin·t) · R(0) · Rot(e₃, own·t)`.
 ///
-/// With `own` 0 that is any body at constant angular velocity; with it, the free symmetric top, which precesses about its angular momentum while it spins
-/// about its own third axis.
+/// With `own` 0 that is any body at constant angular velocity; with it, the free symmetric top, which precesses about
+/// its angular momentum while it spins about its own third axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Turn {
     /// Orientation at the piece's start, from the body's frame to the world's.
@@ -56,8 +56,8 @@ impl Turn {
         Self { orientation, ..Self::default() }
     }
 
-    /// The same orientation, but at that constant angular velocity, of all that reach `end` after `t` > 0 seconds, which is nearest to `spin`: where torques
-    /// act, the mean over the piece, so that a piece ends as the next begins.
+    /// The same orientation, but at that constant angular velocity, of all that reach `end` after `t` > 0 seconds,
+    /// which is nearest to `spin`: where torques act, the mean over the piece, so that a piece ends as the next begins.
     #[must_use]
     pub fn reaching(self, end: DQuat, t: f64) -> Self {
         let way = end * self.orientation.conjugate();
@@ -96,6 +96,13 @@ impl Piece {
     #[must_use]
     pub fn resting(start: f64, position: DVec3) -> Self {
         Self::ballistic(start, position, DVec3::ZERO, DVec3::ZERO)
+    }
+
+    /// Whether nothing moves.
+    #[must_use]
+    pub fn rests(&self) -> bool {
+        let Self { velocity, acceleration, turn, .. } = self;
+        *velocity == DVec3::ZERO && *acceleration == DVec3::ZERO && turn.spin == DVec3::ZERO && turn.own == 0.0
     }
 
     /// The same, turning.
@@ -163,7 +170,8 @@ mod tests {
 
     #[test]
     fn a_piece_ends_in_the_orientation_asked_for_after_as_many_turns_as_it_had() {
-        // Slowed down from 38 rad/s about one axis and pushed about another: more than half a turn, so the short way round would be the wrong one.
+        // Slowed down from 38 rad/s about one axis and pushed about another: more than half a turn, so the short way
+        // round would be the wrong one.
         let turn = Turn { orientation: DQuat::from_rotation_y(0.3), spin: DVec3::new(38.0, 2.0, -1.0), own: 0.0 };
         let end = DQuat::from_scaled_axis(DVec3::new(36.5, 2.5, -1.0) * 0.14) * turn.orientation;
         for end in [end, -end] {
@@ -177,7 +185,8 @@ mod tests {
 
     #[test]
     fn a_symmetric_top_turns_about_both_axes() {
-        // The body's third axis lies along world x; it precesses a quarter turn about y and spins half a turn about itself.
+        // The body's third axis lies along world x; it precesses a quarter turn about y and spins half a turn about
+        // itself.
         let lying = DQuat::from_rotation_y(FRAC_PI_2);
         let turn = Turn { orientation: lying, spin: DVec3::Y * FRAC_PI_2, own: PI };
         let after = turn.after(1.0);

@@ -31,7 +31,8 @@ pub enum Shape {
     },
     /// A body of revolution about its third axis: a bowling pin.
     Revolution {
-        /// Points (distance from the axis, height along it) from the lowest height to the highest; the body is closed at both ends.
+        /// Points (distance from the axis, height along it) from the lowest height to the highest; the body is closed
+        /// at both ends.
         profile: Vec<[f64; 2]>,
         /// Painted rings.
         stripes: Vec<Stripe>,
@@ -60,6 +61,21 @@ impl Shape {
     #[must_use]
     pub fn die(edge: f64) -> Self {
         Self::Cuboid { half: DVec3::splat(0.5 * edge), pips: Some([3, 4, 2, 5, 1, 6]) }
+    }
+
+    /// The point of the body that lies farthest in a direction, in the body's frame.
+    #[must_use]
+    pub fn support(&self, direction: DVec3) -> DVec3 {
+        let across = direction.with_z(0.0).normalize_or_zero();
+        match self {
+            Self::Sphere { radius, .. } => direction.normalize_or_zero() * *radius,
+            Self::Disc { radius, thickness } => across * *radius + DVec3::Z * (0.5 * thickness).copysign(direction.z),
+            Self::Cuboid { half, .. } => *half * direction.signum(),
+            Self::Revolution { profile, .. } => {
+                let points = profile.iter().map(|&[r, h]| across * r + DVec3::Z * h);
+                points.max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction))).unwrap_or_default()
+            }
+        }
     }
 
     /// Radius of the smallest ball about the origin that holds the body.

@@ -1,0 +1,226 @@
+//! Several clips in one file: each an animation, with bodies, scenery and materials that they share.
+//!
+//! A body of one name is one node in all clips that show it alike; balls that differ in their radius are one node of
+//! different scale. What is not in a clip has the scale 0 in it, as glTF recommends for what is hidden. The document
+//! shows the first clip; an animation names only nodes that differ from that, so that a file grows with its clips, not
+//! with their square.
+
+use super::file::{Document, extras};
+use super::materials::unique;
+use super::motion::{self, Channels};
+use crate::clip::{Clip, ExportError, Label, Style, Up};
+use crate::mesh;
+use gltf_json::animation::Property;
+use gltf_json::extras::Extras;
+use gltf_json::scene::UnitQuaternion;
+use gltf_json::{Index, Mesh, Node, Scene};
+use plaus_animation::{Look, Prop, Shape, Track};
+use serde_json::{Map, Value, json};
+
+/// Makes a GLB file of one clip or of several.
+///
+/// ```
+/// # use glam::DVec3;
+/// # use plaus_animation::{Animation, Look, Piece, Shape, Track};
+/// use plaus_export::{Clip, Cut, Label, glb};
+///
+/// # let fall = Piece::ballistic(0.0, DVec3::Y, DVec3::ZERO, DVec3::new(0.0, -9.81, 0.0));
+/// # let animation = Animation::new(0.4, vec![Track::new("ball_0", Shape::ball(0.05), Look::nth(0), vec![fall])],
+/// vec![]);
+/// let mut writer = glb::Writer::default();
+/// for name in ["first", "second"] {
+///     writer.add(&Clip::new(&animation, &Label::new(name), Cut::new(60.0, None, &animation)?))?;
+/// }
+/// let bytes = writer.finish()?;
+/// assert_eq!(&bytes[..4], b"glTF");
+/// # Ok::<(), plaus_export::ExportError>(())
+/// ```
+#[derive(Default)]
+pub struct Writer {
+    document: Document,
+    props: Vec<Thing<Prop>>,
+    bodies: Vec<Thing<Body>>,
+    meshes: Vec<(Shape, Look, Option<Index<Mesh>>)>,
+    clips: Vec<Channels>,
+    labels: Vec<Label>,
+    style: Style,
+}
+
+/// A body as it is drawn.
+struct Body {
+    name: String,
+    shape: Shape,
+    look: Look,
+    /// Whether it turns in any clip.
+    turns: bool,
+}
+
+/// A node, and its scale in each clip; clips that it is not in have 0.
+struct Thing<T> {
+    what: T,
+    node: Index<Node>,
+    scales: Vec<f32>,
+}
+
+impl<T> Thing<T> {
+    fn shown(&mut self, clip: usize, scale: f32) {
+        self.scales.resize(clip, 0.0);
+        self.scales.push(scale);
+    }
+}
+
+impl Body {
+    /// The scale at which this shows a body, if it can.
+    fn scale(&self, track: &Track) -> Option<f64> {
+        if self.name != track.name || self.look != track.look {
+            return None;
+        }
+        match (&self.shape, &track.shape) {
+            (a, b) if a == b => Some(1.0),
+            (Shape::Sphere { radius: a, holes: c }, Shape::Sphere { radius: b, holes: d }) if c == d => Some(b / a),
+            _ => None,
+        }
+    }
+}
+
+impl Writer {
+    /// Adds a clip.
+    ///
+    /// # Errors
+    /// [`ExportError::Json`] where its facts cannot be written.
+    pub fn add(&mut self, clip: &Clip<'_>) -> Result<(), ExportError> {
+        let number = self.clips.len();
+        self.style = clip.style;
+        for prop in &clip.animation.scenery {
+            let known = self.props.iter().position(|thing| thing.what == *prop);
+            let place = known.unwrap_or_else(|| self.new_prop(prop, &clip.label.name));
+            self.props[place].shown(number, 1.0);
+        }
+        let mut channels = Channels::new(&clip.label.name, extras(&clip.label.facts)?);
+        for track in &clip.animation.tracks {
+            let known = self.bodies.iter().enumerate().find_map(|(place, thing)| {
+                let free = thing.scales.len() <= number;
+                thing.what.scale(track).filter(|_| free).map(|scale| (place, scale))
+            });
+            let (place, scale) = known.unwrap_or_else(|| (self.new_body(track, clip), 1.0));
+            let body = &mut self.bodies[place];
+            body.shown(number, scale as f32);
+            body.what.turns |= track.turns();
+            motion::animate(&mut self.document, &mut channels, clip, track, body.node);
+        }
+        self.clips.push(channels);
+        self.labels.push(clip.label.clone());
+        Ok(())
+    }
+
+    fn new_prop(&mut self, prop: &Prop, clip: &str) -> usize {
+        let mesh = self.document.mesh(&prop.name, &[mesh::of_form(&prop.form, prop.look)]);
+        let name = self.node_name(&prop.name, clip);
+        let node = self.document.root.push(Node { mesh, name: Some(name), ..Node::default() });
+        self.props.push(Thing { what: prop.clone(), node, scales: Vec::new() });
+        self.props.len() - 1
+    }
+
+    fn new_body(&mut self, track: &Track, clip: &Clip<'_>) -> usize {
+        let known = self.meshes.iter().find(|(shape, look, _)| (shape, *look) == (&track.shape, track.look));
+        let mesh = match known {
+            Some(&(_, _, mesh)) => mesh,
+            None => {
+                let mesh = self.document.mesh(&track.name, &mesh::of_shape(&track.shape, track.look));
+                self.meshes.push((track.shape.clone(), track.look, mesh));
+                mesh
+            }
+        };
+        let mut node = motion::node_at(track, clip.cut.from(), mesh);
+        node.name = Some(self.node_name(&track.name, &clip.label.name));
+        let node = self.document.root.push(node);
+        let what = Body { name: track.name.clone(), shape: track.shape.clone(), look: track.look, turns: false };
+        self.bodies.push(Thing { what, node, scales: Vec::new() });
+        self.bodies.len() - 1
+    }
+
+    /// The name of a thing; where another thing has it, with that of its clip.
+    fn node_name(&self, wanted: &str, clip: &str) -> String {
+        let taken = |name: &str| self.document.root.nodes.iter().any(|node| node.name.as_deref() == Some(name));
+        let name = if taken(wanted) { format!("{wanted} {clip}") } else { wanted.to_owned() };
+        unique(&name, " ", taken)
+    }
+
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// [`ExportError::TooLong`] where it would be longer than the format can say.
+    pub fn finish(mut self) -> Result<Vec<u8>, ExportError> {
+        self.show();
+        let things = self.props.iter().map(|thing| thing.node).chain(self.bodies.iter().map(|thing| thing.node));
+        let (children, style) = (things.collect(), self.style);
+        let label = self.common();
+        let facts = extras(&label.facts)?;
+        let root = self.document.root.push(root_node(&label.name, children, &facts, style));
+        let scene = Scene { name: Some(label.name), nodes: vec![root], extensions: None, extras: facts };
+        self.document.root.scene = Some(self.document.root.push(scene));
+        for clip in self.clips {
+            clip.finish(&mut self.document);
+        }
+        self.document.finish()
+    }
+
+    /// Scales where they differ between clips, and orientations where a body turns in one clip and does not in another.
+    fn show(&mut self) {
+        let count = self.clips.len();
+        let nodes = &mut self.document.root.nodes;
+        let (mut shown, mut still) = (Vec::new(), Vec::new());
+        let bodies = self.bodies.iter_mut().map(|thing| (thing.node, &mut thing.scales, thing.what.turns));
+        let props = self.props.iter_mut().map(|thing| (thing.node, &mut thing.scales, false));
+        for (node, scales, turns) in bodies.chain(props) {
+            scales.resize(count, 0.0);
+            if scales.iter().any(|scale| *scale != 1.0) {
+                nodes[node.value()].scale = Some([scales[0]; 3]);
+                // A node that an animation does not name stays as the document has it.
+                let others = scales.iter().enumerate().filter(|(_, scale)| **scale != scales[0]);
+                shown.extend(others.map(|(clip, &scale)| (clip, node, scale)));
+            }
+            if turns {
+                still.push(node);
+            }
+        }
+        for (clip, node, scale) in shown {
+            self.clips[clip].still(&mut self.document, node, Property::Scale, &[scale; 3]);
+        }
+        for (clip, channels) in self.clips.iter_mut().enumerate() {
+            for &node in &still {
+                let shown = self.bodies.iter().any(|thing| thing.node == node && thing.scales[clip] > 0.0);
+                if shown && !channels.turns(node) {
+                    channels.still(&mut self.document, node, Property::Rotation, &[0.0, 0.0, 0.0, 1.0]);
+                }
+            }
+        }
+    }
+
+    /// The label of the file: that of its clip, or what all its clips have in common.
+    fn common(&self) -> Label {
+        let Some((first, others)) = self.labels.split_first() else { return Label::new("plaus") };
+        if others.is_empty() {
+            return first.clone();
+        }
+        let same = |(key, value): &(&String, &Value)| others.iter().all(|label| label.facts.get(*key) == Some(*value));
+        let facts = first.facts.iter().filter(same).map(|(key, value)| (key.clone(), value.clone()));
+        let mut facts: Map<String, Value> = facts.collect();
+        facts.insert("clips".to_owned(), json!(self.labels.len()));
+        let name = facts.get("scene").and_then(Value::as_str).unwrap_or("plaus").to_owned();
+        Label { name, facts }
+    }
+}
+
+/// The node above all others, which turns and scales what is below it as the style says.
+fn root_node(name: &str, children: Vec<Index<Node>>, extras: &Extras, style: Style) -> Node {
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    Node {
+        name: Some(name.to_owned()),
+        children: (!children.is_empty()).then_some(children),
+        extras: extras.clone(),
+        rotation: (style.up == Up::Z).then_some(UnitQuaternion([half, 0.0, 0.0, half])),
+        scale: (style.scale != 1.0).then_some([style.scale as f32; 3]),
+        ..Node::default()
+    }
+}

@@ -1,0 +1,200 @@
+//! As few keys as straight lines need to stay near a motion.
+
+use crate::keys::Key;
+use glam::{DQuat, DVec3};
+use plaus_animation::Track;
+
+/// Farthest that a body's middle may be from a straight line between two keys, in m. Default 2e-4, so that with what
+/// turning and single precision add every point of a body stays within 0.5 mm.
+const OFF: f64 = 2e-4;
+/// The same as a share of the body's reach: small things are looked at from near. Default 0.01.
+const OFF_SHARE: f64 = 0.01;
+/// Farthest that an orientation may be from the one between two keys, in rad, whether a program turns evenly or mixes
+/// the four numbers. Default 5e-4: 0.03°.
+const TURNED: f64 = 5e-4;
+/// Largest turn between two keys, in rad: of that turn, mixing the four numbers is off by [`TURNED`] at most.
+const LARGEST_TURN: f64 = 0.5;
+/// Least time between two keys of a file that Blender may read, in s. It makes one of keys that are less than a
+/// hundredth of a frame apart, with the time of the first and the value of the last; its scenes have 24 frames a
+/// second.
+pub const APART: f64 = 0.0102 / 24.0;
+/// Most keys between two neighbouring candidates: a guard against numbers that make no sense.
+const MOST_PARTS: f64 = 1e4;
+
+/// How far a straight line may be off for a body of that reach, in m.
+#[must_use]
+pub fn tolerance(reach: f64) -> f64 {
+    OFF.min(OFF_SHARE * reach)
+}
+
+/// A key of an orientation.
+pub type TurnKey = (f64, DQuat);
+/// A key of a position.
+pub type PlaceKey = (f64, DVec3);
+
+/// Positions between which straight lines stay within [`tolerance`] of the motion: at both ends, at every impact, and
+/// at as few others as that takes, at frames where possible. Of keys that are less than `apart` s from each other one is
+/// left.
+#[must_use]
+pub fn places(track: &Track, keys: &[Key], apart: f64) -> Vec<PlaceKey> {
+    let most = tolerance(track.shape.reach());
+    let keys = &spaced(keys, apart)[..];
+    let mut rough: Vec<(PlaceKey, bool)> = Vec::with_capacity(keys.len());
+    for (index, key) in keys.iter().enumerate() {
+        rough.push(((key.time, key.position), key.impact));
+        let (Some(next), Some(piece)) = (keys.get(index + 1), track.piece(key.time)) else { continue };
+        // A parabola leaves its chord by an eighth of its acceleration times the square of the time; half of what may
+        // be is left to keys that are left out.
+        let length = next.time - key.time;
+        let parts = (length * (piece.acceleration.length() / (8.0 * 0.5 * most)).sqrt()).ceil().clamp(1.0, MOST_PARTS);
+        rough.extend((1..parts as u64).map(|part| {
+            let time = key.time + length * part as f64 / parts;
+            ((time, piece.position(time)), false)
+        }));
+    }
+    let middles = middles(&rough, |time| track.position(time));
+    let line = |a: &PlaceKey, b: &PlaceKey, time: f64| a.1.lerp(b.1, (time - a.0) / (b.0 - a.0));
+    let fits = |from: usize, to: usize| {
+        let (a, b) = (&rough[from].0, &rough[to].0);
+        let near = |&(time, place): &PlaceKey| line(a, b, time).distance_squared(place) <= most * most;
+        rough[from + 1..to].iter().all(|(key, _)| near(key)) && middles[from..to].iter().all(near)
+    };
+    kept(rough.len(), |index| rough[index].1, fits).into_iter().map(|index| rough[index].0).collect()
+}
+
+/// Orientations between which both even turning and mixing of the four numbers stay within 0.03° of the motion.
+/// Neighbours have the sign with which the short way is the right one. Of keys that are less than `apart` s from each
+/// other one is left.
+#[must_use]
+pub fn turns(track: &Track, keys: &[Key], apart: f64) -> Vec<TurnKey> {
+    let keys = &spaced(keys, apart)[..];
+    let mut rough: Vec<(TurnKey, bool)> = Vec::with_capacity(keys.len());
+    for (index, key) in keys.iter().enumerate() {
+        rough.push(((key.time, key.orientation), key.impact));
+        let (Some(next), Some(piece)) = (keys.get(index + 1), track.piece(key.time)) else { continue };
+        let (spin, own) = (piece.turn.spin.length(), piece.turn.own.abs());
+        let length = next.time - key.time;
+        // Of a body that turns about two axes at once, the angular velocity itself turns with `spin`.
+        let both = if spin > 0.0 && own > 0.0 { length * (spin * own / (8.0 * 0.5 * TURNED)).sqrt() } else { 0.0 };
+        let parts = ((spin + own) * length / LARGEST_TURN).max(both).ceil().clamp(1.0, MOST_PARTS);
+        rough.extend((1..parts as u64).map(|part| {
+            let time = key.time + length * part as f64 / parts;
+            ((time, piece.orientation(time)), false)
+        }));
+    }
+    for index in 1..rough.len() {
+        if rough[index].0.1.dot(rough[index - 1].0.1) < 0.0 {
+            rough[index].0.1 = -rough[index].0.1;
+        }
+    }
+    let middles = middles(&rough, |time| track.orientation(time));
+    // Half an angle of x apart, two orientations have the dot product cos x.
+    let (alike, near_enough) = (1.0 - 0.125 * TURNED * TURNED, 1.0 - 0.125 * LARGEST_TURN * LARGEST_TURN);
+    let fits = |from: usize, to: usize| {
+        let (a, b) = (&rough[from].0, &rough[to].0);
+        let near = |&(time, turn): &TurnKey| {
+            let share = (time - a.0) / (b.0 - a.0);
+            (a.1 * (1.0 - share) + b.1 * share).normalize().dot(turn).abs() >= alike
+        };
+        a.1.dot(b.1) >= near_enough
+            && rough[from + 1..to].iter().all(|(key, _)| near(key))
+            && middles[from..to].iter().all(near)
+    };
+    kept(rough.len(), |index| rough[index].1, fits).into_iter().map(|index| rough[index].0).collect()
+}
+
+/// Keys of which none is nearer than `apart` s to the one before it. Impacts stay where others may go, the first of
+/// several where one must; both ends stay.
+fn spaced(keys: &[Key], apart: f64) -> Vec<Key> {
+    let mut left: Vec<Key> = Vec::with_capacity(keys.len());
+    for (index, key) in keys.iter().enumerate() {
+        let is_end = index + 1 == keys.len();
+        while let Some(last) = left.last().filter(|last| key.time - last.time < apart) {
+            let goes = left.len() > 1 && (is_end || key.impact && !last.impact);
+            if !goes {
+                break;
+            }
+            left.pop();
+        }
+        if is_end || left.last().is_none_or(|last| key.time - last.time >= apart) {
+            left.push(*key);
+        }
+    }
+    left
+}
+
+/// What is half way between neighbours.
+fn middles<T>(rough: &[((f64, T), bool)], at: impl Fn(f64) -> T) -> Vec<(f64, T)> {
+    let middle = |pair: &[((f64, T), bool)]| {
+        let time = 0.5 * (pair[0].0.0 + pair[1].0.0);
+        (time, at(time))
+    };
+    rough.windows(2).map(middle).collect()
+}
+
+/// Of `count` keys those to keep: both ends, what must be kept, and from each the farthest of which `fits` says so.
+/// Neighbours are kept where nothing fits.
+fn kept(count: usize, must: impl Fn(usize) -> bool, fits: impl Fn(usize, usize) -> bool) -> Vec<usize> {
+    let Some(last) = count.checked_sub(1) else { return Vec::new() };
+    let mut kept = vec![0];
+    let mut at = 0;
+    while at < last {
+        let limit = (at + 1..last).find(|&index| must(index)).unwrap_or(last);
+        // Twice as far as long as that fits, then between the last that did and the first that did not.
+        let (mut good, mut bad) = (at + 1, limit + 1);
+        while good < limit && bad > limit {
+            let next = (at + 2 * (good - at)).min(limit);
+            if fits(at, next) { good = next } else { bad = next }
+        }
+        while bad - good > 1 {
+            let middle = good + (bad - good) / 2;
+            if fits(at, middle) { good = middle } else { bad = middle }
+        }
+        kept.push(good);
+        at = good;
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_keys_close_to_each_other_the_impact_stays() {
+        let key = |time: f64, impact| Key {
+            time,
+            impact,
+            position: DVec3::ZERO,
+            arriving: DVec3::ZERO,
+            leaving: DVec3::ZERO,
+            orientation: DQuat::IDENTITY,
+        };
+        let times = |keys: &[(f64, bool)], apart| -> Vec<f64> {
+            let keys: Vec<Key> = keys.iter().map(|&(time, impact)| key(time, impact)).collect();
+            spaced(&keys, apart).iter().map(|key| key.time).collect()
+        };
+        let all = [
+            (0.0, false),
+            (0.04, true),
+            (0.2, false),
+            (0.25, true),
+            (0.3, true),
+            (0.5, false),
+            (0.97, true),
+            (1.0, false),
+        ];
+        assert_eq!(times(&all, 0.0).len(), 8);
+        assert_eq!(times(&all, 0.1), [0.0, 0.25, 0.5, 1.0]);
+        assert_eq!(times(&[(0.0, false), (0.01, false)], 0.1), [0.0, 0.01], "both ends stay");
+    }
+
+    #[test]
+    fn what_is_kept_is_as_far_as_it_fits() {
+        let fits = |from: usize, to: usize| to - from <= 5;
+        assert_eq!(kept(12, |index| index == 3, fits), [0, 3, 8, 11]);
+        assert_eq!(kept(4, |_| false, |_, _| false), [0, 1, 2, 3]);
+        assert_eq!(kept(1, |_| false, fits), [0]);
+        assert!(kept(0, |_| false, fits).is_empty());
+    }
+}

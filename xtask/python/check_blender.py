@@ -1,0 +1,155 @@
+#!/usr/bin/env python3
+"""Imports GLB and USDA files into Blender (PyPI's bpy), and compares what it plays at random times, on no key, with
+poses that `plaus export --format poses` says.
+
+Makes a virtual environment of its own. bpy installs on one version of Python only: exit code 77 where it does not.
+Exit codes: 0 sound, 1 not, 77 the packages could not be installed.
+"""
+
+import argparse
+import csv
+import math
+import os
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+from environment import NO_REGISTRY, environment
+
+# Blender 5.0 is built for Python 3.11, and bpy with it.
+REQUIREMENTS = ["bpy==5.0.1"]
+PYTHON = (3, 11)
+
+# Farthest that a body may be from where it is, in m and degrees.
+FAR, TURNED = 5e-4, 0.1
+# A hundredth of a frame, and a little, in s.
+CROWDED = 4.5e-4
+# Random times at which all bodies are looked at.
+TIMES = 200
+
+
+class Truth:
+    """Poses at many times, between which they are found by parabolas and even turning: the table has 960 rows a second,
+    so what that is off by is a hundred times less than what is allowed."""
+
+    def __init__(self, path):
+        self.bodies, self.impacts = {}, {}
+        with open(path, newline="") as table:
+            for row in csv.DictReader(table):
+                numbers = [float(row[name]) for name in ("t", "x", "y", "z", "qw", "qx", "qy", "qz")]
+                self.bodies.setdefault(row["body"], []).append(numbers)
+                if row["impact"] == "true":
+                    self.impacts.setdefault(row["body"], []).append(numbers[0])
+        self.end = max(rows[-1][0] for rows in self.bodies.values())
+
+    def is_crowded(self, body, time):
+        """Whether impacts follow each other here within what Blender takes for one key, a hundredth of a frame."""
+        near = [impact for impact in self.impacts.get(body, []) if abs(impact - time) < 2 * CROWDED]
+        return len(near) > 1
+
+    def at(self, body, time):
+        rows = self.bodies[body]
+        low, high = 0, len(rows) - 1
+        while high - low > 1:
+            middle = (low + high) // 2
+            if rows[middle][0] <= time:
+                low = middle
+            else:
+                high = middle
+        a, b = rows[low], rows[high]
+        share = (time - a[0]) / (b[0] - a[0]) if b[0] > a[0] else 0.0
+        place = [p + share * (q - p) for p, q in zip(a[1:4], b[1:4])]
+        sign = 1.0 if sum(p * q for p, q in zip(a[4:], b[4:])) >= 0.0 else -1.0
+        turn = [p + share * (sign * q - p) for p, q in zip(a[4:], b[4:])]
+        return place, turn
+
+
+def check(path, poses):
+    """What is wrong with one file."""
+    import bpy
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    if path.endswith(".glb"):
+        bpy.ops.import_scene.gltf(filepath=path)
+    else:
+        bpy.ops.wm.usd_import(filepath=path)
+    truth, generator = Truth(poses), random.Random(1)
+    rate = scene.render.fps / scene.render.fps_base
+    # A body with one mesh below it is one object, which has the mesh's name.
+    found = {name: [end for end in ("", "_shape") if name + end in bpy.data.objects] for name in truth.bodies}
+    objects = {name: bpy.data.objects[name + ends[0]] for name, ends in found.items() if ends}
+    wrong = [f"no object {name}" for name in truth.bodies if name not in objects]
+    upright = of_gltf if path.endswith(".glb") else of_usd
+    worst, turned, crowded = 0.0, 0.0, 0
+    for _ in range(TIMES):
+        time = generator.uniform(0.0, truth.end)
+        frame = time * rate
+        scene.frame_set(int(frame), subframe=frame - int(frame))
+        graph = bpy.context.evaluated_depsgraph_get()
+        for name, thing in objects.items():
+            if truth.is_crowded(name, time):
+                crowded += 1
+                continue
+            matrix = thing.evaluated_get(graph).matrix_world
+            (x, y, z), turn = truth.at(name, time)
+            # y is up in the table, z in Blender.
+            worst = max(worst, math.dist(matrix.translation, (x, -z, y)))
+            turned = max(turned, angle(matrix.to_quaternion(), upright(turn)))
+    if not objects or crowded > TIMES * len(objects) // 20 or worst > FAR or turned > TURNED:
+        wrong.append(f"off by {worst * 1e3:.3f} mm and {turned:.3f} degrees")
+    materials = {slot.material for thing in bpy.data.objects for slot in thing.material_slots if slot.material}
+    for material in materials:
+        nodes = material.node_tree.nodes if material.node_tree else []
+        colours = [tuple(node.inputs["Base Color"].default_value)[:3] for node in nodes if node.type == "BSDF_PRINCIPLED"]
+        if not colours:
+            wrong.append(f"{material.name} has no colour")
+    bare = [thing.name for thing in bpy.data.objects if thing.type == "MESH" and not thing.material_slots]
+    wrong += [f"{name} has no material" for name in bare]
+    print(
+        f"{path}: {len(objects)} bodies, {TIMES} times, off by at most {worst * 1e3:.3f} mm and {turned:.3f} degrees "
+        f"({crowded} of {TIMES * len(objects)} poses lie between impacts less than 0.5 ms apart); "
+        f"{len(materials)} materials, {len(bpy.data.actions)} actions",
+        flush=True,
+    )
+    return wrong
+
+
+def angle(a, b):
+    """Degrees between two orientations, given as (w, x, y, z) of any length."""
+    size = math.hypot(*a) * math.hypot(*b)
+    return 2.0 * math.degrees(math.acos(min(1.0, abs(sum(p * q for p, q in zip(a, b))) / size)))
+
+
+def of_gltf(turn):
+    """What Blender's importer makes of an orientation: it turns the axes of the mesh as well."""
+    w, x, y, z = turn
+    return (w, x, -z, y)
+
+
+def of_usd(turn):
+    """The same where the whole layer gets a quarter turn about x."""
+    w, x, y, z = turn
+    return (w - x, w + x, y - z, y + z)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--venv", type=Path, help="folder of the virtual environment, made where it is missing")
+    parser.add_argument("files", nargs="+", help="GLB or USDA, its poses as CSV, …")
+    arguments = parser.parse_args()
+    if arguments.venv:
+        if sys.version_info[:2] != PYTHON:
+            print(f"bpy is for Python {PYTHON[0]}.{PYTHON[1]}, this is {sys.version.split()[0]}", flush=True)
+            return NO_REGISTRY
+        python = environment(arguments.venv, REQUIREMENTS)
+        return subprocess.run([python, __file__, *map(os.fspath, arguments.files)]).returncode
+    pairs = zip(arguments.files[::2], arguments.files[1::2])
+    wrong = [f"{path}: {message}" for path, poses in pairs for message in check(path, poses)]
+    print("\n".join(["", *wrong]))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
