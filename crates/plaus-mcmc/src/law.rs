@@ -173,6 +173,13 @@ impl Rectangle {
         &self.sides
     }
 
+    /// Its area.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        let [x, y] = &self.sides;
+        (x.high() - x.low()) * (y.high() - y.low())
+    }
+
     /// A place.
     pub fn sample(&self, stream: &mut Stream) -> [f64; 2] {
         self.inside.sample(stream)
