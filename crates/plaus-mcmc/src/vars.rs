@@ -148,7 +148,8 @@ pub trait Variables: Target {
     /// A fresh value of a variable whose law is [`Law::Own`].
     fn renew_own(&self, _draw: &mut Self::Draw, _var: usize, _stream: &mut Stream) {}
 
-    /// A step of such a variable, `size` times the largest, as likely as its opposite.
+    /// A step of such a variable, `size` times the largest, that leaves its law as it is: from one value to another as
+    /// likely as back, weighed by that law.
     fn step_own(&self, _draw: &mut Self::Draw, _var: usize, _size: f64, _stream: &mut Stream) {}
 
     /// A fresh draw of all variables, in order. Every variable that is not optional is there already.

@@ -57,7 +57,8 @@ impl<T: Variables> Move<T> for RedrawAll {
             // The chain rejects it for its prior; no ratio is needed.
             return Ok(Proposal::SYMMETRIC);
         }
-        Ok(Proposal::with_ratio(LogRatio::of(current.log_prior, there)?))
+        // Not what the state says, which is that of a view where one lends this move.
+        Ok(Proposal::with_ratio(LogRatio::of(target.log_prior(&current.draw)?, there)?))
     }
 
     fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {

@@ -50,28 +50,24 @@ impl Step {
     }
 }
 
-/// Moves a variable; whether the step's size comes from the whole range.
-fn step<T: Variables>(target: &T, draw: &mut T::Draw, var: usize, sizes: Sizes, stream: &mut Stream) -> bool {
+/// Moves a variable by a step of this size.
+pub(super) fn step_by<T: Variables>(target: &T, draw: &mut T::Draw, var: usize, size: f64, stream: &mut Stream) {
     let law = &target.vars().get(var).law;
     let shift = target.shift(draw, var);
-    let (size, is_wide) = sizes.sample(stream);
     if let Law::Own = law {
-        target.step_own(draw, var, size, stream);
-        return is_wide;
+        return target.step_own(draw, var, size, stream);
     }
-    let Some(values) = target.get_mut(draw, var) else { return is_wide };
+    let Some(values) = target.get_mut(draw, var) else { return };
     let Some(gaussian) = law.gaussian() else {
         let width = size * law.width();
         let step = [(); super::MOST].map(|()| width * standard_normal(stream));
-        law.add(&step, values);
-        return is_wide;
+        return law.add(&step, values);
     };
     for value in values {
         let old = *value + shift;
         let z = normal_step(size, (old - gaussian.mean()) / gaussian.sd(), stream);
         *value += gaussian.mean() + gaussian.sd() * z - old;
     }
-    is_wide
 }
 
 /// Density of a variable's value under the Gaussian that steps leave as it is; 1 where there is none.
@@ -83,7 +79,13 @@ fn gaussian_density<T: Variables>(target: &T, draw: &T::Draw, var: usize) -> Res
     values.iter().try_fold(LogDensity::ONE, |sum, value| Ok(sum + gaussian.log_density(&(value + shift))?))
 }
 
-fn ratio<T: Variables>(target: &T, from: &T::Draw, to: &T::Draw, var: usize) -> Result<LogRatio, ModelError> {
+/// What the ratio of a variable's step is.
+pub(super) fn ratio<T: Variables>(
+    target: &T,
+    from: &T::Draw,
+    to: &T::Draw,
+    var: usize,
+) -> Result<LogRatio, ModelError> {
     Ok(LogRatio::of(gaussian_density(target, from, var)?, gaussian_density(target, to, var)?)?)
 }
 
@@ -102,7 +104,8 @@ impl<T: Variables> Move<T> for Step {
         let group = below(stream, self.ways.len() / self.each.max(1));
         let index = group * self.each + below(stream, self.each);
         let Some(&Way { var, size }) = self.ways.get(index) else { return Ok(Proposal::Stay) };
-        let is_wide = step(target, candidate, var, self.sizes[size].1, stream);
+        let (length, is_wide) = self.sizes[size].1.sample(stream);
+        step_by(target, candidate, var, length, stream);
         let log_ratio = ratio(target, &current.draw, candidate, var)?;
         Ok(Proposal::Candidate { log_ratio, path: marked(Path(index as u64), is_wide), later: None })
     }

@@ -195,7 +195,7 @@ impl Goal for Ball2d {
 
 impl Scene for Ball2d {
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        self.config.weights.mix(self.config.moves, moves::all(self, rules))
+        self.config.weights.mix(self.config.moves, self, moves::all(self, rules))
     }
 
     fn scalars(&self) -> Vec<Scalar> {

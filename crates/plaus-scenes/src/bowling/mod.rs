@@ -196,7 +196,7 @@ fn board(rest: &Rest) -> f64 {
 
 impl Scene for Bowling {
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        self.config.weights.mix(self.config.moves, moves::all(self, rules))
+        self.config.weights.mix(self.config.moves, self, moves::all(self, rules))
     }
 
     fn scalars(&self) -> Vec<Scalar> {

@@ -259,8 +259,11 @@ impl Variables for Dice {
     }
 
     fn step_own(&self, draw: &mut Draw, var: usize, size: f64, stream: &mut Stream) {
-        if let (ORIENTATION, Some(throw)) = (var % EACH, draw.throws.get_mut(var / EACH)) {
-            throw.orientation = prior::turned_a_little(throw.orientation, size, stream);
+        match (var % EACH, draw.throws.get_mut(var / EACH)) {
+            (ORIENTATION, Some(throw)) => {
+                throw.orientation = prior::turned_a_little(throw.orientation, size, stream);
+            }
+            _ => self.renew_own(draw, var, stream),
         }
     }
 
@@ -288,7 +291,7 @@ impl Scene for Dice {
     const ADAPTS: bool = true;
 
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        self.config.weights.mix(self.config.moves, moves::all(self, rules))
+        self.config.weights.mix(self.config.moves, self, moves::all(self, rules))
     }
 
     fn scalars(&self) -> Vec<Scalar> {

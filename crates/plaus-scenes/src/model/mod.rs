@@ -3,6 +3,7 @@
 
 pub mod columns;
 pub(crate) mod groups;
+mod offered;
 pub mod weights;
 
 pub use columns::{Column, Member, Role, Scalar};

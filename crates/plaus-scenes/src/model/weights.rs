@@ -3,8 +3,9 @@
 //! A scene lists its moves in a table, one row each: what the move does, its weight, and what the paper gives it. Keys
 //! of scenario files, their meanings, ranges and defaults, the presets and the mixture follow from that.
 
+use super::offered::Offered;
 use crate::scene::ConfigError;
-use plaus_mcmc::{Mixture, Move, Target};
+use plaus_mcmc::{Mixture, Move, Variables};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::ser::SerializeMap;
@@ -64,10 +65,17 @@ impl Row {
 
 /// The moves of a scene.
 pub trait Menu {
+    /// The scene.
+    type Scene: Variables + 'static;
     /// The scene's name.
     const SCENE: &'static str;
-    /// One row a move, in the order of the mixture.
+    /// One row a move of its own.
     const ROWS: &'static [Row];
+}
+
+/// The rows of a scene: its own, and those that every scene offers.
+fn rows<M: Menu>() -> impl Iterator<Item = &'static Row> {
+    M::ROWS.iter().chain(<M::Scene as Offered>::ROWS.iter().map(|(row, _)| row))
 }
 
 /// Relative weights of the moves of a scene.
@@ -94,7 +102,7 @@ impl<M: Menu> Weights<M> {
             Printed::Weight(weight) => weight,
             Printed::Free => set,
         };
-        Self { values: M::ROWS.iter().zip(&self.values).map(one).collect(), menu: PhantomData }
+        Self { values: rows::<M>().zip(&self.values).map(one).collect(), menu: PhantomData }
     }
 
     /// The same with another weight for a move.
@@ -126,7 +134,7 @@ impl<M: Menu> Weights<M> {
     }
 
     fn place(name: &str) -> usize {
-        let place = M::ROWS.iter().position(|row| row.name == name);
+        let place = rows::<M>().position(|row| row.name == name);
         place.unwrap_or_else(|| panic!("{} has no move `{name}`", M::SCENE))
     }
 
@@ -137,9 +145,15 @@ impl<M: Menu> Weights<M> {
     ///
     /// # Panics
     /// Where a move is not in the scene's table.
-    pub fn mix<T: Target>(&self, which: Moves, kernels: Vec<Box<dyn Move<T>>>) -> Result<Mixture<T>, ConfigError> {
+    pub fn mix(
+        &self,
+        which: Moves,
+        scene: &M::Scene,
+        mut kernels: Vec<Box<dyn Move<M::Scene>>>,
+    ) -> Result<Mixture<M::Scene>, ConfigError> {
         let printed = self.printed();
         let weights = if which == Moves::Paper { &printed } else { self };
+        kernels.extend(<M::Scene as Offered>::ROWS.iter().map(|(_, make)| make(scene)));
         let weighed = kernels.into_iter().map(|kernel| (weights.get(kernel.name()), kernel));
         Mixture::new(weighed.collect()).map_err(|error| ConfigError::new(format!("world.{}.weights", M::SCENE), error))
     }
@@ -147,7 +161,7 @@ impl<M: Menu> Weights<M> {
 
 impl<M: Menu> Default for Weights<M> {
     fn default() -> Self {
-        Self { values: M::ROWS.iter().map(|row| row.weight).collect(), menu: PhantomData }
+        Self { values: rows::<M>().map(|row| row.weight).collect(), menu: PhantomData }
     }
 }
 
@@ -165,14 +179,14 @@ impl<M: Menu> PartialEq for Weights<M> {
 
 impl<M: Menu> fmt::Debug for Weights<M> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_map().entries(M::ROWS.iter().map(|row| row.name).zip(&self.values)).finish()
+        f.debug_map().entries(rows::<M>().map(|row| row.name).zip(&self.values)).finish()
     }
 }
 
 impl<M: Menu> Serialize for Weights<M> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.values.len()))?;
-        for (row, value) in M::ROWS.iter().zip(&self.values) {
+        for (row, value) in rows::<M>().zip(&self.values) {
             map.serialize_entry(row.name, value)?;
         }
         map.end()
@@ -193,9 +207,9 @@ impl<'de, M: Menu> Deserialize<'de> for Weights<M> {
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Weights<M>, A::Error> {
                 let mut weights = Weights::default();
                 while let Some(name) = map.next_key::<String>()? {
-                    let place = M::ROWS.iter().position(|row| row.name == name);
+                    let place = rows::<M>().position(|row| row.name == name);
                     let Some(place) = place else {
-                        let names: Vec<&str> = M::ROWS.iter().map(|row| row.name).collect();
+                        let names: Vec<&str> = rows::<M>().map(|row| row.name).collect();
                         let message = format!("{} has no move `{name}`: its moves are {}", M::SCENE, names.join(", "));
                         return Err(A::Error::custom(message));
                     };
@@ -225,7 +239,7 @@ impl<M: Menu> JsonSchema for Weights<M> {
             });
             (row.name.to_owned(), schema)
         };
-        let properties: serde_json::Map<String, serde_json::Value> = M::ROWS.iter().map(row).collect();
+        let properties: serde_json::Map<String, serde_json::Value> = rows::<M>().map(row).collect();
         json_schema!({
             "description": "Relative weights of the moves, by their names.",
             "type": "object",
@@ -243,6 +257,7 @@ mod tests {
     struct Toy;
 
     impl Menu for Toy {
+        type Scene = crate::ball2d::Ball2d;
         const SCENE: &'static str = "toy";
         const ROWS: &'static [Row] = &[
             Row::paper("change", 0.5, Printed::Weight(0.9), "Changes."),
@@ -263,7 +278,14 @@ mod tests {
     fn tables_are_read_and_written_by_name() {
         let read = |text: &str| toml::from_str::<Weights<Toy>>(text).map_err(|error| error.to_string());
         assert_eq!(read("aim = 1").unwrap(), Weights::default().with("aim", 1.0));
-        assert_eq!(toml::to_string(&Weights::<Toy>::default()).unwrap(), "change = 0.5\npoint = 0.25\naim = 0.25\n");
-        assert!(read("aimm = 1").unwrap_err().contains("toy has no move `aimm`: its moves are change, point, aim"));
+        assert_eq!(
+            toml::to_string(&Weights::<Toy>::default()).unwrap(),
+            "change = 0.5\npoint = 0.25\naim = 0.25\nredraw_any = 0.0\nstep_any = 0.0\n"
+        );
+        assert!(
+            read("aimm = 1")
+                .unwrap_err()
+                .contains("toy has no move `aimm`: its moves are change, point, aim, redraw_any")
+        );
     }
 }

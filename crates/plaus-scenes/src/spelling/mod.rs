@@ -212,7 +212,7 @@ impl Goal for Spelling {
 
 impl Scene for Spelling {
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        self.config.weights.mix(self.config.moves, moves::all(self, rules))
+        self.config.weights.mix(self.config.moves, self, moves::all(self, rules))
     }
 
     fn scalars(&self) -> Vec<Scalar> {

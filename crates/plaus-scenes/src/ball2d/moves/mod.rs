@@ -18,6 +18,7 @@ use plaus_mcmc::library::{RedrawOne, ShiftHalf};
 pub enum Ball2dMoves {}
 
 impl Menu for Ball2dMoves {
+    type Scene = Ball2d;
     const SCENE: &'static str = "ball2d";
     const ROWS: &'static [Row] = &[
         Row::paper(

@@ -17,6 +17,7 @@ use plaus_mcmc::{Law, Move, StateOf};
 pub enum BowlingMoves {}
 
 impl Menu for BowlingMoves {
+    type Scene = Bowling;
     const SCENE: &'static str = "bowling";
     const ROWS: &'static [Row] = &[
         Row::paper("change_all", 0.05, Printed::Weight(0.05), "The paper's: everything is drawn anew."),

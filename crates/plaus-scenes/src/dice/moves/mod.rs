@@ -30,6 +30,7 @@ use plaus_mcmc::{Move, Path, StateOf};
 pub enum DiceMoves {}
 
 impl Menu for DiceMoves {
+    type Scene = Dice;
     const SCENE: &'static str = "dice";
     const ROWS: &'static [Row] = &[
         Row::paper("everything", 0.01, Printed::Free, "The paper's: everything is drawn anew."),

@@ -20,6 +20,7 @@ use plaus_mcmc::library::{RedrawAll, RedrawSome, ShiftOne, ShiftSome, Swap, Togg
 pub enum SpellingMoves {}
 
 impl Menu for SpellingMoves {
+    type Scene = Spelling;
     const SCENE: &'static str = "spelling";
     const ROWS: &'static [Row] = &[
         Row::paper("change_all", 0.01, Printed::Weight(0.04), "The paper's: everything is drawn anew."),
