@@ -5,8 +5,8 @@ use crate::toys::slots::{ANGLE, BALLS, FACE, FACES, HEIGHT, PINS, SIZE, SPEED, S
 use plaus_dist::{LogPotential, LogRatio, Seed, Stream};
 use plaus_mcmc::check::{OneStep, OneStepReport, PriorOnly, Ratios, Statistic, one_step, prior, ratios, rejection};
 use plaus_mcmc::library::{
-    RedrawAll, RedrawGroup, RedrawOne, RedrawSome, ShiftAll, ShiftHalf, ShiftOne, ShiftSome, Sizes, Step, Stride, Swap,
-    Symmetry, Toggle,
+    RedrawAll, RedrawGroup, RedrawOne, RedrawSome, ShiftAll, ShiftHalf, ShiftOne, ShiftSome, Sizes, Step, StepAll,
+    Stride, Swap, Symmetry, Toggle,
 };
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Recipe, StateOf, Target, vars};
@@ -81,6 +81,7 @@ fn all() -> Vec<AnyMove> {
         Box::new(ShiftAll::by("shift_all", strides())),
         Box::new(ShiftAll::at_many_scales("refine", strides(), Sizes::down_to(0.01))),
         Box::new(Step::of("step", &(0..=FACE).collect::<Vec<_>>(), Sizes::new(0.2, 1.0))),
+        Box::new(StepAll { name: "step_all", among: (0..=FACE).collect(), sizes: Sizes::new(0.2, 1.0) }),
         Box::new(Swap { name: "swap", among: BALLS.to_vec() }),
         Box::new(Swap { name: "swap_pins", among: pins }),
         Box::new(Symmetry { name: "mirror", map: mirrored }),
@@ -107,7 +108,7 @@ fn steps_about_an_adapted_scale_do_so_too() {
         kernel.at_scales(&vec![Some(0.4); scales.len()])
     };
     let kernels: Vec<AnyMove> = all().into_iter().filter_map(adapted).collect();
-    assert_eq!(kernels.len(), 5);
+    assert_eq!(kernels.len(), 6);
     for kernel in kernels {
         let report = step(kernel, true);
         assert!(report.passed() && report.accepted() > 1000, "{report}");
@@ -189,7 +190,9 @@ fn wrong_twins_are_caught() {
         Box::new(Toggle { name: "toggle", among: BALLS.to_vec(), chance: 0.25, incomplete: true }),
     ];
     let fault = |name: &str| match name {
-        "redraw_all" | "redraw_one" | "redraw_some" | "redraw_group" | "step" | "toggle" => Fault::Symmetric,
+        "redraw_all" | "redraw_one" | "redraw_some" | "redraw_group" | "step" | "step_all" | "toggle" => {
+            Fault::Symmetric
+        }
         "shift_half" | "shift_some" | "shift_all" | "refine" => Fault::Leans,
         "shift_one" => Fault::Clamps,
         "swap" | "swap_pins" => Fault::Sorts,

@@ -11,6 +11,7 @@
 //! | [`ShiftOne`] | one that the draw has is shifted in a random direction | 0 |
 //! | [`ShiftAll`] | all are shifted, by steps of one size or of many | 0 |
 //! | [`Step`] | one makes a step that leaves its law as it is | its Gaussian at the old value over that at the new one |
+//! | [`StepAll`] | all of a set make such a step of one size | the product of theirs |
 //! | [`Swap`] | two of a set exchange their values | 0 |
 //! | [`Symmetry`] | a map that is its own reverse, or as likely as that | 0 |
 //! | [`Toggle`] | optional variables come and go | with a factor for each that might have, and did not |
@@ -28,6 +29,7 @@ mod shift_one;
 mod shift_some;
 mod sizes;
 mod step;
+mod step_all;
 mod swap;
 mod symmetry;
 mod toggle;
@@ -42,6 +44,7 @@ pub use shift_one::ShiftOne;
 pub use shift_some::ShiftSome;
 pub use sizes::Sizes;
 pub use step::{Step, Way};
+pub use step_all::StepAll;
 pub use swap::Swap;
 pub use symmetry::{Map, Symmetry};
 pub use toggle::Toggle;

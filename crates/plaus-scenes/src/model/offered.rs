@@ -1,7 +1,7 @@
 //! Moves of the library that every scene offers, of any weight that a scenario gives them: one row a move.
 
 use super::weights::Row;
-use plaus_mcmc::library::{RedrawOne, Sizes, Step};
+use plaus_mcmc::library::{RedrawOne, Sizes, Step, StepAll};
 use plaus_mcmc::{Move, Variables, Vars};
 
 /// A row, and the move for a target.
@@ -34,5 +34,9 @@ impl<S: Variables + 'static> Offered for S {
             ),
             |scene| Box::new(Step::of("step_any", &all(scene.vars()), Sizes::new(FINEST, 1.0))),
         ),
+        (Row::own("step_all", 0.0, "All random variables make such a step at once, of one size."), |scene| {
+            let sizes = Sizes::new(FINEST, 1.0);
+            Box::new(StepAll { name: "step_all", among: all(scene.vars()), sizes })
+        }),
     ];
 }
