@@ -17,7 +17,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     work.say(format_args!("mixing: 4 chains of {} iterations, with and without recasts", length.iterations));
     let mut rows = Vec::new();
     for (name, weights) in
-        [("all moves", Weights::default()), ("without `recast`", Weights { recast: 0.0, ..Weights::default() })]
+        [("all moves", Weights::default()), ("without `recast`", Weights::default().with("recast", 0.0))]
     {
         let thrown = super::Thrown::new(ONE, |config| config.weights = weights)?;
         let sampler = Sampler::new(thrown.scene)?;
