@@ -10,7 +10,7 @@ use crate::{Result, Work};
 use plaus_mcmc::diagnose::rhat;
 use plaus_scenes::Scene;
 use plaus_scenes::dice::Weights;
-use plaus_scenes::scene::Role;
+use plaus_scenes::model::Role;
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
     let length = Length { seed: 5, chains: 4, warmup: work.size(2000, 2), iterations: work.size(10_000, 12) };
