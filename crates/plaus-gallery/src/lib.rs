@@ -26,6 +26,7 @@ pub mod map;
 mod models;
 mod pack;
 mod page;
+mod sounds;
 
 use features::Features;
 use plaus_run::replay::replay_each;
