@@ -1,16 +1,18 @@
-//! How light comes back along a ray: a sun with a soft edge, a bright sky that crevices see less of, and highlights on what is glossy.
+//! How light comes back along a ray: a sun with a soft edge, a bright sky that crevices see less of, and highlights on
+//! what is glossy.
 
-use super::Noise;
-use super::bvh::{Bvh, Hit};
-use super::prims::Thing;
+use crate::bvh::{Hit, Ray};
+use crate::noise::Noise;
+use crate::stage::{Moment, clear};
 use glam::DVec3;
+use plaus_animation::{Colour, Look, Material};
 use plaus_dist::math;
-use plaus_scenes::animation::{Colour, Look, Material};
+use std::sync::LazyLock;
 
-pub(super) struct Shader {
-    pub(super) bvh: Bvh,
+pub(crate) struct Shader<'a> {
+    pub(crate) moment: Moment<'a>,
     /// Height of the table on which everything stands.
-    pub(super) ground: f64,
+    pub(crate) ground: f64,
 }
 
 /// Towards the sun.
@@ -27,55 +29,50 @@ const OFF: f64 = 1e-6;
 const DEEP: usize = 12;
 const TABLE: Look = Look::new([236, 233, 228], Material::Matte);
 
-/// sRGB to linear light.
-fn linear(Colour(rgb): Colour) -> DVec3 {
-    let one = |value: u8| math::powf(f64::from(value) / 255.0, 2.2);
-    DVec3::new(one(rgb[0]), one(rgb[1]), one(rgb[2]))
+/// The light of each of the 256 values of a channel; a screen's curve is near enough a power.
+static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|value| light_of(value as f64)));
+/// The light from which on a channel has the value 1, 2 and so on.
+static STEPS: LazyLock<[f64; 255]> = LazyLock::new(|| std::array::from_fn(|value| light_of(value as f64 + 0.5)));
+
+fn light_of(value: f64) -> f64 {
+    math::powf(value / 255.0, 2.2)
 }
 
-/// Linear light to sRGB.
-pub(super) fn to_srgb(value: f64) -> u8 {
-    (255.0 * math::powf(value.clamp(0.0, 1.0), 1.0 / 2.2)).round() as u8
+/// sRGB to linear light.
+fn linear(Colour(rgb): Colour) -> DVec3 {
+    DVec3::from_array(rgb.map(|value| LIGHT[usize::from(value)]))
+}
+
+/// Linear light as a pixel.
+pub(crate) fn to_pixel(light: DVec3) -> [u8; 3] {
+    light.to_array().map(|light| STEPS.partition_point(|step| *step <= light) as u8)
 }
 
 fn sky(along: DVec3) -> DVec3 {
     DVec3::new(0.93, 0.95, 0.98).lerp(DVec3::new(0.62, 0.74, 0.92), along.y.clamp(0.0, 1.0))
 }
 
-/// Share of what lies behind that is seen through a thing; `None` where it is solid.
-fn clear(look: Look) -> Option<f64> {
-    match look.material {
-        Material::Glass => Some(0.9),
-        Material::Mark => Some(0.6),
-        _ => None,
-    }
-}
-
-fn is_solid(thing: &Thing) -> bool {
-    clear(thing.look).is_none()
-}
-
-impl Shader {
+impl Shader<'_> {
     /// Light that comes back along a ray.
-    pub(super) fn light(&self, from: DVec3, along: DVec3, noise: &Noise) -> DVec3 {
+    pub(crate) fn light(&self, from: DVec3, along: DVec3, noise: &Noise) -> DVec3 {
         let (mut seen, mut left, mut least) = (DVec3::ZERO, 1.0, OFF);
         for _ in 0..DEEP {
-            let hit = self.bvh.first(from, along, least, f64::INFINITY, |_| true);
+            let hit = self.moment.first(&Ray { from, along, least, most: f64::INFINITY, solid_only: false });
             let table = (self.ground - from.y) / along.y;
             let on_table = table > least && hit.as_ref().is_none_or(|hit| table < hit.t);
             if on_table {
                 return seen + left * self.surface(from + table * along, DVec3::Y, along, TABLE, noise);
             }
-            let Some(Hit { t, normal, thing }) = hit else { break };
+            let Some(Hit { t, normal, look }) = hit else { break };
             let normal = if normal.dot(along) > 0.0 { -normal } else { normal };
             let at = from + t * along;
-            match clear(thing.look) {
-                None => return seen + left * self.surface(at, normal, along, thing.look, noise),
+            match clear(look) {
+                None => return seen + left * self.surface(at, normal, along, look, noise),
                 Some(share) => {
                     // Only what one looks at from outside counts, and the farther from straight on, the more.
                     let glance = 1.0 - along.dot(normal).abs();
                     let share = share * (1.0 - 0.35 * glance * glance * glance);
-                    seen += left * (1.0 - share) * linear(thing.look.colour);
+                    seen += left * (1.0 - share) * linear(look.colour);
                     left *= share;
                     least = t + OFF;
                 }
@@ -91,7 +88,7 @@ impl Shader {
         let side = sun.any_orthonormal_vector();
         let towards = (sun + SOFT * b.sqrt() * (cos * side + sin * sun.cross(side))).normalize();
         let facing = normal.dot(towards).max(0.0);
-        let lit = facing > 0.0 && self.bvh.first(at, towards, OFF, f64::INFINITY, is_solid).is_none();
+        let lit = facing > 0.0 && self.in_the_way(at, towards, f64::INFINITY).is_none();
         let open = self.open(at, normal, noise);
         let sunlight = if lit { SUNLIGHT * facing } else { 0.0 };
         let colour = linear(look.colour);
@@ -113,6 +110,11 @@ impl Shader {
         light
     }
 
+    /// What solid thing is in the way from a point on a surface.
+    fn in_the_way(&self, from: DVec3, along: DVec3, most: f64) -> Option<Hit> {
+        self.moment.first(&Ray { from, along, least: OFF, most, solid_only: true })
+    }
+
     /// Whether a ray into the sky, likelier the steeper, gets away from near things: 1 or less.
     fn open(&self, at: DVec3, normal: DVec3, noise: &Noise) -> f64 {
         let [a, b] = noise.pair(2);
@@ -120,7 +122,7 @@ impl Shader {
         let side = normal.any_orthonormal_vector();
         let out = b.sqrt();
         let towards = (normal * (1.0 - b).sqrt() + out * (cos * side + sin * normal.cross(side))).normalize();
-        match self.bvh.first(at, towards, OFF, CREVICE, is_solid) {
+        match self.in_the_way(at, towards, CREVICE) {
             Some(hit) => 0.15 + 0.85 * hit.t / CREVICE,
             None => 1.0,
         }
