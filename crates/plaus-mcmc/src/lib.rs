@@ -46,7 +46,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The crate knows no bodies and does no input or output.
+//! A target that declares its draws' variables ([`vars`]) gets moves over them from the [`library`]. The crate knows no
+//! bodies and does no input or output.
 
 pub mod adapt;
 pub mod chain;
