@@ -36,7 +36,7 @@ impl Args {
         let recipe = scenario_file::read(&self.scenario, self.overrides, None)?;
         let name = self.scenario.display().to_string();
         let locate = |error| Failure::from(ScenarioError::locate(&name, &recipe.text, &error));
-        let manifest = recipe.scenario.world.visit(Try(&recipe)).map_err(locate)?;
+        let manifest = recipe.scenario.visit(Try(&recipe)).map_err(locate)?;
         let manifest = manifest.map_err(|error| match error {
             plaus_run::Error::Config(error) => locate(error),
             other => other.into(),

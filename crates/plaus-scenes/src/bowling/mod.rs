@@ -20,6 +20,7 @@ pub use release::{Law, Laws, Quantity, Release};
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
+use crate::require::Cast;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene, Until};
 use crate::world::PlainWorld;
@@ -216,6 +217,12 @@ impl Scene for Bowling {
                 *value = state.draw.get(quantity);
             }
         }
+    }
+
+    fn cast(&self) -> Cast {
+        let bodies = (0..=self.rack.pins().len()).map(|body| self.lane.name(body)).collect();
+        let fixed = props::PARTS.map(String::from).to_vec();
+        Cast { bodies, fixed, longest: self.config.duration_s, faces: false }
     }
 
     fn animate(&self, draw: &Shot) -> Result<Animation, ModelError> {

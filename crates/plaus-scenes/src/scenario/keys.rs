@@ -8,6 +8,9 @@ use std::fmt::Write;
 /// Columns of a template's comments.
 const WIDTH: usize = 100;
 
+/// Most choices whose meanings a template holds; of more it says where they are explained.
+const MOST_MEANINGS: usize = 12;
+
 /// What a key means.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyDoc {
@@ -126,8 +129,12 @@ fn entry(text: &mut String, shape: &Shape, name: &str) {
     if let Some(facts) = facts(shape) {
         comment(text, &facts);
     }
-    for meaning in meanings(shape) {
-        comment(text, &meaning);
+    let meanings = meanings(shape);
+    if meanings.len() > MOST_MEANINGS {
+        let names = shape.item().map(Shape::keys).unwrap_or_default().iter().map(|(name, _)| name.as_str());
+        comment(text, &format!("One of {}: `plaus explain {name}`.", names.collect::<Vec<_>>().join(", ")));
+    } else {
+        meanings.iter().for_each(|meaning| comment(text, meaning));
     }
     let _ = match default(shape) {
         Some(default) => writeln!(text, "{name} = {default}"),

@@ -23,6 +23,7 @@ pub use word::Word;
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
+use crate::require::Cast;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Role, Scalar, Scene};
 use crate::world::PlainWorld;
@@ -226,6 +227,13 @@ impl Scene for Spelling {
                 *value = bin.map_or(-1.0, f64::from);
             }
         }
+    }
+
+    fn cast(&self) -> Cast {
+        let bodies = (0..self.prior.balls()).map(|ball| format!("ball_{ball}")).collect();
+        let fixed = animate::FIXED.map(String::from).to_vec();
+        let last = self.config.drop_interval_s * f64::from(self.prior.balls() as u32);
+        Cast { bodies, fixed, longest: last + self.config.settle_s, faces: false }
     }
 
     fn animate(&self, draw: &Drops) -> Result<Animation, ModelError> {
