@@ -279,7 +279,7 @@ impl Scene for Dice {
 
     fn demands(&self) -> Vec<(String, Require)> {
         let key = |(index, one): (usize, &Constraint)| {
-            Some((format!("world.dice.constraints[{index}]"), one.as_requirement()?))
+            Some((format!("world.dice.constraints[{index}].{}", one.name()), one.as_requirement()?))
         };
         self.config.constraints.iter().enumerate().filter_map(key).collect()
     }

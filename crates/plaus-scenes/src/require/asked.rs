@@ -50,6 +50,11 @@ pub struct Answer<O> {
 /// be off by some units in the last place.
 const ROUNDING: f64 = 1e-9;
 
+/// The key of a requirement.
+fn key(index: usize, one: &Require) -> String {
+    format!("require[{index}].{}", one.name())
+}
+
 impl<S: Scene> Asked<S> {
     /// `scene` under `requirements`.
     ///
@@ -60,7 +65,7 @@ impl<S: Scene> Asked<S> {
         for (index, one) in requirements.iter().enumerate() {
             one.check(&Place::of_entry(index, &cast).at(one.name()))?;
         }
-        let said = requirements.iter().enumerate().map(|(index, one)| (format!("require[{index}]"), one.clone()));
+        let said = requirements.iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
         agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
         let nothing = Animation::new(0.0, Vec::new(), Vec::new());
         let most = Self::bound(requirements, &Probe::until(&nothing, &cast, 0.0));
@@ -215,7 +220,11 @@ impl<S: Scene> Scene for Asked<S> {
     /// Those of the scene, and the margin of each requirement.
     fn scalars(&self) -> Vec<Scalar> {
         let margin = |name| Scalar { name, unit: "nat", role: Role::Outcome };
-        self.scene.scalars().into_iter().chain(super::names(self.requirements(), "margin_").into_iter().map(margin)).collect()
+        self.scene
+            .scalars()
+            .into_iter()
+            .chain(super::names(self.requirements(), "margin_").into_iter().map(margin))
+            .collect()
     }
 
     fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
@@ -262,7 +271,7 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn demands(&self) -> Vec<(String, Require)> {
         let said = self.requirements().iter().enumerate();
-        let said = said.map(|(index, one)| (format!("require[{index}]"), one.clone()));
+        let said = said.map(|(index, one)| (key(index, one), one.clone()));
         self.scene.demands().into_iter().chain(said).collect()
     }
 

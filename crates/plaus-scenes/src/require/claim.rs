@@ -74,20 +74,22 @@ impl Claim {
             }
             (Self::Place { body: a, at: one, within }, Self::Place { body: b, at: two, within: besides }) => {
                 let [a, b] = named(only, [a, b]);
-                let squares = one.iter().zip(two).map(|(one, two)| one.zip(*two).map_or(0.0, |(x, y)| math::square(x - y)));
+                let squares =
+                    one.iter().zip(two).map(|(one, two)| one.zip(*two).map_or(0.0, |(x, y)| math::square(x - y)));
                 let between = squares.sum::<f64>().sqrt();
                 let apart = a == b && between > within + besides;
                 apart.then(|| format!("{a} cannot rest at two places {between:.3} mm apart"))
             }
             (Self::Time { event: a, window: one }, Self::Time { event: b, window: two }) => {
                 let [x, y] = named(only, [&a.body, &b.body]);
-                let alike = Event { body: x.into(), ..(**a).clone() }.is_same(&Event { body: y.into(), ..(**b).clone() });
+                let alike =
+                    Event { body: x.into(), ..(**a).clone() }.is_same(&Event { body: y.into(), ..(**b).clone() });
                 let apart = alike && (one.to < two.from || two.to < one.from);
                 apart.then(|| "one event cannot happen in two windows that lie apart".to_owned())
             }
-            (Self::Number { what: a, from, to }, Self::Number { what: b, from: low, to: high }) => {
-                (a == b && (to < low || high < from)).then(|| "a number cannot lie in two ranges that lie apart".to_owned())
-            }
+            (Self::Number { what: a, from, to }, Self::Number { what: b, from: low, to: high }) => (a == b
+                && (to < low || high < from))
+                .then(|| "a number cannot lie in two ranges that lie apart".to_owned()),
             _ => None,
         }
     }
@@ -100,8 +102,11 @@ fn named<'a>(only: &'a str, names: [&'a str; 2]) -> [&'a str; 2] {
 
 /// Refuses requirements, each with the key that says it, of which two contradict each other.
 pub(crate) fn agree(all: &[(String, Require)], cast: &Cast) -> Result<(), ConfigError> {
-    let claims: Vec<(usize, Claim)> =
-        all.iter().enumerate().flat_map(|(at, (_, one))| one.claims().into_iter().map(move |claim| (at, claim))).collect();
+    let claims: Vec<(usize, Claim)> = all
+        .iter()
+        .enumerate()
+        .flat_map(|(at, (_, one))| one.claims().into_iter().map(move |claim| (at, claim)))
+        .collect();
     for (nth, (later, claim)) in claims.iter().enumerate() {
         for (earlier, other) in &claims[..nth] {
             let Some(why) = other.contradicts(claim, cast) else { continue };

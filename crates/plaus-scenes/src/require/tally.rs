@@ -1,6 +1,12 @@
 //! Why not: how often each requirement was met, and which never together.
 
 use super::score::Mark;
+use crate::scene::Scene;
+use plaus_dist::{Purpose, Seed};
+use plaus_mcmc::{ModelError, State};
+
+/// Tries of a draw that the prior allows.
+const TRIES: u64 = 1000;
 
 /// What was seen of one thing that is asked.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +40,29 @@ impl Tally {
             names.into_iter().map(|name| Clause { name, met: 0, best: f64::NEG_INFINITY }).collect();
         let pairs = clauses.len() * clauses.len().saturating_sub(1) / 2;
         Self { states: 0, all: 0, clauses, both: vec![0; pairs] }
+    }
+
+    /// What draws from a scene's prior come to: so many of those that the prior allows, by streams of `seed`. `tell` is
+    /// told how many are done.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a simulation fails.
+    pub fn of_prior<S: Scene>(scene: &S, seed: u64, draws: u64, mut tell: impl FnMut(u64)) -> Result<Self, ModelError> {
+        let mut tally = Self::new(scene.asked());
+        let (streams, mut scratch) = (Seed(seed).chain(0), S::Scratch::default());
+        for nth in 0..draws {
+            let mut stream = streams.at(nth, Purpose::START);
+            for _ in 0..TRIES {
+                let draw = scene.start(&mut stream);
+                if !scene.log_prior(&draw)?.is_zero() {
+                    let state = State::evaluate(scene, draw, &mut scratch)?;
+                    tally.add(&scene.answers(&state));
+                    break;
+                }
+            }
+            tell(nth + 1);
+        }
+        Ok(tally)
     }
 
     /// One state more, with a mark for each thing that is asked.

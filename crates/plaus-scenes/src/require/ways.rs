@@ -179,14 +179,14 @@ mod tests {
             let point = DVec3::new(stream.random_range(-1.0..1.0), 0.3, -0.2);
             let times = (0..=steps).map(|i| leg.length * f64::from(i) / f64::from(steps));
             let sampled: Vec<f64> = times.clone().map(|t| leg.at(t).distance(point)).collect();
-            let [least, most] = sampled.iter().fold([f64::INFINITY, 0.0], |[a, b], d| [f64::min(a, *d), f64::max(b, *d)]);
+            let [least, most] =
+                sampled.iter().fold([f64::INFINITY, 0.0], |[a, b], d| [f64::min(a, *d), f64::max(b, *d)]);
             let [low, high] = leg.distances(point);
             // Between two samples the distance changes by at most the top speed over half a step.
             let slack = (3.0 * 1.8 + 0.7 * 17.4) * 0.5 * leg.length / f64::from(steps);
             assert!(low <= least + 1e-12 && low >= least - slack, "{low} {least}");
             assert!(high >= most - 1e-12 && high <= most + slack, "{high} {most}");
-            let walked: f64 =
-                times.clone().zip(times.skip(1)).map(|(a, b)| leg.at(a).distance(leg.at(b))).sum();
+            let walked: f64 = times.clone().zip(times.skip(1)).map(|(a, b)| leg.at(a).distance(leg.at(b))).sum();
             assert!((leg.path_length() / walked - 1.0).abs() < 1e-5, "{} {walked}", leg.path_length());
         }
     }
@@ -199,8 +199,7 @@ mod tests {
             let all: Vec<Quadratic> = (0..6).map(|_| std::array::from_fn(|_| stream.random_range(-1.0..1.0))).collect();
             let smallest = |t: f64| all.iter().map(|c| value(c, t)).fold(f64::INFINITY, f64::min);
             let sampled = (0..=steps).map(|i| smallest(2.0 * f64::from(i) / f64::from(steps)));
-            let [least, most] =
-                sampled.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(f), b.max(f)]);
+            let [least, most] = sampled.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(f), b.max(f)]);
             let [low, high] = extremes_of_smallest(&all, 2.0);
             let slack = 5.0 * 2.0 / f64::from(steps);
             assert!(low <= least + 1e-12 && low >= least - slack, "{low} {least}");

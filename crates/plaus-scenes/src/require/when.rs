@@ -57,10 +57,7 @@ impl When {
         match (self.at_s, self.frame) {
             (Some(at), _) => about(at, 1e-3 * self.within_ms),
             (_, Some(frame)) => about(f64::from(frame) / self.fps, 0.5 / self.fps),
-            _ => Window {
-                from: self.from_s.unwrap_or(f64::NEG_INFINITY),
-                to: self.to_s.unwrap_or(f64::INFINITY),
-            },
+            _ => Window { from: self.from_s.unwrap_or(f64::NEG_INFINITY), to: self.to_s.unwrap_or(f64::INFINITY) },
         }
     }
 

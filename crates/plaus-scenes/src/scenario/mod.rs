@@ -168,7 +168,11 @@ impl Scenario {
                 Ok(self.1.visit(Asked::new(scene, self.0)?))
             }
         }
-        if self.require.is_empty() { self.world.visit(visitor) } else { self.world.visit(Ask(&self.require, visitor))? }
+        if self.require.is_empty() {
+            self.world.visit(visitor)
+        } else {
+            self.world.visit(Ask(&self.require, visitor))?
+        }
     }
 
     /// Whether the scene can be built and sampled.

@@ -44,7 +44,8 @@ impl Ask for AirTime {
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let window = self.when.window();
-        let so_far: f64 = probe.legs(&self.body, window).iter().filter(|leg| leg.is_flight()).map(|leg| leg.length).sum();
+        let so_far: f64 =
+            probe.legs(&self.body, window).iter().filter(|leg| leg.is_flight()).map(|leg| leg.length).sum();
         let high = if probe.sees_all(window) { so_far } else { f64::MAX };
         let band = Band::of_limits(self.at_least_s, self.at_most_s, 1e-3 * self.scale_ms);
         band.reach(Span { low: so_far, high })

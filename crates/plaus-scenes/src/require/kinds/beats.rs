@@ -1,7 +1,7 @@
 //! Events on the beats of a rhythm.
 
-use crate::require::kinds::Ask;
 use crate::require::event::{Event, What};
+use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
@@ -136,7 +136,8 @@ impl Ask for Beats {
         }
         let longest = place.cast().longest;
         if let Some(late) = self.times_s.iter().find(|time| !(**time >= 0.0 && **time <= longest.min(3600.0))) {
-            let message = format!("a beat at {late} s: beats are from 0 s to the end, {} s at most", longest.min(3600.0));
+            let message =
+                format!("a beat at {late} s: beats are from 0 s to the end, {} s at most", longest.min(3600.0));
             return Err(place.at("times_s").wrong(&message));
         }
         match (self.every_s, self.times_s.is_empty(), self.each) {

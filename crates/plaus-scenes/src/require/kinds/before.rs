@@ -1,7 +1,7 @@
 //! One event before another.
 
-use crate::require::kinds::Ask;
 use crate::require::event::Event;
+use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};

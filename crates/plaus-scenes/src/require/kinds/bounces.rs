@@ -1,7 +1,7 @@
 //! How often a body hits something.
 
-use crate::require::kinds::Ask;
 use crate::require::claim::Claim;
+use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, Reach, Span};

@@ -1,14 +1,14 @@
 //! Requirements made of others: all of them, any, not one, at least so many.
 
-use crate::require::kinds::{Ask, Require};
 use crate::require::claim::Claim;
+use crate::require::kinds::{Ask, Require};
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
 use crate::scene::ConfigError;
+use plaus_dist::math::ln_add_exp;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use plaus_dist::math::ln_add_exp;
 
 /// All of several requirements: what they cost adds up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,17 +1,17 @@
 //! Which face, or axis, of a body is up.
 
-use crate::require::kinds::Ask;
 use crate::require::claim::Claim;
+use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
 use crate::require::when::When;
 use crate::scene::ConfigError;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use glam::DVec3;
 use plaus_animation::{Shape, Track};
 use plaus_dist::math;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A face of a die, or an axis of a body, is up: at the end, or at a time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,8 +1,8 @@
 //! An impact within a window of time.
 
-use crate::require::kinds::Ask;
 use crate::require::claim::Claim;
 use crate::require::event::{Event, What};
+use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;

@@ -4,12 +4,12 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
+use crate::require::ways::{Leg, Quadratic, extremes_of_smallest};
 use crate::require::when::When;
 use crate::scene::ConfigError;
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use crate::require::ways::{Leg, Quadratic, extremes_of_smallest};
-use glam::DVec3;
 
 /// A body's middle is inside a region, a box or a ball, at some time of a window, always, or never.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -84,10 +84,12 @@ impl Inside {
             return [self.radius_mm - 1e3 * far, self.radius_mm - 1e3 * near];
         }
         let walls = self.sides().into_iter().enumerate().filter_map(|(axis, (_, side))| Some((axis, side?)));
-        let depths: Vec<Quadratic> = walls.flat_map(|(axis, [low, high])| {
-            let c = [leg.p[axis], leg.v[axis], 0.5 * leg.a[axis]].map(|c| 1e3 * c);
-            [[c[0] - low, c[1], c[2]], [high - c[0], -c[1], -c[2]]]
-        }).collect();
+        let depths: Vec<Quadratic> = walls
+            .flat_map(|(axis, [low, high])| {
+                let c = [leg.p[axis], leg.v[axis], 0.5 * leg.a[axis]].map(|c| 1e3 * c);
+                [[c[0] - low, c[1], c[2]], [high - c[0], -c[1], -c[2]]]
+            })
+            .collect();
         extremes_of_smallest(&depths, leg.length)
     }
 
@@ -104,12 +106,16 @@ impl Ask for Inside {
         self.when.check(place)?;
         for (key, [low, high]) in self.sides().into_iter().filter_map(|(key, side)| Some((key, side?))) {
             if !(low < high && low.abs() <= 1e6 && high.abs() <= 1e6) {
-                return Err(place.at(key).wrong("from where to where, in mm: the first is the smaller one, at most 1e6"));
+                return Err(place
+                    .at(key)
+                    .wrong("from where to where, in mm: the first is the smaller one, at most 1e6"));
             }
         }
         let boxed = self.sides().iter().any(|(_, side)| side.is_some());
         match (boxed, self.centre_mm) {
-            (true, Some(_)) => Err(place.wrong("a box or a ball: `centre_mm` and `x_mm`, `y_mm`, `z_mm` exclude each other")),
+            (true, Some(_)) => {
+                Err(place.wrong("a box or a ball: `centre_mm` and `x_mm`, `y_mm`, `z_mm` exclude each other"))
+            }
             (false, None) => Err(place.wrong("which region? Give `x_mm`, `y_mm` or `z_mm`, or `centre_mm`")),
             (_, Some(centre)) if !centre.iter().all(|x| x.abs() <= 1e6) => {
                 Err(place.at("centre_mm").wrong("beyond 1e6 mm"))

@@ -4,11 +4,11 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
+use crate::require::ways::level;
 use crate::require::when::When;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use crate::require::ways::level;
 
 /// A body's middle is so far from another's, at the end or at a time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

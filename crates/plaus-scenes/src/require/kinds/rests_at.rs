@@ -1,15 +1,15 @@
 //! Where a body comes to rest.
 
-use crate::require::kinds::Ask;
 use crate::require::claim::Claim;
+use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
+use crate::require::ways::level;
 use crate::scene::ConfigError;
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use crate::require::ways::level;
-use glam::DVec3;
 
 /// A body comes to rest with its middle near a place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -3,11 +3,11 @@
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
+use crate::require::probe::matches;
 use crate::require::score::Reach;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use crate::require::probe::matches;
 
 /// A body lies on another, or on a part of the scenery: what it touched last before it came to rest, as far as a
 /// motion's impacts and contacts tell.

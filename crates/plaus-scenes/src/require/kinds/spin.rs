@@ -1,7 +1,7 @@
 //! How fast a body turns at an impact.
 
-use crate::require::kinds::Ask;
 use crate::require::event::{Event, What};
+use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{Band, FAR, Reach, Span};

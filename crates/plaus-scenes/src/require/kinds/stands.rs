@@ -7,9 +7,9 @@ use crate::require::probe::Probe;
 use crate::require::score::Reach;
 use crate::require::when::When;
 use crate::scene::ConfigError;
+use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use glam::DVec3;
 
 /// A body stands: its third axis is upright, more or less, at the end or at a time. `not` makes it a body that has
 /// fallen.

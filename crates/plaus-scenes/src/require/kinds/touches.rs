@@ -3,14 +3,14 @@
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
+use crate::require::probe::matches;
 use crate::require::score::{FAR, Reach};
+use crate::require::ways;
 use crate::require::when::When;
 use crate::scene::ConfigError;
+use plaus_animation::Track;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use crate::require::probe::matches;
-use crate::require::ways;
-use plaus_animation::Track;
 
 /// A body touches another, or a part of the scenery. Of two bodies that never touch, how far they stayed apart counts.
 /// `not` makes it a body that never touches the other.
