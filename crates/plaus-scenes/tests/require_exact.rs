@@ -34,7 +34,8 @@ const CASES: &[&[&str]] = &[
     ],
     &[
         "not = { inside = { x_mm = [0, 80], scale_mm = 30 } }",
-        "at_least = { count = 1, of = [{ rests = { when = { to_s = 1.0, scale_ms = 60 } } }, { impact = { nth = 3, when = { from_s = 0.9, scale_ms = 60 } } }] }",
+        "at_least = { count = 1, of = [{ rests = { when = { to_s = 1.0, scale_ms = 60 } } }, \
+         { impact = { nth = 3, when = { from_s = 0.9, scale_ms = 60 } } }] }",
     ],
 ];
 

@@ -7,8 +7,9 @@ use plaus_scenes::require::{Cast, FAR, Probe, Require};
 
 const G: f64 = 9.806_65;
 
-/// Ball `a` rises at 2 m/s from the origin and goes along x at 1 m/s, falls back at 2/g·2 = 0.408 s, rests there. Ball
-/// `b` stands upright at (1, 0, 0) m; `a` lies on its side. The die `die_1` lies at (0, 0.5, 0) m with its 5 up, from 0.1 s on; it turned before.
+/// Ball `a` rises at 2 m/s from the origin and goes along x at 1 m/s, is back at 0.408 s, and rests there. Ball
+/// `b` stands upright at (1, 0, 0) m; `a` lies on its side. The die `die_1` lies at (0, 0.5, 0) m with its 5 up, from
+/// 0.1 s on; it turned before.
 fn motion() -> (Animation, Cast) {
     let fall = DVec3::new(0.0, 0.0, -G);
     let landing = 4.0 / G;
