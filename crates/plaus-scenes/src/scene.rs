@@ -93,8 +93,8 @@ pub trait Scene:
         Vec::new()
     }
 
-    /// Bodies and impacts of [`Scene::motion`] before `time`, as far as a simulation that ends there tells; `None` where
-    /// it would be as dear as the whole.
+    /// Bodies and impacts of [`Scene::motion`] before `time`, as far as a simulation that ends there tells; `None`
+    /// where it would be as dear as the whole.
     ///
     /// # Errors
     /// As [`Scene::animate`].

@@ -284,15 +284,15 @@ impl Scene for Dice {
         self.config.constraints.iter().enumerate().filter_map(key).collect()
     }
 
-    /// Dice that meet are simulated to their end before it is known which do; bodies that wobble are drawn in parts that
-    /// end with the next event.
+    /// Dice that meet are simulated to their end before it is known which do; bodies that wobble are drawn in parts
+    /// that end with the next event.
     fn motion_to(&self, draw: &Draw, time: f64) -> Result<Option<Animation>, ModelError> {
         let exact = !self.plan.together && self.plan.rotations.len() == 24 && time < self.plan.longest;
         let motion = || animate::motion(self, draw, time).map(|(motion, _)| motion);
         exact.then(motion).transpose()
     }
 
-    /// One margin a constraint: what it costs, or how much of what it allows is left.
+    /// Each constraint, and that all come to rest.
     fn asked(&self) -> Vec<String> {
         let name = |one: &Constraint| format!("{} of die {}", one.name(), one.die());
         self.config.constraints.iter().map(name).chain(["all dice come to rest".to_owned()]).collect()
