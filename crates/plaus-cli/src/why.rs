@@ -4,7 +4,7 @@ use crate::console;
 use crate::table::{grouped, lay_out, percent, short};
 use plaus_mcmc::ModelError;
 use plaus_run::{Phase, RunFileError, RunOf, RunVisitor};
-use plaus_scenes::require::Tally;
+use plaus_scenes::require::{Clause, Tally};
 use plaus_scenes::{Scene, Visitor};
 use serde_json::{Value, json};
 
@@ -51,7 +51,7 @@ impl RunVisitor for OfRun {
 /// What was met and what not, as a table with the pairs that were never met together.
 pub(crate) fn in_words(tally: &Tally, states: &str) -> String {
     let head = ["asked".to_owned(), format!("met by {states}"), String::new(), "best margin (nat)".to_owned()];
-    let row = |clause: &plaus_scenes::require::Clause| {
+    let row = |clause: &Clause| {
         let share = percent(clause.met as f64 / tally.states as f64);
         vec![clause.name.clone(), grouped(clause.met), share, short(clause.best)]
     };
@@ -71,7 +71,10 @@ pub(crate) fn in_words(tally: &Tally, states: &str) -> String {
 /// The same as JSON.
 pub(crate) fn to_json(tally: &Tally) -> Value {
     let finite = |margin: f64| margin.is_finite().then_some(margin);
-    let clause = |clause: &plaus_scenes::require::Clause| json!({ "asked": clause.name, "met": clause.met, "best_margin": finite(clause.best) });
+    let clause = |clause: &Clause| {
+        let best = finite(clause.best);
+        json!({ "asked": clause.name, "met": clause.met, "best_margin": best })
+    };
     let clauses: Vec<Value> = tally.clauses.iter().map(clause).collect();
     json!({ "states": tally.states, "all": tally.all, "clauses": clauses, "never_together": tally.never_together() })
 }

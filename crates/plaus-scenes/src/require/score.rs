@@ -66,10 +66,10 @@ impl Reach {
 
     /// The opposite: met where this is not, strictly.
     #[must_use]
-    pub fn not(self) -> Self {
+    pub fn opposite(self) -> Self {
         // The next smaller number, so that of a margin of 0 and its opposite only one is met.
-        let opposite = |mark: Mark| Mark::of((-mark.margin).next_down());
-        Self { least: opposite(self.most), most: opposite(self.least) }
+        let turned = |mark: Mark| Mark::of((-mark.margin).next_down());
+        Self { least: turned(self.most), most: turned(self.least) }
     }
 }
 
@@ -168,8 +168,8 @@ mod tests {
     fn of_a_margin_and_its_opposite_one_is_met() {
         for margin in [-2.0, -5e-324, -0.0, 0.0, 5e-324, 2.0] {
             let reach = Reach::certain(margin);
-            assert_ne!(reach.most.met(), reach.not().most.met(), "{margin}");
-            assert_eq!(reach.most.met(), reach.not().not().most.met(), "{margin}");
+            assert_ne!(reach.most.met(), reach.opposite().most.met(), "{margin}");
+            assert_eq!(reach.most.met(), reach.opposite().opposite().most.met(), "{margin}");
         }
     }
 }

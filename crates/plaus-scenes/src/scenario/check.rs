@@ -199,7 +199,7 @@ mod tests {
                 "law": { "anyOf": [{ "enum": ["fair", "loaded"] }, { "type": "null" }], "default": null },
             } } },
         });
-        Shape::of_schema(&schema, &schema, 0)
+        Shape::of_schema(&schema, &schema, &[])
     }
 
     fn problems(text: &str) -> Vec<String> {

@@ -105,7 +105,7 @@ impl Ask for Not {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        self.0.reach(probe).not()
+        self.0.reach(probe).opposite()
     }
 
     fn moment(&self) -> Option<f64> {

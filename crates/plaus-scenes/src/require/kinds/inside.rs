@@ -141,7 +141,7 @@ impl Ask for Inside {
         match self.how {
             How::Sometimes | How::AtEnd => Reach::between(nats(most), if whole { nats(most) } else { best }),
             How::Always => Reach::between(if whole { nats(least) } else { -FAR }, nats(least).min(best)),
-            How::Never => Reach::between(nats(most), if whole { nats(most) } else { best }).not(),
+            How::Never => Reach::between(nats(most), if whole { nats(most) } else { best }).opposite(),
         }
     }
 
