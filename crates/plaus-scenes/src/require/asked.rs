@@ -7,8 +7,9 @@ use super::probe::{Cast, Probe};
 use super::score::{FAR, Mark};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
+use crate::model::{Column, Member, Scalar};
 use crate::rules::Rules;
-use crate::scene::{ConfigError, Role, Scalar, Scene, Until};
+use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::view::{Sees, lent};
@@ -210,8 +211,6 @@ impl<S: Scene> Sees for Asked<S> {
 
 impl<S: Scene> Scene for Asked<S> {
     const ADAPTS: bool = S::ADAPTS;
-    const NUMBERED: &'static str = S::NUMBERED;
-    const WHOLE: &'static [&'static str] = S::WHOLE;
 
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         Ok(lent(&self.scene.moves(rules)?))
@@ -219,12 +218,10 @@ impl<S: Scene> Scene for Asked<S> {
 
     /// Those of the scene, and the margin of each requirement.
     fn scalars(&self) -> Vec<Scalar> {
-        let margin = |name| Scalar { name, unit: "nat", role: Role::Outcome };
-        self.scene
-            .scalars()
-            .into_iter()
-            .chain(super::names(self.requirements(), "margin_").into_iter().map(margin))
-            .collect()
+        let margin = Column::result("margin", "nat");
+        let numbers = 1..=self.requirements().len() as u32;
+        let margins = numbers.map(|number| margin.of(Some(Member { kind: "requirement", number })));
+        self.scene.scalars().into_iter().chain(margins).collect()
     }
 
     fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
@@ -276,10 +273,8 @@ impl<S: Scene> Scene for Asked<S> {
     }
 
     fn asked(&self) -> Vec<String> {
-        let named = super::names(self.requirements(), "");
-        let said = self.requirements().iter().enumerate().zip(named);
-        let label = |((index, _), name): ((usize, &Require), String)| format!("require[{index}]: {name}");
-        self.scene.asked().into_iter().chain(said.map(label)).collect()
+        let said = self.requirements().iter().enumerate().map(|(index, one)| key(index, one));
+        self.scene.asked().into_iter().chain(said).collect()
     }
 
     fn answers(&self, state: &StateOf<Self>) -> Vec<Mark> {

@@ -45,28 +45,3 @@ pub use when::{When, Window};
 
 /// Most requirements in one another.
 pub const DEEPEST: usize = 8;
-
-/// A name for each requirement: its kind, with a letter where there are several.
-#[must_use]
-pub fn names(requirements: &[Require], prefix: &str) -> Vec<String> {
-    let name = |(index, one): (usize, &Require)| {
-        let before = requirements[..index].iter().filter(|other| other.name() == one.name()).count();
-        match before {
-            0 => format!("{prefix}{}", one.name()),
-            nth => format!("{prefix}{}_{}", one.name(), letters(nth)),
-        }
-    };
-    requirements.iter().enumerate().map(name).collect()
-}
-
-/// `b` for 1, `z` for 25, `aa` for 26.
-fn letters(mut nth: usize) -> String {
-    let mut name = String::new();
-    loop {
-        name.insert(0, char::from(b'a' + (nth % 26) as u8));
-        if nth < 26 {
-            return name;
-        }
-        nth = nth / 26 - 1;
-    }
-}
