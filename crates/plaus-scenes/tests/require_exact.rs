@@ -4,7 +4,7 @@
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{Chain, State, StateOf, Target};
 use plaus_scenes::ball2d::{self, Ball2d};
-use plaus_scenes::require::{Asked, Mark, Require};
+use plaus_scenes::require::{Asked, Mark, Require, Tally};
 use plaus_scenes::{Rules, Scene};
 
 /// Draws from the prior, and iterations of a chain.
@@ -122,4 +122,20 @@ fn a_chain_that_forgets_what_is_required_is_found_out() {
         let z = apart(weighed(&scene), sampled(&asked(&[]), &scene));
         assert!(z > 5.0, "{texts:?}: only {z} standard errors");
     }
+}
+
+/// Of draws from the prior: what each thing that is asked is met by, and what never comes together.
+#[test]
+fn a_tally_tells_what_is_met_and_what_never_together() {
+    let early = "impact = { nth = 2, when = { to_s = 0.6 } }";
+    let late = "not = { impact = { nth = 2, when = { to_s = 0.7 } } }";
+    let never = "bounces = { at_least = 4 }";
+    let scene = asked(&[early, late, never]);
+    let tally = Tally::of_prior(&scene, 1, 2000, |_| {}).unwrap();
+    let [_, early, late, never] = tally.clauses.as_slice() else { panic!("{tally:?}") };
+    assert_eq!((tally.states, tally.all), (2000, 0));
+    assert!(early.met > 0 && late.met > 0 && early.met + late.met <= 2000, "{tally:?}");
+    // A ball makes three bounces: half a bounce below what would do, at two nats each.
+    assert_eq!((never.met, never.best), (0, -1.0));
+    assert_eq!(tally.never_together(), [["require[0].impact", "require[1].not"]]);
 }

@@ -238,9 +238,9 @@ impl Scene for Spelling {
     }
 
     fn cast(&self) -> Cast {
-        let bodies = (0..self.prior.balls()).map(|ball| format!("ball_{ball}")).collect();
+        let bodies = (0..self.balls).map(|ball| format!("ball_{ball}")).collect();
         let fixed = animate::FIXED.map(String::from).to_vec();
-        let last = self.config.drop_interval_s * f64::from(self.prior.balls() as u32);
+        let last = self.config.drop_interval_s * f64::from(self.balls as u32);
         Cast { bodies, fixed, longest: last + self.config.settle_s, faces: false }
     }
 
