@@ -70,12 +70,18 @@ fn meanings(shape: &Shape) -> Vec<String> {
         }
         Kind::List(item, _) => {
             let key = |(name, shape): &(String, Shape)| match default(shape) {
-                Some(default) => format!("{name} ({}, default {default})", shape.range_with_unit()),
+                Some(default) => {
+                    let range = Some(shape.range_with_unit()).filter(|range| !range.is_empty());
+                    let facts: Vec<String> = range.into_iter().chain([format!("default {default}")]).collect();
+                    format!("{name} ({})", facts.join(", "))
+                }
                 None => name.clone(),
             };
             let keys = |shape: &Shape| shape.keys().iter().map(key).collect::<Vec<_>>().join(", ");
-            let choice =
-                |(name, shape): &(String, Shape)| format!("{name}: {} Keys: {}.", shape.description, keys(shape));
+            let choice = |(name, shape): &(String, Shape)| match keys(shape) {
+                keys if keys.is_empty() => format!("{name}: {}", shape.description),
+                keys => format!("{name}: {} Keys: {keys}.", shape.description),
+            };
             item.keys().iter().map(choice).collect()
         }
         _ => Vec::new(),
