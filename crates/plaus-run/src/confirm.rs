@@ -68,7 +68,7 @@ pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Err
             at_accuracy(&scene, self.0, self.1).map(drop)
         }
     }
-    scenario.world.visit(Ask(scenario.world.name(), accuracy))?
+    scenario.visit(Ask(scenario.world.name(), accuracy))?
 }
 
 impl Confirmation {

@@ -113,7 +113,7 @@ impl Run {
                 Ok(self.1.visit(RunOf::new(self.0, scene)?))
             }
         }
-        self.scenario.world.visit(Build(self, visitor))?
+        self.scenario.visit(Build(self, visitor))?
     }
 }
 

@@ -10,6 +10,7 @@ use crate::interrupt;
 use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
 use crate::table::{grouped, rate};
+use crate::why::{self, OfRun};
 use plaus_mcmc::{Ending, Plan};
 use plaus_run::{Diagnosis, Error, Folder, Manifest, Run, Sampling};
 use plaus_scenes::scenario::ScenarioError;
@@ -194,6 +195,9 @@ impl Watching {
             end["ending"] = json!(ending_in_words(ending));
             end["seconds"] = json!(monitor.seconds());
             end["iterations_per_second"] = json!(monitor.rate());
+            if !diagnosis.tally.is_satisfied() {
+                end["asked"] = why::to_json(&run.visit(OfRun)??);
+            }
             if let Some(list) = &confirmed {
                 let (held, checked) = (list.held, list.solutions.len());
                 end["confirmed"] = json!({ "accuracy": list.accuracy.name(), "checked": checked, "held": held });
@@ -223,6 +227,9 @@ impl Watching {
                 quoted(path)
             ));
         } else if !diagnosis.tally.is_satisfied() {
+            if !self.json && !self.quiet {
+                console::note_line(&why::in_words(&run.visit(OfRun)??, "recorded states"));
+            }
             console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
         }
         if let Some(list) = confirmed.as_ref().filter(|_| !self.json) {
