@@ -23,7 +23,8 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (
         &["warm-up", "warmup"],
-        "the first iterations of each chain, in which it forgets where it began. They are recorded, but count for nothing.",
+        "the first iterations of each chain, in which it forgets where it began and finds out how large its steps should be. They are recorded, but are no part \
+         of statistics; what they find is a solution all the same, of which `--solutions` takes each.",
     ),
     (
         &["log p", "log_p"],

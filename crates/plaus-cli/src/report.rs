@@ -150,8 +150,12 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let note =
         if share.is_finite() { format!("{} of the sampled draws satisfy; ", percent(share)) } else { String::new() };
     let (first, distinct) = (grouped(*first), grouped(tally.distinct));
+    let early = match tally.while_adapting {
+        0 => String::new(),
+        early => format!("; {} of them found while moves were adapted, and left out of statistics", grouped(early)),
+    };
     format!(
-        "first hit at iteration {first}, {all}\n{note}{distinct} distinct solutions (that differ in kind: `plaus explain distinct`)\n"
+        "first hit at iteration {first}, {all}\n{note}{distinct} distinct solutions (that differ in kind: `plaus explain distinct`){early}\n"
     )
 }
 
@@ -211,6 +215,7 @@ pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
         "scalars": diagnosis.scalars,
         "first_hit": tally.first_hit(),
         "distinct": tally.distinct,
+        "distinct_while_adapting": tally.while_adapting,
         "best_sample": tally.best().map(|sample| sample.to_string()),
         "acceptance": acceptance(&manifest.moves, &tally.counts),
         "moves": manifest.moves.iter().zip(&tally.counts).map(|(name, count)| (name.clone(), json!(count))).collect::<Value>(),

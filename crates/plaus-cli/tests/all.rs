@@ -17,3 +17,4 @@ mod pieces;
 #[cfg(unix)]
 mod same_bytes;
 mod tempering;
+mod while_adapting;

@@ -46,6 +46,7 @@
 //! resumed. Records are written first, checkpoints after; a checkpoint says how long the records were, and what lies beyond that is cut off
 //! when the run goes on. So a process that dies at any moment loses at most the iterations since the last checkpoint.
 
+pub mod chance;
 pub mod checkpoint;
 pub mod codec;
 pub mod confirm;

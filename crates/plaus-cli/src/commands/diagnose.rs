@@ -33,12 +33,16 @@ impl RunVisitor for Plots<'_> {
 }
 
 /// Counts the draws of each chain.
-pub(super) struct CountDraws;
+pub(super) struct CountDraws {
+    /// Only those that statistics are made of; else all among which there may be solutions.
+    pub(super) statistics: bool,
+}
 
 impl RunVisitor for CountDraws {
     type Output = u64;
     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> u64 {
-        run.draws(Phase::Sampling)
+        let phases = if self.statistics { &[Phase::Sampling] } else { run.counted() };
+        phases.iter().map(|&phase| run.draws(phase)).sum()
     }
 }
 
@@ -48,7 +52,7 @@ impl Args {
         if run.folder().is_being_written() {
             console::note_line("note: the run is being written; this is as of its last checkpoint");
         }
-        if run.visit(CountDraws)? == 0 {
+        if run.visit(CountDraws { statistics: true })? == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         if let Some(folder) = &self.plots {

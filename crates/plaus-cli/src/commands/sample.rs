@@ -280,11 +280,16 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
     text += &report::tempering(diagnosis, (monitor.begun_at() == 0).then_some(sampling));
     if diagnosis.draws == 0 {
-        // Warm-up draws are neither diagnosed nor exported.
-        text += &format!("\nstill in the warm-up: nothing to look at yet\n\nnext:\n  plaus resume {path}\n");
-        return text;
+        let still = "\nstill in the warm-up: there are no draws for statistics yet\n";
+        if diagnosis.tally.distinct == 0 {
+            return text + still + &format!("\nnext:\n  plaus resume {path}\n");
+        }
+        if ending != Ending::EnoughSolutions {
+            text += still;
+        }
     }
     text += &match plan.solutions {
+        _ if diagnosis.draws == 0 => String::new(),
         Some(_) => format!("(whether they come up as often as they are plausible: `plaus diagnose {path}`)\n"),
         None => statistics(diagnosis, &path),
     };
@@ -292,7 +297,9 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     if let Some(best) = diagnosis.tally.best() {
         text += &format!("  plaus gallery {path} --out gallery.html\n  plaus replay {path} --sample {best}\n");
     }
-    text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
+    if diagnosis.draws > 0 {
+        text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
+    }
     match ending {
         Ending::Stopped => text += &format!("  plaus resume {path}\n"),
         Ending::Complete if !diagnosis.is_healthy() && plan.solutions.is_none() => {
