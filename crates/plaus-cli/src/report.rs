@@ -159,6 +159,15 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     )
 }
 
+/// How many independent solutions there are, and how many come in a minute, over `seconds` where that is known.
+pub(crate) fn independent(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
+    let Some(found) = &diagnosis.independent else { return String::new() };
+    let minute = seconds.filter(|&seconds| seconds > 0.0).map(|seconds| 60.0 * found.ess / seconds);
+    let pace = minute.map(|minute| format!(", {} a minute", short(minute))).unwrap_or_default();
+    let ess = short(found.ess);
+    format!("{ess} independent solutions{pace} (by {}, which mixes worst: `plaus explain independent`)\n", found.scalar)
+}
+
 /// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are
 /// not tempered.
 pub(crate) fn tempering(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
@@ -213,6 +222,7 @@ pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
         "draws": diagnosis.draws,
         "stride": diagnosis.stride,
         "scalars": diagnosis.scalars,
+        "independent": diagnosis.independent,
         "first_hit": tally.first_hit(),
         "distinct": tally.distinct,
         "distinct_while_adapting": tally.while_adapting,

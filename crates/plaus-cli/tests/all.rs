@@ -7,6 +7,7 @@ mod accuracy;
 mod adapting;
 mod animations;
 mod bad_input;
+mod chance;
 mod every_format;
 mod first_hour;
 #[cfg(unix)]

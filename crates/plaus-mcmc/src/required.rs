@@ -170,14 +170,6 @@ impl<T: Goal, R: Requirement<T>> Goal for Required<'_, T, R> {
     fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
         if state.outcome.mark.met { self.target.class(&state.outcome.seen) } else { None }
     }
-
-    fn parts(&self) -> Vec<String> {
-        self.target.parts()
-    }
-
-    fn met(&self, state: &StateOf<Self>, met: &mut [bool]) {
-        self.target.met(&state.outcome.seen, met);
-    }
 }
 
 impl<T: Target + 'static, R: Requirement<T>> Sees for Required<'_, T, R> {

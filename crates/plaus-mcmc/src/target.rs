@@ -80,14 +80,6 @@ pub trait Goal: Target {
     /// The class of solutions `state` belongs to, or `None` where it does not satisfy the constraint. Two satisfying
     /// states of the same class count as one distinct solution.
     fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass>;
-
-    /// Names of the parts of the goal, where it has some that can be met one by one.
-    fn parts(&self) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// Says of each of [`Goal::parts`] whether `state` meets it; `met` has as many places.
-    fn met(&self, _state: &StateOf<Self>, _met: &mut [bool]) {}
 }
 
 /// A label of a class of solutions: equal for solutions a user would call the same. See [`SolutionClass::of`].

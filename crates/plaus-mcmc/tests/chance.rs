@@ -3,7 +3,7 @@
 use plaus_dist::stream::below;
 use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Seed, Stream, open_unit};
 use plaus_mcmc::chance::{
-    ChanceError, ChancePulse, Estimate, Method, Splitting, Stoned, Stones, count, disagree, split, stones,
+    ChanceError, ChancePulse, Estimate, Method, Parts, Splitting, Stoned, Stones, count, disagree, split, stones,
 };
 use plaus_mcmc::{Goal, Mixture, ModelError, Move, Path, Proposal, Simulated, SolutionClass, StateOf, Target};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -17,13 +17,13 @@ struct Tail {
     slope: f64,
     /// Width of plateaus of the constraint; 0: none.
     plateau: f64,
-    /// Whether there is another way: a first number far below, with the second in a band of its own.
+    /// Whether there is another way, which no slope leads to: a first number far below.
     needle: bool,
     /// Draws short by more are forbidden.
     forbidden: f64,
 }
 
-const NEEDLE: (f64, [f64; 2]) = (-3.3, [0.0, 0.52]);
+const NEEDLE: f64 = -3.6;
 
 fn normal() -> Gaussian {
     Gaussian::new(0.0, 1.0).unwrap()
@@ -39,7 +39,7 @@ impl Tail {
     }
 
     fn is_in_needle(&self, draw: [f64; 2]) -> bool {
-        self.needle && draw[0] < NEEDLE.0 && NEEDLE.1[0] < draw[1] && draw[1] < NEEDLE.1[1]
+        self.needle && draw[0] < NEEDLE
     }
 }
 
@@ -77,12 +77,6 @@ impl Goal for Tail {
         let there = state.draw[0] >= self.past || self.is_in_needle(state.draw);
         there.then(|| SolutionClass::of([0]))
     }
-    fn parts(&self) -> Vec<String> {
-        vec!["second is positive".to_owned()]
-    }
-    fn met(&self, state: &StateOf<Self>, met: &mut [bool]) {
-        met[0] = state.draw[1] > 0.0;
-    }
 }
 
 /// Turns the draw a little towards a fresh one: the prior's own step.
@@ -110,17 +104,21 @@ impl Move<Tail> for Turn {
     }
 }
 
+/// Whether the second number is positive.
+const UPPER: Parts<'static, Tail> = Parts { count: 1, met: &|_, state, met| met[0] = state.draw[1] > 0.0 };
+
 fn turns() -> Arc<Mixture<Tail>> {
     Arc::new(Mixture::new(vec![(1.0, Box::new(Turn(0.4)) as _), (1.0, Box::new(Turn(0.12)) as _)]).unwrap())
 }
 
-const SPLITTING: Splitting = Splitting { particles: 100, steps: 60, least: 1e-15 };
+const SPLITTING: Splitting = Splitting { particles: 100, steps: 40, least: 1e-15 };
 
 /// Estimates of batches, the sum of their simulations aside.
 fn climbed(target: &Tail, seed: u64, batches: u32, splitting: Splitting) -> (Vec<plaus_mcmc::chance::Split>, Estimate) {
     let (moves, pulse) = (turns(), ChancePulse::default());
-    let made: Vec<_> =
-        (0..batches).map(|batch| split(target, &moves, Seed(seed), batch, splitting, &pulse).unwrap()).collect();
+    let made: Vec<_> = (0..batches)
+        .map(|batch| split((target, &moves), UPPER, Seed(seed), batch, splitting, &pulse).unwrap())
+        .collect();
     let estimate = Estimate::split(&made, 0).unwrap();
     (made, estimate)
 }
@@ -135,8 +133,8 @@ fn ideal(p: f64, particles: u32, batches: u32) -> f64 {
 fn splitting_finds_gaussian_tails() {
     for past in [3.090_232, 4.753_424, 5.997_807, 7.034_484] {
         let p = tail_of(past);
-        let (batches, smooth) = climbed(&Tail::beyond(past), 1, 16, SPLITTING);
-        let error = ideal(p, 100, 16);
+        let (batches, smooth) = climbed(&Tail::beyond(past), 1, 10, SPLITTING);
+        let error = ideal(p, 100, 10);
         // Five standard errors of what is known to be the error: a false alarm in a million.
         assert!((smooth.probability / p - 1.0).abs() < 5.0 * error, "{p:e}: {smooth:?}");
         assert!((0.4..2.5).contains(&(smooth.error / p / error)), "{p:e}: {smooth:?}, {error}");
@@ -145,10 +143,10 @@ fn splitting_finds_gaussian_tails() {
         assert!(batches.iter().all(|one| (one.probability[0] / textbook(one.deaths) - 1.0).abs() < 1e-9));
 
         let stepped = Tail { plateau: 0.8, ..Tail::beyond(past) };
-        let (batches, stepped) = climbed(&stepped, 2, 16, SPLITTING);
+        let (batches, stepped) = climbed(&stepped, 2, 10, SPLITTING);
         assert!((stepped.probability - p).abs() < 6.0 * stepped.error, "{p:e}: {stepped:?}");
-        let wrong = batches.iter().map(|one| textbook(one.deaths)).sum::<f64>() / 16.0;
-        assert!((wrong - p).abs() > 10.0 * stepped.error, "{p:e}: {wrong:e} passes for right");
+        let wrong = batches.iter().map(|one| textbook(one.deaths)).sum::<f64>() / 10.0;
+        assert!((wrong - p).abs() > 8.0 * stepped.error, "{p:e}: {wrong:e} passes for right");
     }
 }
 
@@ -162,7 +160,7 @@ fn splitting_estimates_parts_too() {
     assert!(batches.iter().all(|batch| batch.ancestors >= 1 && batch.levels > 100));
 }
 
-const STONES: Stones = Stones { rungs: 12, swap_every: 2, warmup: 1000, iterations: 6000 };
+const STONES: Stones = Stones { rungs: 10, swap_every: 2, warmup: 500, iterations: 3000 };
 
 fn stepped_over(target: &Tail, seed: u64, batches: u32, plan: Stones) -> (Vec<Stoned>, Estimate) {
     let (moves, pulse) = (turns(), ChancePulse::default());
@@ -179,7 +177,7 @@ fn stepping_stones_find_gaussian_tails() {
         let p = tail_of(past);
         let (batches, found) = stepped_over(&Tail { forbidden, ..Tail::beyond(past) }, 4, 12, STONES);
         assert!((found.probability - p).abs() < 6.0 * found.error, "{p:e}: {found:?}");
-        assert!(found.error < 0.1 * p, "{found:?}");
+        assert!(found.error < 0.15 * p, "{found:?}");
         // Z alone takes the target for the goal.
         let wrong = batches.iter().map(|one| one.log_z.exp()).sum::<f64>() / 12.0;
         assert!((wrong - p).abs() > 6.0 * found.error, "{wrong:e} passes for {p:e}");
@@ -194,25 +192,23 @@ fn stepping_stones_find_gaussian_tails() {
     }
 }
 
-/// A way to the goal that only stepping stones find, by their fresh draws: the estimates differ, and it is said.
+/// A way to the goal that only stepping stones find, by their many fresh draws: the estimates differ, and it is said.
 #[test]
 fn estimators_disagree_where_one_misses_a_way() {
-    let particles = Splitting { particles: 30, ..SPLITTING };
-    let plan = Stones { iterations: 8000, ..STONES };
-    for seed in [1, 2] {
-        let look = |needle: bool| {
-            let target = Tail { needle, ..Tail::beyond(5.0) };
-            [climbed(&target, seed, 24, particles).1, stepped_over(&target, seed, 24, plan).1]
-        };
-        assert_eq!(disagree(&look(false)), [], "{:?}", look(false));
-        let found = look(true);
-        let said = disagree(&found);
-        assert!(said.len() == 1 && (said[0].less, said[0].more) == (Method::Splitting, Method::Stones), "{found:?}");
-        // The way that was missed is most of it.
-        let band = Normal::new(0.0, 1.0).unwrap();
-        let p = tail_of(5.0) + tail_of(-NEEDLE.0) * (band.cdf(NEEDLE.1[1]) - band.cdf(NEEDLE.1[0]));
-        assert!((found[1].probability / p - 1.0).abs() < 6.0 * found[1].error / p && found[0].probability < 0.1 * p);
-    }
+    let particles = Splitting { particles: 50, ..SPLITTING };
+    let plan = Stones { rungs: 8, swap_every: 1, warmup: 2000, iterations: 20_000 };
+    let look = |needle: bool| {
+        let target = Tail { needle, ..Tail::beyond(5.0) };
+        [climbed(&target, 1, 8, particles).1, stepped_over(&target, 1, 8, plan).1]
+    };
+    let plain = look(false);
+    assert_eq!(disagree(&plain), [], "{plain:?}");
+    let found = look(true);
+    let said = disagree(&found);
+    assert!(said.len() == 1 && (said[0].less, said[0].more) == (Method::Splitting, Method::Stones), "{found:?}");
+    // The way that was missed is most of it.
+    let p = tail_of(5.0) + tail_of(-NEEDLE);
+    assert!((found[1].probability - p).abs() < 6.0 * found[1].error && found[0].probability < 0.1 * p, "{found:?}");
 }
 
 /// Ten coins that should all show heads: a constraint of nothing but plateaus, and one count of all three methods.
@@ -247,13 +243,9 @@ impl Goal for Coins {
     fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
         (state.outcome == 10).then(|| SolutionClass::of([0]))
     }
-    fn parts(&self) -> Vec<String> {
-        (0..10).map(|coin| format!("coin {coin}")).collect()
-    }
-    fn met(&self, state: &StateOf<Self>, met: &mut [bool]) {
-        met.copy_from_slice(&state.draw);
-    }
 }
+
+const EACH: Parts<'static, Coins> = Parts { count: 10, met: &|_, state, met| met.copy_from_slice(&state.draw) };
 
 /// Throws one coin again.
 struct Toss;
@@ -288,9 +280,9 @@ impl Move<Coins> for Toss {
 fn all_methods_agree_on_coins() {
     let (pulse, seed, p) = (ChancePulse::default(), Seed(7), 0.7_f64.powi(10));
     let moves = Arc::new(Mixture::of(Box::new(Toss)));
-    let counted: Vec<_> = (0..8).map(|batch| count(&Coins, seed, batch, 4000, &pulse).unwrap()).collect();
+    let counted: Vec<_> = (0..8).map(|batch| count(&Coins, EACH, seed, batch, 4000, &pulse).unwrap()).collect();
     let particles: Vec<_> =
-        (0..24).map(|batch| split(&Coins, &moves, seed, batch, SPLITTING, &pulse).unwrap()).collect();
+        (0..24).map(|batch| split((&Coins, &moves), EACH, seed, batch, SPLITTING, &pulse).unwrap()).collect();
     let plan = Stones { rungs: 6, ..STONES };
     let stoned: Vec<_> = (0..12).map(|batch| stones(&Coins, &moves, seed, batch, plan, &pulse).unwrap()).collect();
     let all = [
@@ -318,16 +310,19 @@ fn all_methods_agree_on_coins() {
 fn batches_are_functions_of_their_number_and_can_be_stopped() {
     let (moves, pulse) = (turns(), ChancePulse::default());
     let target = Tail::beyond(3.0);
-    let one = |batch| split(&target, &moves, Seed(3), batch, SPLITTING, &pulse).unwrap();
+    let one = |batch| split((&target, &moves), UPPER, Seed(3), batch, SPLITTING, &pulse).unwrap();
     assert!(one(2) == one(2) && one(2) != one(3));
-    assert!(count(&target, Seed(3), 2, 100, &pulse).unwrap() == count(&target, Seed(3), 2, 100, &pulse).unwrap());
+    assert!(
+        count(&target, UPPER, Seed(3), 2, 100, &pulse).unwrap()
+            == count(&target, UPPER, Seed(3), 2, 100, &pulse).unwrap()
+    );
     for wrong in [Splitting { particles: 1, ..SPLITTING }, Splitting { steps: 0, ..SPLITTING }] {
-        assert!(matches!(split(&target, &moves, Seed(3), 0, wrong, &pulse), Err(ChanceError::Plan { .. })));
+        assert!(matches!(split((&target, &moves), UPPER, Seed(3), 0, wrong, &pulse), Err(ChanceError::Plan { .. })));
     }
-    assert!(matches!(count(&target, Seed(3), 0, 0, &pulse), Err(ChanceError::Plan { name: "draws", .. })));
+    assert!(matches!(count(&target, UPPER, Seed(3), 0, 0, &pulse), Err(ChanceError::Plan { name: "draws", .. })));
     let one_rung = Stones { rungs: 1, ..STONES };
     assert!(matches!(stones(&target, &moves, Seed(3), 0, one_rung, &pulse), Err(ChanceError::Plan { .. })));
     pulse.stop();
-    assert!(matches!(count(&target, Seed(3), 0, 9, &pulse), Err(ChanceError::Stopped)));
+    assert!(matches!(count(&target, UPPER, Seed(3), 0, 9, &pulse), Err(ChanceError::Stopped)));
     assert!(matches!(stones(&target, &moves, Seed(3), 0, STONES, &pulse), Err(ChanceError::Stopped)));
 }

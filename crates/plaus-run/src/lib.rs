@@ -59,6 +59,7 @@ pub mod folder;
 mod gauge;
 pub mod manifest;
 pub mod merge;
+pub mod pace;
 pub mod read;
 pub mod records;
 pub mod replay;
@@ -72,7 +73,7 @@ pub mod tally;
 mod trail;
 
 pub use confirm::Confirmation;
-pub use diagnosis::{Diagnosis, Finding};
+pub use diagnosis::{Diagnosis, Finding, Independent};
 pub use drive::{Alone, Drive, Driven, Journey};
 pub use error::{Error, RunFileError, RunFileProblem};
 pub use folder::Folder;

@@ -68,6 +68,9 @@ pub enum ChanceError {
         /// What it must be.
         least: u64,
     },
+    /// The operating system gave no thread.
+    #[error("cannot start worker threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
     /// Somebody asked for an end.
     #[error("stopped")]
     Stopped,
@@ -120,11 +123,36 @@ fn prior<T: Target>(target: &T, stream: &mut Stream, scratch: &mut T::Scratch) -
     Err(ModelError::new(format!("none of {TRIES} start draws has positive prior density")))
 }
 
-/// What is asked about a state: first whether it reaches the goal, then whether it meets each of the goal's parts.
-fn events<T: Goal>(target: &T, state: &StateOf<T>, met: &mut [bool]) {
-    if let Some((all, parts)) = met.split_first_mut() {
-        *all = target.class(state).is_some();
-        target.met(state, parts);
+/// Says of each part of a goal whether a state meets it, in as many places as there are parts.
+pub type Met<'a, T> = &'a (dyn Fn(&T, &StateOf<T>, &mut [bool]) + Sync);
+
+/// Parts of a goal that states may meet one by one: each is an event of its own, besides the goal.
+pub struct Parts<'a, T: Target> {
+    /// How many.
+    pub count: usize,
+    /// Which of them a state meets.
+    pub met: Met<'a, T>,
+}
+
+impl<T: Target> Clone for Parts<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: Target> Copy for Parts<'_, T> {}
+
+impl<T: Target> Parts<'_, T> {
+    /// None: only the goal is asked about.
+    pub const NONE: Self = Self { count: 0, met: &|_, _, _| {} };
+}
+
+impl<T: Goal> Parts<'_, T> {
+    /// Whether a state reaches the goal, then whether it meets each part; `met` has a place more than there are parts.
+    fn look(&self, target: &T, state: &StateOf<T>, met: &mut [bool]) {
+        if let Some((all, parts)) = met.split_first_mut() {
+            *all = target.class(state).is_some();
+            (self.met)(target, state, parts);
+        }
     }
 }
 

@@ -16,7 +16,7 @@
 //! the copied particle; a number of steps of the target's moves stands in for that.
 
 use super::above::Above;
-use super::{BRANCH, ChanceError, ChancePulse, DRAW, at_least, events, prior, streams};
+use super::{BRANCH, ChanceError, ChancePulse, DRAW, Parts, at_least, prior, streams};
 use crate::chain::Chain;
 use crate::moves::Mixture;
 use crate::target::{Goal, State, StateOf};
@@ -67,8 +67,8 @@ struct Particle<D, O> {
 /// # Errors
 /// [`ChanceError`] where the model fails, the plan makes no batch, or the pulse was stopped.
 pub fn split<T: Goal + 'static>(
-    target: &T,
-    moves: &Arc<Mixture<T>>,
+    (target, moves): (&T, &Arc<Mixture<T>>),
+    parts: Parts<'_, T>,
     seed: Seed,
     batch: u32,
     splitting: Splitting,
@@ -76,7 +76,7 @@ pub fn split<T: Goal + 'static>(
 ) -> Result<Split, ChanceError> {
     at_least("particles", u64::from(splitting.particles), 2)?;
     at_least("steps", splitting.steps, 1)?;
-    let mut population = Population::new(target, seed, batch, splitting, pulse)?;
+    let mut population = Population::new((target, parts), seed, batch, splitting, pulse)?;
     let lent = lend::<Above<'_, T>>(Arc::clone(moves)).map_err(|error| population.failed(error.to_string()))?;
     while !population.is_there() {
         population.climb(&lent)?;
@@ -86,6 +86,7 @@ pub fn split<T: Goal + 'static>(
 
 struct Population<'a, T: Goal> {
     target: &'a T,
+    parts: Parts<'a, T>,
     splitting: Splitting,
     batch: u32,
     pulse: &'a ChancePulse,
@@ -100,13 +101,13 @@ struct Population<'a, T: Goal> {
 
 impl<'a, T: Goal + 'static> Population<'a, T> {
     fn new(
-        target: &'a T,
+        (target, parts): (&'a T, Parts<'a, T>),
         seed: Seed,
         batch: u32,
         splitting: Splitting,
         pulse: &'a ChancePulse,
     ) -> Result<Self, ChanceError> {
-        let count = 1 + target.parts().len();
+        let count = 1 + parts.count;
         let (streams, mut scratch) = (streams(seed, batch), T::Scratch::default());
         let mut particles = Vec::with_capacity(splitting.particles as usize);
         for draw in 0..u64::from(splitting.particles) {
@@ -114,12 +115,12 @@ impl<'a, T: Goal + 'static> Population<'a, T> {
             let mut stream = streams.at((1 << 47) + draw, DRAW);
             let state = prior(target, &mut stream, &mut scratch);
             let state = state.map_err(|source| ChanceError::Model { batch, draw, source })?;
-            particles.push(Particle::new(target, state, draw as u32, count));
+            particles.push(Particle::new((target, parts), state, draw as u32, count));
             pulse.made(1)?;
         }
         let simulations = particles.len() as u64;
         let made = Split { probability: vec![0.0; count], levels: 0, deaths: 0, simulations, ancestors: 0 };
-        Ok(Self { target, splitting, batch, pulse, streams, particles, weight: 1.0, made, steps: 0 })
+        Ok(Self { target, parts, splitting, batch, pulse, streams, particles, weight: 1.0, made, steps: 0 })
     }
 
     fn failed(&self, message: String) -> ChanceError {
@@ -186,7 +187,7 @@ impl<'a, T: Goal + 'static> Population<'a, T> {
         let mut state = chain.state().clone();
         let level = self.target.log_constraint(&state.outcome);
         state.log_constraint = level.map_err(|source| self.failed(source.to_string()))?;
-        Ok(Particle::new(self.target, state, from.ancestor, self.made.probability.len()))
+        Ok(Particle::new((self.target, self.parts), state, from.ancestor, self.made.probability.len()))
     }
 
     fn end(mut self) -> Split {
@@ -204,9 +205,12 @@ impl<'a, T: Goal + 'static> Population<'a, T> {
 }
 
 impl<D: Clone, O: Clone> Particle<D, O> {
-    fn new<T: Goal<Draw = D, Outcome = O>>(target: &T, state: StateOf<T>, ancestor: u32, count: usize) -> Self {
+    fn new<T>((target, parts): (&T, Parts<'_, T>), state: StateOf<T>, ancestor: u32, count: usize) -> Self
+    where
+        T: Goal<Draw = D, Outcome = O>,
+    {
         let mut met = vec![false; count];
-        events(target, &state, &mut met);
+        parts.look(target, &state, &mut met);
         Self { level: state.log_constraint, met, ancestor, state }
     }
 }

@@ -86,12 +86,27 @@ pub fn stones<T: Goal>(
     plan: Stones,
     pulse: &ChancePulse,
 ) -> Result<Stoned, ChanceError> {
-    let Stones { rungs, swap_every, warmup, iterations } = plan;
+    let Stones { rungs, swap_every, iterations, .. } = plan;
     for (name, value, least) in
         [("rungs", u64::from(rungs), 2), ("swap_every", swap_every, 1), ("iterations", iterations, 1)]
     {
         at_least(name, value, least)?;
     }
+    // Batches are what runs side by side. Within one, replicas that are handed from thread to thread after each
+    // iteration would cost more than what they do.
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    alone.install(|| lay(target, moves, seed, batch, plan, pulse))
+}
+
+fn lay<T: Goal>(
+    target: &T,
+    moves: &Mixture<T>,
+    seed: Seed,
+    batch: u32,
+    plan: Stones,
+    pulse: &ChancePulse,
+) -> Result<Stoned, ChanceError> {
+    let Stones { rungs, swap_every, warmup, iterations } = plan;
     let fresh = Mixture::of(Box::new(Redraw));
     let course = Course { target, moves, fresh: &fresh, tempering: Tempering { rungs, swap_every, warmup } };
     let fail = |source| ChanceError::Chain { batch, source };

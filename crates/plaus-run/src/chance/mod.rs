@@ -14,10 +14,10 @@ use crate::error::Error;
 use crate::manifest::{Recipe, StoredScenario, VERSION};
 use crate::shard::Shard;
 use plaus_dist::Seed;
+use plaus_mcmc::Mixture;
 use plaus_mcmc::chance::{
-    ChanceError, ChancePulse, Counted, Method, Split, Splitting, Stoned, Stones, count, split, stones,
+    ChanceError, ChancePulse, Counted, Method, Parts, Split, Splitting, Stoned, Stones, count, split, stones,
 };
-use plaus_mcmc::{Goal, Mixture};
 use plaus_scenes::{Scene, Visitor};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -214,8 +214,8 @@ impl<S: Scene> Asked<'_, '_, S> {
         let Asking { seed, draws, splitting, stones: plan, .. } = self.inquiry.asking;
         let (scene, moves, pulse) = (&self.scene, &self.moves, self.inquiry.pulse);
         Ok(match method {
-            Method::Counting => Made::Counted(count(scene, seed, batch, draws, pulse)?),
-            Method::Splitting => Made::Split(split(scene, moves, seed, batch, splitting, pulse)?),
+            Method::Counting => Made::Counted(count(scene, self.parts(), seed, batch, draws, pulse)?),
+            Method::Splitting => Made::Split(split((scene, moves), self.parts(), seed, batch, splitting, pulse)?),
             Method::Stones => Made::Stoned(stones(scene, &**moves, seed, batch, plan, pulse)?),
         })
     }
@@ -238,7 +238,7 @@ impl<S: Scene> Asked<'_, '_, S> {
         if !exact {
             return Ok((vec![Method::Counting], "moves are not exact, so only draws of the prior count".to_owned()));
         }
-        let pilot = match count(&self.scene, asking.seed, 0, asking.draws, pulse) {
+        let pilot = match count(&self.scene, Parts::NONE, asking.seed, 0, asking.draws, pulse) {
             // Nothing more is made then.
             Err(ChanceError::Stopped) => return Ok((vec![Method::Counting], "stopped".to_owned())),
             pilot => pilot.map_err(|error| Error::Sampling(error.to_string()))?,
@@ -252,6 +252,16 @@ impl<S: Scene> Asked<'_, '_, S> {
         Ok((all, format!("{seen}: too few to count alone")))
     }
 
+    /// Names of what is demanded, where it is more than one thing.
+    fn names(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// What of that a state meets.
+    fn parts(&self) -> Parts<'_, S> {
+        Parts::NONE
+    }
+
     fn begin(&self, methods: Vec<Method>, why: String) -> Result<Chance, Error> {
         let Inquiry { recipe, asking, shard, .. } = self.inquiry;
         let manifest = recipe.manifest(&self.scene)?;
@@ -263,7 +273,7 @@ impl<S: Scene> Asked<'_, '_, S> {
             asking: asking.clone(),
             methods,
             why,
-            parts: Goal::parts(&self.scene),
+            parts: self.names(),
             counted: BTreeMap::new(),
             split: BTreeMap::new(),
             stones: BTreeMap::new(),
