@@ -1,5 +1,6 @@
 //! Probabilities of goals, against exact ones; with the estimators that look right and are not.
 
+use plaus_dist::math::{self, powi};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Seed, Stream, open_unit};
 use plaus_mcmc::chance::{
@@ -125,7 +126,7 @@ fn climbed(target: &Tail, seed: u64, batches: u32, splitting: Splitting) -> (Vec
 
 /// Relative standard error of the mean of batches of ideal splitting, of a constraint without plateaus.
 fn ideal(p: f64, particles: u32, batches: u32) -> f64 {
-    (((p.powf(-1.0 / f64::from(particles)) - 1.0) / f64::from(batches)) as f64).sqrt()
+    ((math::powf(p, -1.0 / f64::from(particles)) - 1.0) / f64::from(batches)).sqrt()
 }
 
 /// Gaussian tails down to 1e-12, without plateaus and with; the textbook's factor for each death is off on plateaus.
@@ -138,7 +139,7 @@ fn splitting_finds_gaussian_tails() {
         // Five standard errors of what is known to be the error: a false alarm in a million.
         assert!((smooth.probability / p - 1.0).abs() < 5.0 * error, "{p:e}: {smooth:?}");
         assert!((0.4..2.5).contains(&(smooth.error / p / error)), "{p:e}: {smooth:?}, {error}");
-        let textbook = |deaths: u64| (1.0_f64 - 1.0 / 100.0).powi(deaths as i32);
+        let textbook = |deaths: u64| powi(0.99, deaths as i32);
         // Where each dies alone, both are one.
         assert!(batches.iter().all(|one| (one.probability[0] / textbook(one.deaths) - 1.0).abs() < 1e-9));
 
@@ -179,7 +180,7 @@ fn stepping_stones_find_gaussian_tails() {
         assert!((found.probability - p).abs() < 6.0 * found.error, "{p:e}: {found:?}");
         assert!(found.error < 0.15 * p, "{found:?}");
         // Z alone takes the target for the goal.
-        let wrong = batches.iter().map(|one| one.log_z.exp()).sum::<f64>() / 12.0;
+        let wrong = batches.iter().map(|one| math::exp(one.log_z)).sum::<f64>() / 12.0;
         assert!((wrong - p).abs() > 6.0 * found.error, "{wrong:e} passes for {p:e}");
         let plateaus = Tail { plateau: 0.8, ..Tail::beyond(past) };
         let (_, plateaus) = stepped_over(&plateaus, 5, 12, STONES);
@@ -222,7 +223,7 @@ impl Target for Coins {
         std::array::from_fn(|_| open_unit(stream) < 0.7)
     }
     fn log_prior(&self, draw: &[bool; 10]) -> Result<LogDensity, ModelError> {
-        let one = |&head: &bool| LogDensity::new(if head { 0.7_f64.ln() } else { 0.3_f64.ln() });
+        let one = |&head: &bool| LogDensity::new(if head { math::ln(0.7) } else { math::ln(0.3) });
         Ok(draw.iter().map(one).try_fold(LogDensity::ONE, |sum, one| one.map(|one| sum + one))?)
     }
     fn simulate(
@@ -278,7 +279,7 @@ impl Move<Coins> for Toss {
 
 #[test]
 fn all_methods_agree_on_coins() {
-    let (pulse, seed, p) = (ChancePulse::default(), Seed(7), 0.7_f64.powi(10));
+    let (pulse, seed, p) = (ChancePulse::default(), Seed(7), powi(0.7, 10));
     let moves = Arc::new(Mixture::of(Box::new(Toss)));
     let counted: Vec<_> = (0..8).map(|batch| count(&Coins, EACH, seed, batch, 4000, &pulse).unwrap()).collect();
     let particles: Vec<_> =
@@ -299,7 +300,7 @@ fn all_methods_agree_on_coins() {
         assert!(parts.iter().all(|part| (part.probability - 0.7).abs() < 5.0 * part.error), "{coin}: {parts:?}");
     }
     // The textbook's estimate takes plateaus for slopes.
-    let textbook = particles.iter().map(|one| 0.99_f64.powi(one.deaths as i32)).sum::<f64>() / 24.0;
+    let textbook = particles.iter().map(|one| powi(0.99, one.deaths as i32)).sum::<f64>() / 24.0;
     assert!((textbook - p).abs() > 10.0 * all[1].error, "{textbook} passes for {p}");
     // Who looks on sees every simulation.
     let simulations = all.iter().map(|one| one.simulations).sum::<u64>();

@@ -2,6 +2,7 @@
 
 mod chance;
 mod check;
+mod compare;
 mod completions;
 mod confirm;
 mod diagnose;

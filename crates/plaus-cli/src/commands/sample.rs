@@ -1,19 +1,18 @@
 //! `plaus sample`, and what it shares with `plaus resume`.
 
+use super::compare;
 use super::confirm::{self, ACCURACY};
 use super::shards;
 use super::wanted::Wanted;
-use crate::clock::{ProcessorClock, in_words, parse_duration};
+use crate::clock::{in_words, parse_duration};
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
-use crate::table::{grouped, rate, short};
-use plaus_mcmc::chance::{ChancePulse, Parts, count};
+use crate::table::{grouped, rate};
 use plaus_mcmc::{Ending, Plan};
-use plaus_run::{Diagnosis, Error, Folder, Manifest, Run, RunOf, RunVisitor, Sampling};
-use plaus_scenes::Scene;
+use plaus_run::{Diagnosis, Error, Folder, Manifest, Run, Sampling};
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -209,7 +208,7 @@ impl Watching {
             console::print(&summary(&run, &diagnosis, monitor, ending))?;
         }
         if self.compare_prior {
-            self.compare(&run, &diagnosis, monitor)?;
+            compare::with_prior(&run, &diagnosis, monitor, self.json)?;
         }
         if run.manifest().shard.is_some() {
             return self.end_of_piece(&run, ending);
@@ -255,68 +254,6 @@ impl Watching {
             console::note_line("this is one piece; when all are there: plaus merge PIECES --out RUN");
         }
         Ok(Outcome::Done)
-    }
-}
-
-impl Watching {
-    /// Plain draws of the prior, for as long as the chains sampled.
-    fn compare(&self, run: &Run, diagnosis: &Diagnosis, monitor: &Monitor) -> Result<(), Failure> {
-        let share = diagnosis.iterations as f64 / monitor.done().saturating_sub(monitor.begun_at()).max(1) as f64;
-        let (Some(found), true) = (&diagnosis.independent, share <= 1.0) else {
-            console::note_line(
-                "nothing to compare with draws of the prior: that needs solutions after the warm-up, of a run made in one go",
-            );
-            return Ok(());
-        };
-        let seconds = monitor.processor_seconds() * share;
-        let clock = ProcessorClock::start();
-        let (draws, hits) = run.visit(Plain { goes_on: &|| clock.seconds() < seconds && !interrupt::asked() })??;
-        let took = clock.seconds();
-        let minute = |count: f64, seconds: f64| 60.0 * count / seconds;
-        let (chains, prior) = (minute(found.ess, seconds), minute(hits as f64, took));
-        if self.json {
-            let object = json!({
-                "event": "compare_prior",
-                "processor_seconds": took,
-                "draws": draws,
-                "solutions": hits,
-                "independent_a_minute": { "chains": chains, "prior": prior },
-            });
-            return console::print_line(&object.to_string());
-        }
-        let times = if hits > 0 { format!(": {} times as many", short(chains / prior)) } else { String::new() };
-        console::note_line(&format!(
-            "in a minute of one processor the chains make {} independent solutions, plain draws of the prior {} ({} of {} \
-             draws){times}",
-            short(chains),
-            short(prior),
-            grouped(hits),
-            grouped(draws),
-        ));
-        Ok(())
-    }
-}
-
-/// Draws of the prior that count nothing else.
-struct Plain<'a> {
-    goes_on: &'a dyn Fn() -> bool,
-}
-
-impl RunVisitor for Plain<'_> {
-    type Output = Result<(u64, u64), Failure>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        let manifest = run.run().manifest();
-        manifest.judges_alone()?;
-        let (pulse, mut sums) = (ChancePulse::default(), (0, 0));
-        for batch in 0.. {
-            if !(self.goes_on)() {
-                break;
-            }
-            let made = count(run.scene(), Parts::NONE, manifest.plan.seed, batch, 4, &pulse);
-            let made = made.map_err(|error| Failure::Message(error.to_string()))?;
-            sums = (sums.0 + made.draws, sums.1 + made.hits.first().copied().unwrap_or(0));
-        }
-        Ok(sums)
     }
 }
 

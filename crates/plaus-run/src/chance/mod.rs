@@ -120,9 +120,9 @@ impl Chance {
 
     fn take(&mut self, batch: u32, made: Made) {
         match made {
-            Made::Counted(one) => drop(self.counted.insert(batch, one)),
-            Made::Split(one) => drop(self.split.insert(batch, one)),
-            Made::Stoned(one) => drop(self.stones.insert(batch, one)),
+            Made::Counted(one) => _ = self.counted.insert(batch, one),
+            Made::Split(one) => _ = self.split.insert(batch, one),
+            Made::Stoned(one) => _ = self.stones.insert(batch, one),
         }
     }
 }
