@@ -58,7 +58,7 @@ pub struct Gallery {
     pub html: String,
     /// Solutions it shows.
     pub shown: usize,
-    /// Distinct solutions of the run's sampling phase.
+    /// Distinct solutions of the run.
     pub distinct: usize,
 }
 

@@ -114,7 +114,7 @@ fn of_replay(
     let rubs = sounds.add(&score, bytes);
     let values: Vec<f64> = replay.scalars.iter().map(|(_, value)| *value).collect();
     json!({
-        "id": replay.sample.to_string(), "chain": replay.sample.chain, "draw": replay.sample.draw,
+        "id": replay.sample.to_string(), "chain": replay.sample.chain, "draw": replay.sample.draw, "phase": replay.sample.phase,
         "iteration": replay.iteration, "log_p": replay.log_p, "log_prior": replay.log_prior,
         "log_constraint": replay.log_constraint, "scalars": values, "duration": animation.duration,
         "tracks": tracks, "props": props, "turning": turning, "hits": hits.len(), "at": at,

@@ -335,7 +335,7 @@ fn restore_chain<S: Scene>(
     let path = folder.records(chain);
     let end_iteration = snapshot.end_iteration;
     let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes: records, end_iteration };
-    let distinct: Distinct = records::distinct::<S::Draw, S::Outcome>(&path, extent, manifest.plan.warmup)?;
+    let distinct: Distinct = records::distinct::<S::Draw, S::Outcome>(&path, extent, manifest.plan.counts_from())?;
     if snapshot.counts.len() != manifest.moves.len() {
         let message = format!("{} moves are counted, the scene has {}", snapshot.counts.len(), manifest.moves.len());
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
