@@ -5,10 +5,11 @@
 
 use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math};
 use plaus_mcmc::check::{OneStep, PriorOnly, Ratios, Statistic, one_step, prior, ratios, rejection, visited};
+use plaus_mcmc::library::{RedrawOne, ShiftHalf};
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Chain, Goal, Mixture, ModelError, Move, Path, Proposal, State, StateOf, Target, diagnose};
-use plaus_scenes::ball2d::{Aim, Ball2d, Config, Downward, Moves, Normals, Perturb, Redraw, Rest, Weights};
-use plaus_scenes::{Rules, Scene};
+use plaus_scenes::ball2d::{Aim, Ball2d, Config, Downward, Normals, Rest, Weights};
+use plaus_scenes::{Moves, Rules, Scene};
 
 type Ball = StateOf<Ball2d>;
 type AnyMove = Box<dyn Move<Ball2d>>;
@@ -22,12 +23,20 @@ fn scene(change: impl FnOnce(&mut Config)) -> Ball2d {
     Ball2d::new(&config).unwrap()
 }
 
-fn perturb() -> AnyMove {
-    Box::new(Perturb::new(5.0))
+fn shifted(collisions: usize) -> ShiftHalf {
+    ShiftHalf { name: "perturb", among: (0..collisions).collect(), half_width: 5.0 }
 }
 
-fn redraw() -> AnyMove {
-    Box::new(Redraw { symmetric: false })
+fn anew(collisions: usize, symmetric: bool) -> RedrawOne {
+    RedrawOne { name: "redraw", among: (0..collisions).collect(), symmetric }
+}
+
+fn perturb(collisions: usize) -> AnyMove {
+    Box::new(shifted(collisions))
+}
+
+fn redraw(collisions: usize) -> AnyMove {
+    Box::new(anew(collisions, false))
 }
 
 fn statistics(collisions: usize) -> Vec<Statistic<'static, Normals, Rest>> {
@@ -49,7 +58,7 @@ fn every_move_leaves_the_constrained_target_invariant() {
     for downward in DOWNWARD {
         // A wide constraint keeps rejection cheap; the moves are those of any σ_d.
         let scene = scene(|config| (config.sigma_d, config.downward) = (0.5, downward));
-        for kernel in [perturb(), redraw(), Box::new(Aim)] {
+        for kernel in [perturb(5), redraw(5), Box::new(Aim)] {
             let report = constrained(&scene, kernel, 20_000);
             assert!(report.passed(), "{downward:?}: {report}");
             assert!(report.accepted() > 1000, "{downward:?}: {report}");
@@ -60,7 +69,7 @@ fn every_move_leaves_the_constrained_target_invariant() {
 #[test]
 fn every_move_leaves_the_prior_invariant() {
     let scene = scene(|config| config.collisions = 3);
-    for kernel in [perturb(), redraw(), Box::new(Aim)] {
+    for kernel in [perturb(3), redraw(3), Box::new(Aim)] {
         let free = PriorOnly::new(&scene);
         let moves = lend::<PriorOnly<Ball2d>>(Mixture::of(kernel)).unwrap();
         let plan = OneStep { samples: 20_000, ..OneStep::default() };
@@ -92,7 +101,7 @@ fn the_corners_of_the_configuration_are_exact_too() {
 fn ratios_agree_with_their_reverse() {
     for downward in DOWNWARD {
         let scene = scene(|config| config.downward = downward);
-        for kernel in [perturb(), redraw(), Box::new(Aim) as AnyMove] {
+        for kernel in [perturb(5), redraw(5), Box::new(Aim) as AnyMove] {
             let moves = scene.moves(&Rules::exact()).unwrap();
             let states = visited(&scene, &moves, Seed(5), 2000, 5).unwrap();
             // The aimed angle is found to 1e-11 and its weight is one over a slope that vanishes at turning points:
@@ -152,7 +161,7 @@ impl Move<Ball2d> for Leaning {
         "leaning"
     }
     fn propose(&self, t: &Ball2d, current: &Ball, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
-        let proposal = Perturb::new(5.0).propose(t, current, to, s)?;
+        let proposal = shifted(5).propose(t, current, to, s)?;
         to.0.iter_mut().zip(&current.draw.0).filter(|(new, old)| new != old).for_each(|(new, _)| *new += 1.0);
         Ok(proposal)
     }
@@ -165,11 +174,11 @@ impl Move<Ball2d> for Leaning {
 fn wrong_twins_are_caught() {
     let scene = scene(|config| config.sigma_d = 0.5);
     let twins: [AnyMove; 5] = [
-        Box::new(Redraw { symmetric: true }),
+        Box::new(anew(5, true)),
         Box::new(Symmetric(Box::new(Aim))),
         Box::new(AimWithoutJacobian),
         Box::new(Leaning),
-        Box::new(Symmetric(redraw())),
+        Box::new(Symmetric(redraw(5))),
     ];
     for twin in twins {
         // The same samples and the same false-alarm rate as the right moves.
@@ -310,6 +319,6 @@ fn no_chain_stays_off_target() {
 
 #[test]
 fn weights_of_zero_leave_a_move_out() {
-    let scene = scene(|config| config.weights = Weights { perturb: 0.0, redraw: 1.0, aim: 0.0 });
+    let scene = scene(|config| config.weights = Weights::default().with("perturb", 0.0).with("aim", 0.0));
     assert_eq!(scene.moves(&Rules::exact()).unwrap().names(), ["redraw"]);
 }

@@ -14,8 +14,12 @@ const EDGES: &[(&str, &[&str])] = &[
     ("plaus-scenes", &["plaus-animation", "plaus-dist", "plaus-mcmc", "plaus-sim"]),
     ("plaus-run", &["plaus-dist", "plaus-mcmc", "plaus-scenes"]),
     ("plaus-export", &["plaus-animation", "plaus-dist"]),
+    ("plaus-picture", &["plaus-animation", "plaus-dist", "plaus-export"]),
     ("plaus-gallery", &["plaus-dist", "plaus-export", "plaus-run", "plaus-scenes"]),
-    ("plaus-cli", &["plaus-dist", "plaus-export", "plaus-gallery", "plaus-mcmc", "plaus-run", "plaus-scenes"]),
+    (
+        "plaus-cli",
+        &["plaus-dist", "plaus-export", "plaus-gallery", "plaus-mcmc", "plaus-picture", "plaus-run", "plaus-scenes"],
+    ),
     (
         "plaus-python",
         &[
@@ -29,7 +33,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "plaus-sim",
         ],
     ),
-    ("plaus-figures", &["plaus-dist", "plaus-export", "plaus-mcmc", "plaus-scenes", "plaus-sim"]),
+    ("plaus-figures", &["plaus-dist", "plaus-mcmc", "plaus-picture", "plaus-scenes", "plaus-sim"]),
     ("plaus-tradeoff", &["plaus-dist", "plaus-figures", "plaus-mcmc", "plaus-scenes", "plaus-sim"]),
     ("plaus-benches", &[]),
     ("plaus-tests", &["plaus-dist"]),

@@ -1,4 +1,5 @@
-//! What other programs make of exports and galleries: the Khronos validator, three.js, Pixar's USD, Chromium.
+//! What other programs make of exports and galleries: the Khronos validator, three.js, Pixar's USD, Blender, ffmpeg,
+//! Chromium.
 
 use crate::command::{Command, Failure, built, plaus, root, target};
 use crate::registry;
@@ -40,6 +41,8 @@ pub(crate) fn steps() -> Vec<Step> {
         Step::new("exports of every scene", export),
         Step::new("glTF validator and three.js read them", gltf),
         Step::new("USD reads them", usd),
+        Step::new("Blender plays them", blender),
+        Step::new("videos and loops show them", pictures),
         Step::new("galleries in a browser", gallery),
         Step::new("the committed three.js is what its script makes", bundle),
     ]
@@ -147,6 +150,14 @@ pub(crate) fn blender() -> Result<Done, Failure> {
     let script = Command::new("python3").args(["xtask/python/check_blender.py", "--venv"]);
     let script = script.args([target().join("blender-venv")]).args(files);
     registry::outcome(script.status()?, "Blender does not play what plaus wrote")
+}
+
+/// ffmpeg and Pillow read a video and a loop.
+fn pictures() -> Result<Done, Failure> {
+    let script = Command::new("python3").args(["xtask/python/check_pictures.py", "--venv"]);
+    let script = script.args([target().join("pictures-venv"), built("release", "plaus")]);
+    let script = script.args([folder().join("exports/dice-one.run"), folder().join("pictures")]);
+    registry::outcome(script.status()?, "videos do not show what they should")
 }
 
 /// Chromium opens every gallery from disk, offline, and uses it.

@@ -9,8 +9,7 @@
 //! ```
 //!
 //! Data goes to stdout, progress and errors to stderr. Exit codes: 0 done, 1 no satisfying sample or failed
-//! diagnostics, 2 a wrong scenario, command
-//! line or run, 130 interrupted with a checkpoint.
+//! diagnostics, 2 a wrong scenario, command line or run, 130 interrupted with a checkpoint.
 
 mod clock;
 mod commands;
@@ -31,6 +30,7 @@ pub use report::to_json as diagnosis_to_json;
 
 use clap::Parser;
 use failure::{Failure, Outcome};
+use plaus_scenes::scenario;
 use std::ffi::OsString;
 
 /// Samples many plausible animations of one scenario.
@@ -46,7 +46,7 @@ struct Cli {
 
 /// Does what a command line says, its first word being the program's name, and gives the exit code.
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
-    let command = match Cli::try_parse_from(arguments) {
+    let command = match Cli::try_parse_from(arguments).map_err(with_hint) {
         Ok(Cli { command }) => command,
         Err(error) => {
             let _ = error.print(); // nobody is left to be told that it cannot be said
@@ -61,6 +61,21 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
     }
 }
 
+/// The error with the valid value nearest to a misspelt one, where clap found none (it does not know swapped letters).
+fn with_hint(mut error: clap::Error) -> clap::Error {
+    use clap::error::{ContextKind, ContextValue};
+    let hint = match (error.get(ContextKind::InvalidValue), error.get(ContextKind::ValidValue)) {
+        (Some(ContextValue::String(given)), Some(ContextValue::Strings(valid))) => {
+            scenario::nearest(given, valid.iter().map(String::as_str)).map(str::to_owned)
+        }
+        _ => None,
+    };
+    if let Some(hint) = hint.filter(|_| error.get(ContextKind::SuggestedValue).is_none()) {
+        error.insert(ContextKind::SuggestedValue, ContextValue::String(hint));
+    }
+    error
+}
+
 /// Does what a command line without the program's name says, and gives what is wrong as text instead of printing it.
 ///
 /// # Errors
@@ -68,7 +83,7 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
 pub fn call<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> Result<(), String> {
     let words = arguments.into_iter().map(Into::into);
     let all = std::iter::once(OsString::from("plaus")).chain(words);
-    let Cli { command } = Cli::try_parse_from(all).map_err(|error| error.to_string())?;
+    let Cli { command } = Cli::try_parse_from(all).map_err(|error| with_hint(error).to_string())?;
     match command.run() {
         Ok(_) | Err(Failure::ReaderGone) => Ok(()),
         Err(Failure::Message(message)) => Err(message),

@@ -13,6 +13,8 @@ mod first_hour;
 mod jobs;
 mod mutated;
 mod output;
+#[cfg(unix)]
+mod pictures;
 mod pieces;
 #[cfg(unix)]
 mod same_bytes;

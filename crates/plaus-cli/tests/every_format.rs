@@ -7,7 +7,7 @@ use std::process::{Child, Stdio};
 use std::time::Duration;
 
 /// Ways out of the run `run`, each with the output it makes.
-const WAYS: [(&str, &str); 10] = [
+const WAYS: [(&str, &str); 14] = [
     ("export run --format csv", "d.csv"),
     ("export run --format zarr", "d.zarr"),
     ("export run --format glb --sample 1:7", "a.glb"),
@@ -15,6 +15,10 @@ const WAYS: [(&str, &str); 10] = [
     ("export run --format poses --sample 1:7", "p.csv"),
     ("export run --format events --sample 1:7", "e.csv"),
     ("export run --format events --sample 1:7", "e.json"),
+    ("export run --format json --sample 1:7", "m.json"),
+    ("export run --format wav --sample 1:7", "s.wav"),
+    ("export run --format png --size 32x18 --sample 1:7", "p.png"),
+    ("export run --format gif --size 32x18 --fps 5 --sample 1:7", "l.gif"),
     ("export run --format glb --all-distinct", "all"),
     ("export run --format usda --sample 0:3 --sample 1:7", "some"),
     ("gallery run --count 3", "g.html"),

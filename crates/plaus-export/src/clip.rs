@@ -17,19 +17,27 @@ pub struct Clip<'a> {
     pub cut: Cut,
     /// How it is written.
     pub style: Style,
+    /// Is told of frames that are done, and of how many, by formats whose frames take long.
+    pub progress: fn(u64, u64),
 }
 
 impl<'a> Clip<'a> {
     /// A part of an animation, in the usual style.
     #[must_use]
     pub fn new(animation: &'a Animation, label: &'a Label, cut: Cut) -> Self {
-        Self { animation, label, cut, style: Style::default() }
+        Self { animation, label, cut, style: Style::default(), progress: |_, _| () }
     }
 
     /// The same in another style.
     #[must_use]
     pub fn styled(self, style: Style) -> Self {
         Self { style, ..self }
+    }
+
+    /// The same, where somebody is told how far it is.
+    #[must_use]
+    pub fn watched(self, progress: fn(u64, u64)) -> Self {
+        Self { progress, ..self }
     }
 }
 
@@ -45,11 +53,13 @@ pub struct Style {
     pub up: Up,
     /// Units a metre: 100 for programs that count in centimetres.
     pub scale: f64,
+    /// Pixels across and down, of pictures and videos; `None` is what the format has usually.
+    pub size: Option<(u32, u32)>,
 }
 
 impl Default for Style {
     fn default() -> Self {
-        Self { keys: Between::Linear, time_codes: 24.0, up: Up::Y, scale: 1.0 }
+        Self { keys: Between::Linear, time_codes: 24.0, up: Up::Y, scale: 1.0, size: None }
     }
 }
 
@@ -100,7 +110,8 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// `fps` frames a second from one time to another (in s), or of all of it. A range that ends after the animation ends with it.
+    /// `fps` frames a second from one time to another (in s), or of all of it. A range that ends after the animation
+    /// ends with it.
     ///
     /// # Errors
     /// [`ExportError`] where that makes no frames, or more than [`MOST_POSES`] poses.
@@ -169,12 +180,16 @@ pub enum ExportError {
     },
     /// More bytes than the format can hold.
     #[error(
-        "the file would be longer than 4 GiB, the most that it can hold: choose fewer --fps, fewer samples or a shorter --time-range"
+        "the file would be longer than 4 GiB, the most that it can hold: choose fewer --fps, fewer samples or a shorter \
+        --time-range"
     )]
     TooLong,
     /// A value that the format cannot hold.
     #[error("cannot be written as JSON: {0}")]
     Json(String),
+    /// Something that a format needs and does not find, or more than it can show.
+    #[error("{0}")]
+    Impossible(String),
     /// What the disk says.
     #[error("{0}")]
     Output(#[from] std::io::Error),

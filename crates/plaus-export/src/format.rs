@@ -38,6 +38,16 @@ pub trait Exporter: Sync {
         false
     }
 
+    /// Frames a second unless said otherwise.
+    fn fps(&self) -> f64 {
+        60.0
+    }
+
+    /// Whether it is made of pixels, and takes [`crate::Style::size`].
+    fn is_picture(&self) -> bool {
+        false
+    }
+
     /// What goes beside a file: the end of its name, and its text.
     fn beside(&self, _file: &str, _fps: f64) -> Option<(&'static str, String)> {
         None

@@ -2,7 +2,7 @@
 
 use crate::keys::Key;
 use glam::{DQuat, DVec3};
-use plaus_animation::Track;
+use plaus_animation::{Piece, Track};
 
 /// Farthest that a body's middle may be from a straight line between two keys, in m. Default 2e-4, so that with what
 /// turning and single precision add every point of a body stays within 0.5 mm.
@@ -18,6 +18,8 @@ const LARGEST_TURN: f64 = 0.5;
 /// hundredth of a frame apart, with the time of the first and the value of the last; its scenes have 24 frames a
 /// second.
 pub const APART: f64 = 0.0102 / 24.0;
+/// Times that are no more than this apart are one.
+const EQUAL: f64 = 1e-9;
 /// Most keys between two neighbouring candidates: a guard against numbers that make no sense.
 const MOST_PARTS: f64 = 1e4;
 
@@ -38,20 +40,10 @@ pub type PlaceKey = (f64, DVec3);
 #[must_use]
 pub fn places(track: &Track, keys: &[Key], apart: f64) -> Vec<PlaceKey> {
     let most = tolerance(track.shape.reach());
-    let keys = &spaced(keys, apart)[..];
-    let mut rough: Vec<(PlaceKey, bool)> = Vec::with_capacity(keys.len());
-    for (index, key) in keys.iter().enumerate() {
-        rough.push(((key.time, key.position), key.impact));
-        let (Some(next), Some(piece)) = (keys.get(index + 1), track.piece(key.time)) else { continue };
-        // A parabola leaves its chord by an eighth of its acceleration times the square of the time; half of what may
-        // be is left to keys that are left out.
-        let length = next.time - key.time;
-        let parts = (length * (piece.acceleration.length() / (8.0 * 0.5 * most)).sqrt()).ceil().clamp(1.0, MOST_PARTS);
-        rough.extend((1..parts as u64).map(|part| {
-            let time = key.time + length * part as f64 / parts;
-            ((time, piece.position(time)), false)
-        }));
-    }
+    // A parabola leaves its chord by an eighth of its acceleration times the square of the time; half of what may be is
+    // left to keys that are left out.
+    let parts = |piece: &Piece| (piece.acceleration.length() / (8.0 * 0.5 * most)).sqrt();
+    let rough = candidates(track, keys, apart, parts, |time| track.position(time));
     let middles = middles(&rough, |time| track.position(time));
     let line = |a: &PlaceKey, b: &PlaceKey, time: f64| a.1.lerp(b.1, (time - a.0) / (b.0 - a.0));
     let fits = |from: usize, to: usize| {
@@ -67,21 +59,13 @@ pub fn places(track: &Track, keys: &[Key], apart: f64) -> Vec<PlaceKey> {
 /// other one is left.
 #[must_use]
 pub fn turns(track: &Track, keys: &[Key], apart: f64) -> Vec<TurnKey> {
-    let keys = &spaced(keys, apart)[..];
-    let mut rough: Vec<(TurnKey, bool)> = Vec::with_capacity(keys.len());
-    for (index, key) in keys.iter().enumerate() {
-        rough.push(((key.time, key.orientation), key.impact));
-        let (Some(next), Some(piece)) = (keys.get(index + 1), track.piece(key.time)) else { continue };
+    let parts = |piece: &Piece| {
         let (spin, own) = (piece.turn.spin.length(), piece.turn.own.abs());
-        let length = next.time - key.time;
         // Of a body that turns about two axes at once, the angular velocity itself turns with `spin`.
-        let both = if spin > 0.0 && own > 0.0 { length * (spin * own / (8.0 * 0.5 * TURNED)).sqrt() } else { 0.0 };
-        let parts = ((spin + own) * length / LARGEST_TURN).max(both).ceil().clamp(1.0, MOST_PARTS);
-        rough.extend((1..parts as u64).map(|part| {
-            let time = key.time + length * part as f64 / parts;
-            ((time, piece.orientation(time)), false)
-        }));
-    }
+        let both = if spin > 0.0 && own > 0.0 { (spin * own / (8.0 * 0.5 * TURNED)).sqrt() } else { 0.0 };
+        ((spin + own) / LARGEST_TURN).max(both)
+    };
+    let mut rough = candidates(track, keys, apart, parts, |time| track.orientation(time));
     for index in 1..rough.len() {
         if rough[index].0.1.dot(rough[index - 1].0.1) < 0.0 {
             rough[index].0.1 = -rough[index].0.1;
@@ -103,14 +87,53 @@ pub fn turns(track: &Track, keys: &[Key], apart: f64) -> Vec<TurnKey> {
     kept(rough.len(), |index| rough[index].1, fits).into_iter().map(|index| rough[index].0).collect()
 }
 
-/// Keys of which none is nearer than `apart` s to the one before it. Impacts stay where others may go, the first of
-/// several where one must; both ends stay.
-fn spaced(keys: &[Key], apart: f64) -> Vec<Key> {
+/// A time with what is there, and whether a key must be there.
+type Candidate<T> = ((f64, T), bool);
+
+/// Where keys may be: at the keys that are far enough from each other, near the others between them, and so dense that
+/// each of the `parts` a second that a piece of the motion asks for is a straight line.
+fn candidates<T>(
+    track: &Track,
+    keys: &[Key],
+    apart: f64,
+    parts: impl Fn(&Piece) -> f64,
+    at: impl Fn(f64) -> T,
+) -> Vec<Candidate<T>> {
+    let begins = |time: f64| track.pieces.binary_search_by(|piece| piece.start.total_cmp(&time)).is_ok();
+    let keys = spaced(keys, apart, |key| if key.impact { 2 } else { u8::from(begins(key.time)) });
+    let mut all = Vec::with_capacity(keys.len());
+    for (index, key) in keys.iter().enumerate() {
+        all.push(((key.time, at(key.time)), key.impact));
+        let Some(next) = keys.get(index + 1) else { continue };
+        // Pieces of the motion that begin on the way: where keys are too close to each other, some have none.
+        let first = track.pieces.partition_point(|piece| piece.start <= key.time + EQUAL);
+        let end = track.pieces.partition_point(|piece| piece.start < next.time - EQUAL).max(first);
+        let on_the_way = &track.pieces[first..end];
+        // As near to the first and to the last of them as may be.
+        let before = on_the_way.first().map(|piece| piece.start.min(next.time - apart));
+        let before = before.filter(|time| time - key.time >= apart);
+        let after = on_the_way.last().map(|piece| piece.start.max(before.unwrap_or(key.time) + apart));
+        let after = after.filter(|time| next.time - time >= apart);
+        let most = track.pieces[first.saturating_sub(1)..end].iter().map(&parts).fold(0.0, f64::max);
+        let mut from = key.time;
+        for to in before.into_iter().chain(after).chain([next.time]) {
+            let count = ((to - from) * most).ceil().clamp(1.0, MOST_PARTS);
+            let times = (1..count as u64).map(|part| from + (to - from) * part as f64 / count);
+            all.extend(times.chain((to < next.time).then_some(to)).map(|time| ((time, at(time)), false)));
+            from = to;
+        }
+    }
+    all
+}
+
+/// Keys of which none is nearer than `apart` s to the one before it. Those of higher `rank` stay where others may go, the
+/// first of several where one must; both ends stay.
+fn spaced(keys: &[Key], apart: f64, rank: impl Fn(&Key) -> u8) -> Vec<Key> {
     let mut left: Vec<Key> = Vec::with_capacity(keys.len());
     for (index, key) in keys.iter().enumerate() {
         let is_end = index + 1 == keys.len();
         while let Some(last) = left.last().filter(|last| key.time - last.time < apart) {
-            let goes = left.len() > 1 && (is_end || key.impact && !last.impact);
+            let goes = left.len() > 1 && (is_end || rank(key) > rank(last));
             if !goes {
                 break;
             }
@@ -124,8 +147,8 @@ fn spaced(keys: &[Key], apart: f64) -> Vec<Key> {
 }
 
 /// What is half way between neighbours.
-fn middles<T>(rough: &[((f64, T), bool)], at: impl Fn(f64) -> T) -> Vec<(f64, T)> {
-    let middle = |pair: &[((f64, T), bool)]| {
+fn middles<T>(rough: &[Candidate<T>], at: impl Fn(f64) -> T) -> Vec<(f64, T)> {
+    let middle = |pair: &[Candidate<T>]| {
         let time = 0.5 * (pair[0].0.0 + pair[1].0.0);
         (time, at(time))
     };
@@ -172,7 +195,7 @@ mod tests {
         };
         let times = |keys: &[(f64, bool)], apart| -> Vec<f64> {
             let keys: Vec<Key> = keys.iter().map(|&(time, impact)| key(time, impact)).collect();
-            spaced(&keys, apart).iter().map(|key| key.time).collect()
+            spaced(&keys, apart, |key| u8::from(key.impact)).iter().map(|key| key.time).collect()
         };
         let all = [
             (0.0, false),

@@ -53,6 +53,8 @@ pub mod chain;
 pub mod check;
 pub mod diagnose;
 pub mod ladder;
+pub mod law;
+pub mod library;
 pub mod moves;
 pub mod record;
 pub mod redraw;
@@ -62,11 +64,13 @@ pub mod run;
 pub mod solutions;
 pub mod target;
 pub mod tempered;
+pub mod vars;
 pub mod view;
 
 pub use adapt::{Adapted, Scale, Scales};
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
 pub use ladder::Ladder;
+pub use law::{Law, Offset, Recipe, Rectangle};
 pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
 pub use record::{Block, Entry};
 pub use redraw::Redraw;
@@ -79,3 +83,4 @@ pub use run::{
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
 pub use tempered::Tempered;
+pub use vars::{Member, Var, Variables, Vars};

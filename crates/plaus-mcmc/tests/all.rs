@@ -11,5 +11,6 @@ mod check_vertices;
 mod diagnose_properties;
 mod engine_chain;
 mod engine_run;
+mod library;
 mod replicas;
 mod required;

@@ -3,6 +3,7 @@
 //! Each erratum of the paper that changes which law the chain samples is a flag of its own. With any flag on, nobody
 //! knows what law the chain converges to, or whether it does; the flags exist to reproduce what the paper shows.
 
+use plaus_mcmc::Recipe;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -52,6 +53,12 @@ impl Rules {
     #[must_use]
     pub fn radial_offsets(&self) -> bool {
         self.radial_offsets.unwrap_or(self.preset == Preset::AsPrinted)
+    }
+
+    /// How fresh offsets are drawn.
+    #[must_use]
+    pub fn recipe(&self) -> Recipe {
+        if self.radial_offsets() { Recipe::Radial } else { Recipe::Exact }
     }
 
     /// Whether moves that add or remove balls forget those left as they were.

@@ -2,6 +2,7 @@
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
+use crate::model::Scalar;
 use crate::rules::Rules;
 use crate::world::PlainWorld;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateOf};
@@ -17,12 +18,6 @@ pub trait Scene:
     /// Whether the scales of its moves are adapted in the warm-up where a scenario does not say: where that was
     /// measured to be better.
     const ADAPTS: bool = false;
-
-    /// What the numbers at the ends of scalars' names count: `die` where `x_2` is the x of the second die.
-    const NUMBERED: &'static str = "index";
-
-    /// Scalars whose values are whole numbers, by their names without the number at the end.
-    const WHOLE: &'static [&'static str] = &[];
 
     /// The moves this scene is sampled with, under `rules`.
     ///
@@ -95,27 +90,6 @@ pub enum Until {
     Decided,
     /// After so many seconds above 0, whatever moves; what rests before stays as it is.
     Time(f64),
-}
-
-/// A number that every state of a scene has: a column of a table, a variable of the diagnostics.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Scalar {
-    /// Column name, `snake_case`.
-    pub name: String,
-    /// Unit, for readers; empty for pure numbers.
-    pub unit: &'static str,
-    /// Where it comes from.
-    pub role: Role,
-}
-
-/// Where a scalar comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Role {
-    /// A random variable of the draw: its mixing says whether solutions really differ.
-    Draw,
-    /// A result of the simulation.
-    Outcome,
 }
 
 /// A configuration that no single key's range forbids, yet makes no scene.

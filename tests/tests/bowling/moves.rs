@@ -1,14 +1,13 @@
 //! Every move leaves the prior and the constrained target as they are; moves that are wrong in the ways in which one
 //! goes wrong do not.
 
-use super::straight::{AnyMove, Straight, all_moves, small, statistics};
+use super::straight::{AnyMove, Straight, all_moves, shifted, small, statistics};
 use plaus_dist::{LogPotential, Stream};
 use plaus_mcmc::check::{OneStep, OneStepReport, Ratios, any_of, one_step, prior, ratios, rejection, visited};
+use plaus_mcmc::library::{RedrawAll, RedrawOne, RedrawSome, Symmetry};
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, StateOf};
-use plaus_scenes::bowling::{
-    Aim, Bowling, ChangeAll, ChangeBall, Delivery, Mirror, Quantity, Redraw, RedrawPins, Shot, Steps,
-};
+use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Recipe, StateOf, Variables};
+use plaus_scenes::bowling::{Aim, Bowling, Delivery, Quantity, Shot, mirror};
 use plaus_scenes::{Rules, Scene};
 
 const PLAN: OneStep = OneStep { seed: plaus_dist::Seed(0), samples: 20_000, steps: 1, cells: 16, false_alarm: 1e-6 };
@@ -29,7 +28,7 @@ fn step(scene: &Bowling, kernel: AnyMove) -> OneStepReport {
 fn every_move_leaves_prior_and_target_invariant() {
     for ln_lambda in [0.0, 1.0] {
         let scene = small(ln_lambda, Delivery::Regulation);
-        for kernel in all_moves() {
+        for kernel in all_moves(&scene) {
             let report = step(&scene, kernel);
             assert!(report.passed(), "{report}");
             assert!(report.accepted() > 500, "{report}");
@@ -44,7 +43,7 @@ fn ratios_agree_with_their_reverse() {
         let toy = Straight(&scene);
         let mixture = lend::<Straight>(scene.moves(&Rules::exact()).unwrap()).unwrap();
         let states = visited(&toy, &mixture, plaus_dist::Seed(5), 5, 2000).unwrap();
-        for kernel in all_moves() {
+        for kernel in all_moves(&scene) {
             let moves = lend::<Straight>(Mixture::of(kernel)).unwrap();
             let (_, lent) = moves.iter().next().unwrap();
             let report = ratios(&toy, lent, any_of(&states), Ratios::default()).unwrap();
@@ -114,22 +113,23 @@ impl Move<Bowling> for Faulty {
 
 #[test]
 fn wrong_twins_are_caught() {
-    let steps = Steps::default();
-    let ball = |quantities| -> AnyMove { Box::new(ChangeBall { name: "change", quantities, steps, factor: 1.0 }) };
+    let scene = small(0.0, Delivery::Regulation);
+    let (ball, pins) = (scene.vars().which(|var| var.member.is_none()), scene.vars().named(&["offset"]));
+    let all = RedrawAll::exact("change_all");
     let twins: Vec<AnyMove> = vec![
         // The paper's errata.
-        Box::new(ChangeAll { symmetric: true, radial_offsets: false }),
-        Box::new(ChangeAll { symmetric: false, radial_offsets: true }),
-        Box::new(Redraw { symmetric: true }),
-        Box::new(Faulty(Box::new(RedrawPins { chance: 0.3 }), Fault::Symmetric)),
+        Box::new(RedrawAll { symmetric: true, ..all }),
+        Box::new(RedrawAll { recipe: Recipe::Radial, ..all }),
+        Box::new(RedrawOne { name: "redraw", among: ball, symmetric: true }),
+        Box::new(Faulty(Box::new(RedrawSome { name: "redraw_pins", among: pins, chance: 0.3 }), Fault::Symmetric)),
         Box::new(Faulty(Box::new(Aim { anew: 0.0 }), Fault::Symmetric)),
         Box::new(Faulty(Box::new(Aim { anew: 1.0 }), Fault::Symmetric)),
-        Box::new(Faulty(ball(&[Quantity::Radius]), Fault::Clamps)),
-        Box::new(Faulty(ball(&[Quantity::Speed, Quantity::Drift]), Fault::Leans)),
-        Box::new(Faulty(Box::new(Mirror), Fault::Forgets)),
+        Box::new(Faulty(shifted(&scene, &[Quantity::Radius]), Fault::Clamps)),
+        Box::new(Faulty(shifted(&scene, &[Quantity::Speed, Quantity::Drift]), Fault::Leans)),
+        Box::new(Faulty(Box::new(Symmetry { name: "mirror", map: mirror }), Fault::Forgets)),
     ];
     for twin in twins {
-        let report = step(&small(0.0, Delivery::Regulation), twin);
+        let report = step(&scene, twin);
         assert!(!report.passed(), "not caught: {report}");
     }
 }
@@ -139,10 +139,6 @@ fn wrong_twins_are_caught() {
 #[test]
 fn a_shift_of_the_radius_keeps_the_height_s_law() {
     let scene = super::straight::scene(|config| config.ln_lambda = 0.0);
-    let steps = Steps::default();
-    let report = step(
-        &scene,
-        Box::new(ChangeBall { name: "change_radius", quantities: &[Quantity::Radius], steps, factor: 1.0 }),
-    );
+    let report = step(&scene, shifted(&scene, &[Quantity::Radius]));
     assert!(report.passed() && report.accepted() > 10_000, "{report}");
 }

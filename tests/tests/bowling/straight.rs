@@ -3,12 +3,10 @@
 
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
+use plaus_mcmc::library::{RedrawAll, RedrawOne, RedrawSome, ShiftAll, ShiftSome, Sizes, Stride, Symmetry};
 use plaus_mcmc::view::View;
-use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target};
-use plaus_scenes::bowling::{
-    Aim, Bowling, ChangeAll, ChangeBall, ChangePins, Config, Delivery, Entry, Fate, Mirror, Quantity, Redraw,
-    RedrawPins, Refine, Rest, Shot, Steps,
-};
+use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target, Variables};
+use plaus_scenes::bowling::{Aim, Bowling, Config, Delivery, Entry, Fate, Quantity, Rest, Shot, mirror};
 
 pub(crate) type AnyMove = Box<dyn Move<Bowling>>;
 pub(crate) type Bowled = State<Shot, Rest>;
@@ -95,24 +93,36 @@ pub(crate) fn small(ln_lambda: f64, delivery: Delivery) -> Bowling {
     })
 }
 
+/// Steps of half a width.
+pub(crate) fn strides(scene: &Bowling, vars: &[usize]) -> Vec<Stride> {
+    vars.iter().map(|&var| Stride { var, part: 0.5, of: scene.vars().get(var).law.width() }).collect()
+}
+
+/// Some quantities of the ball shifted.
+pub(crate) fn shifted(scene: &Bowling, quantities: &[Quantity]) -> AnyMove {
+    let names: Vec<&str> = quantities.iter().map(|quantity| quantity.name().0).collect();
+    Box::new(ShiftAll::by("change", strides(scene, &scene.vars().named(&names))))
+}
+
 /// Every move there is, with settings that make each of its ways likely.
-pub(crate) fn all_moves() -> Vec<AnyMove> {
+pub(crate) fn all_moves(scene: &Bowling) -> Vec<AnyMove> {
     use Quantity::{Across, Density, Drift, Gyration, Height, Hook, Radius, Roll, Speed, Twist};
-    let steps = Steps::default();
-    let ball = |quantities| -> AnyMove { Box::new(ChangeBall { name: "change", quantities, steps, factor: 1.0 }) };
+    let pins = || scene.vars().named(&["offset"]);
+    let ball = scene.vars().which(|var| var.member.is_none());
+    let every = strides(scene, &scene.vars().which(|_| true));
     vec![
-        Box::new(ChangeAll::default()),
-        ball(&[Radius]),
-        ball(&[Density, Gyration]),
-        ball(&[Across, Height]),
-        ball(&[Speed, Drift]),
-        ball(&[Roll, Hook, Twist]),
-        Box::new(ChangePins { chance: 0.5, sd: 0.5 }),
-        Box::new(Redraw::default()),
-        Box::new(RedrawPins { chance: 0.3 }),
+        Box::new(RedrawAll::exact("change_all")),
+        shifted(scene, &[Radius]),
+        shifted(scene, &[Density, Gyration]),
+        shifted(scene, &[Across, Height]),
+        shifted(scene, &[Speed, Drift]),
+        shifted(scene, &[Roll, Hook, Twist]),
+        Box::new(ShiftSome { name: "change_pins", among: pins(), chance: 0.5, sd: 0.5, adapts: true }),
+        Box::new(RedrawOne { name: "redraw", among: ball, symmetric: false }),
+        Box::new(RedrawSome { name: "redraw_pins", among: pins(), chance: 0.3 }),
         Box::new(Aim { anew: 0.5 }),
-        Box::new(Refine { steps, about: None }),
-        Box::new(Mirror),
+        Box::new(ShiftAll::at_many_scales("refine", every, Sizes::down_to(1e-4))),
+        Box::new(Symmetry { name: "mirror", map: mirror }),
     ]
 }
 
@@ -120,7 +130,8 @@ pub(crate) fn all_moves() -> Vec<AnyMove> {
 pub(crate) fn statistics(scene: &Bowling) -> Vec<Statistic<'_, Shot, Rest>> {
     let quantity =
         |quantity: Quantity| Statistic::new(quantity.name().0, move |state: &Bowled| state.draw.get(quantity));
-    let mut all: Vec<_> = scene.prior().laws().uncertain().map(quantity).collect();
+    let is_uncertain = |quantity: &Quantity| scene.vars().get(*quantity as usize).law.is_uncertain();
+    let mut all: Vec<_> = Quantity::ALL.into_iter().filter(is_uncertain).map(quantity).collect();
     all.push(Statistic::new("over the lane", |state: &Bowled| {
         state.draw.get(Quantity::Height) - state.draw.get(Quantity::Radius)
     }));

@@ -113,7 +113,7 @@ impl Move<Booked<'_>> for OnScores {
 #[test]
 fn touched_points_alone_and_full_bookkeeping_give_the_same_chain() {
     // Without shifts, which would move the window that is held whole.
-    let dice = scene(|config| config.weights.shift = 0.0);
+    let dice = scene(|config| config.weights.set("shift", 0.0));
     let moves = dice.moves(&Rules::exact()).unwrap();
     let whole = Booked(&dice);
     let mixed = |(k, (weight, _))| -> (f64, Box<dyn Move<Booked<'_>>>) {

@@ -7,11 +7,10 @@ use plaus_mcmc::check::{
     OneStep, OneStepReport, PriorOnly, Ratios, Statistic, any_of, early_exit, one_step, prior, ratios, rejection,
     visited,
 };
+use plaus_mcmc::library::{Sizes, Symmetry};
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Chain, Mixture, State, Verdict};
-use plaus_scenes::dice::{
-    Component, Constraint, Dice, FaceUp, Near, Pick, Point, Recast, RestAt, Scale, Shift, Turn, Work,
-};
+use plaus_scenes::dice::{Constraint, Dice, FaceUp, Near, Pick, Point, Recast, RestAt, Shift, Work, component, turn};
 use plaus_scenes::{Rules, Scene};
 
 const SAMPLES: u64 = 6_000;
@@ -56,7 +55,7 @@ fn every_move_leaves_prior_and_target_invariant() {
         small(|config| config.spilt.radius_mm = 60.0),
     ];
     for (k, dice) in scenes.iter().enumerate() {
-        for (index, kernel) in all_moves().into_iter().enumerate() {
+        for (index, kernel) in all_moves(dice).into_iter().enumerate() {
             // Moves that know of one die at most, and not of its table, are the same on all tables.
             let concerned: &[usize] = [&[0, 1, 2, 3, 4, 5, 6][..], &[0, 2, 3, 4, 6], &[6], &[3, 6]][k];
             if !concerned.contains(&index) {
@@ -67,7 +66,7 @@ fn every_move_leaves_prior_and_target_invariant() {
             assert!(report.accepted() > 150, "scene {k}: {report}");
         }
     }
-    for kernel in all_moves() {
+    for kernel in all_moves(&scenes[0]) {
         let report = free(&scenes[0], false, kernel);
         assert!(report.passed(), "{report}");
     }
@@ -76,11 +75,15 @@ fn every_move_leaves_prior_and_target_invariant() {
 #[test]
 fn ratios_agree_with_their_reverse() {
     // Picking takes long, and is tried elsewhere.
-    for dice in [small(|_| ()), small(|config| (config.together, config.weights.pick) = (true, 0.0))] {
+    let together = small(|config| {
+        config.together = true;
+        config.weights.set("pick", 0.0);
+    });
+    for dice in [small(|_| ()), together] {
         let toy = Plain { dice: &dice, flat: false };
         let mixture = lend::<Plain<'_>>(dice.moves(&Rules::exact()).unwrap()).unwrap();
         let states = visited(&toy, &mixture, Seed(5), 5, 500).unwrap();
-        for kernel in all_moves() {
+        for kernel in all_moves(&dice) {
             let moves = lend::<Plain<'_>>(Mixture::of(kernel)).unwrap();
             let (_, lent) = moves.iter().next().unwrap();
             let report = ratios(&toy, lent, any_of(&states), Ratios { pairs: 2000, ..Ratios::default() }).unwrap();
@@ -212,18 +215,19 @@ fn recasts_of_several_dice_leave_the_constrained_target_invariant() {
 #[test]
 fn adapted_moves_leave_prior_and_target_invariant() {
     let dice = small(|_| ());
-    let scale = Scale::new(0.01, 1.0);
+    let sizes = Sizes::new(0.01, 1.0);
     let adapted = |kernel: AnyMove| {
         let count = kernel.scales().len();
         assert!(count > 0 && kernel.scales().iter().all(|scale| scale.least < scale.start && scale.start < scale.most));
         kernel.at_scales(&vec![Some(0.4); count]).unwrap()
     };
-    for kernel in [Box::new(Component::new(scale)) as AnyMove, Box::new(Point::new(scale)), Box::new(Near::new(scale))]
+    for kernel in
+        [Box::new(component(&dice, sizes)) as AnyMove, Box::new(Point::new(sizes)), Box::new(Near::new(sizes))]
     {
         let report = constrained(&dice, false, adapted(kernel));
         assert!(report.passed() && report.accepted() > 150, "{report}");
     }
-    let wrong = free(&dice, false, Box::new(Faulty(adapted(Box::new(Component::new(scale))), Fault::Symmetric)));
+    let wrong = free(&dice, false, Box::new(Faulty(adapted(Box::new(component(&dice, sizes))), Fault::Symmetric)));
     assert!(!wrong.passed(), "not caught: {wrong}");
 }
 
@@ -235,7 +239,8 @@ fn turns_and_shifts_change_no_motion() {
         config.constraints[0] = Constraint::RestAt(RestAt { sigma_mm: 15.0, ..RestAt::default() });
         config.throw.place_sd_mm = 100.0;
     });
-    let moves: Vec<(f64, AnyMove)> = vec![(0.5, Box::new(Turn)), (0.5, Box::new(Shift { sd: 0.03 }))];
+    let turn = Box::new(Symmetry { name: "turn", map: turn });
+    let moves: Vec<(f64, AnyMove)> = vec![(0.5, turn), (0.5, Box::new(Shift { sd: 0.03 }))];
     let moves = Mixture::new(moves).unwrap();
     let mut chain = Chain::start(&dice, &moves, Seed(1).chain(0)).unwrap();
     let first = chain.state().outcome.trips[0].clone();

@@ -3,11 +3,11 @@
 use glam::{DQuat, DVec3};
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
+use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Symmetry};
 use plaus_mcmc::view::View;
 use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target};
 use plaus_scenes::dice::{
-    Component, Config, Constraint, Dice, Draw, Everything, FaceUp, Field, Near, Point, Rest, RestAt, Rethrow, Scale,
-    Shift, Site, Trip, Turn,
+    Config, Constraint, Dice, Draw, FaceUp, Field, Near, Point, Rest, RestAt, Shift, Site, Trip, component, turn,
 };
 
 pub(crate) type AnyMove = Box<dyn Move<Dice>>;
@@ -107,15 +107,15 @@ pub(crate) fn small(change: impl FnOnce(&mut Config)) -> Dice {
 }
 
 /// Every move there is.
-pub(crate) fn all_moves() -> Vec<AnyMove> {
-    let scale = Scale::new(0.3, 1.0);
+pub(crate) fn all_moves(dice: &Dice) -> Vec<AnyMove> {
+    let sizes = Sizes::new(0.3, 1.0);
     vec![
-        Box::new(Everything::default()),
-        Box::new(Component::new(scale)),
-        Box::new(Point::new(scale)),
-        Box::new(Near::new(scale)),
-        Box::new(Rethrow),
-        Box::new(Turn),
+        Box::new(RedrawAll::exact("everything")),
+        Box::new(component(dice, sizes)),
+        Box::new(Point::new(sizes)),
+        Box::new(Near::new(sizes)),
+        Box::new(RedrawGroup { name: "rethrow" }),
+        Box::new(Symmetry { name: "turn", map: turn }),
         Box::new(Shift { sd: 0.02 }),
     ]
 }

@@ -3,8 +3,9 @@
 use super::moves::{constrained, free};
 use super::plain::{AnyMove, small};
 use plaus_dist::{LogRatio, Stream};
+use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Symmetry};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
-use plaus_scenes::dice::{Component, Dice, Draw, Everything, Near, Point, Rethrow, Scale, Shift, Turn};
+use plaus_scenes::dice::{Dice, Draw, Near, Point, Shift, component, turn};
 
 /// What is done to a right move to make it wrong.
 #[derive(Clone, Copy, Debug)]
@@ -72,13 +73,13 @@ impl Move<Dice> for Faulty {
 
 #[test]
 fn faults_change_the_law() {
-    let scale = Scale::new(0.9, 1.0);
+    let sizes = Sizes::new(0.9, 1.0);
     let dice = small(|_| ());
     let twins: Vec<(AnyMove, Fault)> = vec![
         // The paper's: everything anew, counted as symmetric.
-        (Box::new(Everything::default()), Fault::Symmetric),
-        (Box::new(Rethrow), Fault::Symmetric),
-        (Box::new(Component::new(scale)), Fault::Symmetric),
+        (Box::new(RedrawAll::exact("everything")), Fault::Symmetric),
+        (Box::new(RedrawGroup { name: "rethrow" }), Fault::Symmetric),
+        (Box::new(component(&dice, sizes)), Fault::Symmetric),
         (Box::new(Shift { sd: 0.02 }), Fault::Forgets),
     ];
     for (kernel, fault) in twins {
@@ -92,12 +93,12 @@ fn faults_change_the_law() {
         config.constraints.remove(1);
     });
     for fault in [Fault::Forgets, Fault::Leans] {
-        let report = free(&bumpy, false, Box::new(Faulty(Box::new(Near::new(scale)), fault)));
+        let report = free(&bumpy, false, Box::new(Faulty(Box::new(Near::new(sizes)), fault)));
         assert!(!report.passed(), "{fault:?} not caught: {report}");
     }
-    let report = free(&bumpy, false, Box::new(Faulty(Box::new(Point::new(scale)), Fault::Leans)));
+    let report = free(&bumpy, false, Box::new(Faulty(Box::new(Point::new(sizes)), Fault::Leans)));
     assert!(!report.passed(), "not caught: {report}");
-    for right in [Box::new(Near::new(scale)) as AnyMove, Box::new(Point::new(scale))] {
+    for right in [Box::new(Near::new(sizes)) as AnyMove, Box::new(Point::new(sizes))] {
         let report = free(&bumpy, false, right);
         assert!(report.passed(), "{report}");
     }
@@ -115,11 +116,12 @@ fn faults_change_the_law() {
 fn a_slab_that_is_taken_for_a_cube_changes_the_law_of_faces() {
     let slab = || small(|config| config.die.edge_x_mm = 8.0);
     assert_eq!(slab().prior().turns(), 8);
-    let report = free(&slab(), true, Box::new(Turn));
+    let turn = || Box::new(Symmetry { name: "turn", map: turn });
+    let report = free(&slab(), true, turn());
     assert!(report.passed(), "{report}");
     let wrong = slab().taken_for_cubes();
     let toy = super::plain::Plain { dice: &wrong, flat: true };
-    let moves = plaus_mcmc::view::lend::<super::plain::Plain<'_>>(plaus_mcmc::Mixture::of(Box::new(Turn))).unwrap();
+    let moves = plaus_mcmc::view::lend::<super::plain::Plain<'_>>(plaus_mcmc::Mixture::of(turn())).unwrap();
     let plan = plaus_mcmc::check::OneStep { samples: 2000, ..Default::default() };
     let free = plaus_mcmc::check::prior(&toy);
     let report = plaus_mcmc::check::one_step(&toy, &moves, free, &super::plain::statistics(), plan).unwrap();

@@ -3,8 +3,8 @@
 use super::straight::{Letters, scene};
 use plaus_dist::{Purpose, Seed, math};
 use plaus_mcmc::{Chain, State, Target, diagnose};
-use plaus_scenes::spelling::{Moves, Spelling, Vertices, Work};
-use plaus_scenes::{Rules, Scene};
+use plaus_scenes::spelling::{Spelling, Vertices, Work};
+use plaus_scenes::{Moves, Rules, Scene};
 
 const PRIOR_DRAWS: usize = 40_000;
 const CHAINS: u64 = 4;

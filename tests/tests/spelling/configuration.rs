@@ -44,7 +44,7 @@ fn the_paper_s_scenarios_are_the_paper_s() {
         other => panic!("{other:?}"),
     };
     let hi = read(include_str!("../../../scenarios/spelling-hi.toml"));
-    let size = |scene: &Spelling| (scene.word().columns(), scene.word().rows(), scene.prior().balls());
+    let size = |scene: &Spelling| (scene.word().columns(), scene.word().rows(), scene.balls());
     assert_eq!((hi.ln_lambda(), size(&hi)), (5.0, (7, 5, 10)));
     let acm = read(include_str!("../../../scenarios/spelling-acm.toml"));
     assert_eq!((acm.ln_lambda(), size(&acm)), (7.25, (15, 7, 30)));

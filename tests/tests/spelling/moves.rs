@@ -34,7 +34,7 @@ pub(crate) fn constrained(scene: &Spelling, kernel: AnyMove) -> OneStepReport {
 #[test]
 fn every_move_leaves_the_prior_invariant() {
     let scene = small(0.0);
-    for kernel in all_moves() {
+    for kernel in all_moves(&scene) {
         let report = free(&scene, kernel);
         assert!(report.passed(), "{report}");
         assert!(report.accepted() > 500, "{report}");
@@ -45,7 +45,7 @@ fn every_move_leaves_the_prior_invariant() {
 fn every_move_leaves_the_constrained_target_invariant() {
     for ln_lambda in [0.5, 1.0] {
         let scene = small(ln_lambda);
-        for kernel in all_moves() {
+        for kernel in all_moves(&scene) {
             let report = constrained(&scene, kernel);
             assert!(report.passed(), "{report}");
             assert!(report.accepted() > 500, "{report}");
@@ -70,7 +70,7 @@ fn ratios_agree_with_their_reverse() {
     let toy = Straight(&scene);
     let mixture = lend::<Straight>(scene.moves(&Rules::exact()).unwrap()).unwrap();
     let states = visited(&toy, &mixture, plaus_dist::Seed(5), 5, 2000).unwrap();
-    for kernel in all_moves() {
+    for kernel in all_moves(&scene) {
         let moves = lend::<Straight>(Mixture::of(kernel)).unwrap();
         let (_, lent) = moves.iter().next().unwrap();
         let report = ratios(&toy, lent, any_of(&states), Ratios::default()).unwrap();
@@ -88,8 +88,7 @@ fn ratios_are_those_of_the_model() {
         let draw = plaus_scenes::spelling::Drops { offsets: vec![[0.0; 3]; 12], balls };
         State::evaluate(&toy, draw, &mut ()).unwrap()
     };
-    let toggle = plaus_scenes::spelling::Toggle { chance: 0.25, incomplete: false };
-    let moves = lend::<Straight>(Mixture::of(Box::new(toggle))).unwrap();
+    let moves = lend::<Straight>(Mixture::of(Box::new(super::straight::toggle(&scene, false)))).unwrap();
     let kernel = moves.iter().next().unwrap().1;
     for (n, m) in [(0, 1), (0, 4), (1, 3), (2, 3)] {
         let [less, more] = [n, m].map(state);

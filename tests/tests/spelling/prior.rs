@@ -49,7 +49,8 @@ fn each_drop_position_is_uniform_over_the_rectangle() {
     let draws = draws(&scene);
     // Inside of 140 × 100 mm with partitions 2 mm thick and balls 12 mm across.
     for (axis, [low, high]) in [[7.0, 133.0], [7.0, 93.0]].into_iter().enumerate() {
-        assert_eq!((scene.prior().wrapped()[axis].low(), scene.prior().wrapped()[axis].high()), (low, high));
+        let side = &scene.rectangle().sides()[axis];
+        assert_eq!((side.low(), side.high()), (low, high));
         for ball in 0..10 {
             let values: Vec<f64> = draws.iter().filter_map(|draw| draw.balls[ball]).map(|at| at[axis]).collect();
             let (count, gap) = (values.len(), distance(values, |x| (x - low) / (high - low)));

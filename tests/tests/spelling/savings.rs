@@ -22,7 +22,7 @@ fn a_chain_has_the_bits_of_its_plain_twin() {
     agrees_with_its_twin(&scene(|_| ()), 1, 1000);
     // Vertices move in every other iteration.
     let often = |config: &mut plaus_scenes::spelling::Config| {
-        config.weights = Weights { change_vertices: 1.0, ..Weights::default() };
+        config.weights = Weights::default().with("change_vertices", 1.0);
         config.sigma_mm = 0.3;
     };
     agrees_with_its_twin(&scene(often), 2, 500);

@@ -3,12 +3,10 @@
 
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
+use plaus_mcmc::library::{RedrawAll, RedrawSome, ShiftOne, ShiftSome, Swap, Toggle};
 use plaus_mcmc::view::View;
-use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target};
-use plaus_scenes::spelling::{
-    BirthDeath, ChangeAll, ChangeBall, ChangeVertices, Config, Drops, RedrawVertices, Redrop, Rest, Spelling, Swap,
-    Toggle, Vertices,
-};
+use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target, Variables};
+use plaus_scenes::spelling::{BirthDeath, Config, Drops, Redrop, Rest, Spelling, Vertices};
 
 pub(crate) type AnyMove = Box<dyn Move<Spelling>>;
 pub(crate) type Letters = State<Drops, Rest>;
@@ -89,17 +87,34 @@ pub(crate) fn small(ln_lambda: f64) -> Spelling {
     })
 }
 
+pub(crate) fn change_vertices(scene: &Spelling) -> AnyMove {
+    let among = scene.vars().named(&["offset"]);
+    Box::new(ShiftSome { name: "change_vertices", among, chance: 0.2, sd: 0.2, adapts: false })
+}
+
+pub(crate) fn redraw_vertices(scene: &Spelling) -> AnyMove {
+    Box::new(RedrawSome { name: "redraw_vertices", among: scene.vars().named(&["offset"]), chance: 0.2 })
+}
+
+pub(crate) fn change_ball(scene: &Spelling) -> AnyMove {
+    Box::new(ShiftOne { name: "change_ball", among: scene.vars().named(&["drop"]), sd: 20.0 })
+}
+
+pub(crate) fn toggle(scene: &Spelling, incomplete: bool) -> Toggle {
+    Toggle { name: "toggle", among: scene.vars().named(&["drop"]), chance: 0.25, incomplete }
+}
+
 /// Every move there is, with settings that make each of its ways likely.
-pub(crate) fn all_moves() -> Vec<AnyMove> {
+pub(crate) fn all_moves(scene: &Spelling) -> Vec<AnyMove> {
     vec![
-        Box::new(ChangeAll::default()),
-        Box::new(ChangeVertices { chance: 0.2, sd: 0.2 }),
-        Box::new(RedrawVertices { chance: 0.2 }),
-        Box::new(ChangeBall { sd: 20.0 }),
-        Box::new(Toggle { chance: 0.25, incomplete: false }),
+        Box::new(RedrawAll::exact("change_all")),
+        change_vertices(scene),
+        redraw_vertices(scene),
+        change_ball(scene),
+        Box::new(toggle(scene, false)),
         Box::new(Redrop { aimed: 0.7 }),
         Box::new(BirthDeath { aimed: 0.7 }),
-        Box::new(Swap),
+        Box::new(Swap { name: "swap", among: scene.vars().named(&["drop"]) }),
     ]
 }
 
@@ -110,7 +125,7 @@ pub(crate) fn statistics(scene: &Spelling) -> Vec<Statistic<'_, Drops, Rest>> {
         let value = move |state: &Letters| state.draw.balls[ball].map_or(-1.0, |position| position[axis]);
         Statistic::new(format!("ball {ball}, axis {axis}"), value)
     };
-    let balls = scene.prior().balls() - 1;
+    let balls = scene.balls() - 1;
     vec![
         Statistic::new("dropped", |state: &Letters| state.draw.active() as f64),
         Statistic::new("filled", |state: &Letters| scene.filled(&state.outcome) as f64),

@@ -8,8 +8,8 @@
 use criterion::{Criterion, Throughput, criterion_group};
 use plaus_dist::{LogPotential, Seed};
 use plaus_mcmc::{Block, Chain, Control, Mixture, Plan, Progress, Sink, Snapshot, Target, run};
-use plaus_scenes::ball2d::{Ball2d, Config, Moves, Normals, Rest};
-use plaus_scenes::{Rules, Scene};
+use plaus_scenes::ball2d::{Ball2d, Config, Normals, Rest};
+use plaus_scenes::{Moves, Rules, Scene};
 use std::convert::Infallible;
 use std::hint::black_box;
 use std::time::Instant;

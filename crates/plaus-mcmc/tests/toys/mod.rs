@@ -6,6 +6,7 @@ pub mod balls;
 pub mod balls_moves;
 pub mod remembering;
 pub mod ring;
+pub mod slots;
 pub mod vertices;
 
 use plaus_dist::{LogDensity, LogPotential, Stream, open_unit};

@@ -1,25 +1,25 @@
-//! Scalars as variables: those of one name that are numbered are one, with a dimension of its own.
+//! Scalars as variables: those of several members of a kind are one, with a dimension of its own.
 
-use plaus_scenes::{Role, Scene};
+use plaus_scenes::{Member, Role, Scene};
 
 /// One or several scalars of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Variable {
-    pub(super) name: String,
+    pub(super) name: &'static str,
     pub(super) unit: &'static str,
     pub(super) role: Role,
     /// Whether its values are whole numbers.
     pub(super) whole: bool,
     /// Places of its values among the scene's scalars.
     columns: Vec<usize>,
-    /// What is numbered, and the number of the first, where there are several.
-    numbered: Option<(&'static str, i64)>,
+    /// Whose the first is, where there is one for each member of a kind.
+    first: Option<Member>,
 }
 
 impl Variable {
     /// The dimension beside chain and draw: its name, its first number, and how many there are.
     pub(super) fn coordinate(&self) -> Option<(&'static str, i64, u64)> {
-        self.numbered.map(|(name, first)| (name, first, self.columns.len() as u64))
+        self.first.map(|Member { kind, number }| (kind, i64::from(number), self.columns.len() as u64))
     }
 
     /// Its values of one draw, little-endian.
@@ -32,41 +32,21 @@ impl Variable {
     }
 }
 
-/// A name without its number, and the number: `theta` and 2 of `theta_2`.
-fn split(name: &str) -> Option<(&str, i64)> {
-    let (base, number) = name.rsplit_once('_')?;
-    Some((base, number.parse().ok()?)).filter(|_| !number.starts_with(['+', '-']))
-}
-
-/// The variables of a scene in the order of their first scalars. Numbers that follow each other from the first on make
-/// one variable, also where there is only one of it.
+/// The variables of a scene in the order of their first scalars: as they are declared, also where a kind has one member
+/// only.
 pub(super) fn of<S: Scene>(scene: &S) -> Vec<Variable> {
     let mut variables: Vec<Variable> = Vec::new();
     for (column, scalar) in scene.scalars().into_iter().enumerate() {
-        let numbered = split(&scalar.name);
-        let base = numbered.map_or(scalar.name.as_str(), |(base, _)| base);
-        let before = variables.iter_mut().find(|known| known.name == base);
-        match (before, numbered) {
-            (Some(known), Some((_, number)))
-                if known.numbered.is_some_and(|(_, first)| first + known.columns.len() as i64 == number) =>
-            {
-                known.columns.push(column);
-            }
-            (None, Some((base, number))) => variables.push(Variable {
-                name: base.to_owned(),
+        let is_same = |known: &&mut Variable| known.name == scalar.base && scalar.member.is_some();
+        match variables.iter_mut().find(is_same) {
+            Some(known) => known.columns.push(column),
+            None => variables.push(Variable {
+                name: scalar.base,
                 unit: scalar.unit,
                 role: scalar.role,
-                whole: S::WHOLE.contains(&base),
+                whole: scalar.whole,
                 columns: vec![column],
-                numbered: Some((S::NUMBERED, number)),
-            }),
-            _ => variables.push(Variable {
-                whole: S::WHOLE.contains(&scalar.name.as_str()),
-                name: scalar.name,
-                unit: scalar.unit,
-                role: scalar.role,
-                columns: vec![column],
-                numbered: None,
+                first: scalar.member,
             }),
         }
     }
@@ -78,28 +58,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_ends_in_a_number_is_numbered() {
-        assert_eq!(split("theta_12"), Some(("theta", 12)));
-        assert_eq!(split("rest_x_1"), Some(("rest_x", 1)));
-        for name in ["rest_x", "k", "x_-1", "x_"] {
-            assert_eq!(split(name), None, "{name}");
-        }
-    }
-
-    #[test]
-    fn scalars_of_one_name_are_one_variable() {
+    fn scalars_of_one_kind_are_one_variable() {
         struct Count;
         impl plaus_scenes::Visitor for Count {
-            type Output = Vec<(String, usize, bool)>;
+            type Output = Vec<(&'static str, usize, bool, Option<&'static str>)>;
             fn visit<S: Scene>(self, scene: S) -> Self::Output {
-                let all = of(&scene).into_iter();
-                all.map(|variable| (variable.name, variable.columns.len(), variable.whole)).collect()
+                let kind = |variable: &Variable| variable.first.map(|member| member.kind);
+                let one = |variable: Variable| (variable.name, variable.columns.len(), variable.whole, kind(&variable));
+                of(&scene).into_iter().map(one).collect()
             }
         }
-        let ball = plaus_scenes::World::default_of("ball2d").unwrap().visit(Count).unwrap();
-        assert_eq!(ball, [("rest_x".to_owned(), 1, false), ("theta".to_owned(), 5, false)]);
-        let dice = plaus_scenes::World::default_of("dice").unwrap().visit(Count).unwrap();
+        let of = |name: &str| plaus_scenes::World::default_of(name).unwrap().visit(Count).unwrap();
+        assert_eq!(of("ball2d"), [("rest_x", 1, false, None), ("theta", 5, false, Some("bounce"))]);
+        let dice = of("dice");
         assert_eq!(dice.len(), 13, "{dice:?}");
-        assert!(dice.contains(&("face".to_owned(), 1, true)));
+        assert!(dice.contains(&("face", 1, true, Some("die"))) && dice.contains(&("vx", 1, false, Some("die"))));
+        let bowling = of("bowling");
+        assert!(bowling.contains(&("pinfall", 1, true, None)) && bowling.contains(&("speed", 1, false, None)));
+        assert!(of("spelling").contains(&("bin", 10, true, Some("ball"))));
     }
 }

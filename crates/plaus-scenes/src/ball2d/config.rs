@@ -1,5 +1,7 @@
 //! Scenario keys of the 2D ball.
 
+use super::moves::Ball2dMoves;
+use crate::model::{Moves, Weights};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -40,7 +42,7 @@ pub struct Config {
     /// Which moves: "mixed", or the "paper"'s only one.
     pub moves: Moves,
     /// Relative weights of the moves of "mixed".
-    pub weights: Weights,
+    pub weights: Weights<Ball2dMoves>,
     /// Half width of the paper's random step of an angle, in degrees.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 180.0, "x-unit" = "degree"))]
     pub step_deg: f64,
@@ -89,36 +91,4 @@ pub enum Downward {
     /// The ball goes back the way it came, slowed by the restitution.
     #[default]
     Back,
-}
-
-/// Which moves the chain makes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Moves {
-    /// Perturb, redraw and aim, by `weights`.
-    #[default]
-    Mixed,
-    /// Perturb alone: the paper's section 5.1.2.
-    Paper,
-}
-
-/// Relative weights of the moves.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Weights {
-    /// The paper's move: every angle, with probability ½, gets a uniform step.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub perturb: f64,
-    /// One angle is drawn anew from its prior.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub redraw: f64,
-    /// Some angles are drawn anew and another is solved for, so that the ball still lands near the target.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub aim: f64,
-}
-
-impl Default for Weights {
-    fn default() -> Self {
-        Self { perturb: 0.75, redraw: 0.1, aim: 0.15 }
-    }
 }

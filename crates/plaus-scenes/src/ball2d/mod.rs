@@ -5,16 +5,22 @@ mod config;
 mod flight;
 mod moves;
 
-pub use config::{Config, Downward, MAX_COLLISIONS, Moves, Weights};
-pub use moves::{Aim, Perturb, Redraw};
+pub use config::{Config, Downward, MAX_COLLISIONS};
+pub use moves::{Aim, Ball2dMoves};
+
+/// Weights of the 2D ball's moves.
+pub type Weights = crate::Weights<Ball2dMoves>;
 
 use crate::animation::Animation;
+use crate::model::{Column, Scalar, columns};
 use crate::rules::Rules;
-use crate::scene::{ConfigError, Role, Scalar, Scene};
+use crate::scene::{ConfigError, Scene};
 use flight::Table;
 use glam::DVec2;
-use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, NotANumber, Sample, Stream};
-use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
+use plaus_dist::{Gaussian, LogDensity, LogPotential, Stream};
+use plaus_mcmc::{
+    Goal, Law, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Var, Variables, Vars, vars,
+};
 use serde::{Deserialize, Serialize};
 
 /// Standard gravity, m/s².
@@ -28,6 +34,7 @@ pub struct Ball2d {
     config: Config,
     table: Table,
     angle: Gaussian,
+    vars: Vars,
     /// tan of the largest angle [`Aim`] looks for.
     reach: f64,
 }
@@ -90,7 +97,9 @@ impl Ball2d {
         }
         let table = Table { restitution: config.restitution, downward: config.downward };
         let reach = moves::reach(config.sigma_theta_deg);
-        Ok(Self { config: config.clone(), table, angle, reach })
+        let theta = |bounce| Var::new("theta", "degree", Law::Gaussian(angle)).of("bounce", bounce).column(1.0);
+        let vars = Vars::new((1..=config.collisions).map(theta).collect());
+        Ok(Self { config: config.clone(), table, angle, vars, reach })
     }
 
     /// The configuration.
@@ -124,12 +133,13 @@ impl Target for Ball2d {
     type Scratch = ();
 
     fn start(&self, stream: &mut Stream) -> Normals {
-        Normals((0..self.config.collisions).map(|_| self.angle.sample(stream)).collect())
+        let mut draw = Normals(vec![0.0; self.vars.len()]);
+        self.renew_all(&mut draw, Recipe::Exact, stream);
+        draw
     }
 
     fn log_prior(&self, draw: &Normals) -> Result<LogDensity, ModelError> {
-        let sum = draw.0.iter().try_fold(LogDensity::ONE, |sum, angle| Ok(sum + self.angle.log_density(angle)?));
-        sum.map_err(|error: NotANumber| error.into())
+        Ok(vars::log_prior(self, draw)?)
     }
 
     fn simulate(
@@ -150,6 +160,23 @@ impl Target for Ball2d {
     }
 }
 
+impl Variables for Ball2d {
+    #[inline]
+    fn vars(&self) -> &Vars {
+        &self.vars
+    }
+
+    #[inline]
+    fn get<'a>(&self, draw: &'a Normals, var: usize) -> Option<&'a [f64]> {
+        draw.0.get(var).map(std::slice::from_ref)
+    }
+
+    #[inline]
+    fn get_mut<'a>(&self, draw: &'a mut Normals, var: usize) -> Option<&'a mut [f64]> {
+        draw.0.get_mut(var).map(std::slice::from_mut)
+    }
+}
+
 /// Solutions are told apart by the cells their bounces fall into.
 impl Goal for Ball2d {
     fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
@@ -167,26 +194,12 @@ impl Goal for Ball2d {
 }
 
 impl Scene for Ball2d {
-    const NUMBERED: &'static str = "bounce";
-
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        let perturb = Box::new(Perturb::new(self.config.step_deg));
-        let Weights { perturb: often, redraw, aim } = self.config.weights;
-        match self.config.moves {
-            Moves::Paper => Ok(Mixture::of(perturb)),
-            Moves::Mixed => Mixture::new(vec![
-                (often, perturb),
-                (redraw, Box::new(Redraw { symmetric: rules.symmetric_redraws() })),
-                (aim, Box::new(Aim)),
-            ])
-            .map_err(|error| ConfigError::new("world.ball2d.weights", error)),
-        }
+        self.config.weights.mix(self.config.moves, self, moves::all(self, rules))
     }
 
     fn scalars(&self) -> Vec<Scalar> {
-        let angle = |i| Scalar { name: format!("theta_{i}"), unit: "degree", role: Role::Draw };
-        let rest = Scalar { name: "rest_x".into(), unit: "D", role: Role::Outcome };
-        std::iter::once(rest).chain((1..=self.config.collisions).map(angle)).collect()
+        columns::scalars(vec![Column::result("rest_x", "D").of(None)], &self.vars)
     }
 
     fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {

@@ -1,7 +1,9 @@
 //! Scenario keys of bowling.
 
+use super::moves::BowlingMoves;
 use super::release::Release;
 use crate::accuracy::AccuracyPreset;
+use crate::model::{Moves, Weights};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -52,7 +54,7 @@ pub struct Config {
     /// Which moves: "mixed", or the "paper"'s.
     pub moves: Moves,
     /// Relative weights of the moves.
-    pub weights: Weights,
+    pub weights: Weights<BowlingMoves>,
     /// Sizes of the moves' steps.
     pub steps: Steps,
 }
@@ -164,100 +166,6 @@ impl Default for Contact {
             pin_lane_restitution: 0.4,
             pin_rolling: 0.02,
             pin_spinning: 0.01,
-        }
-    }
-}
-
-/// Which moves the chain makes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Moves {
-    /// All moves, by `weights`.
-    #[default]
-    Mixed,
-    /// The paper's with its weights: 0.05, 0.075, 0.075, 0.2, 0.2, 0.2 and 0.2.
-    Paper,
-}
-
-/// Relative weights of the moves of "mixed".
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Weights {
-    /// The paper's: everything is drawn anew.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub change_all: f64,
-    /// The paper's: the ball's radius is shifted.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub change_radius: f64,
-    /// The paper's: the ball's density is shifted, and with it its radius of gyration where that is uncertain.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub change_density: f64,
-    /// The paper's: where the ball is released is shifted.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub change_position: f64,
-    /// The paper's: the ball's velocity is changed.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub change_velocity: f64,
-    /// The paper's: the ball's spin is changed.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub change_spin: f64,
-    /// The paper's: some pins are shifted.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub change_pins: f64,
-    /// One quantity of the ball is drawn anew.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub redraw: f64,
-    /// Some pins are set anew.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub redraw_pins: f64,
-    /// The ball is released from where it should meet a pin of the first row.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub aim: f64,
-    /// Everything is shifted a little, by steps of any size down to a ten-thousandth of the paper's: what a shot that
-    /// has many collisions hangs on.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub refine: f64,
-    /// Left and right are exchanged. Without effect where the pins to stand are not the same from both sides.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub mirror: f64,
-}
-
-impl Weights {
-    /// The paper's.
-    #[must_use]
-    pub fn paper() -> Self {
-        Self {
-            change_all: 0.05,
-            change_radius: 0.075,
-            change_density: 0.075,
-            change_position: 0.2,
-            change_velocity: 0.2,
-            change_spin: 0.2,
-            change_pins: 0.2,
-            redraw: 0.0,
-            redraw_pins: 0.0,
-            aim: 0.0,
-            refine: 0.0,
-            mirror: 0.0,
-        }
-    }
-}
-
-impl Default for Weights {
-    fn default() -> Self {
-        Self {
-            change_all: 0.05,
-            change_radius: 0.04,
-            change_density: 0.04,
-            change_position: 0.1,
-            change_velocity: 0.1,
-            change_spin: 0.05,
-            change_pins: 0.1,
-            redraw: 0.12,
-            redraw_pins: 0.1,
-            aim: 0.25,
-            refine: 0.25,
-            mirror: 0.05,
         }
     }
 }

@@ -1,9 +1,12 @@
-//! What is random: the ball's delivery and where the pins are set; and their prior.
+//! What is random: the ball's delivery and where the pins are set.
+//!
+//! All of it is independent, but that the ball starts above the lane, whatever its radius. The paper prints a sum over
+//! the pins' factors, which is no density; its text says product, as it is here.
 
 use super::config::Config;
-use super::release::{Laws, Quantity};
+use super::release::{self, Quantity};
 use crate::scene::ConfigError;
-use plaus_dist::{Density, IsotropicGaussian, LogDensity, NotANumber, Radial, Sample, Stream};
+use plaus_mcmc::{Law, Offset, Var, Vars};
 use serde::{Deserialize, Serialize};
 
 /// The values of all random variables.
@@ -21,6 +24,21 @@ impl Shot {
     pub fn get(&self, quantity: Quantity) -> f64 {
         self.ball[quantity as usize]
     }
+
+    /// The numbers of a variable, by its index in [`vars`].
+    pub(super) fn values(&self, var: usize) -> Option<&[f64]> {
+        let pin = || self.pins.get(var - self.ball.len()).map(<[f64; 2]>::as_slice);
+        self.ball.get(var).map(std::slice::from_ref).or_else(pin)
+    }
+
+    /// The same, to change.
+    pub(super) fn values_mut(&mut self, var: usize) -> Option<&mut [f64]> {
+        let place = var.checked_sub(self.ball.len());
+        match place {
+            None => self.ball.get_mut(var).map(std::slice::from_mut),
+            Some(place) => self.pins.get_mut(place).map(<[f64; 2]>::as_mut_slice),
+        }
+    }
 }
 
 impl Clone for Shot {
@@ -33,74 +51,16 @@ impl Clone for Shot {
     }
 }
 
-/// The prior: all quantities independent, but that the ball starts above the lane, whatever its radius.
-///
-/// The paper prints a sum over the pins' factors, which is no density; its text says product, as it is here.
-#[derive(Debug, Clone)]
-pub struct Prior {
-    laws: Laws,
-    offset: IsotropicGaussian<2>,
-    fresh_as_printed: Radial<2>,
-    pins: usize,
-}
-
-impl Prior {
-    /// The prior of a configuration that sets up this many pins.
-    ///
-    /// # Errors
-    /// [`ConfigError`] where a law is none.
-    pub(super) fn new(config: &Config, pins: usize) -> Result<Self, ConfigError> {
-        let blame = |error| ConfigError::new("world.bowling.pin_sigma_mm", error);
-        let sigma = config.pin_sigma_mm;
-        Ok(Self {
-            laws: Laws::new(config)?,
-            offset: IsotropicGaussian::new(sigma).map_err(blame)?,
-            fresh_as_printed: Radial::new(sigma).map_err(blame)?,
-            pins,
-        })
-    }
-
-    /// The laws of the ball's quantities.
-    #[must_use]
-    pub fn laws(&self) -> &Laws {
-        &self.laws
-    }
-
-    /// A pin's offset.
-    pub fn offset(&self, stream: &mut Stream) -> [f64; 2] {
-        self.offset.sample(stream)
-    }
-
-    /// Log density of a pin's offset.
-    ///
-    /// # Errors
-    /// [`NotANumber`] where it is NaN.
-    pub fn log_offset(&self, offset: &[f64; 2]) -> Result<LogDensity, NotANumber> {
-        self.offset.log_density(offset)
-    }
-
-    /// A draw of the prior; with the paper's recipe for pins (a random direction, a Gaussian distance) where
-    /// `as_printed`, which is another law.
-    pub fn sample(&self, as_printed: bool, draw: &mut Shot, stream: &mut Stream) {
-        for quantity in Quantity::ALL {
-            draw.ball[quantity as usize] = self.laws.sample(quantity, &draw.ball, stream);
-        }
-        draw.pins.clear();
-        for _ in 0..self.pins {
-            let offset = if as_printed { self.fresh_as_printed.sample(stream) } else { self.offset(stream) };
-            draw.pins.push(offset);
-        }
-    }
-
-    /// Log density of a draw.
-    ///
-    /// # Errors
-    /// [`NotANumber`] where the draw holds a NaN.
-    pub fn log_density(&self, draw: &Shot) -> Result<LogDensity, NotANumber> {
-        let ball: LogDensity = Quantity::ALL
-            .into_iter()
-            .map(|quantity| self.laws.log_density(quantity, &draw.ball))
-            .sum::<Result<LogDensity, NotANumber>>()?;
-        draw.pins.iter().try_fold(ball, |sum, offset| Ok(sum + self.log_offset(offset)?))
-    }
+/// The variables of a configuration that sets up these pins: the ball's quantities, then the pins' offsets.
+pub(super) fn vars(config: &Config, pins: &[usize]) -> Result<Vars, ConfigError> {
+    let offset = Offset::new(config.pin_sigma_mm, f64::INFINITY)
+        .map_err(|error| ConfigError::new("world.bowling.pin_sigma_mm", error))?;
+    let quantity = |(quantity, law): (Quantity, Law)| {
+        let ((name, unit), is_uncertain) = (quantity.name(), law.is_uncertain());
+        let var = Var::new(name, unit, law);
+        if is_uncertain { var.column(1.0) } else { var }
+    };
+    let pin = |&pin: &usize| Var::new("offset", "mm", Law::Plane(offset.clone())).of("pin", pin as u32);
+    let ball = Quantity::ALL.into_iter().zip(release::laws(config)?).map(quantity);
+    Ok(Vars::new(ball.chain(pins.iter().map(pin)).collect()))
 }

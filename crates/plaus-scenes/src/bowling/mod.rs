@@ -11,21 +11,25 @@ mod props;
 mod rack;
 mod release;
 
-pub use config::{Config, Contact, Delivery, Moves, Rewarded, Steps, Weights};
-pub use draw::{Prior, Shot};
+pub use config::{Config, Contact, Delivery, Rewarded, Steps};
+pub use draw::Shot;
 pub use lane::{Entry, Fate, Rest, Work};
-pub use moves::{Aim, ChangeAll, ChangeBall, ChangePins, Mirror, Redraw, RedrawPins, Refine};
+pub use moves::{Aim, BowlingMoves, mirror};
 pub use rack::Rack;
-pub use release::{Law, Laws, Quantity, Release};
+pub use release::{Quantity, Release};
+
+/// Weights of the scene's moves.
+pub type Weights = crate::Weights<BowlingMoves>;
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
+use crate::model::{Column, Scalar, columns};
 use crate::rules::Rules;
-use crate::scene::{ConfigError, Role, Scalar, Scene, Until};
+use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
 use lane::{Lane, Pins};
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
-use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
+use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Variables, Vars, vars};
 use plaus_sim::rigid::{Rigid, Start};
 
 /// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, k the pins that end as they should, m those that stand as they
@@ -34,7 +38,7 @@ use plaus_sim::rigid::{Rigid, Start};
 pub struct Bowling {
     config: Config,
     rack: Rack,
-    prior: Prior,
+    vars: Vars,
     goal: Gibbs,
     lane: Lane,
 }
@@ -48,9 +52,9 @@ impl Bowling {
         let rack = Rack::new(config)?;
         let goal = Gibbs::from_ln_lambda(config.ln_lambda)
             .map_err(|error| ConfigError::new("world.bowling.ln_lambda", error))?;
-        let prior = Prior::new(config, rack.pins().len())?;
+        let vars = draw::vars(config, rack.pins())?;
         let lane = Lane::new(config, &rack).map_err(|error| ConfigError::new("world.bowling", error))?;
-        Ok(Self { config: config.clone(), rack, prior, goal, lane })
+        Ok(Self { config: config.clone(), rack, vars, goal, lane })
     }
 
     /// The configuration.
@@ -63,12 +67,6 @@ impl Bowling {
     #[must_use]
     pub fn rack(&self) -> &Rack {
         &self.rack
-    }
-
-    /// The law of a draw without the constraint.
-    #[must_use]
-    pub fn prior(&self) -> &Prior {
-        &self.prior
     }
 
     /// The simulator's world of a draw, and how everything starts: the ball, then the pins that are set up, in
@@ -133,13 +131,13 @@ impl Target for Bowling {
     type Scratch = Work;
 
     fn start(&self, stream: &mut Stream) -> Shot {
-        let mut draw = Shot { ball: [0.0; 10], pins: Vec::new() };
-        self.prior.sample(false, &mut draw, stream);
+        let mut draw = Shot { ball: [0.0; 10], pins: vec![[0.0; 2]; self.rack.pins().len()] };
+        self.renew_all(&mut draw, Recipe::Exact, stream);
         draw
     }
 
     fn log_prior(&self, draw: &Shot) -> Result<LogDensity, ModelError> {
-        Ok(self.prior.log_density(draw)?)
+        Ok(vars::log_prior(self, draw)?)
     }
 
     fn simulate(
@@ -163,6 +161,20 @@ impl Target for Bowling {
     }
 }
 
+impl Variables for Bowling {
+    fn vars(&self) -> &Vars {
+        &self.vars
+    }
+
+    fn get<'a>(&self, draw: &'a Shot, var: usize) -> Option<&'a [f64]> {
+        draw.values(var)
+    }
+
+    fn get_mut<'a>(&self, draw: &'a mut Shot, var: usize) -> Option<&'a mut [f64]> {
+        draw.values_mut(var)
+    }
+}
+
 /// Two solutions are the same where the ball met the first pin on the same board of the lane and struck the same pins
 /// in the same order.
 impl Goal for Bowling {
@@ -183,24 +195,14 @@ fn board(rest: &Rest) -> f64 {
 }
 
 impl Scene for Bowling {
-    const NUMBERED: &'static str = "pin";
-    const WHOLE: &'static [&'static str] = &["k", "m", "pinfall"];
-
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        let weights = match self.config.moves {
-            Moves::Paper => Weights::paper(),
-            Moves::Mixed => self.config.weights,
-        };
-        Mixture::new(moves::all(&self.config, &weights, rules))
-            .map_err(|error| ConfigError::new("world.bowling.weights", error))
+        self.config.weights.mix(self.config.moves, self, moves::all(self, rules))
     }
 
     fn scalars(&self) -> Vec<Scalar> {
-        let scalar = |name: &str, unit, role| Scalar { name: name.into(), unit, role };
-        let outcomes = [("k", ""), ("m", ""), ("pinfall", ""), ("board", ""), ("angle", "°")];
-        let ball = self.prior.laws().uncertain().map(Quantity::name);
-        let outcomes = outcomes.map(|(name, unit)| scalar(name, unit, Role::Outcome));
-        outcomes.into_iter().chain(ball.map(|(name, unit)| scalar(name, unit, Role::Draw))).collect()
+        let counts = ["k", "m", "pinfall"].map(Column::count);
+        let results = [Column::result("board", ""), Column::result("angle", "°")];
+        columns::scalars(counts.into_iter().chain(results).map(|column| column.of(None)).collect(), &self.vars)
     }
 
     /// Where the ball met no pin, the board and the angle are 0.
@@ -212,9 +214,7 @@ impl Scene for Bowling {
             *pinfall = rest.pins.iter().filter(|fate| !fate.stands()).count() as f64;
             *at = board(rest);
             *angle = rest.entry.map_or(0.0, |entry| entry.angle);
-            for (value, quantity) in ball.iter_mut().zip(self.prior.laws().uncertain()) {
-                *value = state.draw.get(quantity);
-            }
+            ball.iter_mut().zip(columns::values(self, &state.draw)).for_each(|(place, value)| *place = value);
         }
     }
 

@@ -2,9 +2,8 @@
 
 use super::config::{Config, Delivery};
 use crate::scene::ConfigError;
-use plaus_dist::{
-    Density, Gaussian, LogDensity, NotANumber, ParamError, Sample, Stream, TruncatedGaussian, WrappedUniform,
-};
+use plaus_dist::{Gaussian, ParamError, TruncatedGaussian, WrappedUniform};
+use plaus_mcmc::Law;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -141,133 +140,61 @@ impl Quantity {
     }
 }
 
-/// The law of one quantity.
-#[derive(Debug, Clone, Copy)]
-pub enum Law {
-    /// Always this value.
-    Fixed(f64),
-    /// Uniform; moves that leave the interval on one side enter it on the other.
-    Uniform(WrappedUniform),
-    /// Gaussian.
-    Gaussian(Gaussian),
-    /// Gaussian of this mean and standard deviation, but not below the ball's radius.
-    AboveRadius(f64, f64),
-}
-
-/// Laws of all quantities.
-#[derive(Debug, Clone)]
-pub struct Laws([Law; 10]);
-
-impl Laws {
-    /// The laws that a configuration asks for.
-    ///
-    /// # Errors
-    /// [`ConfigError`] where an interval ends before it begins, or a ball is too large for its place.
-    pub(super) fn new(config: &Config) -> Result<Self, ConfigError> {
-        let (release, base) = (&config.release, preset(config.delivery));
-        let bad = |key: &str, message: String| ConfigError::new(format!("world.bowling.release.{key}"), message);
-        let wrong = |key: &'static str| move |error: ParamError| bad(key, error.to_string());
-        let or = |set: Option<f64>, own: Option<f64>| set.or(own).unwrap_or(0.0);
-        // −0 is 0 here.
-        let interval = |key: &'static str, low: f64, high: f64| match (low + 0.0).total_cmp(&(high + 0.0)) {
-            std::cmp::Ordering::Less => WrappedUniform::new(low, high).map(Law::Uniform).map_err(wrong(key)),
-            std::cmp::Ordering::Equal => Ok(Law::Fixed(low)),
-            std::cmp::Ordering::Greater => {
-                Err(bad(key, format!("the interval ends at {high}, before it begins at {low}")))
-            }
-        };
-        let gaussian = |key: &'static str, mean: f64, sd: f64| {
-            if sd > 0.0 { Gaussian::new(mean, sd).map(Law::Gaussian).map_err(wrong(key)) } else { Ok(Law::Fixed(mean)) }
-        };
-        let least = or(release.radius_min_mm, base.radius_min_mm) / 1000.0;
-        let largest = or(release.radius_max_mm, base.radius_max_mm) / 1000.0;
-        let across = or(release.across_m, base.across_m);
-        if 2.0 * largest > super::lane::WIDTH {
-            let most = 500.0 * super::lane::WIDTH;
-            return Err(bad(
-                "radius_max_mm",
-                format!("a ball of this radius is wider than the lane: at most {most:.1}"),
-            ));
-        }
-        let (mean, sd) =
-            (largest * or(release.height_mean, base.height_mean), largest * or(release.height_sd, base.height_sd));
-        let height = if sd > 0.0 {
-            // The interval is longest, and its mass least, for the largest ball.
-            TruncatedGaussian::new(mean, sd, largest, f64::INFINITY).map_err(wrong("height_mean"))?;
-            Law::AboveRadius(mean, sd)
-        } else if mean >= largest {
-            Law::Fixed(mean)
-        } else {
-            return Err(bad(
-                "height_mean",
-                "without uncertainty at least 1, or the largest ball starts inside the lane".into(),
-            ));
-        };
-        Ok(Self([
-            interval("radius_max_mm", least, largest)?,
-            interval(
-                "density_max",
-                or(release.density_min, base.density_min),
-                or(release.density_max, base.density_max),
-            )?,
-            interval(
-                "gyration_max",
-                or(release.gyration_min, base.gyration_min),
-                or(release.gyration_max, base.gyration_max),
-            )?,
-            interval("across_m", -across, across)?,
-            height,
-            gaussian("speed_sd", or(release.speed_mean, base.speed_mean), or(release.speed_sd, base.speed_sd))?,
-            gaussian("drift_sd", or(release.drift_mean, base.drift_mean), or(release.drift_sd, base.drift_sd))?,
-            gaussian("roll_sd", or(release.roll_mean, base.roll_mean), or(release.roll_sd, base.roll_sd))?,
-            gaussian("hook_sd", or(release.hook_mean, base.hook_mean), or(release.hook_sd, base.hook_sd))?,
-            gaussian("twist_sd", or(release.twist_mean, base.twist_mean), or(release.twist_sd, base.twist_sd))?,
-        ]))
+/// The laws of all quantities that a configuration asks for.
+///
+/// # Errors
+/// [`ConfigError`] where an interval ends before it begins, or a ball is too large for its place.
+pub(super) fn laws(config: &Config) -> Result<[Law; 10], ConfigError> {
+    let (release, base) = (&config.release, preset(config.delivery));
+    let bad = |key: &str, message: String| ConfigError::new(format!("world.bowling.release.{key}"), message);
+    let wrong = |key: &'static str| move |error: ParamError| bad(key, error.to_string());
+    let or = |set: Option<f64>, own: Option<f64>| set.or(own).unwrap_or(0.0);
+    // −0 is 0 here.
+    let interval = |key: &'static str, low: f64, high: f64| match (low + 0.0).total_cmp(&(high + 0.0)) {
+        std::cmp::Ordering::Less => WrappedUniform::new(low, high).map(Law::Uniform).map_err(wrong(key)),
+        std::cmp::Ordering::Equal => Ok(Law::Fixed(low)),
+        std::cmp::Ordering::Greater => Err(bad(key, format!("the interval ends at {high}, before it begins at {low}"))),
+    };
+    let gaussian = |key: &'static str, mean: f64, sd: f64| {
+        if sd > 0.0 { Gaussian::new(mean, sd).map(Law::Gaussian).map_err(wrong(key)) } else { Ok(Law::Fixed(mean)) }
+    };
+    let least = or(release.radius_min_mm, base.radius_min_mm) / 1000.0;
+    let largest = or(release.radius_max_mm, base.radius_max_mm) / 1000.0;
+    let across = or(release.across_m, base.across_m);
+    if 2.0 * largest > super::lane::WIDTH {
+        let most = 500.0 * super::lane::WIDTH;
+        return Err(bad("radius_max_mm", format!("a ball of this radius is wider than the lane: at most {most:.1}")));
     }
-
-    /// The law of a quantity.
-    #[must_use]
-    pub fn of(&self, quantity: Quantity) -> &Law {
-        &self.0[quantity as usize]
-    }
-
-    /// Quantities that are uncertain.
-    pub fn uncertain(&self) -> impl Iterator<Item = Quantity> {
-        Quantity::ALL.into_iter().filter(|quantity| !matches!(self.of(*quantity), Law::Fixed(_)))
-    }
-
-    /// Draws one quantity, given the values of those before it.
-    pub fn sample(&self, quantity: Quantity, ball: &[f64; 10], stream: &mut Stream) -> f64 {
-        match self.of(quantity) {
-            Law::Fixed(value) => *value,
-            Law::Uniform(law) => law.sample(stream),
-            Law::Gaussian(law) => law.sample(stream),
-            Law::AboveRadius(mean, sd) => above(*mean, *sd, ball[0]).map_or(*mean, |law| law.sample(stream)),
-        }
-    }
-
-    /// Log density of one quantity's value, given those of the others; 0 for one that is not uncertain and has its
-    /// value.
-    ///
-    /// # Errors
-    /// [`NotANumber`] where a value is NaN.
-    pub fn log_density(&self, quantity: Quantity, ball: &[f64; 10]) -> Result<LogDensity, NotANumber> {
-        let x = ball[quantity as usize];
-        match self.of(quantity) {
-            // The mirror image of 0 is −0.
-            Law::Fixed(value) => Ok(if x - value == 0.0 { LogDensity::ONE } else { LogDensity::ZERO }),
-            Law::Uniform(law) => law.log_density(&x),
-            Law::Gaussian(law) => law.log_density(&x),
-            Law::AboveRadius(mean, sd) => {
-                above(*mean, *sd, ball[0]).map_or(Ok(LogDensity::ZERO), |law| law.log_density(&x))
-            }
-        }
-    }
-}
-
-/// The law of the height of a ball of this radius; `None` for radii that no ball has.
-fn above(mean: f64, sd: f64, radius: f64) -> Option<TruncatedGaussian> {
-    TruncatedGaussian::new(mean, sd, radius, f64::INFINITY).ok()
+    let (mean, sd) =
+        (largest * or(release.height_mean, base.height_mean), largest * or(release.height_sd, base.height_sd));
+    let height = if sd > 0.0 {
+        // The interval is longest, and its mass least, for the largest ball.
+        TruncatedGaussian::new(mean, sd, largest, f64::INFINITY).map_err(wrong("height_mean"))?;
+        Law::Above(mean, sd, Quantity::Radius as usize)
+    } else if mean >= largest {
+        Law::Fixed(mean)
+    } else {
+        return Err(bad(
+            "height_mean",
+            "without uncertainty at least 1, or the largest ball starts inside the lane".into(),
+        ));
+    };
+    Ok([
+        interval("radius_max_mm", least, largest)?,
+        interval("density_max", or(release.density_min, base.density_min), or(release.density_max, base.density_max))?,
+        interval(
+            "gyration_max",
+            or(release.gyration_min, base.gyration_min),
+            or(release.gyration_max, base.gyration_max),
+        )?,
+        interval("across_m", -across, across)?,
+        height,
+        gaussian("speed_sd", or(release.speed_mean, base.speed_mean), or(release.speed_sd, base.speed_sd))?,
+        gaussian("drift_sd", or(release.drift_mean, base.drift_mean), or(release.drift_sd, base.drift_sd))?,
+        gaussian("roll_sd", or(release.roll_mean, base.roll_mean), or(release.roll_sd, base.roll_sd))?,
+        gaussian("hook_sd", or(release.hook_mean, base.hook_mean), or(release.hook_sd, base.hook_sd))?,
+        gaussian("twist_sd", or(release.twist_mean, base.twist_mean), or(release.twist_sd, base.twist_sd))?,
+    ])
 }
 
 /// The keys of a delivery.

@@ -4,8 +4,10 @@ use super::constraint::Constraint;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use super::steps::{Moves, Steps, Weights};
+use super::moves::DiceMoves;
+pub use super::steps::Steps;
 use crate::accuracy::AccuracyPreset;
+use crate::model::{Moves, Weights};
 
 /// Most dice.
 pub const MOST_DICE: u32 = 24;
@@ -51,7 +53,7 @@ pub struct Config {
     /// Which moves: "mixed", or the "paper"'s three.
     pub moves: Moves,
     /// Relative weights of the moves.
-    pub weights: Weights,
+    pub weights: Weights<DiceMoves>,
     /// Sizes of the moves' steps.
     pub steps: Steps,
 }

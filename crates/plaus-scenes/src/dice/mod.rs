@@ -25,23 +25,29 @@ mod surface;
 mod symmetry;
 mod throwing;
 
-pub use config::{Config, Die, MOST_DICE, Moves, Spilt, Steps, Table, Throwing, Weights};
+pub use config::{Config, Die, MOST_DICE, Spilt, Steps, Table, Throwing};
 pub use constraint::{Constraint, FaceUp, FirstImpact, Mark, Passes, PoseAt, RestAt};
 pub use draw::{Draw, Field, LARGEST_SCORE, Realisation, Site, Throw};
 pub use flight::{End, Frame, Trip};
-pub use moves::{Component, Everything, Near, Pick, Point, Recast, Rethrow, Scale, Shift, Turn};
+pub use moves::{DiceMoves, Near, Pick, Point, Recast, Shift, component, turn};
 pub use prior::{NUMBERS, Prior};
 pub use symmetry::Rotation;
 pub use throwing::Work;
 
+/// Weights of the scene's moves.
+pub type Weights = crate::Weights<DiceMoves>;
+
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
+use crate::model::{Column, Member, Scalar, columns};
 use crate::rules::Rules;
-use crate::scene::{ConfigError, Role, Scalar, Scene};
+use crate::scene::{ConfigError, Scene};
 use crate::world::PlainWorld;
 use plan::{Demand, Plan};
+use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogPotential, Stream};
-use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
+use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Variables, Vars};
+use prior::{EACH, ORIENTATION};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use surface::Touched;
@@ -52,6 +58,7 @@ pub struct Dice {
     config: Config,
     plan: Plan,
     prior: Prior,
+    vars: Vars,
 }
 
 /// What became of the dice.
@@ -88,7 +95,7 @@ impl Dice {
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let plan = Plan::new(config)?;
         let prior = plan.prior(config)?;
-        Ok(Self { config: config.clone(), plan, prior })
+        Ok(Self { config: config.clone(), plan, vars: prior.vars(), prior })
     }
 
     /// The configuration.
@@ -199,7 +206,7 @@ impl Target for Dice {
     }
 
     fn settle(&self, accepted: bool, work: &mut Work) {
-        work.settle(accepted);
+        work.memory.settle(accepted);
     }
 
     fn log_constraint(&self, rest: &Rest) -> Result<LogPotential, ModelError> {
@@ -223,47 +230,83 @@ impl Goal for Dice {
     }
 }
 
-/// Names and units of a die's columns: where it lies, what it shows, and how it was thrown.
-const COLUMNS: [(&str, &str, Role); 13] = [
-    ("rest_x", "mm", Role::Outcome),
-    ("rest_y", "mm", Role::Outcome),
-    ("face", "", Role::Outcome),
-    ("impacts", "", Role::Outcome),
-    ("x", "mm", Role::Draw),
-    ("y", "mm", Role::Draw),
-    ("z", "mm", Role::Draw),
-    ("vx", "m/s", Role::Draw),
-    ("vy", "m/s", Role::Draw),
-    ("vz", "m/s", Role::Draw),
-    ("wx", "rad/s", Role::Draw),
-    ("wy", "rad/s", Role::Draw),
-    ("wz", "rad/s", Role::Draw),
-];
+impl Variables for Dice {
+    fn vars(&self) -> &Vars {
+        &self.vars
+    }
+
+    fn get<'a>(&self, draw: &'a Draw, var: usize) -> Option<&'a [f64]> {
+        let number = Some(var % EACH).filter(|&number| number < NUMBERS)?;
+        draw.throws.get(var / EACH).map(|throw| std::slice::from_ref(prior::number(throw, number)))
+    }
+
+    fn get_mut<'a>(&self, draw: &'a mut Draw, var: usize) -> Option<&'a mut [f64]> {
+        let number = Some(var % EACH).filter(|&number| number < NUMBERS)?;
+        draw.throws.get_mut(var / EACH).map(|throw| std::slice::from_mut(prior::number_mut(throw, number)))
+    }
+
+    /// A die stands farther on where its table has been shifted.
+    fn shift(&self, draw: &Draw, var: usize) -> f64 {
+        if var % EACH < 2 && var / EACH < draw.throws.len() { self.offset(draw, var / EACH)[var % EACH] } else { 0.0 }
+    }
+
+    fn renew_own(&self, draw: &mut Draw, var: usize, stream: &mut Stream) {
+        match (var % EACH, draw.throws.get_mut(var / EACH)) {
+            (ORIENTATION, Some(throw)) => throw.orientation = prior::any_orientation(stream),
+            (_, Some(throw)) => throw.turn = below(stream, self.plan.rotations.len()) as u8,
+            _ => draw.tables[var - EACH * draw.throws.len()].renew(stream),
+        }
+    }
+
+    fn step_own(&self, draw: &mut Draw, var: usize, size: f64, stream: &mut Stream) {
+        match (var % EACH, draw.throws.get_mut(var / EACH)) {
+            (ORIENTATION, Some(throw)) => {
+                throw.orientation = prior::turned_a_little(throw.orientation, size, stream);
+            }
+            _ => self.renew_own(draw, var, stream),
+        }
+    }
+
+    fn renew_all(&self, draw: &mut Draw, _: Recipe, stream: &mut Stream) {
+        for (die, throw) in draw.throws.iter_mut().enumerate() {
+            *throw = self.prior.throw(die, stream);
+        }
+        draw.tables.iter_mut().for_each(|table| table.renew(stream));
+    }
+
+    /// A die's throw, and its table where it has one of its own.
+    fn renew_group(&self, draw: &mut Draw, die: usize, stream: &mut Stream) {
+        draw.throws[die] = self.prior.throw(die, stream);
+        if draw.tables.len() == draw.throws.len() {
+            draw.tables[die].renew(stream);
+        }
+    }
+}
+
+/// A die's results: where it lies, what it shows, and how often it touched the table.
+const RESULTS: [Column; 4] =
+    [Column::result("rest_x", "mm"), Column::result("rest_y", "mm"), Column::count("face"), Column::count("impacts")];
 
 impl Scene for Dice {
-    const NUMBERED: &'static str = "die";
-    const WHOLE: &'static [&'static str] = &["face", "impacts"];
-
     const ADAPTS: bool = true;
 
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        Mixture::new(moves::all(self, rules)).map_err(|error| ConfigError::new("world.dice.weights", error))
+        self.config.weights.mix(self.config.moves, self, moves::all(self, rules))
     }
 
     fn scalars(&self) -> Vec<Scalar> {
-        let of = |die: u32| COLUMNS.map(|(name, unit, role)| Scalar { name: format!("{name}_{die}"), unit, role });
-        (1..=self.config.dice).flat_map(of).collect()
+        let of = |number| RESULTS.map(|column| column.of(Some(Member { kind: "die", number })));
+        columns::scalars((1..=self.config.dice).flat_map(of).collect(), &self.vars)
     }
 
     fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
-        let each = state.outcome.trips.iter().zip(&state.outcome.faces).zip(values.chunks_exact_mut(COLUMNS.len()));
-        for (die, ((trip, face), values)) in each.enumerate() {
-            let (rest, thrown) = values.split_at_mut(4);
+        let mut variables = columns::values(self, &state.draw);
+        let each = state.outcome.trips.iter().zip(&state.outcome.faces);
+        for (die, ((trip, face), values)) in each.zip(values.chunks_exact_mut(RESULTS.len() + NUMBERS)).enumerate() {
+            let (rest, thrown) = values.split_at_mut(RESULTS.len());
             let at = (trip.position + self.offset(&state.draw, die)) * 1e3;
             rest.copy_from_slice(&[at.x, at.y, f64::from(*face), trip.impacts.len() as f64]);
-            for (k, value) in thrown.iter_mut().enumerate() {
-                *value = self.prior.value(&state.draw, die, k) * if k < 3 { 1e3 } else { 1.0 };
-            }
+            thrown.iter_mut().zip(&mut variables).for_each(|(place, value)| *place = value);
         }
     }
 

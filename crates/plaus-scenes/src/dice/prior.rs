@@ -1,16 +1,37 @@
 //! The law of a throw without the constraints.
 
 use super::config::Config;
+use super::constraint::turned;
 use super::draw::{Draw, Realisation, Throw};
 use glam::{DQuat, DVec3};
 use plaus_dist::stream::below;
 use plaus_dist::{
     Density, Gaussian, LogDensity, NotANumber, ParamError, Sample, Stream, TruncatedGaussian, standard_normal,
 };
+use plaus_mcmc::{Law, Var, Vars};
 
 /// How many numbers the initial conditions of a die have besides its orientation: place, velocity and angular velocity
 /// along three axes.
 pub const NUMBERS: usize = 9;
+
+/// How many variables a die has: its numbers, its orientation, which of its symmetries its pips are turned by.
+pub(super) const EACH: usize = NUMBERS + 2;
+
+/// The place of the orientation among them.
+pub(super) const ORIENTATION: usize = NUMBERS;
+
+/// Names and units of the numbers' columns, and the factors from SI units.
+const COLUMNS: [(&str, &str, f64); NUMBERS] = [
+    ("x", "mm", 1e3),
+    ("y", "mm", 1e3),
+    ("z", "mm", 1e3),
+    ("vx", "m/s", 1.0),
+    ("vy", "m/s", 1.0),
+    ("vz", "m/s", 1.0),
+    ("wx", "rad/s", 1.0),
+    ("wy", "rad/s", 1.0),
+    ("wz", "rad/s", 1.0),
+];
 
 /// The prior of a draw. Its density is taken with respect to the law of the tables themselves, so that these count 1
 /// whatever they are: a control point that no die touches drops out by itself, and the ratio of a move that changes one
@@ -60,6 +81,26 @@ impl Prior {
         })
     }
 
+    /// The variables: each die's numbers, its orientation and the turn of its pips, and then the tables, each of which
+    /// belongs to its die where each is thrown alone.
+    pub(super) fn vars(&self) -> Vars {
+        let mut all = Vec::new();
+        for (die, laws) in self.numbers.iter().enumerate() {
+            let number = die as u32 + 1;
+            for (k, (name, unit, factor)) in COLUMNS.into_iter().enumerate() {
+                let law = if k == 2 { Law::Truncated(self.height) } else { Law::Gaussian(laws[k]) };
+                all.push(Var::new(name, unit, law).of("die", number).column(factor));
+            }
+            all.extend(["orientation", "turn"].map(|name| Var::new(name, "", Law::Own).of("die", number)));
+        }
+        let table = |k| {
+            let table = Var::new("table", "", Law::Own);
+            if self.tables == self.numbers.len() { table.of("die", k as u32 + 1) } else { table }
+        };
+        all.extend((0..self.tables).map(table));
+        Vars::new(all)
+    }
+
     /// The law of one number of a die's initial conditions, before the height is cut off.
     #[must_use]
     pub fn number(&self, die: usize, number: usize) -> &Gaussian {
@@ -69,7 +110,7 @@ impl Prior {
     /// One number of a die's initial conditions as they are, its table's shift included.
     #[must_use]
     pub fn value(&self, draw: &Draw, die: usize, which: usize) -> f64 {
-        let value = number(&draw.throws[die], which);
+        let value = *number(&draw.throws[die], which);
         if which < 2 { value + draw.offset(die, self.spacing)[which] } else { value }
     }
 
@@ -78,7 +119,7 @@ impl Prior {
     /// # Errors
     /// [`NotANumber`] where the throw holds a NaN.
     pub fn log_density_elsewhere(&self, throw: &Throw, die: usize) -> Result<LogDensity, NotANumber> {
-        let density = |k: usize| self.numbers[die][k].log_density(&number(throw, k));
+        let density = |k: usize| self.numbers[die][k].log_density(number(throw, k));
         (2..NUMBERS).try_fold(LogDensity::ONE, |sum, k| Ok(sum + density(k)?))
     }
 
@@ -94,9 +135,7 @@ impl Prior {
         let mut three = |from: usize| DVec3::from_array(std::array::from_fn(|axis| law[from + axis].sample(stream)));
         let (position, velocity, spin) = (three(0), three(3), three(6));
         let position = DVec3 { z: self.height.sample(stream), ..position };
-        // A direction in four dimensions, uniform as that of four standard normal numbers.
-        let [x, y, z, w] = std::array::from_fn(|_| standard_normal(stream));
-        let orientation = DQuat::from_xyzw(x, y, z, w).normalize();
+        let orientation = any_orientation(stream);
         Throw { position, orientation, velocity, spin, turn: below(stream, self.turns) as u8 }
     }
 
@@ -127,9 +166,27 @@ impl Prior {
     }
 }
 
+/// A uniform orientation: a direction in four dimensions, uniform as that of four standard normal numbers.
+pub(super) fn any_orientation(stream: &mut Stream) -> DQuat {
+    let [x, y, z, w] = std::array::from_fn(|_| standard_normal(stream));
+    DQuat::from_xyzw(x, y, z, w).normalize()
+}
+
+/// An orientation turned about a random axis, by a Gaussian angle, `size` times half a turn a component: as likely as
+/// turning it back.
+pub(super) fn turned_a_little(orientation: DQuat, size: f64, stream: &mut Stream) -> DQuat {
+    let vector = DVec3::from_array(std::array::from_fn(|_| standard_normal(stream)));
+    (turned(vector * (size * std::f64::consts::PI)) * orientation).normalize()
+}
+
 /// One number of a throw: place, velocity, angular velocity, each along x, y, z; without its table's shift.
-pub(super) fn number(throw: &Throw, number: usize) -> f64 {
-    [throw.position, throw.velocity, throw.spin][number / 3][number % 3]
+pub(super) fn number(throw: &Throw, number: usize) -> &f64 {
+    let part = match number / 3 {
+        0 => &throw.position,
+        1 => &throw.velocity,
+        _ => &throw.spin,
+    };
+    &part[number % 3]
 }
 
 /// The same, to change.

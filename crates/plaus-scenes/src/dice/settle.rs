@@ -1,19 +1,14 @@
-//! Dice on one table, group by group: every die is simulated alone; those that would come near each other are simulated
-//! together, until no two groups do.
-//!
-//! Dice that never touch do not influence each other, so this is the simulation of all at once, up to rounding; and by
-//! this procedure, which knows nothing of the chain, it is defined to the last bit. What a candidate leaves as it is
-//! need not be simulated again: groups of the same dice, thrown alike, that came near no control point that has
-//! changed.
+//! Dice on one table, group by group, see [`crate::model::groups`]. What a candidate leaves as it is need not be
+//! simulated again: groups of the same dice, thrown alike, that came near no control point that has changed.
 
 use super::draw::{Draw, Site};
 use super::flight::Trip;
 use super::plan::Plan;
 use super::surface::Touched;
 use super::throwing::Work;
-use crate::way::{Way, merge};
+use crate::model::groups::{Group, Groups};
+use crate::way::Way;
 use plaus_mcmc::ModelError;
-use std::sync::Arc;
 
 /// Centres nearer than this many times the reach of a die are simulated together: 2, and more than the gap at which
 /// bodies touch.
@@ -30,21 +25,13 @@ pub(super) struct Fall {
     pub(super) touched: Touched,
 }
 
-/// The simulations of one draw.
-#[derive(Debug, Default)]
-pub(super) struct Falls {
-    draw: Option<Draw>,
-    /// Each die alone.
-    alone: Vec<Arc<Fall>>,
-    /// Groups that were simulated together, on the way to the final ones.
-    together: Vec<Arc<Fall>>,
-    /// The final groups.
-    groups: Vec<Arc<Fall>>,
-}
+impl Group for Fall {
+    fn members(&self) -> &[usize] {
+        &self.members
+    }
 
-impl Fall {
-    fn meets(&self, other: &Self, reach: f64) -> bool {
-        self.ways.iter().any(|way| other.ways.iter().any(|their| way.meets(their, reach)))
+    fn ways(&self) -> &[Way] {
+        &self.ways
     }
 }
 
@@ -77,74 +64,41 @@ impl Work {
         draw: &Draw,
         known: Option<&Draw>,
     ) -> Result<Vec<Trip>, ModelError> {
-        if let Some(known) = known
-            && self.current.draw.as_ref() != Some(known)
-        {
-            self.current = self.falls(plan, known, &Falls::default())?;
-        }
-        let current = if known.is_some() { std::mem::take(&mut self.current) } else { Falls::default() };
-        let falls = self.falls(plan, draw, &current);
-        if known.is_some() {
-            self.current = current;
-        }
-        self.candidate = falls?;
-        let mut trips: Vec<Option<Trip>> = vec![None; draw.throws.len()];
-        for group in &self.candidate.groups {
-            for (&die, trip) in group.members.iter().zip(&group.trips) {
-                trips[die] = Some(trip.clone());
+        let mut memory = std::mem::take(&mut self.memory);
+        let made = memory.simulate(draw, known, |draw, known, next| self.falls(plan, draw, known, next));
+        let trips = made.map(|groups| {
+            let mut trips: Vec<Option<Trip>> = vec![None; draw.throws.len()];
+            for group in groups.last() {
+                for (&die, trip) in group.members.iter().zip(&group.trips) {
+                    trips[die] = Some(trip.clone());
+                }
             }
-        }
-        Ok(trips.into_iter().flatten().collect())
-    }
-
-    /// Keeps what is known about the candidate that was simulated last, if it became the current state.
-    pub(super) fn settle(&mut self, accepted: bool) {
-        if accepted {
-            std::mem::swap(&mut self.current, &mut self.candidate);
-        }
+            trips.into_iter().flatten().collect()
+        });
+        self.memory = memory;
+        trips
     }
 
     /// The final groups of a draw.
     pub(super) fn groups(&mut self, plan: &Plan, draw: &Draw) -> Result<Vec<Vec<usize>>, ModelError> {
-        let falls = self.falls(plan, draw, &Falls::default())?;
-        Ok(falls.groups.iter().map(|group| group.members.clone()).collect())
+        let mut falls = Groups::default();
+        self.falls(plan, draw, &Groups::default(), &mut falls)?;
+        Ok(falls.last().iter().map(|group| group.members.clone()).collect())
     }
 
-    /// Simulates `draw`, taking from `known` what stays as it is.
-    fn falls(&mut self, plan: &Plan, draw: &Draw, known: &Falls) -> Result<Falls, ModelError> {
-        let differing = known.draw.as_ref().and_then(|old| Differing::new(old, draw));
-        let same = |fall: &&Arc<Fall>| differing.as_ref().is_some_and(|differing| differing.leaves(fall));
-        let mut alone = Vec::with_capacity(draw.throws.len());
-        for die in 0..draw.throws.len() {
-            alone.push(match known.alone.get(die).filter(same) {
-                Some(fall) => Arc::clone(fall),
-                None => Arc::new(self.fall(plan, draw, vec![die])?),
-            });
-        }
-        let (mut together, mut groups) = (Vec::new(), alone.clone());
+    /// Simulates `draw` into `next`, taking from `known` what stays as it is.
+    fn falls(
+        &mut self,
+        plan: &Plan,
+        draw: &Draw,
+        known: &Groups<Draw, Fall>,
+        next: &mut Groups<Draw, Fall>,
+    ) -> Result<(), ModelError> {
+        let differing = known.draw().and_then(|old| Differing::new(old, draw));
+        let same = |fall: &Fall| differing.as_ref().is_some_and(|differing| differing.leaves(fall));
         let reach = NEAR * plan.reach_of_die();
-        loop {
-            let merged = merge(groups.len(), |a, b| groups[a].meets(&groups[b], reach));
-            if merged.len() == groups.len() {
-                return Ok(Falls { draw: Some(draw.clone()), alone, together, groups });
-            }
-            let mut joined = Vec::with_capacity(merged.len());
-            for union in merged {
-                if let [only] = *union {
-                    joined.push(Arc::clone(&groups[only]));
-                    continue;
-                }
-                let mut members: Vec<usize> = union.iter().flat_map(|&k| groups[k].members.iter().copied()).collect();
-                members.sort_unstable();
-                let fall = match known.together.iter().find(|fall| fall.members == members && same(fall)) {
-                    Some(fall) => Arc::clone(fall),
-                    None => Arc::new(self.fall(plan, draw, members)?),
-                };
-                together.push(Arc::clone(&fall));
-                joined.push(fall);
-            }
-            groups = joined;
-        }
+        let dice = draw.throws.iter().map(|_| true);
+        next.simulate(draw, dice, Some(reach), (known, same), |members| self.fall(plan, draw, members))
     }
 }
 

@@ -3,9 +3,10 @@
 use super::draw::{Draw, Realisation, Throw};
 use super::flight::{Asked, End, Looking, Trip, Watch};
 use super::plan::Plan;
-use super::settle::{Fall, Falls};
+use super::settle::Fall;
 use super::surface::{MATERIAL, Touched};
 use super::{Dice, Rest};
+use crate::model::groups::Memory;
 use crate::world::{Physical, PlainWorld};
 use glam::DVec3;
 use plaus_dist::LogPotential;
@@ -33,8 +34,7 @@ pub struct Work {
     dice: u64,
     /// Of dice thrown onto one table: what is known about the chain's state, and about the candidate that was simulated
     /// last.
-    pub(super) current: Falls,
-    pub(super) candidate: Falls,
+    pub(super) memory: Memory<Draw, Fall>,
 }
 
 impl Work {

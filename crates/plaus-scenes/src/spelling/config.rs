@@ -1,6 +1,8 @@
 //! Scenario keys of the balls that spell.
 
+use super::moves::SpellingMoves;
 use crate::accuracy::AccuracyPreset;
+use crate::model::{Moves, Weights};
 use plaus_dist::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -83,7 +85,7 @@ pub struct Config {
     /// Which moves: "mixed", or the "paper"'s five.
     pub moves: Moves,
     /// Relative weights of the moves.
-    pub weights: Weights,
+    pub weights: Weights<SpellingMoves>,
     /// Sizes of the moves' steps.
     pub steps: Steps,
 }
@@ -229,80 +231,6 @@ impl Default for Contact {
             rolling_resistance: 0.02,
             ball_restitution: 0.8,
             ball_friction: 0.1,
-        }
-    }
-}
-
-/// Which moves the chain makes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Moves {
-    /// All moves, by `weights`.
-    #[default]
-    Mixed,
-    /// The paper's five with the paper's weights 0.04, 0.32, 0.32, 0.16, 0.16.
-    Paper,
-}
-
-/// Relative weights of the moves of "mixed".
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Weights {
-    /// The paper's: everything is drawn anew.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub change_all: f64,
-    /// The paper's: some partition vertices are shifted.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub change_vertices: f64,
-    /// Some partition vertices are drawn anew.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub redraw_vertices: f64,
-    /// The paper's: one ball's drop position is shifted.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub change_ball: f64,
-    /// The paper's: some balls are dropped that were not, and its reverse; each half of the time.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub toggle: f64,
-    /// A ball is dropped elsewhere, preferably over an empty designated bin.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub redrop: f64,
-    /// A ball more, preferably over an empty designated bin, or one less.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub birth_death: f64,
-    /// Two balls exchange their drop positions, hence their turns to fall.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub swap: f64,
-}
-
-impl Weights {
-    /// The paper's.
-    #[must_use]
-    pub fn paper() -> Self {
-        let none = Self {
-            change_all: 0.0,
-            change_vertices: 0.0,
-            redraw_vertices: 0.0,
-            change_ball: 0.0,
-            toggle: 0.0,
-            redrop: 0.0,
-            birth_death: 0.0,
-            swap: 0.0,
-        };
-        Self { change_all: 0.04, change_vertices: 0.32, change_ball: 0.32, toggle: 0.32, ..none }
-    }
-}
-
-impl Default for Weights {
-    fn default() -> Self {
-        Self {
-            change_all: 0.01,
-            change_vertices: 0.07,
-            redraw_vertices: 0.08,
-            change_ball: 0.19,
-            toggle: 0.05,
-            redrop: 0.2,
-            birth_death: 0.3,
-            swap: 0.1,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Some balls simulated by themselves: their ways, where they end, and which vertices that can depend on.
 
 use super::arena::Arena;
+use crate::model::groups::Group;
 use crate::way::{Way, follow};
 use glam::DVec3;
 use plaus_mcmc::ModelError;
@@ -93,10 +94,15 @@ impl Fall {
             _ => !moved.is_empty(),
         }
     }
+}
 
-    /// Whether a ball of this group comes nearer than `reach` to one of another group.
-    pub(super) fn meets(&self, other: &Self, reach: f64) -> bool {
-        self.ways.iter().any(|way| other.ways.iter().any(|their| way.meets(their, reach)))
+impl Group for Fall {
+    fn members(&self) -> &[usize] {
+        &self.members
+    }
+
+    fn ways(&self) -> &[Way] {
+        &self.ways
     }
 }
 

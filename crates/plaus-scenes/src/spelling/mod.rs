@@ -13,22 +13,28 @@ mod settle;
 mod word;
 
 pub use config::{
-    Config, Contact, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Moves, Order, Steps, Vertices, Weights,
-    usual_ln_lambda,
+    Config, Contact, Count, Dimensions, Letters, MOST_COLUMNS, MOST_ROWS, Order, Steps, Vertices, usual_ln_lambda,
 };
-pub use draw::{Drops, Prior};
-pub use moves::{BirthDeath, ChangeAll, ChangeBall, ChangeVertices, RedrawVertices, Redrop, Swap, Toggle};
+pub use draw::Drops;
+pub use moves::{BirthDeath, Redrop, SpellingMoves};
 pub use settle::{Savings, Work};
 pub use word::Word;
 
+/// Weights of the scene's moves.
+pub type Weights = crate::Weights<SpellingMoves>;
+
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
+use crate::model::{Column, Member, Scalar, columns};
 use crate::rules::Rules;
-use crate::scene::{ConfigError, Role, Scalar, Scene};
+use crate::scene::{ConfigError, Scene};
 use crate::world::PlainWorld;
 use arena::Arena;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream, math};
-use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, StateOf, Target};
+use plaus_mcmc::{
+    Goal, Mixture, ModelError, Offset, Recipe, Rectangle, Simulated, SolutionClass, StateOf, Target, Variables, Vars,
+    vars,
+};
 use serde::{Deserialize, Serialize};
 
 /// The balls that spell: `p ∝ λ^k · Π exp(−½‖offset‖²/σ²) · Π 1/a`, the first product over vertices, the second over
@@ -37,7 +43,9 @@ use serde::{Deserialize, Serialize};
 pub struct Spelling {
     config: Config,
     word: Word,
-    prior: Prior,
+    vars: Vars,
+    rectangle: Rectangle,
+    balls: usize,
     goal: Gibbs,
     arena: Arena,
     savings: Savings,
@@ -68,10 +76,13 @@ impl Spelling {
         let arena = Arena::new(config, &word, balls)?;
         let ln_lambda = config.ln_lambda.unwrap_or_else(|| usual_ln_lambda(word.designated().len()));
         let goal = Gibbs::from_ln_lambda(ln_lambda).map_err(|error| blame("ln_lambda")(&error))?;
-        let offsets = (arena.vertices().len(), config.sigma_mm, arena::longest_offset(config));
-        let prior =
-            Prior::new(offsets, balls, arena::rectangle(config, &word)?).map_err(|error| blame("sigma_mm")(&error))?;
-        Ok(Self { config: config.clone(), word, prior, goal, arena, savings: Savings::ALL })
+        let offset = Offset::new(config.sigma_mm, arena::longest_offset(config));
+        let offset = offset.map_err(|error| blame("sigma_mm")(&error))?;
+        let rectangle = Rectangle::new(arena::rectangle(config, &word)?);
+        let rectangle = rectangle.map_err(|error| blame("drop_inset_mm")(&error))?;
+        let vars = draw::vars(arena.vertices().len(), &offset, balls, &rectangle);
+        let savings = Savings::ALL;
+        Ok(Self { config: config.clone(), word, vars, rectangle, balls, goal, arena, savings })
     }
 
     /// The same scene with some of the work that its simulation saves switched off or on. It has no influence on any
@@ -100,10 +111,16 @@ impl Spelling {
         &self.word
     }
 
-    /// The law of a draw without the constraint.
+    /// The rectangle over which balls are dropped, in mm.
     #[must_use]
-    pub fn prior(&self) -> &Prior {
-        &self.prior
+    pub fn rectangle(&self) -> &Rectangle {
+        &self.rectangle
+    }
+
+    /// Most balls there can be.
+    #[must_use]
+    pub fn balls(&self) -> usize {
+        self.balls
     }
 
     /// Lower and upper ends, along x and y, of the part of the drop rectangle that lies over a bin, in mm; `None` where
@@ -114,7 +131,7 @@ impl Spelling {
         let (row, column) = (usize::from(bin) / self.word.columns(), usize::from(bin) % self.word.columns());
         let low = [column, self.word.rows() - 1 - row].map(|index| index as f64 * side);
         let ends = std::array::from_fn(|axis| {
-            let whole = &self.prior.wrapped()[axis];
+            let whole = &self.rectangle.sides()[axis];
             [low[axis].max(whole.low()), (low[axis] + side).min(whole.high())]
         });
         ends.iter().all(|[low, high]| low < high).then_some(ends)
@@ -143,13 +160,13 @@ impl Target for Spelling {
     type Scratch = Work;
 
     fn start(&self, stream: &mut Stream) -> Drops {
-        let mut draw = Drops { offsets: Vec::new(), balls: Vec::new() };
-        self.prior.sample(false, &mut draw, stream);
+        let mut draw = Drops { offsets: vec![[0.0; 3]; self.arena.vertices().len()], balls: vec![None; self.balls] };
+        self.renew_all(&mut draw, Recipe::Exact, stream);
         draw
     }
 
     fn log_prior(&self, draw: &Drops) -> Result<LogDensity, ModelError> {
-        Ok(self.prior.log_density(draw)?)
+        Ok(vars::log_prior(self, draw)?)
     }
 
     fn simulate(
@@ -194,25 +211,16 @@ impl Goal for Spelling {
 }
 
 impl Scene for Spelling {
-    const NUMBERED: &'static str = "ball";
-    const WHOLE: &'static [&'static str] = &["k", "active", "bin"];
-
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
-        let weights = match self.config.moves {
-            Moves::Paper => Weights::paper(),
-            Moves::Mixed => self.config.weights,
-        };
-        Mixture::new(moves::all(&self.config, &weights, rules))
-            .map_err(|error| ConfigError::new("world.spelling.weights", error))
+        self.config.weights.mix(self.config.moves, self, moves::all(self, rules))
     }
 
     fn scalars(&self) -> Vec<Scalar> {
-        let scalar = |name: &str, unit, role| Scalar { name: name.into(), unit, role };
-        let bin = |ball| scalar(&format!("bin_{ball}"), "", Role::Outcome);
-        [scalar("k", "", Role::Outcome), scalar("active", "", Role::Draw), scalar("offset_rms", "mm", Role::Draw)]
-            .into_iter()
-            .chain((0..self.prior.balls()).map(bin))
-            .collect()
+        let bin = |number| Column::count("bin").of(Some(Member { kind: "ball", number }));
+        let active = Column::count("active").of_the_draw();
+        let offset = Column::result("offset_rms", "mm").of_the_draw();
+        let all = [Column::count("k"), active, offset].map(|column| column.of(None));
+        columns::scalars(all.into_iter().chain((0..self.balls as u32).map(bin)).collect(), &self.vars)
     }
 
     /// A ball in no bin has bin −1.

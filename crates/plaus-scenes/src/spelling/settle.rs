@@ -1,21 +1,16 @@
-//! What becomes of a draw: every ball is simulated alone; those that would meet are simulated together, until no two
-//! groups meet.
-//!
-//! Balls that never touch do not influence each other, so this is the simulation of all of them at once, up to
-//! rounding; and by this procedure, which knows nothing of the chain, it is defined to the last bit. What a candidate
-//! leaves as it is need not be simulated again: groups of the same balls with the same starts among the same vertices.
+//! What becomes of a draw: the balls are simulated group by group, see [`crate::model::groups`]. What a candidate leaves
+//! as it is need not be simulated again: groups of the same balls with the same starts among the same vertices.
 
 use super::Rest;
 use super::arena::Arena;
 use super::draw::Drops;
 use super::fall::{Fall, Recorder};
-use crate::way::merge;
+use crate::model::groups::{Groups, Memory};
 use plaus_mcmc::ModelError;
 use plaus_sim::Scratch;
 use plaus_sim::marbles::{MarbleScratch, Marbles, Start};
 use plaus_sim::mechanics::Impact;
 use plaus_sim::motion::Parabola;
-use std::sync::Arc;
 
 /// What a simulation may save. None of it has any influence on a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,8 +38,7 @@ pub struct Work {
     rooms: Vec<Option<Room>>,
     scratch: Scratch<MarbleScratch>,
     recorder: Recorder,
-    current: Falls,
-    candidate: Falls,
+    memory: Memory<Drops, Fall>,
     counts: WorkCounts,
 }
 
@@ -69,18 +63,6 @@ struct Room {
     offsets: Vec<[f64; 3]>,
 }
 
-/// The simulations of one draw.
-#[derive(Default)]
-struct Falls {
-    draw: Option<Drops>,
-    /// Each ball alone.
-    alone: Vec<Option<Arc<Fall>>>,
-    /// Groups that were simulated together, on the way to the final ones.
-    together: Vec<Arc<Fall>>,
-    /// The final groups.
-    groups: Vec<Arc<Fall>>,
-}
-
 impl Work {
     /// How much was simulated so far.
     #[must_use]
@@ -91,7 +73,7 @@ impl Work {
     /// The ways of the balls of the draw that was simulated last, until it is settled: each piece with its ball and the
     /// time at which it ends, in m and s.
     pub fn ways(&self) -> impl Iterator<Item = (usize, &Parabola, f64)> {
-        let groups = self.candidate.groups.iter();
+        let groups = self.memory.candidate().last().iter();
         let balls = groups.flat_map(|group| group.members.iter().zip(&group.ways));
         balls.flat_map(|(&ball, way)| way.pieces.iter().map(move |piece| (ball, &piece.path, piece.until)))
     }
@@ -103,25 +85,25 @@ impl Work {
 
     /// Keeps what is known about the candidate that was simulated last, if it became the current state.
     pub(super) fn settle(&mut self, accepted: bool) {
-        if accepted {
-            std::mem::swap(&mut self.current, &mut self.candidate);
-        }
+        self.memory.settle(accepted);
     }
 
     /// Where the balls of `draw` come to rest. `known`: a draw from whose simulation, made now unless it is remembered,
     /// parts may be taken.
     pub(super) fn simulate(&mut self, arena: &Arena, draw: &Drops, known: Option<&Drops>) -> Result<Rest, ModelError> {
-        let Some(known) = known else {
-            let nothing = Falls::default();
-            return self.simulate_after(arena, draw, &nothing);
-        };
-        if self.current.draw.as_ref() != Some(known) {
-            self.simulate_after(arena, known, &Falls::default())?;
-            std::mem::swap(&mut self.current, &mut self.candidate);
-        }
-        let current = std::mem::take(&mut self.current);
-        let rest = self.simulate_after(arena, draw, &current);
-        self.current = current;
+        let mut memory = std::mem::take(&mut self.memory);
+        let made = memory.simulate(draw, known, |draw, known, next| self.simulate_after(arena, draw, known, next));
+        let rest = made.map(|groups| {
+            let mut rest = Rest { bins: vec![None; draw.balls.len()], complete: true };
+            for group in groups.last() {
+                rest.complete &= group.complete;
+                for (&ball, &bin) in group.members.iter().zip(&group.bins) {
+                    rest.bins[ball] = bin;
+                }
+            }
+            rest
+        });
+        self.memory = memory;
         rest
     }
 
@@ -129,8 +111,8 @@ impl Work {
     pub(super) fn record(&mut self, arena: &Arena, draw: &Drops) -> Result<Vec<(Fall, Vec<Impact>)>, ModelError> {
         self.simulate(arena, draw, None)?;
         let starts: Vec<Option<Start>> = arena.starts(draw).collect();
-        let groups = self.candidate.groups.clone();
-        let record = |group: Arc<Fall>| {
+        let groups = self.memory.candidate().last().to_vec();
+        let record = |group: std::sync::Arc<Fall>| {
             self.recorder.impacts = Some(Vec::new());
             let fall = self.fall(arena, draw, group.members.clone(), &starts)?;
             Ok((fall, self.recorder.impacts.take().unwrap_or_default()))
@@ -138,90 +120,30 @@ impl Work {
         groups.into_iter().map(record).collect()
     }
 
-    /// Simulates `draw` into `self.candidate`, taking from `known` what stays as it is.
-    fn simulate_after(&mut self, arena: &Arena, draw: &Drops, known: &Falls) -> Result<Rest, ModelError> {
-        self.counts.draws += 1;
-        let moved = known.moved(draw);
-        let starts: Vec<Option<Start>> = arena.starts(draw).collect();
-        let mut next = std::mem::take(&mut self.candidate);
-        next.alone.clear();
-        next.together.clear();
-        next.groups.clear();
-        for (ball, start) in starts.iter().enumerate() {
-            let Some(start) = *start else {
-                next.alone.push(None);
-                continue;
-            };
-            self.counts.balls += 1;
-            let same = |fall: &&Arc<Fall>| fall.starts == [start] && !fall.depends_on(&moved);
-            let fall = match known.alone.get(ball).and_then(Option::as_ref).filter(same) {
-                Some(fall) => Arc::clone(fall),
-                None => {
-                    self.counts.alone += 1;
-                    Arc::new(self.fall(arena, draw, vec![ball], &starts)?)
-                }
-            };
-            next.groups.push(Arc::clone(&fall));
-            next.alone.push(Some(fall));
-        }
-        if arena.touch() {
-            self.join(arena, draw, &starts, known, (&moved, &mut next))?;
-        }
-        let mut rest = Rest { bins: vec![None; starts.len()], complete: true };
-        for group in &next.groups {
-            rest.complete &= group.complete;
-            for (&ball, &bin) in group.members.iter().zip(&group.bins) {
-                rest.bins[ball] = bin;
-            }
-        }
-        match &mut next.draw {
-            Some(old) => old.clone_from(draw),
-            none => *none = Some(draw.clone()),
-        }
-        self.candidate = next;
-        Ok(rest)
-    }
-
-    /// Simulates groups that meet together, until none do.
-    fn join(
+    /// Simulates `draw` into `next`, taking from `known` what stays as it is.
+    fn simulate_after(
         &mut self,
         arena: &Arena,
         draw: &Drops,
-        starts: &[Option<Start>],
-        known: &Falls,
-        (moved, next): (&[usize], &mut Falls),
+        known: &Groups<Drops, Fall>,
+        next: &mut Groups<Drops, Fall>,
     ) -> Result<(), ModelError> {
-        let reach = NEAR * arena.bins().marble;
-        loop {
-            let merged = merge(next.groups.len(), |a, b| next.groups[a].meets(&next.groups[b], reach));
-            if merged.len() == next.groups.len() {
-                return Ok(());
+        self.counts.draws += 1;
+        self.counts.balls += draw.active() as u64;
+        let moved = known.draw().map_or_else(Vec::new, |old| moved(old, draw));
+        let starts: Vec<Option<Start>> = arena.starts(draw).collect();
+        let same = |fall: &Fall| {
+            let mut own = fall.members.iter().zip(&fall.starts);
+            own.all(|(&ball, start)| starts[ball] == Some(*start)) && !fall.depends_on(&moved)
+        };
+        let reach = arena.touch().then_some(NEAR * arena.bins().marble);
+        next.simulate(draw, starts.iter().map(Option::is_some), reach, (known, same), |members| {
+            match members.len() {
+                1 => self.counts.alone += 1,
+                several => self.counts.together += several as u64,
             }
-            let mut groups = Vec::with_capacity(merged.len());
-            for union in merged {
-                if let [only] = *union {
-                    groups.push(Arc::clone(&next.groups[only]));
-                    continue;
-                }
-                let mut members: Vec<usize> =
-                    union.iter().flat_map(|&k| next.groups[k].members.iter().copied()).collect();
-                members.sort_unstable();
-                let is_same = |fall: &&Arc<Fall>| {
-                    fall.members == members
-                        && members.iter().zip(&fall.starts).all(|(&ball, start)| starts[ball] == Some(*start))
-                };
-                let fall = match known.together.iter().find(|fall| is_same(fall) && !fall.depends_on(moved)) {
-                    Some(fall) => Arc::clone(fall),
-                    None => {
-                        self.counts.together += members.len() as u64;
-                        Arc::new(self.fall(arena, draw, members, starts)?)
-                    }
-                };
-                next.together.push(Arc::clone(&fall));
-                groups.push(fall);
-            }
-            next.groups = groups;
-        }
+            self.fall(arena, draw, members, &starts)
+        })
     }
 
     /// Simulates some balls by themselves.
@@ -264,12 +186,9 @@ impl Room {
     }
 }
 
-impl Falls {
-    /// Random vertices that are elsewhere in `draw`.
-    fn moved(&self, draw: &Drops) -> Vec<usize> {
-        let Some(old) = &self.draw else { return Vec::new() };
-        (0..draw.offsets.len()).filter(|&k| old.offsets[k] != draw.offsets[k]).collect()
-    }
+/// Random vertices that are elsewhere in `draw`.
+fn moved(old: &Drops, draw: &Drops) -> Vec<usize> {
+    (0..draw.offsets.len()).filter(|&k| old.offsets[k] != draw.offsets[k]).collect()
 }
 
 #[cfg(test)]

@@ -10,7 +10,8 @@ mod sigma;
 
 use crate::sampler::Sampler;
 use crate::{Result, Work};
-use plaus_scenes::ball2d::{Ball2d, Config, Moves};
+use plaus_scenes::Moves;
+use plaus_scenes::ball2d::{Ball2d, Config};
 
 /// Place of the rest among the scene's scalars; the angles follow it.
 const REST: usize = 0;

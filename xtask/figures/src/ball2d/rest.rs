@@ -5,7 +5,7 @@ use crate::canvas::{self, Area, HPos, bold, colour, pen, text, write};
 use crate::lines::numbered;
 use crate::plot::{Axes, band, curve, plain};
 use crate::{Result, Work};
-use plaus_scenes::ball2d::Moves;
+use plaus_scenes::Moves;
 
 const SAMPLES: u64 = 1000;
 const SIZE: (u32, u32) = (1200, 520);

@@ -4,24 +4,29 @@ use super::shots::{Haul, LEAVE, SPARE, STRIKE, Shot, Until, by_chain};
 use crate::report::{table, thousands};
 use crate::stats::Estimate;
 use crate::{Result, Work};
-use plaus_scenes::bowling::{Moves, Weights};
+use plaus_scenes::Moves;
+use plaus_scenes::bowling::Weights;
 use rayon::prelude::*;
 
-/// A move by its name, and how its weight is set to 0.
-type Off = (&'static str, fn(&mut Weights));
+/// Moves by a name for them, which are left out.
+type Off = (&'static str, &'static [&'static str]);
 
 const OFF: &[Off] = &[
-    ("none", |_| ()),
-    ("change_all", |weights| weights.change_all = 0.0),
-    ("change_… (the paper's six others)", |weights| {
-        (weights.change_radius, weights.change_density, weights.change_position) = (0.0, 0.0, 0.0);
-        (weights.change_velocity, weights.change_spin, weights.change_pins) = (0.0, 0.0, 0.0);
-    }),
-    ("redraw, redraw_pins", |weights| (weights.redraw, weights.redraw_pins) = (0.0, 0.0)),
-    ("aim", |weights| weights.aim = 0.0),
-    ("refine", |weights| weights.refine = 0.0),
-    ("mirror", |weights| weights.mirror = 0.0),
+    ("none", &[]),
+    ("change_all", &["change_all"]),
+    (
+        "change_… (the paper's six others)",
+        &["change_radius", "change_density", "change_position", "change_velocity", "change_spin", "change_pins"],
+    ),
+    ("redraw, redraw_pins", &["redraw", "redraw_pins"]),
+    ("aim", &["aim"]),
+    ("refine", &["refine"]),
+    ("mirror", &["mirror"]),
 ];
+
+fn leave_out(weights: &mut Weights, moves: &[&str]) {
+    moves.iter().for_each(|name| weights.set(name, 0.0));
+}
 
 /// Chains of a kind, and what they saw; the error of the share is that over chains.
 struct Seen {
@@ -68,7 +73,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         };
         for (name, off) in OFF.iter().take(work.size(OFF.len(), 2)) {
             work.say(format_args!("{}: chains without {name}", shot.name));
-            row(name, seen(shot, |config| off(&mut config.weights), size)?);
+            row(name, seen(shot, |config| leave_out(&mut config.weights, off), size)?);
         }
         row("all but the paper's seven", seen(shot, |config| config.moves = Moves::Paper, size)?);
     }

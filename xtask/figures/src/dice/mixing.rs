@@ -10,14 +10,14 @@ use crate::{Result, Work};
 use plaus_mcmc::diagnose::rhat;
 use plaus_scenes::Scene;
 use plaus_scenes::dice::Weights;
-use plaus_scenes::scene::Role;
+use plaus_scenes::model::Role;
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
     let length = Length { seed: 5, chains: 4, warmup: work.size(2000, 2), iterations: work.size(10_000, 12) };
     work.say(format_args!("mixing: 4 chains of {} iterations, with and without recasts", length.iterations));
     let mut rows = Vec::new();
     for (name, weights) in
-        [("all moves", Weights::default()), ("without `recast`", Weights { recast: 0.0, ..Weights::default() })]
+        [("all moves", Weights::default()), ("without `recast`", Weights::default().with("recast", 0.0))]
     {
         let thrown = super::Thrown::new(ONE, |config| config.weights = weights)?;
         let sampler = Sampler::new(thrown.scene)?;

@@ -5,7 +5,8 @@ use super::{acm, hi};
 use crate::report::{significant, table, thousands};
 use crate::stats::shown;
 use crate::{Result, Work};
-use plaus_scenes::spelling::{Config, Moves, Savings, Weights};
+use plaus_scenes::Moves;
+use plaus_scenes::spelling::{Config, Savings, Weights};
 
 /// A variant of the default moves.
 type Change = (&'static str, fn(&mut Config));
@@ -19,13 +20,13 @@ type Changed = fn(fn(&mut Config)) -> Result<Word>;
 /// The weight of a move that is left out goes to the others in proportion.
 const VARIANTS: &[Change] = &[
     ("all default moves", |_| ()),
-    ("without redrop", |config| config.weights.redrop = 0.0),
-    ("without birth_death", |config| config.weights.birth_death = 0.0),
-    ("without swap", |config| config.weights.swap = 0.0),
-    ("without redraw_vertices", |config| config.weights.redraw_vertices = 0.0),
+    ("without redrop", |config| config.weights.set("redrop", 0.0)),
+    ("without birth_death", |config| config.weights.set("birth_death", 0.0)),
+    ("without swap", |config| config.weights.set("swap", 0.0)),
+    ("without redraw_vertices", |config| config.weights.set("redraw_vertices", 0.0)),
     ("redrop and birth_death not aimed", |config| config.steps.aimed = 0.0),
     ("the paper's moves, weighted alike", |config| {
-        config.weights = Weights { redraw_vertices: 0.0, redrop: 0.0, birth_death: 0.0, swap: 0.0, ..Weights::paper() }
+        config.weights = Weights::paper();
     }),
     ("the paper's moves and weights", |config| config.moves = Moves::Paper),
 ];

@@ -63,7 +63,7 @@ impl Word {
             marble_law: plaus_sim::Law::new(contact.ball_friction, contact.ball_restitution),
             ..Bins::default()
         };
-        let duration = config.drop_interval_s * any.prior().balls() as f64 + config.settle_s;
+        let duration = config.drop_interval_s * any.balls() as f64 + config.settle_s;
         Ok(Self { name, title, scenes, bins, duration })
     }
 
@@ -130,7 +130,7 @@ impl World for Word {
             "The scene's prior: of {} balls each is dropped or not, one every {} s at a random place over {} × {} bins whose partitions' vertices are off by 0.1 mm an axis; {} s. Read: how many \
              of the word's bins are filled (k); the bin of each ball. The peer has the same world as for ten marbles. Timed: all that the scene does for a draw without knowing another, groups of balls \
              and moved vertices included; of the peer, stepping alone.",
-            self.scenes[0].1.prior().balls(),
+            self.scenes[0].1.balls(),
             self.scenes[0].1.config().drop_interval_s,
             self.bins.columns,
             self.bins.rows,

@@ -1,7 +1,7 @@
 //! Animations of samples, as files.
 
 use super::Args;
-use crate::label;
+use crate::{console, label};
 use plaus_export::{Clip, Cut, ExportError, Exporter, Label, glb, table};
 use plaus_run::export::output;
 use plaus_run::replay::{Replay, replay_each_until};
@@ -16,8 +16,6 @@ use std::path::Path;
 const AT_A_TIME: usize = 64;
 /// What a folder of animations has; only such folders are replaced.
 const INDEX: &str = "plaus-export.json";
-/// Frames a second unless said otherwise.
-const FPS: f64 = 60.0;
 
 /// Animations to be written.
 pub(super) struct Animations<'a, S: Scene> {
@@ -94,9 +92,13 @@ impl<'a, S: Scene> Animations<'a, S> {
     /// Hands a sample to `make` as it is to be written.
     fn clip<T>(&self, replay: &Replay, make: impl FnOnce(&Clip<'_>) -> Result<T, ExportError>) -> Result<T, Error> {
         let motion = &self.args.motion;
-        let cut = Cut::new(motion.fps.unwrap_or(FPS), motion.time_range, &replay.animation).map_err(refused)?;
+        let cut = Cut::new(self.fps(), motion.time_range, &replay.animation).map_err(refused)?;
         let label = self.label(replay, &cut);
-        make(&Clip::new(&replay.animation, &label, cut).styled(motion.style())).map_err(refused)
+        make(&Clip::new(&replay.animation, &label, cut).styled(motion.style()).watched(show)).map_err(refused)
+    }
+
+    fn fps(&self) -> f64 {
+        self.args.motion.fps.unwrap_or(self.format.fps())
     }
 
     fn label(&self, replay: &Replay, cut: &Cut) -> Label {
@@ -111,7 +113,7 @@ impl<'a, S: Scene> Animations<'a, S> {
     /// What goes beside a file, where there is none: programs write their own notes into it.
     fn beside(&self, path: &Path) -> Result<(), Error> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let Some((end, text)) = self.format.beside(&name, self.args.motion.fps.unwrap_or(FPS)) else { return Ok(()) };
+        let Some((end, text)) = self.format.beside(&name, self.fps()) else { return Ok(()) };
         match File::create_new(path.with_file_name(format!("{name}.{end}"))) {
             Ok(mut file) => file.write_all(text.as_bytes()).map_err(Error::Output),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
@@ -152,5 +154,13 @@ fn refused(error: ExportError) -> Error {
     match error {
         ExportError::Output(error) => Error::Output(error),
         other => Error::Request(other.to_string()),
+    }
+}
+
+/// Says how far it is with frames that take long.
+fn show(done: u64, of: u64) {
+    if console::is_live() {
+        let end = if done == of { "\r\x1b[K" } else { "" };
+        console::note(&format!("\rframe {done} of {of}{end}"));
     }
 }

@@ -1,4 +1,5 @@
-//! All formats, one row each: tables of draws, which `plaus_run` writes, and animations, which `plaus_export` does.
+//! All formats, one row each: tables of draws, which `plaus_run` writes, and animations, which `plaus_export` and
+//! `plaus_picture` do.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use plaus_export::Exporter;
@@ -42,7 +43,7 @@ const DRAWS: [(Format, Row); 2] = [
 
 /// All formats in the order in which they are listed.
 pub(super) fn all() -> Vec<(Format, Row)> {
-    let animations = ALL.into_iter().map(|format| (Format::Animation(format), *format.row()));
+    let animations = ALL.into_iter().chain(plaus_picture::ALL).map(|format| (Format::Animation(format), *format.row()));
     DRAWS.into_iter().chain(animations).collect()
 }
 

@@ -26,7 +26,7 @@ pub(crate) struct Args {
     /// File or folder to make; `-` writes csv, poses and events to standard output
     #[arg(long, alias = "output", value_name = "PATH", required_unless_present = "into")]
     out: Option<PathBuf>,
-    /// Write all samples into this one file: clips of a GLB, variants of a USD prim
+    /// Write all samples into this one file: clips of a GLB, variants of a USD prim, tiles of a picture or video
     #[arg(long, value_name = "FILE", conflicts_with = "out")]
     into: Option<PathBuf>,
     /// A sample to animate, its chain and its draw, as in the table, e.g. 0:17; may be given several times
@@ -51,7 +51,7 @@ pub(crate) struct Args {
 /// How motion is written.
 #[derive(clap::Args)]
 struct Motion {
-    /// Frames per second: where keys lie if they may, besides those at every impact [default: 60]
+    /// Frames per second: where keys lie if they may, besides those at every impact [default: 60; gif 20, mp4 30]
     #[arg(long)]
     fps: Option<f64>,
     /// Animate only from FROM to TO, in seconds
@@ -74,6 +74,9 @@ struct Motion {
     /// glb and usda: units per metre, e.g. 100 for centimetres [default: 1]
     #[arg(long, value_name = "UNITS")]
     scale: Option<f64>,
+    /// png, gif and mp4: pixels across and down, e.g. 1920x1080
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<(u32, u32)>,
     /// events and wav: leave out impacts with less impulse, in N s
     #[arg(long, value_name = "NS")]
     min_impulse: Option<f64>,
@@ -103,6 +106,11 @@ enum UpAxis {
 fn range(text: &str) -> Result<(f64, f64), String> {
     let parts = text.split_once(':').and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
     parts.ok_or_else(|| format!("`{text}` is no range: write FROM:TO in seconds, e.g. 0.5:2"))
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    parts.ok_or_else(|| format!("`{text}` is no size: write WIDTHxHEIGHT in pixels, e.g. 1280x720"))
 }
 
 /// A time above 0 with its unit.
@@ -137,6 +145,7 @@ impl Motion {
             time_codes: self.time_codes.unwrap_or(usual.time_codes),
             up: if self.up == Some(UpAxis::Z) { Up::Z } else { Up::Y },
             scale: self.scale.unwrap_or(usual.scale),
+            size: self.size,
         }
     }
 
@@ -151,6 +160,7 @@ impl Motion {
             (self.time_codes.is_some(), "--time-codes", &["usda"]),
             (self.up.is_some(), "--up", layers),
             (self.scale.is_some(), "--scale", layers),
+            (self.size.is_some(), "--size", &["png", "gif", "mp4"]),
             (self.min_impulse.is_some(), "--min-impulse", &["events", "wav"]),
             (self.merge.is_some(), "--merge", &["events", "wav"]),
         ];
@@ -252,7 +262,7 @@ impl Args {
     fn check_name(&self, name: &str) -> Result<(), Failure> {
         let path = self.path();
         let end = path.extension().map(|end| end.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let known = ["glb", "gltf", "usda", "usd", "usdc", "usdz", "csv", "json", "zarr"];
+        let known = ["glb", "gltf", "usda", "usd", "usdc", "usdz", "csv", "json", "zarr", "wav", "png", "gif", "mp4"];
         let fits = match name {
             "events" => ["csv", "json"].contains(&end.as_str()),
             _ => formats::all().iter().any(|(_, row)| row.name == name && row.ending == end),

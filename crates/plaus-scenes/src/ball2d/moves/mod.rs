@@ -1,12 +1,47 @@
-//! The moves of the 2D ball, one a file.
+//! The moves of the 2D ball: its own, one a file, and which of the library it makes.
 
 mod aim;
 mod landing;
-mod perturb;
-mod redraw;
 mod roots;
 
 pub use aim::Aim;
 pub(super) use aim::reach;
-pub use perturb::Perturb;
-pub use redraw::Redraw;
+
+use super::Ball2d;
+use crate::model::{Menu, Printed, Row};
+use crate::rules::Rules;
+use plaus_mcmc::Move;
+use plaus_mcmc::library::{RedrawOne, ShiftHalf};
+
+/// The moves of the 2D ball.
+#[derive(Debug)]
+pub enum Ball2dMoves {}
+
+impl Menu for Ball2dMoves {
+    type Scene = Ball2d;
+    const SCENE: &'static str = "ball2d";
+    const ROWS: &'static [Row] = &[
+        Row::paper(
+            "perturb",
+            0.75,
+            Printed::Weight(1.0),
+            "The paper's move: every angle, with probability ½, gets a uniform step.",
+        ),
+        Row::own("redraw", 0.1, "One angle is drawn anew from its prior."),
+        Row::own(
+            "aim",
+            0.15,
+            "Some angles are drawn anew and another is solved for, so that the ball still lands near the target.",
+        ),
+    ];
+}
+
+/// All moves.
+pub(super) fn all(scene: &Ball2d, rules: &Rules) -> Vec<Box<dyn Move<Ball2d>>> {
+    let angles = || (0..scene.config.collisions as usize).collect();
+    vec![
+        Box::new(ShiftHalf { name: "perturb", among: angles(), half_width: scene.config.step_deg }),
+        Box::new(RedrawOne { name: "redraw", among: angles(), symmetric: rules.symmetric_redraws() }),
+        Box::new(Aim),
+    ]
+}

@@ -1,9 +1,9 @@
 //! The ball aimed at the pins in front.
 
-use crate::bowling::{Bowling, Law, Quantity, Shot};
+use crate::bowling::{Bowling, Quantity, Shot};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, LogDensity, LogRatio, NotANumber, Sample, Stream, WrappedUniform, math, open_unit};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{Law, ModelError, Move, Path, Proposal, Recipe, StateOf, Variables, vars};
 
 /// How often the place across the lane is drawn from its law instead, so that places from where no pin is met are left
 /// and come back.
@@ -38,7 +38,7 @@ struct Places {
 impl Places {
     /// `None` where nothing can be aimed.
     fn of(target: &Bowling, draw: &Shot) -> Result<Option<Self>, ModelError> {
-        let Law::Uniform(law) = *target.prior().laws().of(Quantity::Across) else { return Ok(None) };
+        let Law::Uniform(law) = target.vars.get(Quantity::Across as usize).law else { return Ok(None) };
         let row = target.lane.first_row(draw);
         let distances: Vec<f64> = row.iter().map(|spot| spot.y).collect();
         let Some(to_the_side) = target.lane.approach(draw, &distances)? else { return Ok(None) };
@@ -64,10 +64,7 @@ impl Places {
 
 /// Log density of all of a draw but its place across the lane.
 fn log_rest(target: &Bowling, draw: &Shot) -> Result<LogDensity, NotANumber> {
-    let laws = target.prior().laws();
-    let others = Quantity::ALL.into_iter().filter(|quantity| *quantity != Quantity::Across);
-    let ball = others.map(|quantity| laws.log_density(quantity, &draw.ball)).sum::<Result<LogDensity, _>>()?;
-    draw.pins.iter().try_fold(ball, |sum, offset| Ok(sum + target.prior().log_offset(offset)?))
+    vars::log_density_of(target, draw, (0..target.vars.len()).filter(|&var| var != Quantity::Across as usize))
 }
 
 /// Log density of proposing a draw, of what is proposed.
@@ -90,7 +87,7 @@ impl Move<Bowling> for Aim {
     ) -> Result<Proposal, ModelError> {
         let anew = open_unit(stream) < self.anew;
         if anew {
-            target.prior().sample(false, candidate, stream);
+            target.renew_all(candidate, Recipe::Exact, stream);
         }
         let Some(there) = Places::of(target, candidate)? else { return Ok(Proposal::Stay) };
         candidate.ball[Quantity::Across as usize] = there.sample(stream);

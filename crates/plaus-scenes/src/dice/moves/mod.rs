@@ -3,56 +3,126 @@
 //! Ratios are taken with respect to the law of the tables, as the prior's density is: a change of a control point that
 //! leaves its law as it is has ratio 1.
 
-mod component;
-mod everything;
 mod near;
 mod pick;
 mod point;
 mod recast;
-mod rethrow;
-mod scale;
 mod shift;
-mod turn;
 
-pub use component::Component;
-pub use everything::Everything;
 pub use near::Near;
 pub use pick::Pick;
 pub use point::Point;
 pub use recast::Recast;
-pub use rethrow::Rethrow;
-pub use scale::Scale;
 pub use shift::Shift;
-pub use turn::Turn;
 
-use super::config::Moves;
 use super::draw::{Field, LARGEST_SCORE, Site};
+use super::prior::{EACH, NUMBERS, ORIENTATION};
 use super::{Dice, Draw};
+use crate::model::{Menu, Printed, Row};
 use crate::rules::Rules;
+use plaus_dist::stream::below;
 use plaus_dist::{Stream, math};
-use plaus_mcmc::{Move, Path};
+use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Step, Symmetry, Way, marked, unmarked};
+use plaus_mcmc::{Move, Path, StateOf};
 
-/// All moves with their weights.
-pub(super) fn all(scene: &Dice, rules: &Rules) -> Vec<(f64, Box<dyn Move<Dice>>)> {
-    let (config, steps) = (&scene.config, scene.config.steps);
-    let weights = if config.moves == Moves::Paper { config.weights.paper() } else { config.weights };
-    let has_fields = !scene.fields().is_empty();
-    // A table without anything random has no points to change.
-    let if_fields = |weight: f64| if has_fields { weight } else { 0.0 };
-    let if_places = |weight: f64| if scene.plan.places.iter().any(Option::is_some) { weight } else { 0.0 };
-    let scale = Scale::new(steps.point_least, steps.point_most);
-    let pick = Pick { sd: steps.recast_sd_mm * 1e-3, near: steps.pick_sd_mm * 1e-3 };
-    vec![
-        (weights.everything, Box::new(Everything { symmetric: rules.symmetric_redraws() })),
-        (weights.component, Box::new(Component::new(Scale::new(steps.component_least, steps.component_most)))),
-        (if_fields(weights.point), Box::new(Point::new(scale))),
-        (if_fields(weights.near), Box::new(Near::new(scale))),
-        (weights.rethrow, Box::new(Rethrow)),
-        (if_places(weights.recast), Box::new(Recast { sd: steps.recast_sd_mm * 1e-3 })),
-        (if_places(if config.together { weights.pick } else { 0.0 }), Box::new(pick)),
-        (weights.turn, Box::new(Turn)),
-        (if_places(weights.shift), Box::new(Shift { sd: steps.shift_sd_mm * 1e-3 })),
-    ]
+/// The moves of the dice.
+#[derive(Debug)]
+pub enum DiceMoves {}
+
+impl Menu for DiceMoves {
+    type Scene = Dice;
+    const SCENE: &'static str = "dice";
+    const ROWS: &'static [Row] = &[
+        Row::paper("everything", 0.01, Printed::Free, "The paper's: everything is drawn anew."),
+        Row::paper(
+            "component",
+            0.2,
+            Printed::Free,
+            "The paper's: one number of one die's initial conditions, or its orientation, is changed.",
+        ),
+        Row::paper(
+            "point",
+            0.04,
+            Printed::Free,
+            "The paper's: one control point of the table, wherever it is, is changed.",
+        ),
+        Row::own("near", 0.2, "A control point near one of the collisions of the current animation is changed."),
+        Row::own("rethrow", 0.05, "One die's throw is drawn anew, and so is its table where it has one of its own."),
+        Row::own(
+            "recast",
+            0.2,
+            "A die gets a fresh throw, and a fresh table where it has one of its own, from the place from where, tried out, it comes to rest near its target with a demanded face up.",
+        ),
+        Row::own(
+            "pick",
+            0.1,
+            "Like recast, with throws that are tried until one is likely under the prior and comes to rest near its target; for dice thrown onto one table.",
+        ),
+        Row::own(
+            "turn",
+            0.15,
+            "A die's throw begins in another of the orientations that its symmetry makes equal: another face comes up, and nothing else changes.",
+        ),
+        Row::own(
+            "shift",
+            0.15,
+            "A die's throw is shifted so that it comes to rest near its target, and so is its table where it has one of its own.",
+        ),
+    ];
+}
+
+/// All moves. A table without anything random has no points to change, and a die without a target nothing to aim at.
+pub(super) fn all(scene: &Dice, rules: &Rules) -> Vec<Box<dyn Move<Dice>>> {
+    let (steps, symmetric, recipe) = (&scene.config.steps, rules.symmetric_redraws(), rules.recipe());
+    let sizes = Sizes::new(steps.point_least, steps.point_most);
+    let recast = Recast { sd: steps.recast_sd_mm * 1e-3 };
+    let mut all: Vec<Box<dyn Move<Dice>>> = vec![
+        Box::new(RedrawAll { name: "everything", symmetric, recipe }),
+        Box::new(component(scene, Sizes::new(steps.component_least, steps.component_most))),
+    ];
+    if !scene.fields().is_empty() {
+        all.extend([Box::new(Point::new(sizes)) as Box<dyn Move<Dice>>, Box::new(Near::new(sizes))]);
+    }
+    all.push(Box::new(RedrawGroup { name: "rethrow" }));
+    let aims = scene.plan.places.iter().any(Option::is_some);
+    if aims {
+        all.push(Box::new(recast));
+        if scene.config.together {
+            all.push(Box::new(Pick { sd: recast.sd, near: steps.pick_sd_mm * 1e-3 }));
+        }
+    }
+    all.push(Box::new(Symmetry { name: "turn", map: turn }));
+    if aims {
+        all.push(Box::new(Shift { sd: steps.shift_sd_mm * 1e-3 }));
+    }
+    all
+}
+
+/// One of the numbers of one die's initial conditions makes a step that leaves its law as it is; or, a quarter of the
+/// time, its orientation is turned about a random axis. Sizes of steps are those of places, of velocities, of spins and
+/// of turns.
+#[must_use]
+pub fn component(scene: &Dice, sizes: Sizes) -> Step {
+    const NAMES: [&str; 4] = ["place", "velocity", "spin", "turn"];
+    let of_die = |die: usize| {
+        let numbers = (0..NUMBERS).map(move |number| Way { var: die * EACH + number, size: number / 3 });
+        numbers.chain([Way { var: die * EACH + ORIENTATION, size: 3 }; 3])
+    };
+    let ways = (0..scene.config.dice as usize).flat_map(of_die).collect();
+    Step { name: "component", ways, each: NUMBERS + 3, sizes: NAMES.map(|name| (name, sizes)).to_vec() }
+}
+
+/// One die's pips are turned by another of the rotations that leave its body as it is, each as likely: the throw begins
+/// in another orientation, the body moves as before bit by bit, and another face comes up. A cube has 24 such
+/// rotations, a cuboid with two equal edges 8, any other 4: a face of a cuboid comes up only in place of one of its
+/// size.
+pub fn turn(target: &Dice, _: &StateOf<Dice>, candidate: &mut Draw, stream: &mut Stream) -> bool {
+    let die = below(stream, candidate.throws.len());
+    let (turns, turn) = (target.plan.rotations.len(), &mut candidate.throws[die].turn);
+    // Any but the current one.
+    let other = 1 + below(stream, turns - 1);
+    *turn = ((usize::from(*turn) + other) % turns) as u8;
+    true
 }
 
 /// `ln (Φ(b) − Φ(a))` for `a < b`, also where that is no float.
@@ -74,34 +144,21 @@ fn aimed(target: &Dice) -> impl Iterator<Item = (usize, [f64; 2])> {
 }
 
 /// Changes a control point of a table: the way it was changed, and whether it stays where its law has a density.
-fn change(draw: &mut Draw, table: usize, site: Site, scale: Scale, stream: &mut Stream) -> (Path, bool) {
-    let (score, is_wide) = scale.step(draw.tables[table].score(site), stream);
+fn change(draw: &mut Draw, table: usize, site: Site, sizes: Sizes, stream: &mut Stream) -> (Path, bool) {
+    let (score, is_wide) = sizes.step(draw.tables[table].score(site), stream);
     draw.tables[table].set(site, score);
     (marked(path(table, site), is_wide), score.abs() <= LARGEST_SCORE)
 }
 
 /// The scales of a move of control points: one a field.
-fn declared(scales: &[Scale; 3]) -> Vec<plaus_mcmc::Scale> {
+fn declared(sizes: &[Sizes; 3]) -> Vec<plaus_mcmc::Scale> {
     let names = ["height", "restitution", "friction"];
-    names.iter().zip(scales).map(|(name, scale)| scale.declared(name, plaus_mcmc::Scale::ONE)).collect()
+    names.iter().zip(sizes).map(|(name, sizes)| sizes.declared(name, plaus_mcmc::Scale::ONE)).collect()
 }
 
 /// The same at other values.
-fn about(scales: [Scale; 3], values: &[Option<f64>]) -> [Scale; 3] {
-    std::array::from_fn(|k| scales[k].about(values.get(k).copied().flatten()))
-}
-
-/// Set in the path of a step whose size did not come from the adapted scale.
-const WIDE: u64 = 1 << 63;
-
-/// A path that says where the step's size came from. No ratio depends on that.
-fn marked(path: Path, is_wide: bool) -> Path {
-    Path(path.0 | if is_wide { WIDE } else { 0 })
-}
-
-/// Whether a step's size came from the adapted scale.
-fn is_adapted(path: Path) -> bool {
-    path.0 & WIDE == 0
+fn about(sizes: [Sizes; 3], values: &[Option<f64>]) -> [Sizes; 3] {
+    std::array::from_fn(|k| sizes[k].about(values.get(k).copied().flatten()))
 }
 
 /// A control point as a path: table, field and indices.
@@ -114,12 +171,13 @@ fn path(table: usize, site: Site) -> Path {
 fn site(path: Path) -> (usize, Site) {
     let index = |bits: u64| (((bits as u32) << 8).cast_signed()) >> 8;
     let field = Field::ALL[((path.0 >> 48) & 3).min(2) as usize];
-    ((path.0 & !WIDE) as usize >> 50, Site { field, i: index(path.0 >> 24), j: index(path.0) })
+    (unmarked(path).0 as usize >> 50, Site { field, i: index(path.0 >> 24), j: index(path.0) })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use plaus_mcmc::library::is_adapted;
 
     /// Against Simpson's rule with 2,000 steps h, far out too: where the integrand falls as exp(−az) its relative error
     /// is (ah)⁴/180, 1.4e-8 at a = 50.

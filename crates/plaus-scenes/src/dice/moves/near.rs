@@ -1,9 +1,10 @@
 //! A control point near a collision.
 
-use super::{Scale, about, change, declared, is_adapted, site};
+use super::{about, change, declared, site};
 use crate::dice::{Dice, Draw, Rest, Site};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
+use plaus_mcmc::library::{Sizes, is_adapted};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
 /// One of the places where a die touched its table, or lies at last, the k-th of a die with a weight of 1/k: early ones
@@ -15,14 +16,14 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
     /// Sizes of the steps, of heights, restitutions and frictions.
-    pub scales: [Scale; 3],
+    pub scales: [Sizes; 3],
 }
 
 impl Near {
     /// The same sizes for all.
     #[must_use]
-    pub fn new(scale: Scale) -> Self {
-        Self { scales: [scale; 3] }
+    pub fn new(sizes: Sizes) -> Self {
+        Self { scales: [sizes; 3] }
     }
 }
 

@@ -1,9 +1,10 @@
 //! One control point, anywhere.
 
-use super::{Scale, about, change, declared, is_adapted, site};
+use super::{about, change, declared, site};
 use crate::dice::{Dice, Draw, Site};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
+use plaus_mcmc::library::{Sizes, is_adapted};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 
 /// The paper's move: one control point of one table, each as likely, makes a step that leaves its law as it is. Most
@@ -11,14 +12,14 @@ use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// Sizes of the steps, of heights, restitutions and frictions.
-    pub scales: [Scale; 3],
+    pub scales: [Sizes; 3],
 }
 
 impl Point {
     /// The same sizes for all.
     #[must_use]
-    pub fn new(scale: Scale) -> Self {
-        Self { scales: [scale; 3] }
+    pub fn new(sizes: Sizes) -> Self {
+        Self { scales: [sizes; 3] }
     }
 }
 

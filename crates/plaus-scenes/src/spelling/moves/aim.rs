@@ -23,7 +23,7 @@ impl<'a> Aim<'a> {
 
     pub(super) fn sample(&self, stream: &mut Stream) -> [f64; 2] {
         if self.empty.is_empty() || !super::happens(self.aimed, stream) {
-            return self.target.prior().position(stream);
+            return self.target.rectangle().sample(stream);
         }
         let ends = self.empty[below(stream, self.empty.len())];
         ends.map(|[low, high]| {
@@ -35,7 +35,7 @@ impl<'a> Aim<'a> {
 
     /// Log density of a position, per mm².
     pub(super) fn log_density(&self, position: [f64; 2]) -> f64 {
-        let anywhere = 1.0 / self.target.prior().area();
+        let anywhere = 1.0 / self.target.rectangle().area();
         if self.empty.is_empty() {
             return math::ln(anywhere);
         }
@@ -48,7 +48,7 @@ impl<'a> Aim<'a> {
     /// No such law has a density above this.
     pub(super) fn highest(target: &Spelling, aimed: f64) -> f64 {
         let areas = target.word().designated().iter().filter_map(|&bin| target.over(bin)).map(|ends| area(&ends));
-        let anywhere = 1.0 / target.prior().area();
+        let anywhere = 1.0 / target.rectangle().area();
         let aimed = areas.map(|area| aimed / area + (1.0 - aimed) * anywhere).fold(anywhere, f64::max);
         // A bound must not be too low by a rounding error.
         math::ln(aimed) + 1e-9

@@ -30,7 +30,7 @@ fn ball_of(path: Path) -> usize {
 impl BirthDeath {
     /// Log density of the birth of `ball` at `position` in `less`, without h.
     fn log_choice(target: &Spelling, less: &Drops) -> f64 {
-        -math::ln((target.prior().balls() - less.active()) as f64)
+        -math::ln((target.balls() - less.active()) as f64)
     }
 
     /// Log of h in the state with one ball less.
@@ -58,7 +58,7 @@ impl Move<Spelling> for BirthDeath {
     ) -> Result<Proposal, ModelError> {
         let n = current.draw.active();
         if happens(0.5, stream) {
-            let chosen = below(stream, target.prior().balls() - n);
+            let chosen = below(stream, target.balls() - n);
             let mut absent = (0..candidate.balls.len()).filter(|&ball| candidate.balls[ball].is_none());
             let Some(ball) = absent.nth(chosen) else { return Ok(Proposal::Stay) };
             let position = Aim::new(target, self.aimed, &current.outcome, ball).sample(stream);

@@ -1,45 +1,58 @@
-//! The moves of the balls that spell, one a file. The first four are the paper's (its appendix B.2), activate and
-//! deactivate being one.
+//! The moves of the balls that spell: its own, one a file, and which of the library it makes. The first four are the
+//! paper's (its appendix B.2), activate and deactivate being one.
 
 mod aim;
 mod birth_death;
-mod change_all;
-mod change_ball;
-mod change_vertices;
-mod redraw_vertices;
 mod redrop;
-mod swap;
-mod toggle;
 
 pub use birth_death::BirthDeath;
-pub use change_all::ChangeAll;
-pub use change_ball::ChangeBall;
-pub use change_vertices::ChangeVertices;
-pub use redraw_vertices::RedrawVertices;
 pub use redrop::Redrop;
-pub use swap::Swap;
-pub use toggle::Toggle;
 
 use super::Spelling;
-use super::config::{Config, Weights};
+use crate::model::{Menu, Printed, Row};
 use crate::rules::Rules;
-use crate::walk::shift;
 use plaus_dist::{Stream, open_unit};
 use plaus_mcmc::Move;
+use plaus_mcmc::library::{RedrawAll, RedrawSome, ShiftOne, ShiftSome, Swap, Toggle};
 
-/// All moves with their weights.
-pub(super) fn all(config: &Config, weights: &Weights, rules: &Rules) -> Vec<(f64, Box<dyn Move<Spelling>>)> {
-    let steps = &config.steps;
-    let change_all = ChangeAll { symmetric: rules.symmetric_redraws(), radial_offsets: rules.radial_offsets() };
+/// The moves of the balls that spell.
+#[derive(Debug)]
+pub enum SpellingMoves {}
+
+impl Menu for SpellingMoves {
+    type Scene = Spelling;
+    const SCENE: &'static str = "spelling";
+    const ROWS: &'static [Row] = &[
+        Row::paper("change_all", 0.01, Printed::Weight(0.04), "The paper's: everything is drawn anew."),
+        Row::paper("change_vertices", 0.07, Printed::Weight(0.32), "The paper's: some partition vertices are shifted."),
+        Row::own("redraw_vertices", 0.08, "Some partition vertices are drawn anew."),
+        Row::paper("change_ball", 0.19, Printed::Weight(0.32), "The paper's: one ball's drop position is shifted."),
+        Row::paper(
+            "toggle",
+            0.05,
+            Printed::Weight(0.32),
+            "The paper's: some balls are dropped that were not, and its reverse; each half of the time.",
+        ),
+        Row::own("redrop", 0.2, "A ball is dropped elsewhere, preferably over an empty designated bin."),
+        Row::own("birth_death", 0.3, "A ball more, preferably over an empty designated bin, or one less."),
+        Row::own("swap", 0.1, "Two balls exchange their drop positions, hence their turns to fall."),
+    ];
+}
+/// All moves.
+pub(super) fn all(scene: &Spelling, rules: &Rules) -> Vec<Box<dyn Move<Spelling>>> {
+    let steps = &scene.config.steps;
+    let (vertices, balls) = (|| scene.vars.named(&["offset"]), || scene.vars.named(&["drop"]));
+    let (symmetric, recipe, incomplete) = (rules.symmetric_redraws(), rules.recipe(), rules.incomplete_toggles());
+    let (chance, sd) = (steps.vertex_chance, steps.vertex_mm);
     vec![
-        (weights.change_all, Box::new(change_all)),
-        (weights.change_vertices, Box::new(ChangeVertices { chance: steps.vertex_chance, sd: steps.vertex_mm })),
-        (weights.redraw_vertices, Box::new(RedrawVertices { chance: steps.redraw_chance })),
-        (weights.change_ball, Box::new(ChangeBall { sd: steps.ball_mm })),
-        (weights.toggle, Box::new(Toggle { chance: steps.toggle_chance, incomplete: rules.incomplete_toggles() })),
-        (weights.redrop, Box::new(Redrop { aimed: steps.aimed })),
-        (weights.birth_death, Box::new(BirthDeath { aimed: steps.aimed })),
-        (weights.swap, Box::new(Swap)),
+        Box::new(RedrawAll { name: "change_all", symmetric, recipe }),
+        Box::new(ShiftSome { name: "change_vertices", among: vertices(), chance, sd, adapts: false }),
+        Box::new(RedrawSome { name: "redraw_vertices", among: vertices(), chance: steps.redraw_chance }),
+        Box::new(ShiftOne { name: "change_ball", among: balls(), sd: steps.ball_mm }),
+        Box::new(Toggle { name: "toggle", among: balls(), chance: steps.toggle_chance, incomplete }),
+        Box::new(Redrop { aimed: steps.aimed }),
+        Box::new(BirthDeath { aimed: steps.aimed }),
+        Box::new(Swap { name: "swap", among: balls() }),
     ]
 }
 

@@ -1,0 +1,68 @@
+//! Pictures and videos as the program writes them.
+
+use crate::common::Place;
+use std::os::unix::fs::PermissionsExt;
+
+fn sampled() -> Place {
+    let place = Place::new();
+    place.ok("sample ball.toml --out run -q");
+    place
+}
+
+/// A program in the place of ffmpeg.
+fn encoder(place: &Place, script: &str) -> std::path::PathBuf {
+    place.write("encoder", format!("#!/bin/sh\n{script}\n"));
+    let path = place.path("encoder");
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
+#[test]
+fn pictures_have_the_size_that_is_asked_for() {
+    let place = sampled();
+    place.ok("export run --format png --size 48x27 --sample 1:7 --out a.png");
+    let png = std::fs::read(place.path("a.png")).unwrap();
+    assert_eq!(&png[16..24], &[0, 0, 0, 48, 0, 0, 0, 27], "width and height of the header");
+    place.ok("export run --format gif --size 48x27 --sample 1:7 --sample 0:3 --fps 10 --into two.gif");
+    let gif = std::fs::read(place.path("two.gif")).unwrap();
+    assert_eq!(&gif[..10], b"GIF89a\x30\0\x1b\0");
+    for (arguments, says) in [
+        ("--format png --size 48", "write WIDTHxHEIGHT"),
+        ("--format png --size 8x9", "--size 8x9: from 16 to 16384 pixels each"),
+        ("--format glb --size 48x27", "--size goes with png and gif and mp4, not with glb"),
+        ("--format mp4 --size 47x27", "even numbers of pixels"),
+    ] {
+        place.ends(&format!("export run {arguments} --sample 1:7 --out x"), 2).says(&[says]);
+    }
+    assert!(!place.path("x").exists());
+}
+
+#[test]
+fn a_video_is_what_the_encoder_makes_of_all_frames() {
+    let place = sampled();
+    // It keeps what it is given, and says where its sound comes from.
+    let made = encoder(&place, r#"for last; do :; done; { printf '\0\0\0plaus '; wc -c | tr -d ' \n'; } > "$last""#);
+    let export = "export run --format mp4 --size 32x18 --fps 10 --time-range 0.1:0.55 --sample 1:7 --out v.mp4";
+    let run = || place.command(export).env("PLAUS_FFMPEG", &made).output().unwrap();
+    let output = run();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let video = std::fs::read_to_string(place.path("v.mp4")).unwrap();
+    // From 0.1 s to 0.55 s: 0, 0.1, … 0.4 s after the beginning, and the end.
+    assert_eq!(video, format!("\0\0\0plaus {}", 6 * 32 * 18 * 3));
+    assert_eq!(place.names(), ["ball.toml", "encoder", "run", "v.mp4"], "no sound and no half a video is left");
+}
+
+#[test]
+fn an_encoder_that_fails_or_is_missing_leaves_nothing() {
+    let place = sampled();
+    let export = "export run --format mp4 --size 32x18 --fps 10 --sample 1:7 --out v.mp4";
+    let made = encoder(&place, "echo 'no such codec' >&2; exit 1");
+    for (program, says) in
+        [(made, "no such codec"), ("no/such/ffmpeg".into(), "install it, or name it by PLAUS_FFMPEG")]
+    {
+        let output = place.command(export).env("PLAUS_FFMPEG", program).output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(says), "{output:?}");
+        assert_eq!(place.names(), ["ball.toml", "encoder", "run"]);
+    }
+}

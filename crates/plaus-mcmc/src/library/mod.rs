@@ -1,0 +1,119 @@
+//! Moves over sets of variables, for any target that declares its [`Variables`](crate::vars::Variables).
+//!
+//! | move | what it does | log ratio |
+//! | --- | --- | --- |
+//! | [`RedrawAll`] | everything anew | prior of the old draw over that of the new one |
+//! | [`RedrawOne`] | one variable of a set anew | its old density over its new one |
+//! | [`RedrawSome`] | each variable of a set anew with a probability | their old densities over their new ones |
+//! | [`RedrawGroup`] | all variables of one body or part anew | their old densities over their new ones |
+//! | [`ShiftHalf`] | each with probability ½ gets a uniform step | 0 |
+//! | [`ShiftSome`] | each with a probability is shifted in a random direction | 0 |
+//! | [`ShiftOne`] | one that the draw has is shifted in a random direction | 0 |
+//! | [`ShiftAll`] | all are shifted, by steps of one size or of many | 0 |
+//! | [`Step`] | one makes a step that leaves its law as it is | its Gaussian at the old value over that at the new one |
+//! | [`StepAll`] | all of a set make such a step of one size | the product of theirs |
+//! | [`Swap`] | two of a set exchange their values | 0 |
+//! | [`Symmetry`] | a map that is its own reverse, or as likely as that | 0 |
+//! | [`Toggle`] | optional variables come and go | with a factor for each that might have, and did not |
+//!
+//! What a move can get wrong is tried once, on a target that has a variable of every law, with a wrong twin each:
+//! `tests/library.rs`.
+
+mod redraw_all;
+mod redraw_group;
+mod redraw_one;
+mod redraw_some;
+mod shift_all;
+mod shift_half;
+mod shift_one;
+mod shift_some;
+mod sizes;
+mod step;
+mod step_all;
+mod swap;
+mod symmetry;
+mod toggle;
+
+pub use redraw_all::RedrawAll;
+pub use redraw_group::RedrawGroup;
+pub use redraw_one::RedrawOne;
+pub use redraw_some::RedrawSome;
+pub use shift_all::{ShiftAll, Stride};
+pub use shift_half::ShiftHalf;
+pub use shift_one::ShiftOne;
+pub use shift_some::ShiftSome;
+pub use sizes::Sizes;
+pub use step::{Step, Way};
+pub use step_all::StepAll;
+pub use swap::Swap;
+pub use symmetry::{Map, Symmetry};
+pub use toggle::Toggle;
+
+use crate::moves::Path;
+use crate::target::ModelError;
+use crate::vars::{Variables, log_density};
+use plaus_dist::{LogRatio, Stream, math, open_unit, standard_normal};
+
+/// Most numbers that a variable has.
+const MOST: usize = 3;
+
+/// Whether something of this probability happens.
+fn happens(chance: f64, stream: &mut Stream) -> bool {
+    open_unit(stream) < chance
+}
+
+/// A shift in a uniformly random direction by a length N(0, `sd`), along so many axes. As likely as its opposite.
+fn walk(sd: f64, axes: usize, stream: &mut Stream) -> [f64; MOST] {
+    // Independent normal components have a uniform direction; they are never all 0.
+    let mut direction = [0.0; MOST];
+    direction[..axes].iter_mut().for_each(|x| *x = standard_normal(stream));
+    let norm = direction[..axes].iter().map(|x| math::square(*x)).sum::<f64>().sqrt();
+    let length = sd * standard_normal(stream);
+    direction.map(|x| x / norm * length)
+}
+
+/// Shifts a variable that the draw has by a random walk's step; whether it has it.
+fn walk_var<T: Variables>(target: &T, draw: &mut T::Draw, var: usize, sd: f64, stream: &mut Stream) -> bool {
+    let Some(values) = target.get_mut(draw, var) else { return false };
+    let step = walk(sd, values.len(), stream);
+    target.vars().get(var).law.add(&step, values);
+    true
+}
+
+/// Densities of the old values of some variables over those of the new ones.
+fn old_over_new<T: Variables>(
+    target: &T,
+    vars: &[usize],
+    from: &T::Draw,
+    to: &T::Draw,
+) -> Result<LogRatio, ModelError> {
+    vars.iter().try_fold(LogRatio::ONE, |ratio, &var| {
+        let new = log_density(target, to, var)?;
+        if new.is_zero() {
+            // The chain rejects it for its prior; no ratio is needed.
+            return Ok(ratio);
+        }
+        Ok(ratio.times(LogRatio::of(log_density(target, from, var)?, new)?)?)
+    })
+}
+
+/// Set in the path of a step whose size did not come from the adapted scale.
+const WIDE: u64 = 1 << 63;
+
+/// A path that says where the step's size came from. No ratio depends on that.
+#[must_use]
+pub fn marked(path: Path, is_wide: bool) -> Path {
+    Path(path.0 | if is_wide { WIDE } else { 0 })
+}
+
+/// The path without that.
+#[must_use]
+pub fn unmarked(path: Path) -> Path {
+    Path(path.0 & !WIDE)
+}
+
+/// Whether a step's size came from the adapted scale.
+#[must_use]
+pub fn is_adapted(path: Path) -> bool {
+    path.0 & WIDE == 0
+}

@@ -1,0 +1,70 @@
+//! Everything anew.
+
+use crate::law::Recipe;
+use crate::moves::{Move, Path, Proposal};
+use crate::target::{ModelError, StateOf};
+use crate::vars::{Variables, log_density};
+use plaus_dist::{LogRatio, Stream};
+
+/// A fresh draw of the prior. The ratio is the old draw's prior density over the new one's, so that acceptance compares
+/// the constraints alone.
+#[derive(Debug, Clone, Copy)]
+pub struct RedrawAll {
+    /// The move's name.
+    pub name: &'static str,
+    /// Count as symmetric, as Chenney & Forsyth do (erratum; samples another law). Taken at its word that would also
+    /// depend on the units of the variables that a draw may lack: of these, the right ratio is left.
+    pub symmetric: bool,
+    /// How offsets are drawn; by any other recipe than the exact one they have another law.
+    pub recipe: Recipe,
+}
+
+impl RedrawAll {
+    /// The right move.
+    #[must_use]
+    pub fn exact(name: &'static str) -> Self {
+        Self { name, symmetric: false, recipe: Recipe::Exact }
+    }
+
+    /// What the printed ratio needs where dimensions change.
+    fn printed<T: Variables>(target: &T, from: &T::Draw, to: &T::Draw) -> Result<LogRatio, ModelError> {
+        let optional = (0..target.vars().len()).filter(|&var| target.vars().get(var).optional);
+        optional.into_iter().try_fold(LogRatio::ONE, |ratio, var| {
+            let of = LogRatio::of(log_density(target, from, var)?, log_density(target, to, var)?)?;
+            Ok(ratio.times(of)?)
+        })
+    }
+}
+
+impl<T: Variables> Move<T> for RedrawAll {
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn propose(
+        &self,
+        target: &T,
+        current: &StateOf<T>,
+        candidate: &mut T::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        target.renew_all(candidate, self.recipe, stream);
+        if self.symmetric {
+            return Ok(Proposal::with_ratio(Self::printed(target, &current.draw, candidate)?));
+        }
+        let there = target.log_prior(candidate)?;
+        if there.is_zero() {
+            // The chain rejects it for its prior; no ratio is needed.
+            return Ok(Proposal::SYMMETRIC);
+        }
+        // Not what the state says, which is that of a view where one lends this move.
+        Ok(Proposal::with_ratio(LogRatio::of(target.log_prior(&current.draw)?, there)?))
+    }
+
+    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+        if self.symmetric {
+            return Self::printed(target, &from.draw, &to.draw);
+        }
+        Ok(LogRatio::of(target.log_prior(&from.draw)?, target.log_prior(&to.draw)?)?)
+    }
+}

@@ -1,0 +1,41 @@
+//! One body or part anew.
+
+use super::old_over_new;
+use crate::moves::{Move, Path, Proposal};
+use crate::target::{ModelError, StateOf};
+use crate::vars::Variables;
+use plaus_dist::stream::below;
+use plaus_dist::{LogRatio, Stream};
+
+/// All variables of one body or part, each as likely, are drawn anew from their laws. Ratio: densities of the old values
+/// over those of the new ones. Without any group the chain stays.
+#[derive(Debug, Clone, Copy)]
+pub struct RedrawGroup {
+    /// The move's name.
+    pub name: &'static str,
+}
+
+impl<T: Variables> Move<T> for RedrawGroup {
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn propose(
+        &self,
+        target: &T,
+        current: &StateOf<T>,
+        candidate: &mut T::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let groups = target.vars().groups();
+        let chosen = below(stream, groups.len());
+        let Some(vars) = groups.get(chosen) else { return Ok(Proposal::Stay) };
+        target.renew_group(candidate, chosen, stream);
+        let log_ratio = old_over_new(target, vars, &current.draw, candidate)?;
+        Ok(Proposal::Candidate { log_ratio, path: Path(chosen as u64), later: None })
+    }
+
+    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, path: Path) -> Result<LogRatio, ModelError> {
+        old_over_new(target, &target.vars().groups()[path.0 as usize], &from.draw, &to.draw)
+    }
+}

@@ -1,0 +1,108 @@
+//! A set of variables shifted together.
+
+use super::{Sizes, is_adapted, marked, walk};
+use crate::adapt::Scale;
+use crate::moves::{Move, Path, Proposal};
+use crate::target::{ModelError, StateOf};
+use crate::vars::Variables;
+use plaus_dist::{LogRatio, Stream, standard_normal};
+
+/// A variable that is shifted, and the standard deviation of a usual step: so many parts of a length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stride {
+    /// The variable.
+    pub var: usize,
+    /// How many parts.
+    pub part: f64,
+    /// The length, in the variable's unit.
+    pub of: f64,
+}
+
+/// How long the steps of a move are, over their usual sizes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Factor {
+    /// The same each time.
+    One(f64),
+    /// Drawn anew each time, the same for all variables.
+    Many(Sizes),
+}
+
+/// All variables of a set are shifted by Gaussian steps, offsets in a random direction by a Gaussian length; those with
+/// joined ends go around them. Symmetric, since the sizes do not depend on the state. Without any the chain stays.
+#[derive(Debug, Clone)]
+pub struct ShiftAll {
+    name: &'static str,
+    strides: Vec<Stride>,
+    factor: Factor,
+}
+
+impl ShiftAll {
+    /// By the strides' usual steps.
+    #[must_use]
+    pub fn by(name: &'static str, strides: Vec<Stride>) -> Self {
+        Self { name, strides, factor: Factor::One(1.0) }
+    }
+
+    /// By steps of many sizes: small ones find what stays where much changes with the slightest change.
+    #[must_use]
+    pub fn at_many_scales(name: &'static str, strides: Vec<Stride>, sizes: Sizes) -> Self {
+        Self { name, strides, factor: Factor::Many(sizes) }
+    }
+}
+
+impl<T: Variables> Move<T> for ShiftAll {
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn propose(
+        &self,
+        target: &T,
+        _: &StateOf<T>,
+        candidate: &mut T::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        if self.strides.is_empty() {
+            return Ok(Proposal::Stay);
+        }
+        let (factor, is_wide) = match self.factor {
+            Factor::One(factor) => (factor, false),
+            Factor::Many(sizes) => sizes.sample(stream),
+        };
+        for &Stride { var, part, of } in &self.strides {
+            let Some(values) = target.get_mut(candidate, var) else { continue };
+            let sd = factor * part * of;
+            let law = &target.vars().get(var).law;
+            match values {
+                [_] => law.add(&[sd * standard_normal(stream)], values),
+                _ => law.add(&walk(sd, values.len(), stream), values),
+            }
+        }
+        Ok(Proposal::Candidate { log_ratio: LogRatio::ONE, path: marked(Path(0), is_wide), later: None })
+    }
+
+    fn log_ratio(&self, _: &T, _: &StateOf<T>, _: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::ONE)
+    }
+
+    fn scales(&self) -> Vec<Scale> {
+        let target = if self.strides.len() > 1 { Scale::MANY } else { Scale::ONE };
+        vec![match self.factor {
+            Factor::One(start) => Scale { name: "step", start, least: 1e-6, most: 1e3, target },
+            Factor::Many(sizes) => sizes.declared("factor", target),
+        }]
+    }
+
+    fn at_scales(&self, values: &[Option<f64>]) -> Option<Box<dyn Move<T>>> {
+        let value = values.first().copied().flatten();
+        let factor = match self.factor {
+            Factor::One(factor) => Factor::One(value.unwrap_or(factor)),
+            Factor::Many(sizes) => Factor::Many(sizes.about(value)),
+        };
+        Some(Box::new(Self { factor, ..self.clone() }))
+    }
+
+    fn scale_of(&self, path: Path) -> Option<usize> {
+        is_adapted(path).then_some(0)
+    }
+}

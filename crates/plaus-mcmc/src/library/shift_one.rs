@@ -1,0 +1,44 @@
+//! One variable shifted.
+
+use super::walk_var;
+use crate::moves::{Move, Path, Proposal};
+use crate::target::{ModelError, StateOf};
+use crate::vars::Variables;
+use plaus_dist::stream::below;
+use plaus_dist::{LogRatio, Stream};
+
+/// One variable of those of a set that the draw has, each as likely, is shifted in a random direction by a length
+/// N(0, `sd`). Symmetric. Without any the chain stays.
+#[derive(Debug, Clone)]
+pub struct ShiftOne {
+    /// The move's name.
+    pub name: &'static str,
+    /// The set.
+    pub among: Vec<usize>,
+    /// Standard deviation of the length, in the variables' unit.
+    pub sd: f64,
+}
+
+impl<T: Variables> Move<T> for ShiftOne {
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn propose(
+        &self,
+        target: &T,
+        current: &StateOf<T>,
+        candidate: &mut T::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let present = || self.among.iter().filter(|&&var| target.get(&current.draw, var).is_some());
+        let chosen = below(stream, present().count());
+        let Some(&var) = present().nth(chosen) else { return Ok(Proposal::Stay) };
+        walk_var(target, candidate, var, self.sd, stream);
+        Ok(Proposal::SYMMETRIC)
+    }
+
+    fn log_ratio(&self, _: &T, _: &StateOf<T>, _: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::ONE)
+    }
+}

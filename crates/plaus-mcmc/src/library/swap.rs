@@ -1,0 +1,65 @@
+//! Two variables exchanged.
+
+use super::MOST;
+use crate::moves::{Move, Path, Proposal};
+use crate::target::{ModelError, StateOf};
+use crate::vars::Variables;
+use plaus_dist::stream::below;
+use plaus_dist::{LogRatio, Stream};
+
+/// Two variables of a set, each pair as likely, exchange their values, or that the draw lacks one. Symmetric, and of
+/// equal prior density: what changes is which of them is where.
+#[derive(Debug, Clone)]
+pub struct Swap {
+    /// The move's name.
+    pub name: &'static str,
+    /// The set, of variables with one law.
+    pub among: Vec<usize>,
+}
+
+/// A variable's values; `None` where the draw lacks it.
+fn values<T: Variables>(target: &T, draw: &T::Draw, var: usize) -> Option<([f64; MOST], usize)> {
+    let values = target.get(draw, var)?;
+    let mut copy = [0.0; MOST];
+    copy[..values.len()].copy_from_slice(values);
+    Some((copy, values.len()))
+}
+
+/// Gives a variable these values, or takes it away.
+fn put<T: Variables>(target: &T, draw: &mut T::Draw, var: usize, values: Option<([f64; MOST], usize)>) {
+    if target.vars().get(var).optional {
+        target.set_present(draw, var, values.is_some());
+    }
+    if let (Some((values, count)), Some(places)) = (values, target.get_mut(draw, var)) {
+        places.copy_from_slice(&values[..count]);
+    }
+}
+
+impl<T: Variables> Move<T> for Swap {
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn propose(
+        &self,
+        target: &T,
+        current: &StateOf<T>,
+        candidate: &mut T::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let count = self.among.len();
+        let (a, b) = (below(stream, count), below(stream, count));
+        let (Some(&a), Some(&b)) = (self.among.get(a), self.among.get(b)) else { return Ok(Proposal::Stay) };
+        let (first, second) = (values(target, &current.draw, a), values(target, &current.draw, b));
+        if first == second {
+            return Ok(Proposal::Stay);
+        }
+        put(target, candidate, a, second);
+        put(target, candidate, b, first);
+        Ok(Proposal::SYMMETRIC)
+    }
+
+    fn log_ratio(&self, _: &T, _: &StateOf<T>, _: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::ONE)
+    }
+}

@@ -1,0 +1,94 @@
+//! Births and deaths of optional variables.
+
+use super::happens;
+use crate::law::Recipe;
+use crate::moves::{Move, Path, Proposal};
+use crate::target::{ModelError, StateOf};
+use crate::vars::{Variables, log_density, renew};
+use plaus_dist::{LogRatio, Stream, math};
+
+/// Half of the time births: each variable of a set that the draw lacks gets, with probability η, a value of its law.
+/// Else deaths: each that it has goes with probability η. The last two of the strategies of Chenney & Forsyth's appendix
+/// B.2, each the other's reverse.
+///
+/// With N variables of which n are there, s births have density `η^s (1−η)^(N−n−s) Π p(value)`, and the way back
+/// `η^s (1−η)^n`. The prior's own factors cancel, so that what is left beside the constraint is `(1−η)^(n+n'−N)`, and
+/// the inverse power for deaths.
+#[derive(Debug, Clone)]
+pub struct Toggle {
+    /// The move's name.
+    pub name: &'static str,
+    /// The set.
+    pub among: Vec<usize>,
+    /// η.
+    pub chance: f64,
+    /// Forget the variables that were not toggled, (1−η)^…, as Chenney & Forsyth do (erratum; samples no known law).
+    pub incomplete: bool,
+}
+
+const BIRTHS: Path = Path(0);
+
+impl Toggle {
+    /// Log density of going from one to the other.
+    fn log_q<T: Variables>(&self, target: &T, from: &T::Draw, to: &T::Draw, path: Path) -> Result<f64, ModelError> {
+        let (mut toggled, mut untoggled, mut values) = (0.0, 0.0, 0.0);
+        for &var in &self.among {
+            let (before, after) = (target.get(from, var).is_some(), target.get(to, var).is_some());
+            if before == (path == BIRTHS) {
+                continue;
+            }
+            if before == after {
+                untoggled += 1.0;
+                continue;
+            }
+            toggled += 1.0;
+            if path == BIRTHS {
+                values += log_density(target, to, var)?.value();
+            }
+        }
+        let left = if self.incomplete { 0.0 } else { untoggled * math::ln_1p(-self.chance) };
+        Ok(toggled * math::ln(self.chance) + values + left)
+    }
+}
+
+impl<T: Variables> Move<T> for Toggle {
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn propose(
+        &self,
+        target: &T,
+        current: &StateOf<T>,
+        candidate: &mut T::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        let path = Path(u64::from(!happens(0.5, stream)));
+        let mut any = false;
+        for &var in &self.among {
+            let present = target.get(candidate, var).is_some();
+            if present != (path == BIRTHS) && happens(self.chance, stream) {
+                target.set_present(candidate, var, !present);
+                if !present {
+                    renew(target, candidate, var, Recipe::Exact, stream);
+                }
+                any = true;
+            }
+        }
+        if !any {
+            return Ok(Proposal::Stay);
+        }
+        let back = self.log_q(target, candidate, &current.draw, Path(1 - path.0))?;
+        let log_ratio = LogRatio::new(back - self.log_q(target, &current.draw, candidate, path)?)?;
+        Ok(Proposal::Candidate { log_ratio, path, later: None })
+    }
+
+    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, path: Path) -> Result<LogRatio, ModelError> {
+        let back = self.log_q(target, &to.draw, &from.draw, Path(1 - path.0))?;
+        Ok(LogRatio::new(back - self.log_q(target, &from.draw, &to.draw, path)?)?)
+    }
+
+    fn reverse(&self, path: Path) -> Path {
+        Path(1 - path.0)
+    }
+}

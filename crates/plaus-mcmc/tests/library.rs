@@ -1,0 +1,224 @@
+//! Every move of the library leaves prior and target as they are on a draw that has a variable of every law; and a
+//! wrong twin of each does not.
+
+use crate::toys::slots::{ANGLE, BALLS, FACE, FACES, HEIGHT, PINS, SIZE, SPEED, Slots, Things, VERTEX};
+use plaus_dist::{LogPotential, LogRatio, Seed, Stream};
+use plaus_mcmc::check::{OneStep, OneStepReport, PriorOnly, Ratios, Statistic, one_step, prior, ratios, rejection};
+use plaus_mcmc::library::{
+    RedrawAll, RedrawGroup, RedrawOne, RedrawSome, ShiftAll, ShiftHalf, ShiftOne, ShiftSome, Sizes, Step, StepAll,
+    Stride, Swap, Symmetry, Toggle,
+};
+use plaus_mcmc::view::lend;
+use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Recipe, StateOf, Target, vars};
+
+type AnyMove = Box<dyn Move<Slots>>;
+type S = StateOf<Slots>;
+
+const PLAN: OneStep = OneStep { seed: Seed(3), samples: 20_000, steps: 1, cells: 16, false_alarm: 1e-6 };
+const NUMBERS: [usize; 4] = [SPEED, SIZE, HEIGHT, ANGLE];
+/// The variables that are neither optional nor without numbers.
+const ALWAYS: [usize; 7] = [SPEED, SIZE, HEIGHT, ANGLE, PINS[0], PINS[1], VERTEX];
+
+/// One step of `kernel` alone from exact draws, of the prior or with the constraint on.
+fn step(kernel: AnyMove, constrained: bool) -> OneStepReport {
+    let slots = Slots::new();
+    let moves = Mixture::of(kernel);
+    if constrained {
+        return one_step(&slots, &moves, rejection(&slots, LogPotential::ONE), &statistics(), PLAN).unwrap();
+    }
+    let free = PriorOnly::new(&slots);
+    one_step(&free, &lend::<PriorOnly<'_, Slots>>(moves).unwrap(), prior(&free), &statistics(), PLAN).unwrap()
+}
+
+fn statistics<'a>() -> Vec<Statistic<'a, Things, f64>> {
+    vec![
+        Statistic::new("speed", |state: &S| state.draw.speed + state.draw.shift),
+        Statistic::new("size", |state: &S| state.draw.size),
+        Statistic::new("height", |state: &S| state.draw.height),
+        Statistic::new("room", |state: &S| state.draw.height - state.draw.size),
+        Statistic::new("angle", |state: &S| state.draw.angle),
+        Statistic::new("pin x", |state: &S| state.draw.pins[0][0]),
+        Statistic::new("pin y", |state: &S| state.draw.pins[1][1]),
+        Statistic::new("vertex", |state: &S| state.draw.vertex[0]),
+        Statistic::new("balls", |state: &S| state.draw.balls.iter().flatten().count() as f64),
+        Statistic::new("ball x", |state: &S| state.draw.balls[0].map_or(-1.0, |ball| ball[0])),
+        Statistic::new("ball y", |state: &S| state.draw.balls[2].map_or(-1.0, |ball| ball[1])),
+        Statistic::new("face", |state: &S| state.draw.face as f64),
+        Statistic::new("outcome", |state: &S| state.outcome),
+    ]
+}
+
+fn strides() -> Vec<Stride> {
+    ALWAYS.map(|var| Stride { var, part: 0.3, of: 1.0 }).to_vec()
+}
+
+/// Left and right exchanged, and the pins with them.
+fn mirrored(_: &Slots, _: &S, draw: &mut Things, _: &mut Stream) -> bool {
+    draw.pins.swap(0, 1);
+    draw.pins.iter_mut().for_each(|pin| pin[0] = -pin[0]);
+    true
+}
+
+/// Any other face, each as likely.
+fn turned(_: &Slots, _: &S, draw: &mut Things, stream: &mut Stream) -> bool {
+    draw.face = (draw.face + 1 + plaus_dist::stream::below(stream, FACES - 1)) % FACES;
+    true
+}
+
+/// Every move there is, with settings that make each of its ways likely.
+fn all() -> Vec<AnyMove> {
+    let toggle = Toggle { name: "toggle", among: BALLS.to_vec(), chance: 0.25, incomplete: false };
+    let pins = PINS.to_vec();
+    let walked = [PINS.as_slice(), &[VERTEX], &BALLS].concat();
+    vec![
+        Box::new(RedrawAll::exact("redraw_all")),
+        Box::new(RedrawOne { name: "redraw_one", among: (0..=FACE).collect(), symmetric: false }),
+        Box::new(RedrawSome { name: "redraw_some", among: walked.clone(), chance: 0.3 }),
+        Box::new(RedrawGroup { name: "redraw_group" }),
+        Box::new(ShiftHalf { name: "shift_half", among: NUMBERS.to_vec(), half_width: 0.5 }),
+        Box::new(ShiftSome { name: "shift_some", among: walked.clone(), chance: 0.4, sd: 0.3, adapts: true }),
+        Box::new(ShiftOne { name: "shift_one", among: walked, sd: 0.5 }),
+        Box::new(ShiftAll::by("shift_all", strides())),
+        Box::new(ShiftAll::at_many_scales("refine", strides(), Sizes::down_to(0.01))),
+        Box::new(Step::of("step", &(0..=FACE).collect::<Vec<_>>(), Sizes::new(0.2, 1.0))),
+        Box::new(StepAll { name: "step_all", among: (0..=FACE).collect(), sizes: Sizes::new(0.2, 1.0) }),
+        Box::new(Swap { name: "swap", among: BALLS.to_vec() }),
+        Box::new(Swap { name: "swap_pins", among: pins }),
+        Box::new(Symmetry { name: "mirror", map: mirrored }),
+        Box::new(Symmetry { name: "turn", map: turned }),
+        Box::new(toggle),
+    ]
+}
+
+#[test]
+fn every_move_leaves_prior_and_target_invariant() {
+    for constrained in [false, true] {
+        for kernel in all() {
+            let report = step(kernel, constrained);
+            assert!(report.passed() && report.accepted() > 1000, "{report}");
+        }
+    }
+}
+
+#[test]
+fn steps_about_an_adapted_scale_do_so_too() {
+    let adapted = |kernel: AnyMove| {
+        let scales = kernel.scales();
+        assert!(scales.iter().all(|scale| scale.least < scale.start && scale.start < scale.most));
+        kernel.at_scales(&vec![Some(0.4); scales.len()])
+    };
+    let kernels: Vec<AnyMove> = all().into_iter().filter_map(adapted).collect();
+    assert_eq!(kernels.len(), 6);
+    for kernel in kernels {
+        let report = step(kernel, true);
+        assert!(report.passed() && report.accepted() > 1000, "{report}");
+    }
+}
+
+#[test]
+fn ratios_agree_with_their_reverse() {
+    let slots = Slots::new();
+    for kernel in all() {
+        let report = ratios(&slots, kernel.as_ref(), prior(&slots), Ratios::default()).unwrap();
+        assert!(report.passed(), "{report}");
+    }
+}
+
+/// What is done to a right move to make it wrong.
+#[derive(Clone, Copy, Debug)]
+enum Fault {
+    /// Whatever the ratio, 1 is used.
+    Symmetric,
+    /// Steps have a mean.
+    Leans,
+    /// What leaves an interval stays at its end.
+    Clamps,
+    /// What comes first of two never exceeds the other.
+    Sorts,
+    /// A map that is not its own reverse.
+    Folds,
+}
+
+struct Twin(AnyMove, Fault);
+
+impl Move<Slots> for Twin {
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    fn propose(&self, slots: &Slots, now: &S, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
+        let proposal = self.0.propose(slots, now, to, stream)?;
+        if proposal == Proposal::Stay {
+            return Ok(proposal);
+        }
+        match self.1 {
+            Fault::Symmetric => return Ok(Proposal::SYMMETRIC),
+            Fault::Leans => {
+                to.speed += if to.speed == now.draw.speed { 0.0 } else { 0.1 };
+                to.vertex[0] += if to.vertex == now.draw.vertex { 0.0 } else { 0.05 };
+            }
+            Fault::Clamps => {
+                for (ball, before) in to.balls.iter_mut().zip(&now.draw.balls) {
+                    if let (Some(ball), Some(before)) = (ball, before)
+                        && (ball[0] - before[0]).abs() > 1.0
+                    {
+                        ball[0] = if ball[0] > before[0] { 0.0 } else { 2.0_f64.next_down() };
+                    }
+                }
+            }
+            Fault::Sorts if to.pins[0][0] > to.pins[1][0] => return Ok(Proposal::Stay),
+            Fault::Sorts => (),
+            Fault::Folds => {
+                to.pins[0][0] = to.pins[0][0].abs();
+                to.face = to.face.min(FACES - 2);
+            }
+        }
+        Ok(proposal)
+    }
+
+    fn log_ratio(&self, slots: &Slots, from: &S, to: &S, path: Path) -> Result<LogRatio, ModelError> {
+        self.0.log_ratio(slots, from, to, path)
+    }
+}
+
+#[test]
+fn wrong_twins_are_caught() {
+    let errata: [AnyMove; 4] = [
+        Box::new(RedrawAll { symmetric: true, ..RedrawAll::exact("redraw_all") }),
+        Box::new(RedrawAll { recipe: Recipe::Radial, ..RedrawAll::exact("redraw_all") }),
+        Box::new(RedrawOne { name: "redraw_one", among: NUMBERS.to_vec(), symmetric: true }),
+        Box::new(Toggle { name: "toggle", among: BALLS.to_vec(), chance: 0.25, incomplete: true }),
+    ];
+    let fault = |name: &str| match name {
+        "redraw_all" | "redraw_one" | "redraw_some" | "redraw_group" | "step" | "step_all" | "toggle" => {
+            Fault::Symmetric
+        }
+        "shift_half" | "shift_some" | "shift_all" | "refine" => Fault::Leans,
+        "shift_one" => Fault::Clamps,
+        "swap" | "swap_pins" => Fault::Sorts,
+        _ => Fault::Folds,
+    };
+    // Where balls come to lie is no matter of order: of exchanges, those of the pins show the fault.
+    let right = all().into_iter().filter(|kernel| kernel.name() != "swap");
+    let twins = right.map(|kernel| {
+        let fault = fault(kernel.name());
+        Box::new(Twin(kernel, fault)) as AnyMove
+    });
+    for twin in errata.into_iter().chain(twins) {
+        let report = step(twin, false);
+        assert!(!report.passed(), "not caught: {report}");
+    }
+}
+
+/// The density of a whole draw is the sum of its variables', and of a half for each that may be missing.
+#[test]
+fn densities_add_up() {
+    let slots = Slots::new();
+    let draw = slots.start(&mut Seed(1).chain(0).at(0, plaus_dist::Purpose::START));
+    let parts = vars::log_density_of(&slots, &draw, 0..=FACE).unwrap().value();
+    let whole = slots.log_prior(&draw).unwrap().value();
+    // A dozen roundings of terms below 10.
+    assert!((whole - parts + 3.0 * std::f64::consts::LN_2).abs() < 1e-13, "{whole} {parts}");
+    let lower = Things { height: draw.size - 1e-9, ..draw };
+    assert!(slots.log_prior(&lower).unwrap().is_zero(), "the height is above the size");
+}

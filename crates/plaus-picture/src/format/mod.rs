@@ -1,0 +1,25 @@
+//! Formats of pictures, one row each.
+
+mod mp4;
+mod sheet;
+mod still;
+
+use plaus_export::Exporter;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// All formats, in the order in which they are listed.
+pub const ALL: [&dyn Exporter; 3] = [&still::Png, &still::Gif, &mp4::Mp4];
+
+/// What all files made here say of themselves, whatever the version.
+const MADE_BY: &str = "plaus ";
+/// Longest file that is looked through for that.
+const LONGEST: u64 = 1 << 28;
+
+/// Whether a file begins like that and says that it was made here.
+fn is_ours(path: &Path, head: &[u8]) -> bool {
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LONGEST).read_to_end(&mut bytes)).is_ok();
+    read && bytes.starts_with(head) && bytes.windows(MADE_BY.len()).any(|window| window == MADE_BY.as_bytes())
+}

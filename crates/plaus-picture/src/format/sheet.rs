@@ -1,0 +1,105 @@
+//! One clip that fills the picture, or several side by side.
+
+use crate::{Camera, Film, Image, Quality, Renderer};
+use plaus_animation::Animation;
+use plaus_export::{Clip, Cut, ExportError};
+
+/// Clips on one sheet at most.
+const MOST: usize = 64;
+/// Pixels between clips.
+const GAP: u32 = 4;
+/// Sizes, in pixels, that a picture may have: what is larger than the largest screens takes hours.
+const SIZES: std::ops::RangeInclusive<u32> = 16..=16384;
+
+/// Clips that are shown together, in the order in which they came.
+pub(super) struct Sheet {
+    clips: Vec<(Animation, Cut)>,
+    size: (u32, u32),
+    rays: u32,
+    progress: fn(u64, u64),
+}
+
+impl Sheet {
+    /// Of that size unless clips ask for another.
+    pub(super) fn new(size: (u32, u32), rays: u32) -> Self {
+        Self { clips: Vec::new(), size, rays, progress: |_, _| () }
+    }
+
+    pub(super) fn add(&mut self, clip: &Clip<'_>) -> Result<(), ExportError> {
+        let (width, height) = clip.style.size.unwrap_or(self.size);
+        if !SIZES.contains(&width) || !SIZES.contains(&height) {
+            let (least, most) = (SIZES.start(), SIZES.end());
+            let wrong = format!("--size {width}x{height}: from {least} to {most} pixels each");
+            return Err(ExportError::Impossible(wrong));
+        }
+        if self.clips.len() == MOST {
+            let many = format!("one picture shows {MOST} samples at most: choose some by --sample");
+            return Err(ExportError::Impossible(many));
+        }
+        (self.size, self.progress) = ((width, height), clip.progress);
+        self.clips.push((clip.animation.clone(), clip.cut));
+        Ok(())
+    }
+
+    /// Pixels across and down.
+    pub(super) fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// The clip, where there is one only.
+    pub(super) fn alone(&self) -> Option<&(Animation, Cut)> {
+        self.clips.first().filter(|_| self.clips.len() == 1)
+    }
+
+    /// Frames a second.
+    pub(super) fn fps(&self) -> f64 {
+        self.clips.first().map_or(1.0, |(_, cut)| cut.fps())
+    }
+
+    /// Hands over the picture of where all clips end.
+    pub(super) fn last<E>(&self, mut take: impl FnMut(Image) -> Result<(), E>) -> Result<(), E> {
+        take(self.draw(&mut self.films(), f64::INFINITY))
+    }
+
+    /// Hands over all frames: the longest clip from its beginning to its end; others stay as they end.
+    pub(super) fn frames<E>(&self, mut take: impl FnMut(Image) -> Result<(), E>) -> Result<(), E> {
+        let mut films = self.films();
+        let longest = self.clips.iter().map(|(_, cut)| cut.length()).fold(0.0, f64::max);
+        // The last is at the end or after it.
+        let last = (longest * self.fps()).ceil() as u64;
+        for frame in 0..=last {
+            take(self.draw(&mut films, frame as f64 / self.fps()))?;
+            (self.progress)(frame + 1, last + 1);
+        }
+        Ok(())
+    }
+
+    /// How many clips stand side by side, and the pixels that each has.
+    fn grid(&self) -> (u32, (u32, u32)) {
+        let count = self.clips.len().max(1) as u32;
+        let columns = (1..).find(|columns| columns * columns >= count).unwrap_or(1);
+        let rows = count.div_ceil(columns);
+        let share = |pixels: u32, parts: u32| ((pixels - (parts - 1) * GAP.min(pixels / parts)) / parts).max(1);
+        (columns, (share(self.size.0, columns), share(self.size.1, rows)))
+    }
+
+    fn films(&self) -> Vec<Film<'_>> {
+        let (_, (width, height)) = self.grid();
+        let quality = Quality { width, height, rays: self.rays };
+        let camera = |(animation, cut): &'_ (Animation, Cut)| {
+            Camera::of(animation, [cut.from(), cut.to()], f64::from(width) / f64::from(height))
+        };
+        self.clips.iter().map(|clip| Film::new(Renderer::new(&clip.0, camera(clip), quality))).collect()
+    }
+
+    /// The picture at a time after the clips' beginnings.
+    fn draw(&self, films: &mut [Film<'_>], time: f64) -> Image {
+        let (columns, (width, height)) = self.grid();
+        let mut sheet = Image::new(self.size.0, self.size.1, vec![[255; 3]; (self.size.0 * self.size.1) as usize]);
+        for (place, (film, (_, cut))) in (0..).zip(films.iter_mut().zip(&self.clips)) {
+            let corner = (place % columns * (width + GAP), place / columns * (height + GAP));
+            sheet.put(film.next((cut.from() + time).min(cut.to())), corner);
+        }
+        sheet
+    }
+}

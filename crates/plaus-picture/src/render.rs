@@ -1,0 +1,173 @@
+//! Pictures of an animation at one moment: rays traced through its bodies and scenery, with soft shadows.
+//!
+//! Everything follows from the animation and the size of the picture, bit for bit, whatever the number of threads.
+
+use crate::camera::Camera;
+use crate::image::Image;
+use crate::noise::Noise;
+use crate::shade::{self, Shader};
+use crate::stage::Stage;
+use glam::DVec3;
+use plaus_animation::Animation;
+use rayon::prelude::*;
+
+/// How far below the bottom of what is to be seen the table lies, in metres: bowls touch the bottom.
+const SUNK: f64 = 2e-4;
+/// A pixel that differs from a neighbour by so much in any colour, of 255, is looked at more closely.
+const EDGE: u8 = 8;
+
+/// A picture's size, and how many rays are averaged in a pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Quality {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Rays of a pixel in which something changes; elsewhere one is enough.
+    pub rays: u32,
+}
+
+/// A picture with the light of the first ray of each pixel.
+struct Frame {
+    first: Vec<DVec3>,
+    image: Image,
+}
+
+/// Frames one after the other: what stands still is drawn closely once only.
+pub struct Film<'a> {
+    renderer: Renderer<'a>,
+    last: Option<Frame>,
+}
+
+impl<'a> Film<'a> {
+    /// A film that has not begun.
+    #[must_use]
+    pub fn new(renderer: Renderer<'a>) -> Self {
+        Self { renderer, last: None }
+    }
+
+    /// The next picture, at `time` seconds.
+    pub fn next(&mut self, time: f64) -> &Image {
+        let frame = self.renderer.draw(time, self.last.as_ref());
+        &self.last.insert(frame).image
+    }
+}
+
+/// Draws one animation at any of its times.
+pub struct Renderer<'a> {
+    stage: Stage<'a>,
+    camera: Camera,
+    quality: Quality,
+    /// Height of the table on which everything stands: the bottom of the scenery and of what is to be seen.
+    ground: Option<f64>,
+}
+
+impl<'a> Renderer<'a> {
+    /// Prepares what does not change from one time to the next.
+    #[must_use]
+    pub fn new(animation: &'a Animation, camera: Camera, quality: Quality) -> Self {
+        let stage = Stage::new(animation);
+        let framed = animation.view.and_then(|view| view.frame).map(|[a, b]| a.y.min(b.y) - SUNK);
+        // What falls below it on the way does not push it down.
+        let ground = stage.scenery_bounds().map(|[low, _]| low.y).into_iter().chain(framed).reduce(f64::min);
+        Self { stage, camera, quality, ground }
+    }
+
+    /// The picture at `time` seconds.
+    #[must_use]
+    pub fn at(&self, time: f64) -> Image {
+        self.draw(time, None).image
+    }
+
+    /// A picture, of which pixels are taken from another one where nothing near has changed.
+    fn draw(&self, time: f64, before: Option<&Frame>) -> Frame {
+        let Quality { width, height, rays } = self.quality;
+        let moment = self.stage.at(time);
+        let ground = self.ground.unwrap_or_else(|| moment.lowest());
+        let shader = Shader { moment, ground };
+        let first: Vec<DVec3> = self.pixels(|at| self.light(&shader, at, 0..1));
+        let rough = Image::new(width, height, first.iter().map(|&light| shade::to_pixel(light)).collect());
+        if rays <= 1 {
+            return Frame { first, image: rough };
+        }
+        let finer = self.pixels(|at| {
+            let index = (at.1 * width + at.0) as usize;
+            if !rough.changes_at(at, EDGE) {
+                return rough.pixels()[index];
+            }
+            let same = |frame: &&Frame| rough.near(at).all(|near| frame.first[near] == first[near]);
+            match before.filter(same) {
+                Some(frame) => frame.image.pixels()[index],
+                None => shade::to_pixel((first[index] + self.light(&shader, at, 1..rays)) / f64::from(rays)),
+            }
+        });
+        Frame { first, image: Image::new(width, height, finer) }
+    }
+
+    /// Something for every pixel, row by row.
+    fn pixels<T: Send>(&self, make: impl Fn((u32, u32)) -> T + Sync) -> Vec<T> {
+        let Quality { width, height, .. } = self.quality;
+        (0..height * width).into_par_iter().with_min_len(256).map(|k| make((k % width, k / width))).collect()
+    }
+
+    /// The sum of the light of some rays of a pixel.
+    fn light(&self, shader: &Shader<'_>, at: (u32, u32), rays: std::ops::Range<u32>) -> DVec3 {
+        let size = (f64::from(self.quality.width), f64::from(self.quality.height));
+        rays.map(|ray| {
+            let noise = Noise::new(at, ray);
+            let [dx, dy] = noise.pair(0);
+            let across = (f64::from(at.0) + dx) / size.0;
+            let down = (f64::from(at.1) + dy) / size.1;
+            let (from, along) = self.camera.ray(across, down, size.0 / size.1);
+            shader.light(from, along, &noise)
+        })
+        .sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plaus_animation::{Colour, Look, Piece, Prop, Shape, Track};
+
+    /// A ball of radius 1 hovers over a plate, seen from above: it covers π/16 of a square of side 4, its colour is
+    /// red, its shadow is darker than the plate.
+    #[test]
+    fn a_ball_covers_its_disc_and_casts_a_shadow() {
+        let red = Look { colour: Colour([220, 30, 30]), ..Look::STONE };
+        let ball = Track::new("ball", Shape::ball(1.0), red, vec![Piece::resting(0.0, DVec3::new(0.0, 1.5, 0.0))]);
+        let plate = Prop::block("plate", Look::STONE, DVec3::new(0.0, -0.5, 0.0), DVec3::new(9.0, 0.5, 9.0));
+        let animation = Animation::new(1.0, vec![ball], Vec::new()).with_scenery(vec![plate]);
+        // From so far away that perspective does nothing.
+        let frame = [DVec3::new(-2.0, 0.0, -2.0), DVec3::new(2.0, 0.0, 2.0)];
+        let camera = Camera::fitting(frame, DVec3::Y, DVec3::NEG_Z, 0.2, 1.0);
+        let image = Renderer::new(&animation, camera, Quality { width: 200, height: 200, rays: 4 }).at(0.0);
+        let colours = image.pixels();
+        let red = colours.iter().filter(|c| c[0] > c[1] + 60).count() as f64 / 40_000.0;
+        // The frame keeps a margin of 4% and 2% on each side.
+        let expected = std::f64::consts::PI / 16.0 / (1.06 * 1.06);
+        assert!((red / expected - 1.0).abs() < 0.06, "{red} of the picture is red, not {expected}");
+        let grey = |c: &&[u8; 3]| c[0].abs_diff(c[2]) < 25;
+        let (dark, bright) =
+            (colours.iter().filter(grey).map(|c| c[1]).min(), colours.iter().filter(grey).map(|c| c[1]).max());
+        assert!(dark.unwrap() + 40 < bright.unwrap(), "{dark:?} {bright:?}: no shadow");
+    }
+
+    /// A ball that crosses a plate: pixels taken over from the frame before are those that would be drawn.
+    #[test]
+    fn a_film_shows_what_pictures_of_its_times_show() {
+        let across = Piece::ballistic(0.0, DVec3::new(-1.0, 0.4, 0.0), DVec3::X, DVec3::ZERO);
+        let ball = Track::new("ball", Shape::ball(0.3), Look::nth(1), vec![across]);
+        let plate = Prop::block("plate", Look::WOOD, DVec3::new(0.0, -0.1, 0.0), DVec3::new(1.5, 0.1, 0.8));
+        let animation = Animation::new(2.0, vec![ball], Vec::new()).with_scenery(vec![plate]);
+        let camera = Camera::of(&animation, [0.0, 2.0], 1.5);
+        let renderer = || Renderer::new(&animation, camera, Quality { width: 150, height: 100, rays: 8 });
+        let mut film = Film::new(renderer());
+        for time in [0.0, 0.1, 0.2, 1.5] {
+            let (frame, picture) = (film.next(time).clone(), renderer().at(time));
+            let other = frame.pixels().iter().zip(picture.pixels()).filter(|(a, b)| a != b).count();
+            // Where the first ray of nothing near sees a change that a later one would see: rims of shadows.
+            assert!(other < 15, "{other} of 15,000 pixels at {time} s are others");
+        }
+    }
+}

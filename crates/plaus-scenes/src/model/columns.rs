@@ -1,0 +1,92 @@
+//! What of a state is a column of tables: its random variables, as they are declared, and results.
+
+pub use plaus_mcmc::Member;
+use plaus_mcmc::{Variables, Vars};
+use serde::Serialize;
+
+/// Where a scalar comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// A random variable of the draw: its mixing says whether solutions really differ.
+    Draw,
+    /// A result of the simulation.
+    Outcome,
+}
+
+/// A number that every state of a scene has: a column of a table, a variable of the diagnostics.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Scalar {
+    /// Column name, `snake_case`: with the member's number, where it belongs to one.
+    pub name: String,
+    /// Unit, for readers; empty for pure numbers.
+    pub unit: &'static str,
+    /// Where it comes from.
+    pub role: Role,
+    /// Its name without a number.
+    #[serde(skip)]
+    pub base: &'static str,
+    /// Whose it is: the `die` 2 of `x_2`; `None` where there is one only.
+    #[serde(skip)]
+    pub member: Option<Member>,
+    /// Whether its values are whole numbers.
+    #[serde(skip)]
+    pub whole: bool,
+}
+
+/// A column that is no variable: its declaration, for all members of a kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Column {
+    name: &'static str,
+    unit: &'static str,
+    role: Role,
+    whole: bool,
+}
+
+impl Column {
+    /// A result.
+    #[must_use]
+    pub const fn result(name: &'static str, unit: &'static str) -> Self {
+        Self { name, unit, role: Role::Outcome, whole: false }
+    }
+
+    /// A result that is a whole number.
+    #[must_use]
+    pub const fn count(name: &'static str) -> Self {
+        Self { name, unit: "", role: Role::Outcome, whole: true }
+    }
+
+    /// The same, of the draw alone: what sums up variables that are no columns themselves.
+    #[must_use]
+    pub const fn of_the_draw(self) -> Self {
+        Self { role: Role::Draw, ..self }
+    }
+
+    /// The scalar of a member, or of all.
+    #[must_use]
+    pub fn of(self, member: Option<Member>) -> Scalar {
+        let Self { name: base, unit, role, whole } = self;
+        let name = member.map_or_else(|| base.to_owned(), |Member { number, .. }| format!("{base}_{number}"));
+        Scalar { name, unit, role, base, member, whole }
+    }
+}
+
+/// The scalars of a scene: results, then variables; those of one member together, after those of none.
+#[must_use]
+pub fn scalars(results: Vec<Scalar>, vars: &Vars) -> Vec<Scalar> {
+    let shown = vars.iter().filter(|var| var.column.is_some());
+    let variable = shown.map(|var| Column::result(var.name, var.unit).of_the_draw().of(var.member));
+    let mut all: Vec<Scalar> = results.into_iter().chain(variable).collect();
+    all.sort_by_key(|scalar| scalar.member);
+    all
+}
+
+/// The values of variables that are columns, in order.
+pub fn values<'a, T: Variables>(target: &'a T, draw: &'a T::Draw) -> impl Iterator<Item = f64> + 'a {
+    let shown = target.vars().iter().enumerate().filter_map(|(var, declared)| Some((var, declared.column?)));
+    shown.map(move |(var, factor)| {
+        let value = target.get(draw, var).and_then(|values| values.first().copied()).unwrap_or(f64::NAN);
+        let shift = target.shift(draw, var);
+        (if shift == 0.0 { value } else { value + shift }) * factor
+    })
+}

@@ -1,0 +1,168 @@
+//! Bodies that meet only now and then, simulated group by group: every body alone; those that would meet together,
+//! until no two groups meet.
+//!
+//! Bodies that never touch do not influence each other, so this is the simulation of all of them at once, up to
+//! rounding; and by this procedure, which knows nothing of the chain, it is defined to the last bit. What a candidate
+//! leaves as it is need not be simulated again: groups of the same bodies of which the scene says that they are the
+//! same in both draws.
+
+use crate::way::{Way, merge};
+use plaus_mcmc::ModelError;
+use std::sync::Arc;
+
+/// Some bodies simulated by themselves, to the end.
+pub(crate) trait Group {
+    /// Which bodies, in ascending order.
+    fn members(&self) -> &[usize];
+
+    /// The way of each.
+    fn ways(&self) -> &[Way];
+
+    /// Whether a body of this group comes nearer than `reach` to one of another group.
+    fn meets(&self, other: &Self, reach: f64) -> bool {
+        self.ways().iter().any(|way| other.ways().iter().any(|their| way.meets(their, reach)))
+    }
+}
+
+/// The simulations of one draw.
+#[derive(Debug)]
+pub(crate) struct Groups<D, G> {
+    draw: Option<D>,
+    /// Each body alone.
+    alone: Vec<Option<Arc<G>>>,
+    /// Groups that were simulated together, on the way to the final ones.
+    together: Vec<Arc<G>>,
+    /// The final groups.
+    last: Vec<Arc<G>>,
+}
+
+impl<D, G> Default for Groups<D, G> {
+    fn default() -> Self {
+        Self { draw: None, alone: Vec::new(), together: Vec::new(), last: Vec::new() }
+    }
+}
+
+impl<D: Clone, G: Group> Groups<D, G> {
+    /// The draw, once there is one.
+    pub(crate) fn draw(&self) -> Option<&D> {
+        self.draw.as_ref()
+    }
+
+    /// The final groups.
+    pub(crate) fn last(&self) -> &[Arc<G>] {
+        &self.last
+    }
+
+    /// Makes these the simulations of `draw`. `present` says of each body whether it is there; centres nearer than
+    /// `reach` are simulated together, none where bodies do not touch. Groups of `known` that are the `same` in both
+    /// draws are taken over, all others `run`.
+    pub(crate) fn simulate(
+        &mut self,
+        draw: &D,
+        present: impl Iterator<Item = bool>,
+        reach: Option<f64>,
+        (known, same): (&Self, impl Fn(&G) -> bool),
+        mut run: impl FnMut(Vec<usize>) -> Result<G, ModelError>,
+    ) -> Result<(), ModelError> {
+        // Only a draw that was simulated to the end is known.
+        let kept = self.draw.take();
+        self.alone.clear();
+        self.together.clear();
+        self.last.clear();
+        for (body, present) in present.enumerate() {
+            let group = match known.alone.get(body).and_then(Option::as_ref).filter(|group| same(group)) {
+                _ if !present => None,
+                Some(group) => Some(Arc::clone(group)),
+                None => Some(Arc::new(run(vec![body])?)),
+            };
+            self.last.extend(group.clone());
+            self.alone.push(group);
+        }
+        if let Some(reach) = reach {
+            self.join(reach, |members: Vec<usize>| {
+                let found = known.together.iter().find(|group| group.members() == members && same(group));
+                found.map_or_else(|| run(members).map(Arc::new), |group| Ok(Arc::clone(group)))
+            })?;
+        }
+        self.draw = Some(match kept {
+            Some(mut old) => {
+                old.clone_from(draw);
+                old
+            }
+            None => draw.clone(),
+        });
+        Ok(())
+    }
+
+    /// Puts groups together that meet, until none do.
+    fn join(
+        &mut self,
+        reach: f64,
+        mut made: impl FnMut(Vec<usize>) -> Result<Arc<G>, ModelError>,
+    ) -> Result<(), ModelError> {
+        loop {
+            let merged = merge(self.last.len(), |a, b| self.last[a].meets(&self.last[b], reach));
+            if merged.len() == self.last.len() {
+                return Ok(());
+            }
+            let mut groups = Vec::with_capacity(merged.len());
+            for union in merged {
+                if let [only] = *union {
+                    groups.push(Arc::clone(&self.last[only]));
+                    continue;
+                }
+                let mut members: Vec<usize> =
+                    union.iter().flat_map(|&k| self.last[k].members().iter().copied()).collect();
+                members.sort_unstable();
+                let group = made(members)?;
+                self.together.push(Arc::clone(&group));
+                groups.push(group);
+            }
+            self.last = groups;
+        }
+    }
+}
+
+/// What a chain knows: the simulations of its current state, and of the candidate that was simulated last.
+#[derive(Debug)]
+pub(crate) struct Memory<D, G> {
+    current: Groups<D, G>,
+    candidate: Groups<D, G>,
+}
+
+impl<D, G> Default for Memory<D, G> {
+    fn default() -> Self {
+        Self { current: Groups::default(), candidate: Groups::default() }
+    }
+}
+
+impl<D: Clone + PartialEq, G: Group> Memory<D, G> {
+    /// The simulations of the candidate that was simulated last, until it is settled.
+    pub(crate) fn candidate(&self) -> &Groups<D, G> {
+        &self.candidate
+    }
+
+    /// Keeps what is known about that candidate, if it became the current state.
+    pub(crate) fn settle(&mut self, accepted: bool) {
+        if accepted {
+            std::mem::swap(&mut self.current, &mut self.candidate);
+        }
+    }
+
+    /// Simulates `draw`, by a function that is given what is known and fills in what is new. `known`: a draw from whose
+    /// simulation, made now unless it is remembered, parts may be taken.
+    pub(crate) fn simulate(
+        &mut self,
+        draw: &D,
+        known: Option<&D>,
+        mut simulate: impl FnMut(&D, &Groups<D, G>, &mut Groups<D, G>) -> Result<(), ModelError>,
+    ) -> Result<&Groups<D, G>, ModelError> {
+        let nothing = Groups::default();
+        if let Some(known) = known.filter(|known| self.current.draw.as_ref() != Some(*known)) {
+            simulate(known, &nothing, &mut self.current)?;
+        }
+        let current = if known.is_some() { &self.current } else { &nothing };
+        simulate(draw, current, &mut self.candidate)?;
+        Ok(&self.candidate)
+    }
+}

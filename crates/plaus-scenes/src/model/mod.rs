@@ -1,0 +1,10 @@
+//! What all scenes have in common: weights of moves by their names, columns by their declaration, bodies simulated
+//! group by group.
+
+pub mod columns;
+pub(crate) mod groups;
+mod offered;
+pub mod weights;
+
+pub use columns::{Column, Member, Role, Scalar};
+pub use weights::{Menu, Moves, Printed, Row, Weights};
