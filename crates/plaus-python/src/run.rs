@@ -14,6 +14,9 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// A solution: chain, draw, iteration, log p, and whether it is of the warm-up.
+type Found = (u32, u64, u64, f64, bool);
+
 /// A run in a folder.
 #[pyclass(frozen, module = "plaus._plaus")]
 pub(crate) struct RunFolder {
@@ -128,11 +131,11 @@ impl Columns {
 struct Solutions;
 
 impl Look for Solutions {
-    type Made = Vec<(u32, u64, u64, f64, bool)>;
+    type Made = Vec<Found>;
     fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
         let found = solutions::distinct(run)?;
         let early = |one: &plaus_run::Solution| !one.sample.phase.is_sampling();
-        let tell = |one: &plaus_run::Solution| -> (u32, u64, u64, f64, bool) {
+        let tell = |one: &plaus_run::Solution| -> Found {
             let plaus_run::Solution { sample, iteration, log_p } = *one;
             (sample.chain, sample.draw, iteration, log_p, early(one))
         };
@@ -231,7 +234,7 @@ impl RunFolder {
     }
 
     /// The first draw of each distinct solution: chain, draw, iteration, log p, and whether it is of the warm-up.
-    fn solutions(&self, py: Python<'_>) -> PyResult<Vec<(u32, u64, u64, f64, bool)>> {
+    fn solutions(&self, py: Python<'_>) -> PyResult<Vec<Found>> {
         self.visit(py, Solutions)
     }
 

@@ -1,0 +1,42 @@
+//! Every shape in every scenery, and every pair of shapes: nothing tunnels, nothing is stuck or no number, energy does
+//! not grow. Thousands of throws: the example `shapes`.
+
+use crate::common::zoo::{Body, Place, throw};
+use plaus_sim::{Outcome, Preset};
+
+/// Energy gained over the whole by which a step may err: that of the standard preset, a thousandth.
+const GAIN: f64 = 1e-3;
+
+#[test]
+fn every_shape_stays_in_every_place() {
+    for body in Body::ALL {
+        for place in Place::ALL {
+            for k in 0..4 {
+                let fate = throw(&[body], place, k, Preset::Standard, 1.0);
+                assert!(fate.out < 0.0, "{body:?} {place:?} throw {k}: {fate:?}");
+                assert!(
+                    matches!(fate.outcome, Outcome::AllAtRest | Outcome::TimeReached),
+                    "{body:?} {place:?} throw {k}: {fate:?}"
+                );
+                assert!(fate.gain < GAIN, "{body:?} {place:?} throw {k}: {fate:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_pair_of_shapes_meets() {
+    for (i, a) in Body::ALL.into_iter().enumerate() {
+        for (j, b) in Body::ALL.into_iter().enumerate() {
+            let place = [Place::Planes, Place::HollowBall][(i + j) % 2];
+            let k = (13 * i + j) as u64;
+            let fate = throw(&[a, b, a, b], place, k, Preset::Standard, 0.6);
+            assert!(fate.out < 0.0, "{a:?} {b:?} throw {k}: {fate:?}");
+            assert!(
+                matches!(fate.outcome, Outcome::AllAtRest | Outcome::TimeReached),
+                "{a:?} {b:?} throw {k}: {fate:?}"
+            );
+            assert!(fate.gain < GAIN, "{a:?} {b:?} throw {k}: {fate:?}");
+        }
+    }
+}
