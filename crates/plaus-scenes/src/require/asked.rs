@@ -195,6 +195,21 @@ impl<S: Scene> Goal for Asked<S> {
         let met = state.outcome.marks.iter().all(Mark::met);
         if met { self.scene.class(&Self::plain(state)) } else { None }
     }
+
+    /// Those of the scene, and each requirement.
+    fn parts(&self) -> Vec<String> {
+        let said = self.requirements().iter().enumerate().map(|(index, one)| key(index, one));
+        self.scene.parts().into_iter().chain(said).collect()
+    }
+
+    fn met(&self, state: &StateOf<Self>, met: &mut [bool]) {
+        let marks = &state.outcome.marks;
+        let (own, asked) = met.split_at_mut(met.len().saturating_sub(marks.len()));
+        self.scene.met(&Self::plain(state), own);
+        for (met, mark) in asked.iter_mut().zip(marks) {
+            *met = mark.met();
+        }
+    }
 }
 
 impl<S: Scene> Sees for Asked<S> {
