@@ -13,7 +13,9 @@ use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::view::{Sees, lent};
-use plaus_mcmc::{Goal, Mixture, ModelError, Simulated, SolutionClass, State, StateOf, Target};
+use plaus_mcmc::{
+    Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, State, StateOf, Target, Variables, Vars,
+};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -195,21 +197,6 @@ impl<S: Scene> Goal for Asked<S> {
         let met = state.outcome.marks.iter().all(Mark::met);
         if met { self.scene.class(&Self::plain(state)) } else { None }
     }
-
-    /// Those of the scene, and each requirement.
-    fn parts(&self) -> Vec<String> {
-        let said = self.requirements().iter().enumerate().map(|(index, one)| key(index, one));
-        self.scene.parts().into_iter().chain(said).collect()
-    }
-
-    fn met(&self, state: &StateOf<Self>, met: &mut [bool]) {
-        let marks = &state.outcome.marks;
-        let (own, asked) = met.split_at_mut(met.len().saturating_sub(marks.len()));
-        self.scene.met(&Self::plain(state), own);
-        for (met, mark) in asked.iter_mut().zip(marks) {
-            *met = mark.met();
-        }
-    }
 }
 
 impl<S: Scene> Sees for Asked<S> {
@@ -221,6 +208,45 @@ impl<S: Scene> Sees for Asked<S> {
 
     fn state(state: &StateOf<Self>) -> Cow<'_, StateOf<S>> {
         Cow::Owned(Self::plain(state))
+    }
+}
+
+/// Those of the scene.
+impl<S: Scene> Variables for Asked<S> {
+    fn vars(&self) -> &Vars {
+        self.scene.vars()
+    }
+
+    fn get<'a>(&self, draw: &'a S::Draw, var: usize) -> Option<&'a [f64]> {
+        self.scene.get(draw, var)
+    }
+
+    fn get_mut<'a>(&self, draw: &'a mut S::Draw, var: usize) -> Option<&'a mut [f64]> {
+        self.scene.get_mut(draw, var)
+    }
+
+    fn set_present(&self, draw: &mut S::Draw, var: usize, present: bool) {
+        self.scene.set_present(draw, var, present);
+    }
+
+    fn shift(&self, draw: &S::Draw, var: usize) -> f64 {
+        self.scene.shift(draw, var)
+    }
+
+    fn renew_own(&self, draw: &mut S::Draw, var: usize, stream: &mut Stream) {
+        self.scene.renew_own(draw, var, stream);
+    }
+
+    fn step_own(&self, draw: &mut S::Draw, var: usize, size: f64, stream: &mut Stream) {
+        self.scene.step_own(draw, var, size, stream);
+    }
+
+    fn renew_all(&self, draw: &mut S::Draw, recipe: Recipe, stream: &mut Stream) {
+        self.scene.renew_all(draw, recipe, stream);
+    }
+
+    fn renew_group(&self, draw: &mut S::Draw, group: usize, stream: &mut Stream) {
+        self.scene.renew_group(draw, group, stream);
     }
 }
 
