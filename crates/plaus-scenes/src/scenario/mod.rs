@@ -35,7 +35,7 @@ pub struct Scenario {
     /// What is required besides what the world demands itself: a list of tables, each with one requirement. What a
     /// state lacks of one it loses in log density; an animation is a solution where all are met.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 256))]
+    #[schemars(length(max = 256), extend("default" = []))]
     pub require: Vec<Require>,
     /// What to sample: exactly one table `[world.SCENE]`.
     pub world: World,

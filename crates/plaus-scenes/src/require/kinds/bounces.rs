@@ -82,6 +82,7 @@ impl Ask for Bounces {
 
     fn claims(&self) -> Vec<Claim> {
         let what = format!("{} {} {} {:?}", self.body, self.with, self.faster_than, self.when.window());
-        vec![Claim::number(format!("bounces {what}"), self.band())]
+        let range = Band::of_limits(self.at_least.map(f64::from), self.at_most.map(f64::from), 1.0);
+        vec![Claim::number(format!("bounces {what}"), range)]
     }
 }
