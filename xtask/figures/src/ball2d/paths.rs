@@ -6,8 +6,8 @@ use crate::plot::{Axes, Chart, plain};
 use crate::{Result, Work};
 use plaus_dist::{Purpose, Seed, stream};
 use plaus_mcmc::{Goal, StateOf};
-use plaus_scenes::{Moves, Scene};
 use plaus_scenes::ball2d::Ball2d;
+use plaus_scenes::{Moves, Scene};
 use plotters::prelude::*;
 
 /// Seed of the choice among the satisfying samples.

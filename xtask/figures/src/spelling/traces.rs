@@ -8,9 +8,9 @@ use crate::report::thousands;
 use crate::{Result, Work};
 use plaus_dist::Seed;
 use plaus_mcmc::Chain;
-use plaus_scenes::{Moves, Rules};
 use plaus_scenes::rules::Preset;
 use plaus_scenes::spelling::Config;
+use plaus_scenes::{Moves, Rules};
 use plotters::prelude::*;
 
 const SEED: u64 = 1;
