@@ -51,6 +51,7 @@
 
 pub mod adapt;
 pub mod chain;
+pub mod chance;
 pub mod check;
 pub mod diagnose;
 pub mod ladder;

@@ -3,6 +3,10 @@
 
 mod common;
 
+mod require_bad;
+mod require_bounds;
+mod require_exact;
+mod require_kinds;
 mod scenario_bad;
 mod scenario_properties;
 mod scenario_schema;

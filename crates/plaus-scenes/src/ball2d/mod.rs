@@ -13,6 +13,7 @@ pub type Weights = crate::Weights<Ball2dMoves>;
 
 use crate::animation::Animation;
 use crate::model::{Column, Scalar, columns};
+use crate::require::{Cast, Require, RestsAt};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use flight::Table;
@@ -209,6 +210,21 @@ impl Scene for Ball2d {
             *rest = state.outcome.x.unwrap_or(f64::NAN);
             angles.copy_from_slice(&state.draw.0);
         }
+    }
+
+    fn cast(&self) -> Cast {
+        Cast { bodies: vec!["ball_0".into()], fixed: vec!["table".into()], longest: f64::INFINITY, faces: false }
+    }
+
+    fn most(&self) -> Option<LogPotential> {
+        Some(LogPotential::ONE)
+    }
+
+    /// Where the ball comes to rest.
+    fn demands(&self) -> Vec<(String, Require)> {
+        let millimetres = 1e3 * self.config.diameter_m;
+        let (x_mm, within_mm) = (self.config.target * millimetres, self.config.tolerance * millimetres);
+        vec![("world.ball2d.target".into(), Require::RestsAt(RestsAt { x_mm, within_mm, ..RestsAt::default() }))]
     }
 
     fn animate(&self, draw: &Normals) -> Result<Animation, ModelError> {

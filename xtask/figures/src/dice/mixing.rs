@@ -8,9 +8,9 @@ use crate::stats::Ess;
 use crate::stats::shown;
 use crate::{Result, Work};
 use plaus_mcmc::diagnose::rhat;
-use plaus_scenes::Role;
 use plaus_scenes::Scene;
 use plaus_scenes::dice::Weights;
+use plaus_scenes::model::Role;
 
 pub(super) fn make(work: &mut Work) -> Result<()> {
     let length = Length { seed: 5, chains: 4, warmup: work.size(2000, 2), iterations: work.size(10_000, 12) };
