@@ -18,9 +18,9 @@ use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use flight::Table;
 use glam::DVec2;
-use plaus_dist::{Gaussian, LogDensity, LogPotential, Stream};
+use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, NotANumber, Stream};
 use plaus_mcmc::{
-    Goal, Law, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Var, Variables, Vars, vars,
+    Goal, Law, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Var, Variables, Vars,
 };
 use serde::{Deserialize, Serialize};
 
@@ -140,7 +140,9 @@ impl Target for Ball2d {
     }
 
     fn log_prior(&self, draw: &Normals) -> Result<LogDensity, ModelError> {
-        Ok(vars::log_prior(self, draw)?)
+        // What `vars::log_prior` sums; looking each variable up would cost a tenth of this scene's time.
+        let sum = draw.0.iter().try_fold(LogDensity::ONE, |sum, angle| Ok(sum + self.angle.log_density(angle)?));
+        sum.map_err(|error: NotANumber| error.into())
     }
 
     fn simulate(
