@@ -7,7 +7,7 @@ use crate::require::{Cast, Mark, Require};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
 use plaus_dist::LogPotential;
-use plaus_mcmc::{Goal, Mixture, ModelError, StateOf};
+use plaus_mcmc::{Goal, Mixture, ModelError, StateOf, Variables};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -15,7 +15,11 @@ use serde::de::DeserializeOwned;
 ///
 /// Adding a scene takes its own folder, one line in [`crate::registry`] and a scenario file.
 pub trait Scene:
-    Goal<Draw: Serialize + DeserializeOwned, Outcome: Serialize + DeserializeOwned + PartialEq> + Sized + Send + 'static
+    Goal<Draw: Serialize + DeserializeOwned, Outcome: Serialize + DeserializeOwned + PartialEq>
+    + Variables
+    + Sized
+    + Send
+    + 'static
 {
     /// Whether the scales of its moves are adapted in the warm-up where a scenario does not say: where that was
     /// measured to be better.
