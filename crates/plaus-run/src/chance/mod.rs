@@ -14,10 +14,10 @@ use crate::error::Error;
 use crate::manifest::{Recipe, StoredScenario, VERSION};
 use crate::shard::Shard;
 use plaus_dist::Seed;
-use plaus_mcmc::Mixture;
 use plaus_mcmc::chance::{
     ChanceError, ChancePulse, Counted, Method, Parts, Split, Splitting, Stoned, Stones, count, split, stones,
 };
+use plaus_mcmc::{Mixture, StateOf};
 use plaus_scenes::{Scene, Visitor};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -160,7 +160,7 @@ pub fn ask(inquiry: &Inquiry<'_>, shown: &(dyn Fn(&Chance) + Sync)) -> Result<Ch
             Asked { scene, moves, inquiry: self.0 }.run(self.1)
         }
     }
-    inquiry.recipe.scenario.world.visit(Ask(inquiry, shown))?
+    inquiry.recipe.scenario.visit(Ask(inquiry, shown))?
 }
 
 /// An inquiry into a scene.
@@ -254,12 +254,13 @@ impl<S: Scene> Asked<'_, '_, S> {
 
     /// Names of what is demanded, where it is more than one thing.
     fn names(&self) -> Vec<String> {
-        Vec::new()
+        let asked = self.scene.asked();
+        if asked.len() > 1 { asked } else { Vec::new() }
     }
 
     /// What of that a state meets.
     fn parts(&self) -> Parts<'_, S> {
-        Parts::NONE
+        Parts { count: self.names().len(), met: &meets::<S> }
     }
 
     fn begin(&self, methods: Vec<Method>, why: String) -> Result<Chance, Error> {
@@ -279,4 +280,9 @@ impl<S: Scene> Asked<'_, '_, S> {
             stones: BTreeMap::new(),
         })
     }
+}
+
+/// Says of each thing that is asked whether a state meets it.
+fn meets<S: Scene>(scene: &S, state: &StateOf<S>, met: &mut [bool]) {
+    met.iter_mut().zip(scene.answers(state)).for_each(|(met, mark)| *met = mark.met());
 }
