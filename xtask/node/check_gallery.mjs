@@ -1,4 +1,5 @@
 // Opens galleries from file:// in headless Chromium, offline, and uses them: node check_gallery.mjs SHOTS_FOLDER PAGE.html …
+import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import chromium from '@sparticuz/chromium';
@@ -69,6 +70,30 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   }
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   demand(wide <= 0, `the page is ${wide} pixels too wide`);
+
+  // Sound is off until it is asked for; then it is what the exported file has.
+  demand(await page.evaluate(() => !gallery.player.sound.on && !gallery.player.sound.context), 'there is sound unasked');
+  if (process.env.PLAUS && kind === 'desktop') {
+    const id = await page.evaluate(() => gallery.a.id), wav = join(shots, `${name}.wav`);
+    execFileSync(process.env.PLAUS, ['export', file.replace(/\.html$/, '.run'), '--format', 'wav', '--sample', id, '--out', wav, '--force'], { stdio: 'ignore' });
+    const bytes = readFileSync(wav), data = bytes.indexOf('data') + 8;
+    const exported = Array.from({ length: (bytes.length - data) / 2 }, (_, k) => bytes.readInt16LE(data + 2 * k));
+    const alike = await page.evaluate((exported) => {
+      const heard = gallery.player.sound.heard(gallery.a);
+      let [ab, aa, bb] = [0, 0, 0];
+      for (let k = 0; k < Math.min(heard.length, exported.length); k++) { ab += heard[k] * exported[k]; aa += heard[k] ** 2; bb += exported[k] ** 2; }
+      return [ab / Math.sqrt(aa * bb), heard.length - exported.length];
+    }, exported);
+    // Single precision, and noise of rolling from another hash.
+    demand(alike[0] > 0.98 && Math.abs(alike[1]) <= 1, `the page's sound is not the file's: ${alike}`);
+  }
+  await page.locator('body').press('o');
+  await page.locator('body').press(' ');
+  await page.waitForFunction(() => gallery.player.sound.playing, null, { timeout: 20000 });
+  await page.locator('body').press(' ');
+  demand(await page.evaluate(() => !gallery.player.sound.playing), 'it sounds while it is paused');
+  await page.locator('#sound').click();
+  demand(await page.evaluate(() => !gallery.player.sound.on), 'the switch does not turn sound off');
 
   // Tiles: all have pictures; the one pointed at moves.
   const tiles = page.locator('.tile'), all = await tiles.count();

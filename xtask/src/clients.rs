@@ -167,6 +167,7 @@ fn gallery() -> Result<Done, Failure> {
     fs::create_dir_all(&temporary).map_err(Failure::new)?;
     let pages = with_ending(&folder().join("exports"), ".html")?;
     let script = Command::new("node").args([node.join("check_gallery.mjs"), folder().join("pictures")]).args(pages);
+    let script = script.env("PLAUS", &built("release", "plaus").to_string_lossy());
     script.env("TMPDIR", &temporary.to_string_lossy()).run().map(|()| Done::Passed)
 }
 

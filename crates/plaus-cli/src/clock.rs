@@ -24,6 +24,34 @@ impl Stopwatch {
     }
 }
 
+/// Measures the processor time of the whole process since it was started: what its threads had of all cores together.
+/// Where the system does not tell, it is the time of the clock.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ProcessorClock(f64, Stopwatch);
+
+impl ProcessorClock {
+    /// Starts.
+    pub(crate) fn start() -> Self {
+        Self(processor_seconds().unwrap_or(0.0), Stopwatch::start())
+    }
+
+    /// Seconds since the start.
+    pub(crate) fn seconds(&self) -> f64 {
+        processor_seconds().map_or_else(|| self.1.seconds(), |now| now - self.0)
+    }
+}
+
+#[cfg(unix)]
+fn processor_seconds() -> Option<f64> {
+    let spent = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    Some(spent.tv_sec as f64 + 1e-9 * spent.tv_nsec as f64)
+}
+
+#[cfg(not(unix))]
+fn processor_seconds() -> Option<f64> {
+    None
+}
+
 /// Seconds since 1970, to be compared with what another machine's clock says.
 #[allow(clippy::disallowed_methods)]
 pub(crate) fn unix_seconds() -> u64 {

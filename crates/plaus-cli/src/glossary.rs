@@ -23,7 +23,8 @@ const WORDS: &[(&[&str], &str)] = &[
     ),
     (
         &["warm-up", "warmup"],
-        "the first iterations of each chain, in which it forgets where it began. They are recorded, but count for nothing.",
+        "the first iterations of each chain, in which it forgets where it began and finds out how large its steps should be. They are recorded, but are no part \
+         of statistics; what they find is a solution all the same, of which `--solutions` takes each.",
     ),
     (
         &["log p", "log_p"],
@@ -41,6 +42,12 @@ const WORDS: &[(&[&str], &str)] = &[
         &["r-hat", "rhat"],
         "compares the chains with each other: 1 where they agree, above 1.01 where they are still at different things. \
          It says whether averages over the run can be trusted; each single solution holds in any case.",
+    ),
+    (
+        &["independent", "independent solutions"],
+        "how many solutions, each drawn anew, those of the run are worth: counted by that random variable of theirs which \
+         changes most slowly from solution to solution. A chain that stays near one solution has many distinct ones, \
+         and few independent ones.",
     ),
     (&["ess"], "effective sample size: how many independent animations the recorded ones are worth for an average."),
     (&["mcse"], "Monte Carlo standard error: how far an average over the run is likely to be off."),

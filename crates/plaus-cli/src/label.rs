@@ -35,5 +35,8 @@ pub fn of(manifest: &Manifest, replay: &Replay) -> Label {
         facts.insert("recorded_log_p".to_owned(), json!(recorded.log_p));
         facts.insert("recorded_satisfied".to_owned(), json!(recorded.satisfied));
     }
-    Label { name: format!("{}_{}_{}", manifest.scene, replay.sample.chain, replay.sample.draw), facts }
+    if !replay.sample.phase.is_sampling() {
+        facts.insert("phase".to_owned(), json!(replay.sample.phase));
+    }
+    Label { name: format!("{}_{}", manifest.scene, replay.sample.to_string().replace(':', "_")), facts }
 }

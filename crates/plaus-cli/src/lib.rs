@@ -24,6 +24,7 @@ mod report;
 mod scenario_file;
 mod svg;
 mod table;
+mod why;
 
 pub use label::of as label_of;
 pub use report::to_json as diagnosis_to_json;

@@ -150,9 +150,22 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let note =
         if share.is_finite() { format!("{} of the sampled draws satisfy; ", percent(share)) } else { String::new() };
     let (first, distinct) = (grouped(*first), grouped(tally.distinct));
+    let early = match tally.while_adapting {
+        0 => String::new(),
+        early => format!("; {} of them found while moves were adapted, and left out of statistics", grouped(early)),
+    };
     format!(
-        "first hit at iteration {first}, {all}\n{note}{distinct} distinct solutions (that differ in kind: `plaus explain distinct`)\n"
+        "first hit at iteration {first}, {all}\n{note}{distinct} distinct solutions (that differ in kind: `plaus explain distinct`){early}\n"
     )
+}
+
+/// How many independent solutions there are, and how many come in a minute, over `seconds` where that is known.
+pub(crate) fn independent(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
+    let Some(found) = &diagnosis.independent else { return String::new() };
+    let minute = seconds.filter(|&seconds| seconds > 0.0).map(|seconds| 60.0 * found.ess / seconds);
+    let pace = minute.map(|minute| format!(", {} a minute", short(minute))).unwrap_or_default();
+    let ess = short(found.ess);
+    format!("{ess} independent solutions{pace} (by {}, which mixes worst: `plaus explain independent`)\n", found.scalar)
 }
 
 /// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are
@@ -209,8 +222,10 @@ pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
         "draws": diagnosis.draws,
         "stride": diagnosis.stride,
         "scalars": diagnosis.scalars,
+        "independent": diagnosis.independent,
         "first_hit": tally.first_hit(),
         "distinct": tally.distinct,
+        "distinct_while_adapting": tally.while_adapting,
         "best_sample": tally.best().map(|sample| sample.to_string()),
         "acceptance": acceptance(&manifest.moves, &tally.counts),
         "moves": manifest.moves.iter().zip(&tally.counts).map(|(name, count)| (name.clone(), json!(count))).collect::<Value>(),

@@ -7,6 +7,7 @@ mod accuracy;
 mod adapting;
 mod animations;
 mod bad_input;
+mod chance;
 mod every_format;
 mod first_hour;
 #[cfg(unix)]
@@ -19,3 +20,4 @@ mod pieces;
 #[cfg(unix)]
 mod same_bytes;
 mod tempering;
+mod while_adapting;

@@ -49,7 +49,12 @@ fn whoever_asks_for_solutions_is_told_of_solutions() {
         assert!(!asked.out.contains(statistics), "{}", asked.out);
     }
     assert!(asked.out.contains("distinct solutions (that differ in kind: `plaus explain distinct`)"), "{}", asked.out);
-    assert!(asked.out.contains("plaus diagnose few"), "{}", asked.out);
+    // They came in the warm-up, and are shown all the same.
+    assert!(asked.out.contains("found while moves were adapted, and left out of statistics"), "{}", asked.out);
+    assert!(asked.out.contains("plaus gallery few"), "{}", asked.out);
+    place.ends("diagnose few", 2).says(&["whose draws are no statistics"]);
+    let more = place.ok("sample ball.toml --out more --solutions 120");
+    assert!(more.out.contains("plaus diagnose more"), "{}", more.out);
     assert!(place.ok("sample ball.toml --out many").out.contains("R-hat"));
 }
 

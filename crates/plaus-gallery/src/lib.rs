@@ -26,6 +26,7 @@ pub mod map;
 mod models;
 mod pack;
 mod page;
+mod sounds;
 
 use features::Features;
 use plaus_run::replay::replay_each;
@@ -57,7 +58,7 @@ pub struct Gallery {
     pub html: String,
     /// Solutions it shows.
     pub shown: usize,
-    /// Distinct solutions of the run's sampling phase.
+    /// Distinct solutions of the run.
     pub distinct: usize,
 }
 

@@ -4,7 +4,9 @@ use crate::Options;
 use crate::map::Maps;
 use crate::models::{Bytes, Things};
 use crate::page::Packed;
+use crate::sounds::Sounds;
 use glam::DVec3;
+use plaus_export::sound;
 use plaus_run::RunOf;
 use plaus_run::replay::Replay;
 use plaus_scenes::animation::{Animation, Piece};
@@ -30,10 +32,11 @@ struct Ranges {
 
 pub(crate) fn pack<S: Scene>(run: &RunOf<'_, S>, replays: &[Replay], maps: &Maps, about: &About<'_>) -> Packed {
     let (mut bytes, mut things, mut names) = (Bytes::default(), Things::default(), Vec::new());
+    let mut sounds = Sounds::default();
     let ranges = Ranges::of(replays);
     let mut samples = Vec::new();
     for (number, replay) in replays.iter().enumerate() {
-        let mut sample = of_replay(replay, &ranges, &mut bytes, &mut things, &mut names);
+        let mut sample = of_replay(replay, &ranges, &mut bytes, &mut things, &mut sounds, &mut names);
         sample["outcome"] = json!(maps.outcomes[number]);
         sample["path"] = json!(maps.paths[number]);
         samples.push(sample);
@@ -59,6 +62,7 @@ pub(crate) fn pack<S: Scene>(run: &RunOf<'_, S>, replays: &[Replay], maps: &Maps
         "names": names,
         "models": things.model_list,
         "props": things.prop_list,
+        "sounds": sounds.list,
         "low": ranges.low.to_array(),
         "high": ranges.high.to_array(),
         "velocity": ranges.velocity,
@@ -77,6 +81,7 @@ fn of_replay(
     ranges: &Ranges,
     bytes: &mut Bytes,
     things: &mut Things,
+    sounds: &mut Sounds,
     names: &mut Vec<String>,
 ) -> Value {
     let animation = &replay.animation;
@@ -105,13 +110,15 @@ fn of_replay(
     for axis in 0..3 {
         bytes.u16s(animation.impacts.iter().map(|hit| ranges.share(hit.point, axis)));
     }
+    let score = sound::score(animation);
+    let rubs = sounds.add(&score, bytes);
     let values: Vec<f64> = replay.scalars.iter().map(|(_, value)| *value).collect();
     json!({
-        "id": replay.sample.to_string(), "chain": replay.sample.chain, "draw": replay.sample.draw,
+        "id": replay.sample.to_string(), "chain": replay.sample.chain, "draw": replay.sample.draw, "phase": replay.sample.phase,
         "iteration": replay.iteration, "log_p": replay.log_p, "log_prior": replay.log_prior,
         "log_constraint": replay.log_constraint, "scalars": values, "duration": animation.duration,
         "tracks": tracks, "props": props, "turning": turning, "hits": hits.len(), "at": at,
-        "box": extent(animation).map(|corner| corner.to_array()),
+        "rubs": rubs, "box": extent(animation).map(|corner| corner.to_array()),
     })
 }
 

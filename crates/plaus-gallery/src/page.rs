@@ -28,6 +28,7 @@ const PROGRAM: &[&str] = &[
     include_str!("../web/app/map.js"),
     include_str!("../web/app/tiles.js"),
     include_str!("../web/app/filter.js"),
+    include_str!("../web/app/sound.js"),
     include_str!("../web/app/player.js"),
     include_str!("../web/app/details.js"),
     include_str!("../web/app/main.js"),

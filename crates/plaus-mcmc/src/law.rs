@@ -78,7 +78,6 @@ impl Law {
     ///
     /// # Errors
     /// [`NotANumber`] where a value is NaN.
-    #[inline]
     pub fn log_density(&self, other: f64, values: &[f64]) -> Result<LogDensity, NotANumber> {
         let x = values.first().copied().unwrap_or(f64::NAN);
         match self {
@@ -100,6 +99,14 @@ impl Law {
     /// Adds a step to values: where ends are joined, around them. As likely as its opposite if the step is.
     #[inline]
     pub fn add(&self, step: &[f64], values: &mut [f64]) {
+        if let (Self::Gaussian(_), [x], [by]) = (self, &mut *values, step) {
+            *x += by;
+            return;
+        }
+        self.add_any(step, values);
+    }
+
+    fn add_any(&self, step: &[f64], values: &mut [f64]) {
         match self {
             Self::Fixed(_) | Self::Own => {}
             Self::Uniform(law) => values.iter_mut().zip(step).for_each(|(x, by)| *x = law.wrap(*x + by)),

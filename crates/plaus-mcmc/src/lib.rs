@@ -46,10 +46,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The crate knows no bodies and does no input or output.
+//! A target that declares its draws' variables ([`vars`]) gets moves over them from the [`library`]. The crate knows no
+//! bodies and does no input or output.
 
 pub mod adapt;
 pub mod chain;
+pub mod chance;
 pub mod check;
 pub mod diagnose;
 pub mod ladder;

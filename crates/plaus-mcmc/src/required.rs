@@ -11,8 +11,9 @@ use crate::moves::Mixture;
 use crate::record::Block;
 use crate::run::{Control, Ending, Plan, Progress, Pulse, RunError, Sink, Snapshot, Start, run_some};
 use crate::target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
-use crate::view::{Lent, Sees};
+use crate::view::{Sees, lent};
 use plaus_dist::{LogDensity, LogPotential, Stream};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// What a requirement says of a state.
@@ -72,7 +73,7 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
     where
         T: 'static,
     {
-        moves.map_all(|kernel| Box::new(Lent(kernel)))
+        lent(moves)
     }
 
     /// Judges a state of the target.
@@ -179,8 +180,8 @@ impl<T: Target + 'static, R: Requirement<T>> Sees for Required<'_, T, R> {
         self.target
     }
 
-    fn state(state: &StateOf<Self>) -> &StateOf<T> {
-        &state.outcome.seen
+    fn state(state: &StateOf<Self>) -> Cow<'_, StateOf<T>> {
+        Cow::Borrowed(&state.outcome.seen)
     }
 }
 

@@ -6,7 +6,7 @@
 
 use crate::law::{Law, Recipe};
 use crate::target::Target;
-use plaus_dist::{LogDensity, NotANumber, Stream, open_unit};
+use plaus_dist::{Density, LogDensity, NotANumber, Stream, open_unit};
 use serde::Serialize;
 
 /// Which of several bodies or parts something belongs to: ball 3, pin 7.
@@ -203,9 +203,14 @@ pub fn renew<T: Variables + ?Sized>(target: &T, draw: &mut T::Draw, var: usize, 
 pub fn log_density<T: Variables + ?Sized>(target: &T, draw: &T::Draw, var: usize) -> Result<LogDensity, NotANumber> {
     let law = &target.vars().get(var).law;
     let Some(values) = target.get(draw, var) else { return Ok(LogDensity::ONE) };
-    let other = if law.depends_on().is_some() { other(target, draw, law) } else { f64::NAN };
-    match (values, target.shift(draw, var)) {
-        ([value], shift) if shift != 0.0 => law.log_density(other, &[value + shift]),
+    let shift = target.shift(draw, var);
+    // The usual law, of which a draw of a scene without a simulator has nothing dearer than the density.
+    if let (Law::Gaussian(gaussian), [value]) = (law, values) {
+        return gaussian.log_density(&(value + shift));
+    }
+    let other = other(target, draw, law);
+    match values {
+        [value] if shift != 0.0 => law.log_density(other, &[value + shift]),
         _ => law.log_density(other, values),
     }
 }
@@ -226,6 +231,7 @@ pub fn log_density_of<T: Variables + ?Sized>(
 ///
 /// # Errors
 /// [`NotANumber`] where a value is NaN.
+#[inline]
 pub fn log_prior<T: Variables + ?Sized>(target: &T, draw: &T::Draw) -> Result<LogDensity, NotANumber> {
     let mut sum = LogDensity::new(target.vars().presence)?;
     for var in 0..target.vars().len() {

@@ -4,6 +4,7 @@ use crate::adapt::Scale;
 use crate::moves::{Mixture, MixtureError, Move, Path, Proposal};
 use crate::target::{ModelError, StateOf, Target};
 use plaus_dist::{LogRatio, Stream};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A target that shows another one under a different constraint, or simulates it in a different way, over the same
@@ -29,16 +30,17 @@ pub fn lend<V: View>(moves: impl Into<Arc<Mixture<V::Seen>>>) -> Result<Mixture<
     Mixture::new(lent.collect())
 }
 
-/// Whose states hold one of the target seen, whatever else they hold.
-pub(crate) trait Sees: Target {
+/// A target over the draws of another, whose states hold all that makes one of the other's, whatever else they hold.
+/// The other one's moves propose for it: see [`lent`].
+pub trait Sees: Target {
     /// The target seen.
     type Seen: Target<Draw = Self::Draw> + 'static;
 
     /// The target seen.
     fn seen(&self) -> &Self::Seen;
 
-    /// Its state in one of this target's.
-    fn state(state: &StateOf<Self>) -> &StateOf<Self::Seen>;
+    /// Its state in one of this target's: lent where it lies there as a whole, else put together.
+    fn state(state: &StateOf<Self>) -> Cow<'_, StateOf<Self::Seen>>;
 }
 
 impl<V: View> Sees for V {
@@ -48,9 +50,15 @@ impl<V: View> Sees for V {
         View::seen(self)
     }
 
-    fn state(state: &StateOf<V>) -> &StateOf<V::Seen> {
-        state
+    fn state(state: &StateOf<V>) -> Cow<'_, StateOf<V::Seen>> {
+        Cow::Borrowed(state)
     }
+}
+
+/// The moves of a target, with their probabilities, for one that sees its states.
+#[must_use]
+pub fn lent<V: Sees>(moves: &Mixture<V::Seen>) -> Mixture<V> {
+    moves.map_all(|kernel| Box::new(Lent(kernel)))
 }
 
 /// One move of a shared mixture.
@@ -74,11 +82,11 @@ impl<V: Sees> Move<V> for Lent<V::Seen> {
         candidate: &mut V::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        self.kernel().propose(target.seen(), V::state(current), candidate, stream)
+        self.kernel().propose(target.seen(), &V::state(current), candidate, stream)
     }
 
     fn log_ratio(&self, target: &V, from: &StateOf<V>, to: &StateOf<V>, path: Path) -> Result<LogRatio, ModelError> {
-        self.kernel().log_ratio(target.seen(), V::state(from), V::state(to), path)
+        self.kernel().log_ratio(target.seen(), &V::state(from), &V::state(to), path)
     }
 
     fn reverse(&self, path: Path) -> Path {
@@ -92,7 +100,7 @@ impl<V: Sees> Move<V> for Lent<V::Seen> {
         candidate: &StateOf<V>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        self.kernel().log_ratio_after(target.seen(), V::state(current), V::state(candidate), path)
+        self.kernel().log_ratio_after(target.seen(), &V::state(current), &V::state(candidate), path)
     }
 
     fn scales(&self) -> Vec<Scale> {

@@ -5,6 +5,7 @@ mod toys;
 
 mod adapt;
 mod arviz_reference;
+mod chance;
 mod check_balls;
 mod check_ring;
 mod check_vertices;

@@ -93,11 +93,11 @@ impl Log {
     }
 
     /// Where the run can go on, as a reader of its records finds it.
-    fn starts(&self, thin: u64) -> Vec<Start<Drops, Loads>> {
+    fn starts(&self, plan: Plan) -> Vec<Start<Drops, Loads>> {
         let start = |chain: usize| {
             let mut distinct = Distinct::default();
-            for (iteration, state, _) in self.draws(chain, thin).into_iter().filter(is_sampled) {
-                if let Some(class) = balls().class(&state) {
+            for (iteration, state, _) in self.draws(chain, plan.thin) {
+                if let Some(class) = balls().class(&state).filter(|_| iteration >= plan.counts_from()) {
                     distinct.note(FirstOfClass { iteration, chain: chain as u32, class });
                 }
             }
@@ -105,11 +105,6 @@ impl Log {
         };
         (0..self.blocks.len()).map(start).collect()
     }
-}
-
-/// Solutions of the warm-up do not count.
-fn is_sampled((iteration, ..): &(u64, S, u32)) -> bool {
-    *iteration >= PLAN.warmup
 }
 
 fn balls() -> Balls {
@@ -165,7 +160,7 @@ fn a_run_resumed_at_any_block_is_the_whole_run() {
             let (stopped, part) = go(plan, Vec::new(), 1, Log { stop_after: Some(rounds), ..Log::default() });
             assert_eq!(stopped, Ending::Stopped);
             assert_eq!(part.ends, all.ends[..rounds]);
-            let starts = part.starts(plan.thin);
+            let starts = part.starts(plan);
             let (again, both) = go(plan, starts, 2, part);
             assert!((again, &both) == (ending, &all), "stopped after {rounds} rounds of {plan:?}");
         }
@@ -221,16 +216,16 @@ fn a_run_stopped_in_the_middle_of_a_block_leaves_the_beginning_of_the_whole_run(
                 "{left}: {:?}",
                 part.ends
             );
-            let (again, both, _) = go(part.starts(plan.thin), 2, u64::MAX, part);
+            let (again, both, _) = go(part.starts(plan), 2, u64::MAX, part);
             assert!((again, &both) == (ending, &all), "stopped after {left} moves of {plan:?}");
         }
     }
 }
 
-/// What a run that stops for `wanted` solutions must leave, from a run that does not stop.
+/// What a run that stops for `wanted` solutions must leave, from a run that does not stop: those of the warm-up count.
 fn first_iteration_with(wanted: u64, all: &Log, thin: u64) -> Option<u64> {
     let mut classes = Vec::new();
-    let mut recorded: Vec<_> = all.all_draws(thin).into_iter().flatten().filter(is_sampled).collect();
+    let mut recorded: Vec<_> = all.all_draws(thin).into_iter().flatten().collect();
     recorded.sort_by_key(|(iteration, ..)| *iteration);
     recorded.into_iter().find_map(|(iteration, state, _)| {
         classes.extend(balls().class(&state).filter(|class| !classes.contains(class)));
@@ -259,7 +254,7 @@ fn enough_solutions_end_a_run_at_one_iteration_whatever_the_blocks_and_threads()
 
                 // It can go on for more, and then is the run that wanted more from the start.
                 let more = Plan { solutions: Some(wanted + 10), ..plan };
-                let (ending, longer) = go(more, log.starts(thin), threads, log);
+                let (ending, longer) = go(more, log.starts(more), threads, log);
                 let (direct_ending, direct) = whole(more, 1);
                 assert_eq!((ending, longer.ends.last()), (direct_ending, direct.ends.last()));
                 assert!(longer.all_draws(thin) == direct.all_draws(thin), "{more:?}");
@@ -275,6 +270,16 @@ fn a_run_that_wants_no_or_impossibly_many_solutions() {
     assert_eq!((ending, log.ends.len()), (Ending::EnoughSolutions, 0));
     let (ending, log) = whole(Plan { solutions: Some(1_000_000), ..PLAN }, 1);
     assert_eq!((ending, log.ends.last()), (Ending::Complete, Some(&PLAN.end())));
+}
+
+/// A run that looks for solutions takes them from its start on; one that does not counts those of the sampling phase.
+#[test]
+fn solutions_count_from_the_start_where_they_are_looked_for() {
+    let (_, plain) = whole(PLAN, 2);
+    assert!(plain.firsts.iter().all(|first| first.iteration >= PLAN.warmup), "{:?}", plain.firsts);
+    let (ending, hunting) = whole(Plan { solutions: Some(2), ..PLAN }, 2);
+    assert_eq!(ending, Ending::EnoughSolutions);
+    assert!(hunting.ends.last().is_some_and(|&end| end <= PLAN.warmup), "{:?}", hunting.ends);
 }
 
 /// Hits, counts, thinned records: held against a chain stepped by hand.
@@ -357,10 +362,10 @@ fn a_plan_or_starts_that_make_no_run_are_refused() {
     let endless = Plan { iterations: u64::MAX, ..PLAN };
     assert_eq!(refused(endless, Vec::new()), PlanError::TooLong(u64::MAX));
     let (_, log) = go(PLAN, Vec::new(), 1, Log { stop_after: Some(1), ..Log::default() });
-    let mut starts = log.starts(1);
+    let mut starts = log.starts(PLAN);
     starts.pop();
     assert_eq!(refused(PLAN, starts), PlanError::Starts { chains: 3, found: 2 });
-    let mut starts = log.starts(1);
+    let mut starts = log.starts(PLAN);
     starts[1].snapshot.end_iteration += 1;
     assert_eq!(refused(PLAN, starts), PlanError::Starts { chains: 3, found: 3 });
 }

@@ -56,7 +56,7 @@ impl Parcels {
                 Box::new(OfScene { scene: Arc::new(scene), names })
             }
         }
-        let made = scenario.get().recipe.scenario.world.visit(Build);
+        let made = scenario.get().recipe.scenario.visit(Build);
         made.map(Self).map_err(|error| RunError::new_err(error.to_string()))
     }
 

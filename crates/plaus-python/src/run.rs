@@ -14,6 +14,9 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// A solution: chain, draw, iteration, log p, and whether it is of the warm-up.
+type Found = (u32, u64, u64, f64, bool);
+
 /// A run in a folder.
 #[pyclass(frozen, module = "plaus._plaus")]
 pub(crate) struct RunFolder {
@@ -128,10 +131,15 @@ impl Columns {
 struct Solutions;
 
 impl Look for Solutions {
-    type Made = Vec<(u32, u64, u64, f64)>;
+    type Made = Vec<Found>;
     fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
         let found = solutions::distinct(run)?;
-        Ok(found.iter().map(|one| (one.sample.chain, one.sample.draw, one.iteration, one.log_p)).collect())
+        let early = |one: &plaus_run::Solution| !one.sample.phase.is_sampling();
+        let tell = |one: &plaus_run::Solution| -> Found {
+            let plaus_run::Solution { sample, iteration, log_p } = *one;
+            (sample.chain, sample.draw, iteration, log_p, early(one))
+        };
+        Ok(found.iter().map(tell).collect())
     }
 }
 
@@ -225,8 +233,8 @@ impl RunFolder {
         Ok(columns)
     }
 
-    /// The first draw of each distinct solution: chain, draw, iteration, log p.
-    fn solutions(&self, py: Python<'_>) -> PyResult<Vec<(u32, u64, u64, f64)>> {
+    /// The first draw of each distinct solution: chain, draw, iteration, log p, and whether it is of the warm-up.
+    fn solutions(&self, py: Python<'_>) -> PyResult<Vec<Found>> {
         self.visit(py, Solutions)
     }
 
@@ -235,10 +243,11 @@ impl RunFolder {
     fn replay(
         &self,
         py: Python<'_>,
-        samples: Vec<(u32, u64)>,
+        samples: Vec<(u32, u64, bool)>,
         accuracy: Option<String>,
     ) -> PyResult<Vec<(String, Motion)>> {
-        let samples = samples.into_iter().map(|(chain, draw)| SampleId { chain, draw }).collect();
+        let named = |(chain, draw, early)| SampleId { chain, phase: phase(early), draw };
+        let samples = samples.into_iter().map(named).collect();
         let replays = self.visit(py, Replays(samples, accuracy.map(|name| preset(&name)).transpose()?))?;
         let manifest = self.run.manifest();
         let show = |replay: Replay| {

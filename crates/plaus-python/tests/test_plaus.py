@@ -142,7 +142,7 @@ def test_arviz_says_what_we_say(run):
 def test_solutions_replays_and_events_agree(run):
     solution = run.solutions[3]
     replay = run.replay(3)
-    assert (replay.chain, replay.draw) == solution.sample and replay.log_p == solution.log_p and replay.satisfied
+    assert (replay.chain, replay.draw, False) == solution.sample and replay.log_p == solution.log_p and replay.satisfied
     assert run.replay(str(solution.sample)).facts == run.replay(solution).facts == replay.facts
     poses = replay.poses(fps=100)
     assert poses.position.shape == (len(poses.times), 1, 3) and poses.bodies == replay.bodies == ["ball_0"]

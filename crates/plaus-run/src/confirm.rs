@@ -5,7 +5,7 @@
 use crate::disk::Disk;
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
-use crate::read::RunOf;
+use crate::read::{Phase, RunOf};
 use crate::replay::{at_accuracy, states};
 use crate::solutions::{Solution, distinct};
 use crate::tally::SampleId;
@@ -24,6 +24,9 @@ const AT_A_TIME: usize = 64;
 pub struct Checked {
     /// Its chain.
     pub chain: u32,
+    /// Where it was recorded.
+    #[serde(default, skip_serializing_if = "Phase::is_sampling")]
+    pub phase: Phase,
     /// Its draw, as in the table of `plaus export`.
     pub draw: u64,
     /// The iteration that recorded it.
@@ -38,7 +41,7 @@ pub struct Checked {
     pub log_p_there: Option<f64>,
 }
 
-/// All distinct solutions of a run's sampling phase, simulated at another accuracy.
+/// All distinct solutions of a run, simulated at another accuracy.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Confirmation {
@@ -68,7 +71,7 @@ pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Err
             at_accuracy(&scene, self.0, self.1).map(drop)
         }
     }
-    scenario.world.visit(Ask(scenario.world.name(), accuracy))?
+    scenario.visit(Ask(scenario.world.name(), accuracy))?
 }
 
 impl Confirmation {
@@ -111,7 +114,7 @@ impl Confirmation {
     #[must_use]
     pub fn samples(&self) -> Vec<SampleId> {
         let held = self.solutions.iter().filter(|one| one.holds);
-        held.map(|one| SampleId { chain: one.chain, draw: one.draw }).collect()
+        held.map(|one| SampleId { chain: one.chain, phase: one.phase, draw: one.draw }).collect()
     }
 
     /// Puts the list beside the run's records, in place of an older one.
@@ -158,6 +161,7 @@ fn check<S: Scene>(run: &RunOf<'_, S>, scene: &S, solutions: &[Solution]) -> Res
         let log_p_there = there.log_p().value();
         Ok(Checked {
             chain: sample.chain,
+            phase: sample.phase,
             draw: sample.draw,
             iteration,
             holds: class.is_some(),

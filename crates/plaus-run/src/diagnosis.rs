@@ -4,7 +4,7 @@ use crate::error::RunFileError;
 use crate::read::{Phase, RunOf};
 use crate::streamed::Moments;
 use crate::tally::Tally;
-use plaus_mcmc::diagnose::{DiagnoseError, Summary, summarize};
+use plaus_mcmc::diagnose::{DiagnoseError, Summary, ess_where, summarize};
 use plaus_scenes::{Role, Scalar, Scene};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -30,10 +30,22 @@ pub struct Diagnosis {
     pub stride: u64,
     /// Per scalar, those of the draw first.
     pub scalars: Vec<ScalarDiagnosis>,
+    /// How many independent solutions there are; `None` of fewer than two, or where nothing in them ever moved.
+    pub independent: Option<Independent>,
     /// What the records add up to.
     pub tally: Tally,
     /// What speaks against trusting the run.
     pub findings: Vec<Finding>,
+}
+
+/// Independent solutions: how many independent draws of the target, given that they satisfy the constraint, would place
+/// the centre of the variable of the draw that mixes worst as well as these do.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Independent {
+    /// How many.
+    pub ess: f64,
+    /// The variable.
+    pub scalar: String,
 }
 
 /// What was found about a scalar.
@@ -118,12 +130,19 @@ impl Diagnosis {
         let room = (HELD / run.chains().len().max(1) as u64).max(1);
         let stride = recorded.div_ceil(most.map_or(room, |most| most.clamp(1, room))).max(1);
         let iterations = run.iterations().saturating_sub(run.run().manifest().plan.warmup);
-        let mut scalars = Vec::new();
+        let (mut scalars, mut independent) = (Vec::new(), None::<Independent>);
+        let satisfied = satisfied(run, stride)?;
         let all = run.scene().scalars();
         let width = (HELD / (run.chains().len() as u64 * recorded.div_ceil(stride)).max(1)).max(1);
         for from in (0..all.len()).step_by(usize::try_from(width).unwrap_or(usize::MAX)) {
             let some = &all[from..all.len().min(from.saturating_add(width as usize))];
             let (columns, moments) = streamed(run, from, some.len(), stride)?;
+            let solutions = |(scalar, chains): (&Scalar, &Vec<Vec<f64>>)| {
+                let ess = if scalar.role == Role::Draw { ess_where(chains, &satisfied) } else { Ok(None) };
+                Some(Independent { ess: ess.ok()??, scalar: scalar.name.clone() })
+            };
+            let fewest = some.par_iter().zip(&columns).filter_map(solutions).collect::<Vec<_>>();
+            independent = fewest.into_iter().chain(independent).reduce(|a, b| if b.ess < a.ess { b } else { a });
             let diagnose = |((scalar, chains), moments): ((&Scalar, Vec<Vec<f64>>), Moments)| {
                 diagnose(scalar, &chains, iterations, (stride > 1).then_some(moments))
             };
@@ -132,7 +151,8 @@ impl Diagnosis {
         scalars.sort_by_key(|scalar: &ScalarDiagnosis| scalar.scalar.role != Role::Draw);
         let tally = Tally::of(run)?;
         let findings = findings(&scalars, &tally);
-        Ok(Self { iterations, recorded, draws: recorded.div_ceil(stride), stride, scalars, tally, findings })
+        let draws = recorded.div_ceil(stride);
+        Ok(Self { iterations, recorded, draws, stride, scalars, independent, tally, findings })
     }
 
     /// Whether nothing speaks against the run.
@@ -140,6 +160,20 @@ impl Diagnosis {
     pub fn is_healthy(&self) -> bool {
         self.findings.is_empty()
     }
+}
+
+/// Per chain, per draw: whether it satisfies the constraint.
+fn satisfied<S: Scene>(run: &RunOf<'_, S>, stride: u64) -> Result<Vec<Vec<bool>>, RunFileError> {
+    let chain = |chain| -> Result<Vec<bool>, RunFileError> {
+        let mut column = Vec::new();
+        run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
+            let times = (stretch.draw + stretch.draws).div_ceil(stride) - stretch.draw.div_ceil(stride);
+            column.extend(std::iter::repeat_n(stretch.entry.class.is_some(), times as usize));
+            Ok(())
+        })?;
+        Ok(column)
+    };
+    run.chains().into_par_iter().map(chain).collect()
 }
 
 /// The values of `count` scalars from number `from` on: per scalar, per chain, per draw.

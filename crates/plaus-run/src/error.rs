@@ -108,7 +108,7 @@ pub enum RunFileProblem {
     Encode(#[from] EncodeError),
     /// There is nothing to read yet.
     #[error(
-        "holds no draws yet: the run was stopped in its warm-up, whose draws do not count, or before its first checkpoint \
+        "holds no draws yet: the run was stopped in its warm-up, whose draws are no statistics, or before its first checkpoint \
          (`plaus resume` goes on with it), or it records so few of its iterations (`thin`) that none was due"
     )]
     Empty,

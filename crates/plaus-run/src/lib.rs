@@ -46,6 +46,7 @@
 //! resumed. Records are written first, checkpoints after; a checkpoint says how long the records were, and what lies beyond that is cut off
 //! when the run goes on. So a process that dies at any moment loses at most the iterations since the last checkpoint.
 
+pub mod chance;
 pub mod checkpoint;
 pub mod codec;
 pub mod confirm;
@@ -58,6 +59,7 @@ pub mod folder;
 mod gauge;
 pub mod manifest;
 pub mod merge;
+pub mod pace;
 pub mod read;
 pub mod records;
 pub mod replay;
@@ -71,7 +73,7 @@ pub mod tally;
 mod trail;
 
 pub use confirm::Confirmation;
-pub use diagnosis::{Diagnosis, Finding};
+pub use diagnosis::{Diagnosis, Finding, Independent};
 pub use drive::{Alone, Drive, Driven, Journey};
 pub use error::{Error, RunFileError, RunFileProblem};
 pub use folder::Folder;

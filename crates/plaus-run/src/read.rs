@@ -5,8 +5,10 @@ use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::manifest::{Manifest, stored_scalars};
 use crate::records::{self, Blocks, Extent};
+use crate::tally::SampleId;
 use plaus_mcmc::{Entry, Snapshot, Target};
 use plaus_scenes::{Scenario, Scene, Visitor};
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// A run that was found on the disk.
@@ -27,12 +29,22 @@ pub trait RunVisitor {
 }
 
 /// A part of a chain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Phase {
-    /// Before sampling: kept out of tables and diagnostics.
+    /// Before sampling, while moves and ladders are adapted: kept out of tables and diagnostics.
     Warmup,
     /// What is sampled. Its recorded draws are numbered from 0.
+    #[default]
     Sampling,
+}
+
+impl Phase {
+    /// Whether its draws are what statistics are made of.
+    #[must_use]
+    pub fn is_sampling(&self) -> bool {
+        *self == Self::Sampling
+    }
 }
 
 /// A run of a known scene.
@@ -113,7 +125,7 @@ impl Run {
                 Ok(self.1.visit(RunOf::new(self.0, scene)?))
             }
         }
-        self.scenario.world.visit(Build(self, visitor))?
+        self.scenario.visit(Build(self, visitor))?
     }
 }
 
@@ -186,6 +198,13 @@ impl<'a, S: Scene> RunOf<'a, S> {
         range.end - range.start
     }
 
+    /// The phases in which solutions count: of a run that looks for solutions, the warm-up too.
+    #[must_use]
+    pub fn counted(&self) -> &'static [Phase] {
+        let from_the_start = self.run.manifest.plan.counts_from() == 0;
+        if from_the_start { &[Phase::Warmup, Phase::Sampling] } else { &[Phase::Sampling] }
+    }
+
     /// The phase among all recorded draws of a chain, numbered from the start.
     fn range(&self, phase: Phase) -> Range<u64> {
         let manifest = &self.run.manifest;
@@ -248,15 +267,16 @@ impl<'a, S: Scene> RunOf<'a, S> {
         Ok(())
     }
 
-    /// The entry that a draw of the sampling phase belongs to.
+    /// The entry that a draw belongs to.
     ///
     /// # Errors
     /// [`RunFileProblem::NoSample`] where there is no such draw, or [`RunFileError`] where the records are damaged.
-    pub fn sample(&self, chain: u32, draw: u64) -> Result<Entry<S::Draw, S::Outcome>, RunFileError> {
+    pub fn sample(&self, sample: SampleId) -> Result<Entry<S::Draw, S::Outcome>, RunFileError> {
+        let SampleId { chain, phase, draw } = sample;
         let blocks = self.blocks(chain)?;
-        let draws = self.draws(Phase::Sampling);
+        let draws = self.draws(phase);
         if draw < draws {
-            let wanted = self.range(Phase::Sampling).start + draw;
+            let wanted = self.range(phase).start + draw;
             let mut next = 0;
             for block in blocks {
                 for entry in block?.entries {
@@ -267,9 +287,11 @@ impl<'a, S: Scene> RunOf<'a, S> {
                 }
             }
         }
-        let message = match draws.checked_sub(1) {
-            Some(last) => format!("there is no draw {draw}: the draws of each chain are 0 to {last}"),
-            None => "there are no draws yet: the run has not passed its warm-up".to_owned(),
+        let id = |draw| SampleId { draw, ..sample };
+        let message = match (draws.checked_sub(1), phase) {
+            (Some(last), _) => format!("there is no draw {}: the draws of each chain are 0 to {last}", id(draw)),
+            (None, Phase::Sampling) => "there are no draws yet: the run has not passed its warm-up".to_owned(),
+            (None, Phase::Warmup) => "the run has no warm-up".to_owned(),
         };
         Err(RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message)))
     }

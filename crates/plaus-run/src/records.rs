@@ -174,21 +174,21 @@ pub(crate) fn copy<E: From<RunFileError>>(
     Ok(())
 }
 
-/// Rebuilds which classes of solutions a chain has recorded first where, after its warm-up.
+/// Rebuilds which classes of solutions a chain has recorded first where, from iteration `from` on.
 pub(crate) fn distinct<D: DeserializeOwned, O: DeserializeOwned>(
     path: &Path,
     extent: Extent,
-    warmup: u64,
+    from: u64,
 ) -> Result<Distinct, RunFileError> {
     let mut distinct = Distinct::default();
-    let first_sampled = warmup.next_multiple_of(extent.thin);
+    let first_counted = from.next_multiple_of(extent.thin);
     for block in Blocks::<D, O>::open(path, extent)? {
         let block = block?;
         let mut iteration = block.first_iteration.next_multiple_of(extent.thin);
         for entry in &block.entries {
             let end = iteration + entry.draws * extent.thin;
-            if let Some(class) = entry.class.filter(|_| end > first_sampled) {
-                distinct.note(FirstOfClass { iteration: iteration.max(first_sampled), chain: extent.chain, class });
+            if let Some(class) = entry.class.filter(|_| end > first_counted) {
+                distinct.note(FirstOfClass { iteration: iteration.max(first_counted), chain: extent.chain, class });
             }
             iteration = end;
         }

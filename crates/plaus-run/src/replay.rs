@@ -1,14 +1,14 @@
 //! An animation rebuilt from a stored draw.
 
 use crate::error::{Error, RunFileError, RunFileProblem};
-use crate::read::{Phase, RunOf};
+use crate::read::RunOf;
 use crate::tally::SampleId;
 use plaus_mcmc::{State, StateOf};
 use plaus_scenes::{AccuracyPreset, Animation, Scene, Until};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// A draw of the sampling phase, simulated again.
+/// A recorded draw, simulated again.
 #[derive(Debug, Clone, Serialize)]
 pub struct Replay {
     /// Which.
@@ -48,7 +48,7 @@ pub struct Recorded {
 /// # Errors
 /// [`Error`] where there is no such draw, or this program makes something else of it than the one that sampled it.
 pub fn replay<S: Scene>(run: &RunOf<'_, S>, sample: SampleId) -> Result<Replay, Error> {
-    let entry = run.sample(sample.chain, sample.draw)?;
+    let entry = run.sample(sample)?;
     rebuild(run, sample, &entry.state, entry.class.is_some(), Until::Rest)
 }
 
@@ -57,7 +57,7 @@ pub fn replay<S: Scene>(run: &RunOf<'_, S>, sample: SampleId) -> Result<Replay, 
 /// # Errors
 /// As [`replay`], and where the scene has no accuracy to choose.
 pub fn replay_at<S: Scene>(run: &RunOf<'_, S>, sample: SampleId, accuracy: AccuracyPreset) -> Result<Replay, Error> {
-    let entry = run.sample(sample.chain, sample.draw)?;
+    let entry = run.sample(sample)?;
     run.run().manifest().judges_alone()?;
     same(run, sample, &entry.state)?;
     let scene = at_accuracy(run.scene(), run.run().scenario().world.name(), accuracy)?;
@@ -111,10 +111,11 @@ pub(crate) fn states<S: Scene>(run: &RunOf<'_, S>, samples: &[SampleId]) -> Resu
     let mut order: Vec<usize> = (0..samples.len()).collect();
     order.sort_by_key(|&index| samples[index]);
     let mut states = Vec::with_capacity(samples.len());
-    for wanted in order.chunk_by(|&a, &b| samples[a].chain == samples[b].chain) {
+    let part = |index: usize| (samples[index].chain, samples[index].phase);
+    for wanted in order.chunk_by(|&a, &b| part(a) == part(b)) {
         let mut wanted = wanted.iter().copied().peekable();
-        let Some(&chain) = wanted.peek().map(|&index| &samples[index].chain) else { continue };
-        run.walk(chain, Phase::Sampling, |stretch| -> Result<(), Error> {
+        let Some((chain, phase)) = wanted.peek().map(|&index| part(index)) else { continue };
+        run.walk(chain, phase, |stretch| -> Result<(), Error> {
             while let Some(index) = wanted.next_if(|&index| samples[index].draw < stretch.draw + stretch.draws) {
                 states.push((index, stretch.entry.state.clone(), stretch.entry.class.is_some()));
             }
@@ -122,7 +123,7 @@ pub(crate) fn states<S: Scene>(run: &RunOf<'_, S>, samples: &[SampleId]) -> Resu
         })?;
         if let Some(missing) = wanted.next() {
             // Says which draws there are.
-            run.sample(chain, samples[missing].draw)?;
+            run.sample(samples[missing])?;
         }
     }
     states.sort_by_key(|&(index, ..)| index);
@@ -161,7 +162,7 @@ fn shown<S: Scene>(
     scene.write_scalars(state, &mut values);
     Ok(Replay {
         sample,
-        iteration: run.iteration_of(Phase::Sampling, sample.draw),
+        iteration: run.iteration_of(sample.phase, sample.draw),
         log_p: state.log_p().value(),
         log_prior: state.log_prior.value(),
         log_constraint: state.log_constraint.value(),

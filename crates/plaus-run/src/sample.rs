@@ -153,7 +153,7 @@ fn begin<D: Drive>(
             go_on(folder, &manifest, &Arc::new(scene), Vec::new(), sampling, drive)
         }
     }
-    recipe.scenario.world.visit(Begin(folder, recipe, shard, sampling, drive))?
+    recipe.scenario.visit(Begin(folder, recipe, shard, sampling, drive))?
 }
 
 /// Samples a new run, or a piece of one, into `folder`; where that holds this very run already, goes on with it. So a job that is started again and
@@ -188,7 +188,7 @@ pub fn sample_or_go_on(
         }
     }
     let found = Manifest::read(folder)?;
-    let expected = recipe.scenario.world.visit(Expected(recipe, shard))??;
+    let expected = recipe.scenario.visit(Expected(recipe, shard))??;
     match found.differs_from(&expected) {
         Some(difference) => Err(RunFileError::new(folder.path(), RunFileProblem::OtherRun(difference)).into()),
         None => resume(folder, More::default(), sampling),
@@ -257,7 +257,7 @@ pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, 
     if extend(&mut manifest, &scenario, more)? {
         manifest.replace(folder, sampling.disk)?;
     }
-    scenario.world.visit(GoOn(folder, manifest, sampling, drive))?
+    scenario.visit(GoOn(folder, manifest, sampling, drive))?
 }
 
 /// Writes `more` into the plan; says whether that changes it.
@@ -335,7 +335,7 @@ fn restore_chain<S: Scene>(
     let path = folder.records(chain);
     let end_iteration = snapshot.end_iteration;
     let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes: records, end_iteration };
-    let distinct: Distinct = records::distinct::<S::Draw, S::Outcome>(&path, extent, manifest.plan.warmup)?;
+    let distinct: Distinct = records::distinct::<S::Draw, S::Outcome>(&path, extent, manifest.plan.counts_from())?;
     if snapshot.counts.len() != manifest.moves.len() {
         let message = format!("{} moves are counted, the scene has {}", snapshot.counts.len(), manifest.moves.len());
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());

@@ -1,7 +1,7 @@
 //! The distinct satisfying solutions of a run: what a gallery shows, and what `--all-distinct` exports.
 
 use crate::error::RunFileError;
-use crate::read::{Phase, RunOf};
+use crate::read::RunOf;
 use crate::tally::SampleId;
 use plaus_mcmc::SolutionClass;
 use plaus_scenes::Scene;
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-/// The first satisfying draw of its class that the sampling phase recorded.
+/// The first satisfying draw of its class that the run recorded, in the phases in which solutions count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solution {
     /// Which.
@@ -20,7 +20,8 @@ pub struct Solution {
     pub log_p: f64,
 }
 
-/// One solution a class, ordered by iteration, then chain: the first that was recorded. Warm-up does not count, as it has no sample numbers.
+/// One solution a class, ordered by iteration, then chain: the first that was recorded. Where the run looks for
+/// solutions, those of the warm-up are among them; their samples say so.
 ///
 /// # Errors
 /// [`RunFileError`] where the records are damaged.
@@ -37,15 +38,17 @@ pub fn distinct<S: Scene>(run: &RunOf<'_, S>) -> Result<Vec<Solution>, RunFileEr
 
 fn of_chain<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<BTreeMap<SolutionClass, Solution>, RunFileError> {
     let mut firsts = BTreeMap::new();
-    run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
-        if let Some(Entry::Vacant(place)) = stretch.entry.class.map(|class| firsts.entry(class)) {
-            place.insert(Solution {
-                sample: SampleId { chain, draw: stretch.draw },
-                iteration: run.iteration_of(Phase::Sampling, stretch.draw),
-                log_p: stretch.entry.state.log_p().value(),
-            });
-        }
-        Ok(())
-    })?;
+    for &phase in run.counted() {
+        run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
+            if let Some(Entry::Vacant(place)) = stretch.entry.class.map(|class| firsts.entry(class)) {
+                place.insert(Solution {
+                    sample: SampleId { chain, phase, draw: stretch.draw },
+                    iteration: run.iteration_of(phase, stretch.draw),
+                    log_p: stretch.entry.state.log_p().value(),
+                });
+            }
+            Ok(())
+        })?;
+    }
     Ok(firsts)
 }

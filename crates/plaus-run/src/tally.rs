@@ -7,27 +7,35 @@ use plaus_scenes::Scene;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// A draw of the sampling phase.
+/// A recorded draw. As text, `0:17` is draw 17 of chain 0, and `0:w17` the one of its warm-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct SampleId {
     /// Its chain.
     pub chain: u32,
-    /// Its number in the sampling phase, from 0: as in the table of `plaus export`.
+    /// Where it was recorded.
+    #[serde(skip_serializing_if = "Phase::is_sampling")]
+    pub phase: Phase,
+    /// Its number in that phase, from 0: as in the table of `plaus export`.
     pub draw: u64,
 }
 
 impl std::fmt::Display for SampleId {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}:{}", self.chain, self.draw)
+        let mark = if self.phase.is_sampling() { "" } else { "w" };
+        write!(f, "{}:{mark}{}", self.chain, self.draw)
     }
 }
 
 impl std::str::FromStr for SampleId {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once(':').and_then(|(chain, draw)| Some((chain.parse().ok()?, draw.parse().ok()?)));
-        let (chain, draw) = parts.ok_or_else(|| format!("`{text}` names no sample: write CHAIN:DRAW, e.g. 0:17"))?;
-        Ok(Self { chain, draw })
+        let parse = |(chain, draw): (&str, &str)| {
+            let (phase, draw) = draw.strip_prefix('w').map_or((Phase::Sampling, draw), |draw| (Phase::Warmup, draw));
+            Some(Self { chain: chain.parse().ok()?, phase, draw: draw.parse().ok()? })
+        };
+        let wrong =
+            || format!("`{text}` names no sample: write CHAIN:DRAW, e.g. 0:17, or 0:w17 for one of the warm-up");
+        text.split_once(':').and_then(parse).ok_or_else(wrong)
     }
 }
 
@@ -42,9 +50,9 @@ pub struct ChainTally {
     pub counts: Vec<MoveCounts>,
     /// Draws of the sampling phase that satisfy the constraint.
     pub satisfying_draws: u64,
-    /// Distinct solutions recorded by this chain after its warm-up.
+    /// Distinct solutions recorded by this chain, where solutions count.
     pub distinct: u64,
-    /// The likeliest satisfying draw of the sampling phase, with its log p.
+    /// The likeliest satisfying draw, with its log p.
     pub best: Option<(SampleId, f64)>,
     /// How its replicas fared, if there are more than one.
     pub tempering: Option<TemperingTally>,
@@ -125,8 +133,10 @@ impl TemperingTally {
 pub struct Tally {
     /// Per chain.
     pub chains: Vec<ChainTally>,
-    /// Distinct solutions recorded by all chains together after the warm-up.
+    /// Distinct solutions recorded by all chains together, where solutions count.
     pub distinct: u64,
+    /// Those of them that were recorded first in the warm-up, while moves were adapted.
+    pub while_adapting: u64,
     /// Counts of each move over all chains.
     pub counts: Vec<MoveCounts>,
 }
@@ -146,11 +156,14 @@ impl Tally {
         for first in firsts {
             distinct.note(first);
         }
+        let warmup = run.run().manifest().plan.warmup;
+        let while_adapting = distinct.firsts().iter().filter(|first| first.iteration < warmup).count() as u64;
         let mut counts = vec![MoveCounts::default(); run.run().manifest().moves.len()];
         for (chain, _) in &parts {
             counts.iter_mut().zip(&chain.counts).for_each(|(sum, count)| sum.add(count));
         }
-        Ok(Self { chains: parts.into_iter().map(|(chain, _)| chain).collect(), distinct: distinct.count(), counts })
+        let chains = parts.into_iter().map(|(chain, _)| chain).collect();
+        Ok(Self { chains, distinct: distinct.count(), while_adapting, counts })
     }
 
     /// The earliest iteration at which any chain satisfied the constraint.
@@ -165,26 +178,30 @@ impl Tally {
         self.first_hit().is_some() || self.distinct > 0
     }
 
-    /// The likeliest satisfying draw of the sampling phase.
+    /// The likeliest satisfying draw of the sampling phase; where that has none, of the warm-up, if solutions count
+    /// there.
     #[must_use]
     pub fn best(&self) -> Option<SampleId> {
         let best = self.chains.iter().filter_map(|chain| chain.best);
-        best.reduce(|best, next| if next.1 > best.1 { next } else { best }).map(|(sample, _)| sample)
+        best.reduce(|best, next| if (next.0.phase, next.1) > (best.0.phase, best.1) { next } else { best })
+            .map(|(sample, _)| sample)
     }
 }
 
-/// Which classes of solutions a chain has recorded first where, after its warm-up.
+/// Which classes of solutions a chain has recorded first where.
 ///
 /// # Errors
 /// [`RunFileError`] where its records are damaged.
 pub(crate) fn firsts<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<Distinct, RunFileError> {
     let mut distinct = Distinct::default();
-    run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
-        if let Some(class) = stretch.entry.class {
-            distinct.note(FirstOfClass { iteration: run.iteration_of(Phase::Sampling, stretch.draw), chain, class });
-        }
-        Ok(())
-    })?;
+    for &phase in run.counted() {
+        run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
+            if let Some(class) = stretch.entry.class {
+                distinct.note(FirstOfClass { iteration: run.iteration_of(phase, stretch.draw), chain, class });
+            }
+            Ok(())
+        })?;
+    }
     Ok(distinct)
 }
 
@@ -205,16 +222,21 @@ fn tally<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<(ChainTally, Distin
             .map_or_else(Vec::new, |adapted| scales(run, adapted)),
     };
     let mut distinct = Distinct::default();
-    run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
-        let Some(class) = stretch.entry.class else { return Ok(()) };
-        distinct.note(FirstOfClass { iteration: run.iteration_of(Phase::Sampling, stretch.draw), chain, class });
-        tally.satisfying_draws += stretch.draws;
-        let log_p = stretch.entry.state.log_p().value();
-        if tally.best.is_none_or(|(_, best)| log_p > best) {
-            tally.best = Some((SampleId { chain, draw: stretch.draw }, log_p));
-        }
-        Ok(())
-    })?;
+    for &phase in run.counted() {
+        // Of a draw of the sampling phase more is known than of one that moves were adapted at.
+        let before = tally.best.take();
+        run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
+            let Some(class) = stretch.entry.class else { return Ok(()) };
+            distinct.note(FirstOfClass { iteration: run.iteration_of(phase, stretch.draw), chain, class });
+            tally.satisfying_draws += if phase.is_sampling() { stretch.draws } else { 0 };
+            let log_p = stretch.entry.state.log_p().value();
+            if tally.best.is_none_or(|(_, best)| log_p > best) {
+                tally.best = Some((SampleId { chain, phase, draw: stretch.draw }, log_p));
+            }
+            Ok(())
+        })?;
+        tally.best = tally.best.or(before);
+    }
     tally.distinct = distinct.count();
     Ok((tally, distinct))
 }

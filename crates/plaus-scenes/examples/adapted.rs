@@ -134,5 +134,5 @@ fn main() -> Result<()> {
     let overrides: Vec<String> = args.collect();
     let scenario = Scenario::read(&path, &std::fs::read_to_string(&path)?, &overrides)?;
     println!("{path}, {overrides:?}: {seeds} seeds, {warmup} + {iterations} iterations");
-    scenario.world.clone().visit(Measure { scenario, seeds, warmup, iterations })?
+    scenario.clone().visit(Measure { scenario, seeds, warmup, iterations })?
 }

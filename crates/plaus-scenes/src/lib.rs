@@ -21,7 +21,8 @@
 //! ```
 //!
 //! A [`Scene`] is a target with a goal, moves and animations; [`registry`] lists all there are; [`scenario`] reads the
-//! files; [`rules`] says whether acceptance is exact or as the paper prints it.
+//! files; [`require`] has what can be required of any of them; [`rules`] says whether acceptance is exact or as the
+//! paper prints it.
 
 pub mod accuracy;
 pub mod ball2d;
@@ -29,6 +30,7 @@ pub mod bowling;
 pub mod dice;
 pub mod model;
 pub mod registry;
+pub mod require;
 pub mod rules;
 pub mod scenario;
 pub mod scene;

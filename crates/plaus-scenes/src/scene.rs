@@ -3,8 +3,10 @@
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::Scalar;
+use crate::require::{Cast, Mark, Require};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
+use plaus_dist::LogPotential;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateOf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -67,6 +69,45 @@ pub trait Scene:
     /// [`ConfigError`] where the configuration makes no world at that accuracy.
     fn at_accuracy(&self, _accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         Ok(None)
+    }
+
+    /// Who is in it: bodies by their names in animations, what stands still, when it ends at the latest. Requirements
+    /// are about these.
+    fn cast(&self) -> Cast {
+        Cast { bodies: Vec::new(), fixed: Vec::new(), longest: f64::INFINITY, faces: false }
+    }
+
+    /// The largest log constraint there is, or anything above; `None` where that is not known.
+    fn most(&self) -> Option<LogPotential> {
+        None
+    }
+
+    /// What the scene demands itself, as far as requirements can say it, each with the key that says so: what
+    /// contradicts that is refused.
+    fn demands(&self) -> Vec<(String, Require)> {
+        Vec::new()
+    }
+
+    /// Bodies and impacts of [`Scene::motion`] before `time`, as far as a simulation that ends there tells; `None`
+    /// where it would be as dear as the whole.
+    ///
+    /// # Errors
+    /// As [`Scene::animate`].
+    fn motion_to(&self, _draw: &Self::Draw, _time: f64) -> Result<Option<Animation>, ModelError> {
+        Ok(None)
+    }
+
+    /// What is asked of a state, each in some words, in the order of [`Scene::answers`].
+    fn asked(&self) -> Vec<String> {
+        vec!["what the scene demands".to_owned()]
+    }
+
+    /// How well a state meets each thing that is asked. Of what the scene demands itself the margin is its log
+    /// constraint where it is not met.
+    fn answers(&self, state: &StateOf<Self>) -> Vec<Mark> {
+        let met = self.class(state).is_some();
+        let lacks = state.log_constraint.value().min(-f64::MIN_POSITIVE);
+        vec![Mark::of(if met { 0.0 } else { lacks })]
     }
 
     /// The world for the simulator alone, with all that is random left out: a level table of mean friction and

@@ -3,6 +3,12 @@
 
 mod common;
 
+mod require_bad;
+mod require_bounds;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod require_exact;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod require_kinds;
 mod scenario_bad;
 mod scenario_properties;
 mod scenario_schema;

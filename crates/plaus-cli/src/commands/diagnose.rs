@@ -1,11 +1,17 @@
 //! `plaus diagnose`
 
+use crate::clock::ProcessorClock;
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::table::short;
 use crate::{plots, report};
+use plaus_mcmc::Pulse;
+use plaus_run::pace::pace;
 use plaus_run::{Folder, Phase, Run, RunOf, RunVisitor};
 use plaus_scenes::Scene;
 use std::path::PathBuf;
+use std::thread;
+use std::time::Duration;
 
 /// Which run.
 #[derive(clap::Args)]
@@ -33,13 +39,51 @@ impl RunVisitor for Plots<'_> {
 }
 
 /// Counts the draws of each chain.
-pub(super) struct CountDraws;
+pub(super) struct CountDraws {
+    /// Only those that statistics are made of; else all among which there may be solutions.
+    pub(super) statistics: bool,
+}
 
 impl RunVisitor for CountDraws {
     type Output = u64;
     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> u64 {
-        run.draws(Phase::Sampling)
+        let phases = if self.statistics { &[Phase::Sampling] } else { run.counted() };
+        phases.iter().map(|&phase| run.draws(phase)).sum()
     }
+}
+
+/// How long a run's chains are gone on with to find out how fast they are here.
+const TRIED: Duration = Duration::from_millis(300);
+
+/// Goes on with a chain for a moment, to nowhere; gives the seconds an iteration takes.
+struct Pace;
+
+impl RunVisitor for Pace {
+    type Output = Option<f64>;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Option<f64> {
+        let (pulse, clock) = (Pulse::default(), ProcessorClock::start());
+        let made = thread::scope(|scope| {
+            scope.spawn(|| {
+                thread::sleep(TRIED);
+                pulse.stop();
+            });
+            pace(&run, &pulse)
+        });
+        // What cannot be told is not told.
+        made.ok().flatten().filter(|&made| made > 0).map(|made| clock.seconds() / made as f64)
+    }
+}
+
+/// Independent solutions, and how many come in a minute of one processor here.
+fn at_this_pace(run: &Run, diagnosis: &plaus_run::Diagnosis) -> Result<String, Failure> {
+    let Some(found) = &diagnosis.independent else { return Ok(String::new()) };
+    let mut text = report::independent(diagnosis, None);
+    let iterations = diagnosis.iterations as f64 * run.manifest().chains().len() as f64;
+    if let Some(each) = run.visit(Pace)? {
+        let minute = short(60.0 * found.ess / (iterations * each));
+        text.insert_str(text.find(" (by").unwrap_or(0), &format!(", {minute} a minute of one processor here"));
+    }
+    Ok(text)
 }
 
 impl Args {
@@ -48,7 +92,7 @@ impl Args {
         if run.folder().is_being_written() {
             console::note_line("note: the run is being written; this is as of its last checkpoint");
         }
-        if run.visit(CountDraws)? == 0 {
+        if run.visit(CountDraws { statistics: true })? == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         if let Some(folder) = &self.plots {
@@ -64,7 +108,8 @@ impl Args {
         if self.json {
             console::print_line(&report::to_json(manifest, &diagnosis).to_string())?;
         } else {
-            let solutions = report::solutions(&diagnosis) + &report::tempering(&diagnosis, None);
+            let solutions =
+                report::solutions(&diagnosis) + &at_this_pace(&run, &diagnosis)? + &report::tempering(&diagnosis, None);
             let findings: String = diagnosis.findings.iter().map(|finding| format!("  {finding}\n")).collect();
             let some = match diagnosis.stride {
                 1 => String::new(),

@@ -56,7 +56,7 @@ impl Args {
         } else if run.folder().is_being_written() {
             console::note_line("note: the run is being written; this shows it as of its last checkpoint");
         }
-        if run.visit(super::diagnose::CountDraws)? == 0 {
+        if run.visit(super::diagnose::CountDraws { statistics: false })? == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         let out = self.out.display().to_string();

@@ -39,6 +39,9 @@ pub(crate) struct Args {
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         interrupt::listen()?;
+        if self.pieces.iter().all(|piece| piece.is_file()) {
+            return self.chances();
+        }
         let (clock, pulse, over) = (Stopwatch::start(), MergePulse::default(), AtomicBool::new(false));
         let merged = thread::scope(|scope| {
             scope.spawn(|| self.look_on(&pulse, &over));
@@ -60,6 +63,16 @@ impl Args {
                 "merged {pieces} pieces: {chains} chains, {} MB of records, in {took}\n\nnext:\n  plaus diagnose {out}",
                 grouped(megabytes)
             ));
+        }
+        Ok(Outcome::Done)
+    }
+
+    /// Pieces that are files are what `plaus chance` wrote.
+    fn chances(&self) -> Result<Outcome, Failure> {
+        let whole = plaus_run::chance::merge(&self.pieces, &self.out, &RealDisk)?;
+        if !self.quiet {
+            let (pieces, batches, out) = (self.pieces.len(), whole.done().0, quoted(&self.out));
+            console::note_line(&format!("merged {pieces} pieces: {batches} batches\n\nnext:\n  plaus chance {out}"));
         }
         Ok(Outcome::Done)
     }

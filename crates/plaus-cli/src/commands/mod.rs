@@ -1,6 +1,8 @@
 //! The subcommands, one a file.
 
+mod chance;
 mod check;
+mod compare;
 mod completions;
 mod confirm;
 mod diagnose;
@@ -57,9 +59,11 @@ pub(crate) enum Command {
     Check(check::Args),
     /// Sample a scenario into a run folder.
     Sample(sample::Args),
+    /// Estimate how likely what a scenario demands is, before anything is demanded.
+    Chance(chance::Args),
     /// Continue an interrupted run from its last checkpoint, or make it longer.
     Resume(resume::Args),
-    /// Merge the pieces of a run into the run that one machine would have made, byte for byte.
+    /// Merge the pieces of a run, or of a chance, into the run that one machine would have made, byte for byte.
     Merge(merge::Args),
     /// Write the job that samples a run in pieces on many machines, and submit it.
     Submit(submit::Args),
@@ -88,6 +92,7 @@ impl Command {
             Self::New(args) => args.run(),
             Self::Check(args) => args.run(),
             Self::Sample(args) => args.run(),
+            Self::Chance(args) => args.run(),
             Self::Resume(args) => args.run(),
             Self::Merge(args) => args.run(),
             Self::Submit(args) => args.run(),

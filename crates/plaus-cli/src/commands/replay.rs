@@ -15,7 +15,7 @@ use std::path::PathBuf;
 pub(crate) struct Args {
     /// Folder of the run
     run: PathBuf,
-    /// The sample: its chain and its draw, as in the table of `plaus export`, e.g. 0:17
+    /// The sample: its chain and its draw, as in the table of `plaus export`, e.g. 0:17; 0:w17 is one of the warm-up
     #[arg(long, value_name = "CHAIN:DRAW")]
     sample: SampleId,
     /// Poses per second, besides those at every impact

@@ -1,5 +1,6 @@
 //! `plaus sample`, and what it shares with `plaus resume`.
 
+use super::compare;
 use super::confirm::{self, ACCURACY};
 use super::shards;
 use super::wanted::Wanted;
@@ -10,6 +11,7 @@ use crate::interrupt;
 use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
 use crate::table::{grouped, rate};
+use crate::why::{self, OfRun};
 use plaus_mcmc::{Ending, Plan};
 use plaus_run::{Diagnosis, Error, Folder, Manifest, Run, Sampling};
 use plaus_scenes::scenario::ScenarioError;
@@ -64,6 +66,10 @@ pub(crate) struct Watching {
     /// At the end, simulate every distinct solution again at reference accuracy, and list which of them hold
     #[arg(long)]
     confirm: bool,
+    /// At the end, make plain draws of the prior for as much processor time as the chains took after their warm-up, and
+    /// say how many solutions these find
+    #[arg(long)]
+    compare_prior: bool,
 }
 
 impl Args {
@@ -194,6 +200,9 @@ impl Watching {
             end["ending"] = json!(ending_in_words(ending));
             end["seconds"] = json!(monitor.seconds());
             end["iterations_per_second"] = json!(monitor.rate());
+            if !diagnosis.tally.is_satisfied() {
+                end["asked"] = why::to_json(&run.visit(OfRun)??);
+            }
             if let Some(list) = &confirmed {
                 let (held, checked) = (list.held, list.solutions.len());
                 end["confirmed"] = json!({ "accuracy": list.accuracy.name(), "checked": checked, "held": held });
@@ -201,6 +210,9 @@ impl Watching {
             console::print_line(&end.to_string())?;
         } else if !self.quiet {
             console::print(&summary(&run, &diagnosis, monitor, ending))?;
+        }
+        if self.compare_prior {
+            compare::with_prior(&run, &diagnosis, monitor, self.json)?;
         }
         if run.manifest().shard.is_some() {
             return self.end_of_piece(&run, ending);
@@ -223,6 +235,9 @@ impl Watching {
                 quoted(path)
             ));
         } else if !diagnosis.tally.is_satisfied() {
+            if !self.json && !self.quiet {
+                console::note_line(&why::in_words(&run.visit(OfRun)??, "recorded states"));
+            }
             console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
         }
         if let Some(list) = confirmed.as_ref().filter(|_| !self.json) {
@@ -278,13 +293,20 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     }
     // Restarts count from the end of the warm-up on, in all sessions; the clock knows this session.
     let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
-    text += &report::tempering(diagnosis, (monitor.begun_at() == 0).then_some(sampling));
+    let sampling = (monitor.begun_at() == 0).then_some(sampling);
+    text += &report::independent(diagnosis, sampling);
+    text += &report::tempering(diagnosis, sampling);
     if diagnosis.draws == 0 {
-        // Warm-up draws are neither diagnosed nor exported.
-        text += &format!("\nstill in the warm-up: nothing to look at yet\n\nnext:\n  plaus resume {path}\n");
-        return text;
+        let still = "\nstill in the warm-up: there are no draws for statistics yet\n";
+        if diagnosis.tally.distinct == 0 {
+            return text + still + &format!("\nnext:\n  plaus resume {path}\n");
+        }
+        if ending != Ending::EnoughSolutions {
+            text += still;
+        }
     }
     text += &match plan.solutions {
+        _ if diagnosis.draws == 0 => String::new(),
         Some(_) => format!("(whether they come up as often as they are plausible: `plaus diagnose {path}`)\n"),
         None => statistics(diagnosis, &path),
     };
@@ -292,7 +314,9 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     if let Some(best) = diagnosis.tally.best() {
         text += &format!("  plaus gallery {path} --out gallery.html\n  plaus replay {path} --sample {best}\n");
     }
-    text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
+    if diagnosis.draws > 0 {
+        text += &format!("  plaus diagnose {path}\n  plaus export {path} --format csv --out draws.csv\n");
+    }
     match ending {
         Ending::Stopped => text += &format!("  plaus resume {path}\n"),
         Ending::Complete if !diagnosis.is_healthy() && plan.solutions.is_none() => {

@@ -26,7 +26,7 @@ pub(crate) struct Wanted {
     /// Record one in N iterations
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     thin: Option<u64>,
-    /// Stop once K distinct solutions are recorded after the warm-up
+    /// Stop once K distinct solutions are recorded, those found while moves were adapted among them
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     solutions: Option<u64>,
     /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times

@@ -9,7 +9,7 @@ mod view;
 pub(crate) use beacon::{LONGEST as LONGEST_SILENCE, Signal, State, host, read as read_signal};
 pub(crate) use view::acceptance;
 
-use crate::clock::Stopwatch;
+use crate::clock::{ProcessorClock, Stopwatch};
 use crate::console;
 use crate::failure::Failure;
 use crate::interrupt;
@@ -78,6 +78,9 @@ pub(crate) struct Monitor {
 /// What is known of the run, and what was shown of it.
 struct Board {
     clock: Stopwatch,
+    processor: ProcessorClock,
+    /// Processor seconds that the sampling took, once it is over.
+    spent: f64,
     /// Seconds the sampling took, once it is over.
     took: Option<f64>,
     manifest: Option<Arc<Manifest>>,
@@ -98,6 +101,8 @@ impl Monitor {
     pub(crate) fn new(style: Style, verbose: bool, limit: Option<Duration>, folder: &Folder) -> Self {
         let board = Board {
             clock: Stopwatch::start(),
+            processor: ProcessorClock::start(),
+            spent: 0.0,
             took: None,
             manifest: None,
             begun_at: 0,
@@ -151,6 +156,11 @@ impl Monitor {
     /// Seconds since the run began, or went on, until it ended.
     pub(crate) fn seconds(&self) -> f64 {
         self.board().seconds()
+    }
+
+    /// Processor seconds of all threads since the run began, or went on, until it ended.
+    pub(crate) fn processor_seconds(&self) -> f64 {
+        self.board().spent
     }
 
     /// Iterations of all chains together, per second.
@@ -242,6 +252,7 @@ impl Monitor {
     fn finish(&self) {
         let mut board = self.board();
         board.took = Some(board.seconds());
+        board.spent = board.processor.seconds();
         board.wipe();
         self.over.notify_all();
     }
@@ -312,7 +323,7 @@ impl Watch for Rounds<'_> {
         (self.opening)(manifest, done);
         self.checkpoint = Stopwatch::start();
         let mut board = self.monitor.board();
-        board.clock = self.checkpoint;
+        (board.clock, board.processor) = (self.checkpoint, ProcessorClock::start());
         (board.begun_at, board.done) = (done, done);
         board.manifest = Some(Arc::new(manifest.clone()));
         board.beacon = Beacon::of(manifest, &self.monitor.folder);

@@ -19,8 +19,8 @@
 mod substance;
 
 use crate::clip::{Clip, ExportError};
+use plaus_animation::Animation;
 use plaus_dist::math::{cos, exp, ln, square};
-use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use substance::{Mode, Sounding, of_body, of_prop, unknown};
 
@@ -36,59 +36,137 @@ const AIR: [f64; 2] = [1.2, 343.0];
 const DISTANCE: f64 = 1.0;
 /// Size of what roughness consists of, m: its pitch is the speed over that.
 const GRAIN: f64 = 1e-3;
+/// Force of slipping over that of rolling at the same speed: grains are torn over each other.
+const SLIPPING: f64 = 3.0;
 /// Loudest moment of a file, as a share of what a sample can hold: −1 dB.
 const LOUDEST: f64 = 0.891;
 
-/// The force on each thing that sounds, N, sample by sample.
-struct Forces {
-    names: BTreeMap<String, usize>,
-    things: Vec<(Sounding, Vec<f64>)>,
-    samples: usize,
+/// What is heard of an animation: things that sound, and what presses them when.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Score {
+    /// Things by name, in the order in which they are first pressed.
+    pub things: Vec<(String, Thing)>,
+    /// One an impact of the animation, in their order.
+    pub strikes: Vec<Strike>,
+    /// One a contact that lasts, in their order.
+    pub rubs: Vec<Rub>,
+}
+
+/// A thing that sounds, a metre away.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Thing {
+    /// Pressure for a rate of force, Pa s/N: what is heard of a body that is slowed down.
+    pub click: f64,
+    /// Its modes, as far as they are heard.
+    pub modes: Vec<Resonator>,
+    /// What it is made of, how heavy and how curved it is.
+    sounding: Sounding,
+}
+
+/// A mode: what it does with a force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resonator {
+    /// Rad/s.
+    pub omega: f64,
+    /// How fast it fades, 1/s.
+    pub fades: f64,
+    /// Pressure for a change of its velocity by the impulse of 1 N s, Pa/(N s), times s.
+    pub loud: f64,
+}
+
+/// An impact: a force like half a sine wave.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strike {
+    /// s, from the beginning of the animation.
+    pub start: f64,
+    /// s.
+    pub length: f64,
+    /// N s.
+    pub impulse: f64,
+    /// Numbers of both things.
+    pub pair: [usize; 2],
+}
+
+/// A contact: forces that follow the grains of both surfaces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rub {
+    /// s, from the beginning of the animation.
+    pub start: f64,
+    /// s, from the beginning of the animation.
+    pub end: f64,
+    /// m/s, of rolling and of slipping.
+    pub speeds: [f64; 2],
+    /// N, of rolling and of slipping.
+    pub forces: [f64; 2],
+    /// Numbers of both things.
+    pub pair: [usize; 2],
+}
+
+/// What is heard of an animation.
+#[must_use]
+pub fn score(animation: &Animation) -> Score {
+    let mut score = Score::default();
+    for hit in &animation.impacts {
+        let pair = [score.place(animation, &hit.body), score.place(animation, &hit.other)];
+        let [a, b] = pair.map(|thing| &score.things[thing].1.sounding);
+        let length = contact_time(a, b, hit.speed);
+        score.strikes.push(Strike { start: hit.time, length, impulse: hit.impulse, pair });
+    }
+    for contact in &animation.contacts {
+        let pair = [score.place(animation, &contact.body), score.place(animation, &contact.other)];
+        let rough = pair.map(|thing| score.things[thing].1.sounding.substance.rough);
+        // What lifts the body as it runs over a grain: the share of the weight that the grain's slope is.
+        let slope = (square(rough[0]) + square(rough[1])).sqrt() / GRAIN;
+        let (speeds, force) = ([contact.roll, contact.slip], slope * contact.force);
+        let (start, end) = (contact.start, contact.end);
+        score.rubs.push(Rub { start, end, speeds, forces: [force, SLIPPING * force], pair });
+    }
+    score
+}
+
+impl Score {
+    fn place(&mut self, animation: &Animation, name: &str) -> usize {
+        if let Some(place) = self.things.iter().position(|(known, _)| known == name) {
+            return place;
+        }
+        let body = animation.tracks.iter().find(|track| track.name == name).map(of_body);
+        let prop = || animation.scenery.iter().find(|prop| prop.name == name).map(of_prop);
+        let sounding = body.or_else(prop).unwrap_or_else(unknown);
+        self.things.push((name.to_owned(), Thing::of(sounding)));
+        self.things.len() - 1
+    }
 }
 
 /// Pressure at a metre, in Pa, [`RATE`] samples a second, from the beginning of the clip until shortly after its end.
 #[must_use]
 pub fn pressure(clip: &Clip<'_>) -> Vec<f64> {
     let samples = ((clip.cut.length() + TAIL) * f64::from(RATE)).ceil() as usize;
-    let mut forces = Forces { names: BTreeMap::new(), things: Vec::new(), samples };
-    for hit in clip.animation.impacts.iter().filter(|hit| clip.cut.holds(hit.time)) {
-        let pair = [forces.place(clip, &hit.body), forces.place(clip, &hit.other)];
-        let time = contact_time(&forces.things[pair[0]].0, &forces.things[pair[1]].0, hit.speed);
-        pair.into_iter().for_each(|thing| forces.strike(thing, hit.time - clip.cut.from(), time, hit.impulse));
+    let (score, begin) = (score(clip.animation), clip.cut.from());
+    let mut forces = Forces(vec![vec![0.0; samples]; score.things.len()]);
+    for strike in score.strikes.iter().filter(|strike| clip.cut.holds(strike.start)) {
+        let mut strike_one = |thing| forces.strike(thing, strike.start - begin, strike.length, strike.impulse);
+        strike.pair.into_iter().for_each(&mut strike_one);
     }
-    for (number, contact) in clip.animation.contacts.iter().enumerate() {
-        let pair = [forces.place(clip, &contact.body), forces.place(clip, &contact.other)];
-        let rough = pair.map(|thing| forces.things[thing].0.substance.rough);
-        let [start, end] = [contact.start, contact.end].map(|time| time - clip.cut.from());
-        // What lifts the body as it runs over a grain: the share of the weight that the grain's slope is.
-        let slope = (square(rough[0]) + square(rough[1])).sqrt() / GRAIN;
-        let (roll, slip) = (contact.roll, contact.slip);
-        for (speed, strength, noise) in [(roll, 1.0, 2 * number), (slip, 3.0, 2 * number + 1)] {
-            let force = strength * slope * contact.force;
-            pair.into_iter().for_each(|thing| forces.rub(thing, [start, end], speed, force, noise as u64));
+    for (number, rub) in score.rubs.iter().enumerate() {
+        let span = [rub.start, rub.end].map(|time| time - begin);
+        for kind in 0..2 {
+            let noise = (2 * number + kind) as u64;
+            let mut rub_one = |thing| forces.rub(thing, span, rub.speeds[kind], rub.forces[kind], noise);
+            rub.pair.into_iter().for_each(&mut rub_one);
         }
     }
     let mut air = vec![0.0; samples];
-    for (sounding, force) in &forces.things {
-        click(sounding, force, &mut air);
-        sounding.modes.iter().filter(|mode| mode.frequency < HIGHEST).for_each(|mode| ring(mode, force, &mut air));
+    for ((_, thing), force) in score.things.iter().zip(&forces.0) {
+        click(thing, force, &mut air);
+        thing.modes.iter().for_each(|mode| ring(mode, force, &mut air));
     }
     air
 }
 
-impl Forces {
-    fn place(&mut self, clip: &Clip<'_>, name: &str) -> usize {
-        if let Some(place) = self.names.get(name) {
-            return *place;
-        }
-        let body = clip.animation.tracks.iter().find(|track| track.name == name).map(of_body);
-        let prop = || clip.animation.scenery.iter().find(|prop| prop.name == name).map(of_prop);
-        let sounding = body.or_else(prop).unwrap_or_else(unknown);
-        self.things.push((sounding, vec![0.0; self.samples]));
-        self.names.insert(name.to_owned(), self.things.len() - 1);
-        self.things.len() - 1
-    }
+/// The force on each thing that sounds, N, sample by sample.
+struct Forces(Vec<Vec<f64>>);
 
+impl Forces {
     /// A force like half a sine wave: each sample has its mean over the sample, so that pulses shorter than one keep
     /// their impulse.
     fn strike(&mut self, thing: usize, start: f64, time: f64, impulse: f64) {
@@ -97,7 +175,7 @@ impl Forces {
         let so_far = |t: f64| 0.5 * (1.0 - cos(PI * (t / time).clamp(0.0, 1.0)));
         let first = (start * rate).floor().max(0.0) as usize;
         let last = ((start + time) * rate).ceil() as usize;
-        let force = &mut self.things[thing].1;
+        let force = &mut self.0[thing];
         for (sample, force) in force.iter_mut().enumerate().take(last + 1).skip(first) {
             let at = |sample: usize| sample as f64 / rate - start;
             *force += impulse * (so_far(at(sample + 1)) - so_far(at(sample))) * rate;
@@ -113,7 +191,7 @@ impl Forces {
         let [first, last] = [start, end].map(|time| (time * rate).max(0.0) as usize);
         // One number a grain, and a cosine between them.
         let step = (speed / GRAIN / rate).min(1.0);
-        let force = &mut self.things[thing].1;
+        let force = &mut self.0[thing];
         for (sample, force) in force.iter_mut().enumerate().take(last).skip(first) {
             let along = (sample - first) as f64 * step;
             let (grain, share) = (along.floor(), along.fract());
@@ -144,30 +222,47 @@ fn contact_time(a: &Sounding, b: &Sounding, speed: f64) -> f64 {
     (2.87 * fifth(square(mass) / (radius * square(stiff) * speed.max(1e-3)))).min(0.01)
 }
 
-/// The pressure of a body that is slowed down, as an oscillating sphere's: ρ a³ / (2 c r) times the rate of its
-/// acceleration.
-fn click(sounding: &Sounding, force: &[f64], air: &mut [f64]) {
-    if !sounding.mass.is_finite() {
+impl Thing {
+    fn of(sounding: Sounding) -> Self {
+        let heard = sounding.modes.iter().filter(|mode| mode.frequency < HIGHEST);
+        let modes = heard.map(Resonator::of).collect();
+        // The pressure of an oscillating sphere: ρ a³ / (2 c r) times the rate of its acceleration.
+        let volume = sounding.mass / sounding.substance.density;
+        let cube = volume * 3.0 / (4.0 * PI);
+        let click =
+            if sounding.mass.is_finite() { AIR[0] * cube / (2.0 * AIR[1] * DISTANCE * sounding.mass) } else { 0.0 };
+        Self { click, modes, sounding }
+    }
+}
+
+impl Resonator {
+    /// A piston of the mode's area that radiates, the less the smaller it is to its wave length.
+    fn of(mode: &Mode) -> Self {
+        let omega = TAU * mode.frequency;
+        let size = omega / AIR[1] * (mode.area / PI).sqrt();
+        let radiates = square(size) / (1.0 + square(size));
+        let loud = AIR[0] * mode.area * radiates / (2.0 * PI * DISTANCE) * omega / mode.mass;
+        Self { omega, fades: 0.5 * mode.loss * omega, loud }
+    }
+}
+
+fn click(thing: &Thing, force: &[f64], air: &mut [f64]) {
+    let factor = thing.click * f64::from(RATE);
+    if factor == 0.0 {
         return;
     }
-    let volume = sounding.mass / sounding.substance.density;
-    let cube = volume * 3.0 / (4.0 * PI);
-    let factor = AIR[0] * cube / (2.0 * AIR[1] * DISTANCE * sounding.mass) * f64::from(RATE);
     for (air, pair) in air.iter_mut().skip(1).zip(force.windows(2)) {
         *air += factor * (pair[1] - pair[0]);
     }
 }
 
-/// The pressure of a mode: a resonator that the force drives, and a piston of its area that radiates, the less the
-/// smaller it is to its wave length.
-fn ring(mode: &Mode, force: &[f64], air: &mut [f64]) {
-    let (step, omega) = (1.0 / f64::from(RATE), TAU * mode.frequency);
-    let decay = exp(-0.5 * mode.loss * omega * step);
-    let (first, second) = (2.0 * decay * cos(omega * step), -decay * decay);
+/// The pressure of a mode: a resonator that the force drives.
+fn ring(mode: &Resonator, force: &[f64], air: &mut [f64]) {
+    let step = 1.0 / f64::from(RATE);
+    let decay = exp(-mode.fades * step);
+    let (first, second) = (2.0 * decay * cos(mode.omega * step), -decay * decay);
     // The velocity that an impulse gives, and the pressure of its rate.
-    let size = omega / AIR[1] * (mode.area / PI).sqrt();
-    let radiates = square(size) / (1.0 + square(size));
-    let factor = AIR[0] * mode.area * radiates / (2.0 * PI * DISTANCE) * omega * step / mode.mass;
+    let factor = mode.loud * step;
     let (mut before, mut last) = (0.0, 0.0);
     for (air, force) in air.iter_mut().zip(force) {
         let now = first * last + second * before + force;

@@ -131,7 +131,7 @@ class App {
   keys() {
     const { player } = this;
     const actions = {
-      ' ': () => player.toggle(), b: () => this.compare(), s: () => this.star(this.a), t: () => this.toggleTrails(), r: () => player.reset(), m: () => this.map.toggle(),
+      ' ': () => player.toggle(), b: () => this.compare(), s: () => this.star(this.a), t: () => this.toggleTrails(), o: () => player.sound.toggle(), r: () => player.reset(), m: () => this.map.toggle(),
       a: () => this.setAnimateAll(!this.animateAll), d: () => this.details.download(), c: () => this.details.copy(), j: () => this.move(1), k: () => this.move(-1),
       ArrowLeft: (shift) => (shift ? player.jump(-1) : (player.pause(), player.seek(player.time - 1 / 60))),
       ArrowRight: (shift) => (shift ? player.jump(1) : (player.pause(), player.seek(player.time + 1 / 60))),

@@ -42,10 +42,19 @@ class Solution {
       time: t, speed: speed[k], body: meta.names[pair[0][k]], other: meta.names[pair[1][k]],
       point: [0, 1, 2].map((axis) => meta.low[axis] + shares[axis][k] * size[axis]),
     }));
+    const pairs = (count) => { const sides = [columns.take(Uint16Array, count), columns.take(Uint16Array, count)]; return (k) => [sides[0][k], sides[1][k]]; };
+    const length = columns.take(Float32Array, hits), impulse = columns.take(Float32Array, hits), struck = pairs(hits);
+    open.strikes = Array.from(time, (start, k) => ({ start, length: length[k], impulse: impulse[k], pair: struck(k) }));
+    const [begin, end, ...kinds] = Array.from({ length: 6 }, () => columns.take(Float32Array, this.rubs)), rubbed = pairs(this.rubs);
+    open.rubs = Array.from(begin, (start, k) => ({
+      start, end: end[k], kinds: [[kinds[0][k], kinds[1][k]], [kinds[2][k], kinds[3][k]]], pair: rubbed(k),
+    }));
     return (this.columns = open);
   }
 
   get impacts() { return this.open().impacts; }
+  get strikes() { return this.open().strikes; }
+  get rubbing() { return this.open().rubs; }
 
   // The piece of a track that is valid at a time.
   piece(track, time) {

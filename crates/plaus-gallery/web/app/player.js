@@ -19,6 +19,7 @@ class Player {
     document.getElementById('play').addEventListener('click', () => this.toggle());
     document.getElementById('view-reset').addEventListener('click', () => this.reset());
     document.getElementById('trails').addEventListener('click', () => app.toggleTrails());
+    this.sound = new Sound(app.meta.sounds);
     this.speed = document.getElementById('speed');
     this.speed.value = this.gentle();
     this.scrub.addEventListener('input', () => { this.pause(); this.seek(+this.scrub.value); });
@@ -72,6 +73,7 @@ class Player {
 
   pause() {
     this.playing = false;
+    this.sound.stop();
     this.stale = true;
     this.app.wake();
     this.label();
@@ -98,6 +100,8 @@ class Player {
   }
 
   step(seconds) {
+    const { app, playing, time, duration } = this;
+    this.sound.follow(app.a, playing && time < duration ? time : null, +this.speed.value);
     if (!this.playing) return;
     if (this.time >= this.duration) {
       this.rest += seconds;

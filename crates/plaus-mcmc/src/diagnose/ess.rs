@@ -47,6 +47,37 @@ pub fn ess_mean<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
     Ok(Standardised::new(chains.rows()).map_or(counted as f64, |standard| ess_of_rows(&halves(&standard.rows()))))
 }
 
+/// Effective sample size of the draws that are `kept` among all: how many independent ones would place the centre of
+/// their distribution as well. Of independent draws it is about the number of those kept.
+///
+/// The mean over the kept draws is a ratio of two means over all; its error is that of the series which is 0 where a
+/// draw is not kept, and there the rank score among the kept ones. So what counts is how often a chain comes back to
+/// what is kept, and from where, not how long it stays. `None` where fewer than two are kept, or all of these are
+/// equal.
+///
+/// # Errors
+/// [`DiagnoseError`] where kept draws are not finite, or there are too few draws, or of unequal number.
+pub fn ess_where<C: AsRef<[f64]>, K: AsRef<[bool]>>(chains: &[C], kept: &[K]) -> Result<Option<f64>, DiagnoseError> {
+    let is_kept = || kept.iter().flat_map(|kept| kept.as_ref().iter().copied());
+    let values = chains.iter().flat_map(|chain| chain.as_ref().iter().copied()).zip(is_kept());
+    let values: Vec<f64> = values.filter_map(|(value, kept)| kept.then_some(value)).collect();
+    if values.len() < 2 || values.iter().all(|value| *value == values[0]) {
+        return Ok(None);
+    }
+    let score = if values.iter().all(|value| value.is_finite()) { normal_scores(&[&values]) } else { values };
+    let mut scores = score.into_iter();
+    let mut series = Vec::with_capacity(chains.len());
+    for (chain, kept) in chains.iter().zip(kept) {
+        let place = |&kept: &bool| if kept { scores.next().unwrap_or(0.0) } else { 0.0 };
+        let row: Vec<f64> = kept.as_ref().iter().map(place).collect();
+        debug_assert_eq!(row.len(), chain.as_ref().len());
+        series.push(row);
+    }
+    let halves = Chains::new(&series)?.halves();
+    let (all, count) = (is_kept().count() as f64, is_kept().filter(|&kept| kept).count() as f64);
+    Ok(Some(ess_of_rows(&halves) * count / all))
+}
+
 /// The smaller effective sample size of the shares of draws at or below either end.
 pub(super) fn ess_of_ends(halves: &[&[f64]], ends: [f64; 2]) -> f64 {
     let mut flags = Vec::new();
@@ -119,6 +150,44 @@ mod tests {
         assert_eq!(ess_bulk(&chains), Ok(16.0));
         assert_eq!(ess_tail(&chains), Ok(16.0));
         assert_eq!(ess_mean(&chains), Ok(16.0));
+    }
+
+    /// A fixed scramble: a stand-in for independent draws.
+    fn scrambled(count: u64, key: u64) -> Vec<f64> {
+        let one = |i: u64| {
+            let mut z = i.wrapping_add(key << 32).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            (z >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..count).map(one).collect()
+    }
+
+    #[test]
+    fn kept_draws_count_as_often_as_they_are_new() {
+        let kept_of = |rows: &[Vec<f64>]| -> Vec<Vec<bool>> {
+            rows.iter().map(|row| row.iter().map(|&x| x < 0.04).collect()).collect()
+        };
+        let count = |kept: &[Vec<bool>]| kept.iter().flatten().filter(|&&kept| kept).count() as f64;
+        // Independent draws: as many as are kept, within three times the error of an ESS of so many rows, some 5 %.
+        let rows = [scrambled(20_000, 1), scrambled(20_000, 2)];
+        let kept = kept_of(&rows);
+        let ess = ess_where(&rows, &kept).unwrap().unwrap();
+        assert!((ess / count(&kept) - 1.0).abs() < 0.15, "{ess} of {}", count(&kept));
+        // Each draw ten times in a row is one draw; what is kept is ten times as much.
+        let slow = rows.map(|row| row[..2000].iter().flat_map(|&x| [x; 10]).collect::<Vec<f64>>());
+        let kept = kept_of(&slow);
+        let ess = ess_where(&slow, &kept).unwrap().unwrap();
+        assert!((ess / (count(&kept) / 10.0) - 1.0).abs() < 0.3, "{ess} of {}", count(&kept));
+        // What is not kept may be anything.
+        let mut odd = slow.clone();
+        odd[0].iter_mut().zip(&kept[0]).filter(|(_, kept)| !**kept).for_each(|(x, _)| *x = f64::NAN);
+        assert_eq!(ess_where(&odd, &kept).unwrap(), Some(ess));
+        assert!(ess_where(&odd, &[vec![true; 20_000], vec![true; 20_000]]).is_err());
+        assert_eq!(ess_where(&slow, &[vec![false; 20_000], vec![false; 20_000]]), Ok(None));
+        // A chain that found one solution and stayed has one.
+        let stuck = [vec![0.01; 1000], scrambled(1000, 3).iter().map(|x| 0.5 + 0.5 * x).collect()];
+        assert_eq!(ess_where(&stuck, &kept_of(&stuck)), Ok(None));
     }
 
     #[test]

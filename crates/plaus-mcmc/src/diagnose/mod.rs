@@ -68,7 +68,7 @@ mod summary;
 
 pub use autocorrelation::{AutocorrelationTime, SOKAL_WINDOW, autocorrelation, integrated_autocorrelation_time};
 pub use chains::{DiagnoseError, MIN_DRAWS};
-pub use ess::{ess_bulk, ess_mean, ess_tail};
+pub use ess::{ess_bulk, ess_mean, ess_tail, ess_where};
 pub use mcse::{mcse_mean, mcse_sd};
 pub use plaus_dist::normal_quantile;
 pub use rhat::rhat;

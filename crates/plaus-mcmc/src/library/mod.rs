@@ -10,7 +10,7 @@
 //! | [`ShiftSome`] | each with a probability is shifted in a random direction | 0 |
 //! | [`ShiftOne`] | one that the draw has is shifted in a random direction | 0 |
 //! | [`ShiftAll`] | all are shifted, by steps of one size or of many | 0 |
-//! | [`Step`] | one makes a step that leaves its law as it is | its Gaussian at the old value over that at the new one |
+//! | [`Step`] | one makes a step that leaves its law as it is | its Gaussian, old value over new |
 //! | [`StepAll`] | all of a set make such a step of one size | the product of theirs |
 //! | [`Swap`] | two of a set exchange their values | 0 |
 //! | [`Symmetry`] | a map that is its own reverse, or as likely as that | 0 |

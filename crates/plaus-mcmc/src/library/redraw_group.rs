@@ -7,8 +7,8 @@ use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 
-/// All variables of one body or part, each as likely, are drawn anew from their laws. Ratio: densities of the old values
-/// over those of the new ones. Without any group the chain stays.
+/// All variables of one body or part, each as likely, are drawn anew from their laws. Ratio: densities of the old
+/// values over those of the new ones. Without any group the chain stays.
 #[derive(Debug, Clone, Copy)]
 pub struct RedrawGroup {
     /// The move's name.

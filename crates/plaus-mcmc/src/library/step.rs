@@ -19,9 +19,9 @@ pub struct Way {
     pub size: usize,
 }
 
-/// One variable makes a step of a random size s that leaves its law as it is: a number at z standard deviations from its
-/// mean goes to √(1 − s²) z + s ξ, with ξ a standard normal number; one on an interval or a rectangle with joined ends by
-/// s times its width; one that no numbers hold as the target has it.
+/// One variable makes a step of a random size s that leaves its law as it is: a number at z standard deviations from
+/// its mean goes to √(1 − s²) z + s ξ, with ξ a standard normal number; one on an interval or a rectangle with joined
+/// ends by s times its width; one that no numbers hold as the target has it.
 ///
 /// Ratio: that of the Gaussian at the old value to that at the new one, before anything is cut off: what a cut forbids
 /// the prior rejects. All else is symmetric.

@@ -8,12 +8,12 @@ use crate::vars::{Variables, log_density, renew};
 use plaus_dist::{LogRatio, Stream, math};
 
 /// Half of the time births: each variable of a set that the draw lacks gets, with probability η, a value of its law.
-/// Else deaths: each that it has goes with probability η. The last two of the strategies of Chenney & Forsyth's appendix
-/// B.2, each the other's reverse.
+/// Else deaths: each that it has goes with probability η. The last two of the strategies of Chenney & Forsyth's
+/// appendix B.2, each the other's reverse.
 ///
-/// With N variables of which n are there, s births have density `η^s (1−η)^(N−n−s) Π p(value)`, and the way back
-/// `η^s (1−η)^n`. The prior's own factors cancel, so that what is left beside the constraint is `(1−η)^(n+n'−N)`, and
-/// the inverse power for deaths.
+/// With N variables of which n are there, s births have density `η^s (1−η)^(N−n−s) Π p(value)`, and the way back `η^s
+/// (1−η)^n`. The prior's own factors cancel, so that what is left beside the constraint is `(1−η)^(n+n'−N)`, and the
+/// inverse power for deaths.
 #[derive(Debug, Clone)]
 pub struct Toggle {
     /// The move's name.

@@ -288,6 +288,12 @@ impl<'a, T: Target> Replicas<'a, T> {
         self.climb.at.get(rung).map(|&replica| self.chains[replica as usize].state())
     }
 
+    /// How often each move of a rung ended how; empty where there is no such rung.
+    #[must_use]
+    pub fn counts_of(&self, rung: usize) -> &[MoveCounts] {
+        self.climb.at.get(rung).map_or(&[], |&replica| self.chains[replica as usize].counts())
+    }
+
     /// Iterations made by every replica.
     #[must_use]
     pub fn iteration(&self) -> u64 {

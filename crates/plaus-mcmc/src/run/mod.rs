@@ -44,8 +44,8 @@ pub struct Plan {
     /// Most iterations between two points at which the run can stop and later go on; at least 1. A run begins with
     /// shorter blocks, of about an eighth of what is done.
     pub block: u64,
-    /// Stop at the first iteration by which the chains together have recorded this many distinct solutions after the
-    /// warm-up.
+    /// Stop at the first iteration by which the chains together have recorded this many distinct solutions, those of
+    /// the warm-up among them: see [`Plan::counts_from`].
     pub solutions: Option<u64>,
     /// Rungs between the prior and the target that each chain climbs and descends, 1 for none, and iterations between
     /// two swaps. Only states of the target are recorded, and iterations are those of each rung.
@@ -61,6 +61,13 @@ impl Plan {
     #[must_use]
     pub fn end(&self) -> u64 {
         self.warmup.saturating_add(self.iterations)
+    }
+
+    /// The first iteration whose state may count as a distinct solution. Who looks for solutions takes each from the
+    /// start on; else they are those of the sampling phase.
+    #[must_use]
+    pub fn counts_from(&self) -> u64 {
+        if self.solutions.is_some() { 0 } else { self.warmup }
     }
 
     pub(crate) fn tempering(&self) -> Tempering {
@@ -199,7 +206,7 @@ pub trait Sink<D, O> {
 pub struct Progress<'a> {
     /// Iterations done by every chain.
     pub end_iteration: u64,
-    /// Distinct solutions recorded by all chains together after the warm-up.
+    /// Distinct solutions that all chains together have recorded, see [`Plan::counts_from`].
     pub distinct: &'a Distinct,
     /// Per chain: counts of each move, and hits.
     pub chains: Vec<(&'a [MoveCounts], Hits)>,

@@ -50,7 +50,7 @@ impl Pulse {
         self.chains.get().map(|beats| beats.iter().map(read).collect()).unwrap_or_default()
     }
 
-    /// Distinct solutions recorded after the warm-up by all chains together. It may fall by what a chain found beyond
+    /// Distinct solutions recorded by all chains together, see [`Plan::counts_from`](super::Plan::counts_from). It may fall by what a chain found beyond
     /// the end of a run.
     #[must_use]
     pub fn distinct(&self) -> u64 {

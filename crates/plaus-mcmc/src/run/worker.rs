@@ -167,12 +167,12 @@ impl Books {
             return;
         }
         let (accepted, by) = std::mem::take(&mut self.pending);
-        // A solution that the warm-up leaves behind is one of the sampling phase too.
-        let is_sampled = iteration >= plan.warmup;
-        let is_first = is_sampled && iteration - plan.warmup < plan.thin;
+        // A solution that is there already where counting begins is one too.
+        let counts = iteration >= plan.counts_from();
+        let is_first = counts && iteration - plan.counts_from() < plan.thin;
         let fresh = accepted > 0 || made.block.entries.is_empty() || is_first;
         made.block.push(accepted, by, self.class, chain.state());
-        if let (true, Some(class)) = (fresh && is_sampled, self.class) {
+        if let (true, Some(class)) = (fresh && counts, self.class) {
             let first = FirstOfClass { iteration, chain: self.index, class };
             if self.distinct.note(first) {
                 made.firsts.push(first);

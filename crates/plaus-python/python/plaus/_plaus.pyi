@@ -168,9 +168,9 @@ class RunFolder:
         """Whether another process is writing the run now, as far as can be told."""
     def columns(self, warmup: bool) -> list[tuple[str, str, str, Any]]:
         """Columns of a phase: name, unit, role, and an array (chain, draw)."""
-    def solutions(self) -> list[tuple[int, int, int, float]]:
+    def solutions(self) -> list[tuple[int, int, int, float, bool]]:
         """The first draw of each distinct solution: chain, draw, iteration, log p."""
-    def replay(self, samples: Sequence[tuple[int, int]], accuracy: str | None = None) -> list[tuple[str, Motion]]:
+    def replay(self, samples: Sequence[tuple[int, int, bool]], accuracy: str | None = None) -> list[tuple[str, Motion]]:
         """What is known of samples that are simulated again, as JSON, and their motions."""
     def gallery(self, count: int) -> tuple[str, int, int]:
         """A page that plays solutions, how many it shows, and how many there are."""

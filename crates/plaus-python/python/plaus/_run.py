@@ -21,13 +21,14 @@ if TYPE_CHECKING:
 
 
 class Sample(NamedTuple):
-    """A draw of the sampling phase: its chain, and its number in it from 0."""
+    """A draw: its chain, its number there from 0, and whether it is one of the warm-up, which has numbers of its own."""
 
     chain: int
     draw: int
+    warmup: bool = False
 
     def __str__(self) -> str:
-        return f"{self.chain}:{self.draw}"
+        return f"{self.chain}:{'w' if self.warmup else ''}{self.draw}"
 
 
 class Solution(NamedTuple):
@@ -39,11 +40,13 @@ class Solution(NamedTuple):
     """The iteration that recorded it."""
     log_p: float
     """Log probability density, up to a constant."""
+    warmup: bool = False
+    """Whether it was found in the warm-up, while moves were adapted: it is no part of statistics then."""
 
     @property
     def sample(self) -> Sample:
         """Which draw it is."""
-        return Sample(self.chain, self.draw)
+        return Sample(self.chain, self.draw, self.warmup)
 
 
 # What names a sample: the number of a solution, (chain, draw), or "chain:draw".
@@ -227,15 +230,17 @@ class Run:
             self._solutions = [Solution(*found) for found in self._run.solutions()]
         return self._solutions
 
-    def _sample(self, which: Which) -> tuple[int, int]:
+    def _sample(self, which: Which) -> Sample:
         if isinstance(which, str):
             chain, _, draw = which.partition(":")
             try:
-                return int(chain), int(draw)
+                return Sample(int(chain), int(draw.removeprefix("w")), draw.startswith("w"))
             except ValueError:
                 raise ValueError(f"{which!r} names no sample: write CHAIN:DRAW, e.g. '0:17'") from None
+        if isinstance(which, (Sample, Solution)):
+            return Sample(which.chain, which.draw, which.warmup)
         if isinstance(which, tuple):
-            return int(which[0]), int(which[1])
+            return Sample(int(which[0]), int(which[1]))
         if isinstance(which, bool) or not hasattr(which, "__index__"):
             raise TypeError(f"{which!r} names no sample: the number of a solution does, (chain, draw), or 'chain:draw'")
         known = self.solutions
@@ -254,10 +259,8 @@ class Run:
 
     def replays(self, which: Iterable[Which] | None = None) -> list[Replay]:
         """Many samples, simulated again on all cores; by default one of each solution."""
-        chosen = (
-            [solution.sample for solution in self.solutions] if which is None else [self._sample(one) for one in which]
-        )
-        return [Replay(*made) for made in self._run.replay([(chain, draw) for chain, draw in chosen])]
+        chosen = [self._sample(one) for one in (self.solutions if which is None else which)]
+        return [Replay(*made) for made in self._run.replay(chosen)]
 
     def poses(self, which: Which = 0, fps: float = 60.0) -> Poses:
         """Poses of all bodies of one sample at `fps` frames a second: times, names, positions and orientations."""
@@ -346,7 +349,7 @@ class Run:
             else:
                 many: Iterable[Any] = [samples] if _is_one(samples) else samples  # type: ignore[assignment]
                 for one in many:
-                    words += ["--sample", str(Sample(*self._sample(one)))]
+                    words += ["--sample", str(self._sample(one))]
         elif samples is not None:
             raise ValueError(f"samples go with glb, usda, poses and events: {chosen} holds all draws")
         if fps is not None:
@@ -388,7 +391,7 @@ class Run:
         warmup, draws, _ = self._run.size()
         kept = "" if not self._folder.fleeting else ", temporary"
         how = f", {self.ending.replace('_', ' ')}" if self.ending else ""
-        found = f", {len(self.solutions)} distinct solutions" if draws else ""
+        found = f", {len(self.solutions)} distinct solutions" if draws or self.solutions else ""
         return f"<Run of {self.manifest['scene']}: {self.chains} chains of {draws:,} draws{found}{how}{kept}>"
 
 

@@ -35,7 +35,7 @@ class Progress:
         self.satisfied: list[int] = state["satisfied"]
         """Iterations of each chain that satisfy."""
         self.distinct: int = state["distinct"]
-        """Distinct solutions recorded after the warm-up by all chains together."""
+        """Distinct solutions recorded by all chains together, where so many are wanted those of the warm-up too."""
         self.solutions_wanted: int | None = state["solutions_wanted"]
         """Distinct solutions after which the run stops; None where it does not."""
         before = state["iterations_before"] * len(self.iterations)
@@ -181,7 +181,7 @@ def sample(
 
     - `seed`, `chains`, `iterations` (of each chain after the warm-up), `warmup`, `thin`: as in the scenario's
       `[sampler]`; `set`: any keys, as `"sigma_d=0.05"`.
-    - `solutions`: stop once so many distinct satisfying solutions are recorded after the warm-up.
+    - `solutions`: stop once so many distinct satisfying solutions are recorded, those of the warm-up among them.
     - `max_time`: stop after so many seconds; `threads`: 0 is one a core, and no result depends on it.
     - `requirement`: a `Requirement`, or a function for one.
     - `callback`: called a few times a second with a `Progress`; the run stops where it returns False. What it raises

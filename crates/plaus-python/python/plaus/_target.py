@@ -141,6 +141,9 @@ def sample_target(
 ) -> TargetRun:
     """Samples a target by these moves, chosen by their weights. Ctrl-C gives what all chains have.
 
+    With `solutions` it stops once so many distinct ones are found, and there is no warm-up: each counts from the first
+    on.
+
     Raises what a function of the target or of a move raises, with a note that says in which chain and iteration.
     """
     from plaus._numbers import _whole

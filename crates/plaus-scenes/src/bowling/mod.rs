@@ -24,6 +24,7 @@ pub type Weights = crate::Weights<BowlingMoves>;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Column, Scalar, columns};
+use crate::require::Cast;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
@@ -216,6 +217,12 @@ impl Scene for Bowling {
             *angle = rest.entry.map_or(0.0, |entry| entry.angle);
             ball.iter_mut().zip(columns::values(self, &state.draw)).for_each(|(place, value)| *place = value);
         }
+    }
+
+    fn cast(&self) -> Cast {
+        let bodies = (0..=self.rack.pins().len()).map(|body| self.lane.name(body)).collect();
+        let fixed = props::PARTS.map(String::from).to_vec();
+        Cast { bodies, fixed, longest: self.config.duration_s, faces: false }
     }
 
     fn animate(&self, draw: &Shot) -> Result<Animation, ModelError> {

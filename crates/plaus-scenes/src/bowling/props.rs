@@ -58,6 +58,19 @@ pub(super) fn props() -> Vec<Prop> {
     props
 }
 
+/// Names of what can be hit that stands still.
+pub(super) const PARTS: [&str; 9] = [
+    "lane",
+    "pit",
+    "gutter_left",
+    "gutter_right",
+    "flat_gutter_left",
+    "flat_gutter_right",
+    "cushion",
+    "kickback_left",
+    "kickback_right",
+];
+
 /// Name of what is hit at a point with this normal.
 pub(super) fn part(point: DVec3, normal: DVec3) -> &'static str {
     if normal.z > 0.5 {

@@ -16,7 +16,7 @@ const PIPS: [u8; 6] = [3, 4, 2, 5, 1, 6];
 const WOBBLE: f64 = 0.004;
 
 pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError> {
-    let (motion, [low, high]) = motion(scene, draw)?;
+    let (motion, [low, high]) = motion(scene, draw, scene.plan.longest)?;
     let room = DVec3::new(0.03, 0.03, 0.0);
     let [low, high] = [low - room, high + room];
     let scenery = props::props(scene, draw, [low, high]).map_err(ModelError::new)?;
@@ -24,13 +24,13 @@ pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError
     Ok(motion.with_scenery(scenery).with_view(view))
 }
 
-/// The dice alone, and the corners of a box that holds the ways of their middles, in the simulator's axes.
-pub(super) fn motion(scene: &Dice, draw: &Draw) -> Result<(Animation, [DVec3; 2]), ModelError> {
+/// The dice alone, simulated for so many seconds at most, and the corners of a box that holds the ways of their middles, in the simulator's axes.
+pub(super) fn motion(scene: &Dice, draw: &Draw, longest: f64) -> Result<(Animation, [DVec3; 2]), ModelError> {
     let (mut tracks, mut impacts, mut duration) = (Vec::new(), Vec::new(), 0.0_f64);
     let (mut contacts, half) = (Vec::new(), scene.plan.cuboid.half());
     let mass = 8.0 * half.x * half.y * half.z * scene.plan.density;
     let mut extent = [DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)];
-    for Recorded { members, world, trace, .. } in Work::default().record(&scene.plan, draw)? {
+    for Recorded { members, world, trace, .. } in Work::default().record(&scene.plan, draw, longest)? {
         let name = |k: usize| format!("die_{}", members[k] + 1);
         for (k, (&die, motions)) in members.iter().zip(&trace.motions).enumerate() {
             let (pieces, offset) = (pieces(scene, draw, &world, (k, die), motions), scene.offset(draw, die));

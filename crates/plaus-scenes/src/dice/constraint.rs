@@ -2,6 +2,7 @@
 
 use super::Rotation;
 use super::flight::Trip;
+use crate::require::{self, FacesUp, Impact, Require, RestsAt, When};
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
 use schemars::JsonSchema;
@@ -237,6 +238,28 @@ impl Constraint {
             Self::Passes(_) => "passes",
             Self::FirstImpact(_) => "first_impact",
         }
+    }
+
+    /// The same in the words that all scenes share; `None` where they have none for it.
+    #[must_use]
+    pub fn as_requirement(&self) -> Option<Require> {
+        let body = format!("die_{}", self.die());
+        Some(match *self {
+            Self::RestAt(RestAt { x_mm, y_mm, within_mm, .. }) => {
+                Require::RestsAt(RestsAt { body, x_mm, y_mm, within_mm, ..RestsAt::default() })
+            }
+            Self::FaceUp(FaceUp { face, within_deg, .. }) => {
+                Require::FacesUp(FacesUp { body, face: Some(face), within_deg, ..FacesUp::default() })
+            }
+            Self::Passes(Passes { x_mm, y_mm, z_mm, within_mm, .. }) => {
+                Require::Passes(require::Passes { body, x_mm, y_mm, z_mm, within_mm, ..require::Passes::default() })
+            }
+            Self::FirstImpact(FirstImpact { time_s, within_s, .. }) => {
+                let when = When { at_s: Some(time_s), within_ms: 1e3 * within_s, ..When::default() };
+                Require::Impact(Impact { body, when, ..Impact::default() })
+            }
+            Self::PoseAt(_) => return None,
+        })
     }
 
     /// Which die it is about, from 1 on.

@@ -40,6 +40,7 @@ pub type Weights = crate::Weights<DiceMoves>;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Column, Member, Scalar, columns};
+use crate::require::{self as required, Cast, FAR, Require};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::world::PlainWorld;
@@ -147,7 +148,7 @@ impl Dice {
     /// [`ModelError`] where the simulation fails.
     pub fn touched(&self, draw: &Draw) -> Result<(usize, usize), ModelError> {
         let (mut sites, mut bytes) = (BTreeSet::new(), 0);
-        for mut recorded in Work::default().record(&self.plan, draw)? {
+        for mut recorded in Work::default().record(&self.plan, draw, self.plan.longest)? {
             bytes += surface::bytes(recorded.world.parts_mut());
             let touched = Touched::take(recorded.world.parts_mut());
             sites.extend(touched.sites().map(|site| (recorded.table, site)));
@@ -310,12 +311,49 @@ impl Scene for Dice {
         }
     }
 
+    fn cast(&self) -> Cast {
+        let bodies = (1..=self.config.dice).map(|die| format!("die_{die}")).collect();
+        Cast { bodies, fixed: vec!["table".into()], longest: self.config.longest_s, faces: true }
+    }
+
+    fn most(&self) -> Option<LogPotential> {
+        Some(LogPotential::ONE)
+    }
+
+    fn demands(&self) -> Vec<(String, Require)> {
+        let key = |(index, one): (usize, &Constraint)| {
+            Some((format!("world.dice.constraints[{index}].{}", one.name()), one.as_requirement()?))
+        };
+        self.config.constraints.iter().enumerate().filter_map(key).collect()
+    }
+
+    /// Dice that meet are simulated to their end before it is known which do; bodies that wobble are drawn in parts
+    /// that end with the next event.
+    fn motion_to(&self, draw: &Draw, time: f64) -> Result<Option<Animation>, ModelError> {
+        let exact = !self.plan.together && self.plan.rotations.len() == 24 && time < self.plan.longest;
+        let motion = || animate::motion(self, draw, time).map(|(motion, _)| motion);
+        exact.then(motion).transpose()
+    }
+
+    /// Each constraint, and that all come to rest.
+    fn asked(&self) -> Vec<String> {
+        let name = |one: &Constraint| format!("{} of die {}", one.name(), one.die());
+        self.config.constraints.iter().map(name).chain(["all dice come to rest".to_owned()]).collect()
+    }
+
+    fn answers(&self, state: &StateOf<Self>) -> Vec<required::Mark> {
+        let rest = &state.outcome;
+        let margin = |met: bool, log: f64| if met { 0.0 } else { log.min(-f64::MIN_POSITIVE) };
+        let marks = rest.marks.iter().map(|mark| margin(mark.met, mark.log));
+        marks.chain([margin(rest.complete(), -FAR)]).map(required::Mark::of).collect()
+    }
+
     fn animate(&self, draw: &Draw) -> Result<Animation, ModelError> {
         animate::animate(self, draw)
     }
 
     fn motion(&self, draw: &Draw) -> Result<Animation, ModelError> {
-        animate::motion(self, draw).map(|(motion, _)| motion)
+        animate::motion(self, draw, self.plan.longest).map(|(motion, _)| motion)
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {

@@ -90,7 +90,7 @@ impl Work {
             None => plan.world(1, plan.surface.plain())?,
         };
         let mut watch = Watch::new(&world, vec![&asked], endless, DVec3::ZERO);
-        let bodies = self.run(plan, &world, std::slice::from_ref(throw), &mut watch)?;
+        let bodies = self.run((&world, plan.longest), std::slice::from_ref(throw), &mut watch)?;
         let trip = watch.finish(&bodies, plan.longest).0.pop();
         Ok(trip.filter(|trip| trip.end == End::AtRest))
     }
@@ -102,15 +102,15 @@ impl Work {
         let throws: Vec<Throw> = members.iter().map(|&die| draw.throws[die]).collect();
         let asked = members.iter().map(|&die| &plan.asked[die]).collect();
         let mut watch = Watch::new(&world, asked, plan.looking, draw.offset(first, plan.surface.spacing()));
-        let bodies = self.run(plan, &world, &throws, &mut watch)?;
+        let bodies = self.run((&world, plan.longest), &throws, &mut watch)?;
         let (trips, ways) = watch.finish(&bodies, plan.longest);
         Ok(Fall { members, trips, ways, touched: Touched::take(world.parts_mut()) })
     }
 
+    /// Runs a world for so many seconds at most.
     fn run(
         &mut self,
-        plan: &Plan,
-        world: &Rigid,
+        (world, longest): (&Rigid, f64),
         throws: &[Throw],
         observer: &mut impl Observer<Rigid>,
     ) -> Result<Vec<Turning>, ModelError> {
@@ -125,15 +125,15 @@ impl Work {
         };
         let starts: Vec<Start> = throws.iter().map(start).collect();
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let outcome = world.run(&mut state, &mut self.scratch, plan.longest, observer).map_err(ModelError::new)?;
+        let outcome = world.run(&mut state, &mut self.scratch, longest, observer).map_err(ModelError::new)?;
         if let Outcome::NotFinite { body } = outcome {
             return Err(ModelError::new(format!("die {}: its motion is no longer finite", body + 1)));
         }
         Ok(state.bodies().to_vec())
     }
 
-    /// Simulates a draw with all motions and impacts, group by group.
-    pub(super) fn record(&mut self, plan: &Plan, draw: &Draw) -> Result<Vec<Recorded>, ModelError> {
+    /// Simulates a draw with all motions and impacts, group by group, for so many seconds at most.
+    pub(super) fn record(&mut self, plan: &Plan, draw: &Draw, longest: f64) -> Result<Vec<Recorded>, ModelError> {
         let alone = || (0..draw.throws.len()).map(|die| vec![die]).collect();
         let groups = if plan.together { self.groups(plan, draw)? } else { alone() };
         let record = |members: Vec<usize>| {
@@ -141,7 +141,7 @@ impl Work {
             let table = draw.table_of(members.first().copied().unwrap_or(0));
             let (world, mut trace) =
                 (plan.world(members.len(), plan.surface.part(&draw.tables[table]))?, Trace::default());
-            let bodies = self.run(plan, &world, &throws, &mut trace)?;
+            let bodies = self.run((&world, longest), &throws, &mut trace)?;
             for (motions, last) in trace.motions.iter_mut().zip(bodies) {
                 motions.push(last);
             }

@@ -30,7 +30,8 @@ impl<S: Variables + 'static> Offered for S {
             Row::own(
                 "step_any",
                 0.0,
-                "Any one random variable makes a step that leaves its law as it is, of a size from a thousandth of its spread up to all of it.",
+                "Any one random variable makes a step that leaves its law as it is, of a size from a thousandth of \
+                 its spread up to all of it.",
             ),
             |scene| Box::new(Step::of("step_any", &all(scene.vars()), Sizes::new(FINEST, 1.0))),
         ),

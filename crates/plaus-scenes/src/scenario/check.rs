@@ -3,15 +3,16 @@
 use super::bounds::Bounds;
 use super::nearest::{any_of, nearest, shown};
 use super::problem::{Problem, SHOWN};
-use super::shape::{Kind, Shape, join};
+use super::shape::{Kind, Shape, again, join};
 use super::tree::{Data, Tree};
 use super::value;
+use crate::require::DEEPEST;
 use std::collections::BTreeMap;
 use toml::Value;
 
 /// The values of `tree` as serde should read them, without what is wrong; and what is wrong.
 pub(super) fn check(shape: &Shape, tree: &Tree) -> (Option<Value>, Vec<Problem>) {
-    let mut check = Check { paths: shape.paths(Some(tree)), problems: Vec::new() };
+    let mut check = Check { paths: shape.paths(Some(tree)), problems: Vec::new(), depth: 0 };
     let value = check.value(shape, tree, "");
     (value, check.problems)
 }
@@ -20,6 +21,8 @@ struct Check {
     /// All keys there are, given which scene the tree chose.
     paths: Vec<String>,
     problems: Vec<Problem>,
+    /// How many shapes that stand in themselves are open.
+    depth: usize,
 }
 
 impl Check {
@@ -29,6 +32,7 @@ impl Check {
             (Kind::Table(keys), Data::Table(entries)) => Some(self.table(keys, entries, tree, key)),
             (Kind::OneOf(keys), Data::Table(entries)) => self.one_of(keys, entries, tree, key),
             (Kind::List(item, length), Data::List(items)) => self.list(item, length, items, tree, key),
+            (Kind::Again(reference), _) => self.again(reference, tree, key),
             (_, data) => match value::read(shape, data) {
                 Ok(value) => Some(value),
                 Err(wrong) => {
@@ -38,6 +42,19 @@ impl Check {
                 }
             },
         }
+    }
+
+    /// What stands in itself, to a depth that people still understand.
+    fn again(&mut self, reference: &str, tree: &Tree, key: &str) -> Option<Value> {
+        if self.depth + 1 >= DEEPEST {
+            let message = format!("nested too deep: at most {DEEPEST} in one another");
+            self.problems.push(tree.place.blame_value(Problem::new(key, message)));
+            return None;
+        }
+        self.depth += 1;
+        let value = self.value(again(reference)?, tree, key);
+        self.depth -= 1;
+        value
     }
 
     fn table(&mut self, keys: &[(String, Shape)], entries: &BTreeMap<String, Tree>, tree: &Tree, path: &str) -> Value {
@@ -182,7 +199,7 @@ mod tests {
                 "law": { "anyOf": [{ "enum": ["fair", "loaded"] }, { "type": "null" }], "default": null },
             } } },
         });
-        Shape::of_schema(&schema, &schema, 0)
+        Shape::of_schema(&schema, &schema, &[])
     }
 
     fn problems(text: &str) -> Vec<String> {

@@ -8,6 +8,9 @@ use std::fmt::Write;
 /// Columns of a template's comments.
 const WIDTH: usize = 100;
 
+/// Most choices whose meanings a template holds; of more it says where they are explained.
+const MOST_MEANINGS: usize = 12;
+
 /// What a key means.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyDoc {
@@ -67,12 +70,18 @@ fn meanings(shape: &Shape) -> Vec<String> {
         }
         Kind::List(item, _) => {
             let key = |(name, shape): &(String, Shape)| match default(shape) {
-                Some(default) => format!("{name} ({}, default {default})", shape.range_with_unit()),
+                Some(default) => {
+                    let range = Some(shape.range_with_unit()).filter(|range| !range.is_empty());
+                    let facts: Vec<String> = range.into_iter().chain([format!("default {default}")]).collect();
+                    format!("{name} ({})", facts.join(", "))
+                }
                 None => name.clone(),
             };
             let keys = |shape: &Shape| shape.keys().iter().map(key).collect::<Vec<_>>().join(", ");
-            let choice =
-                |(name, shape): &(String, Shape)| format!("{name}: {} Keys: {}.", shape.description, keys(shape));
+            let choice = |(name, shape): &(String, Shape)| match keys(shape) {
+                keys if keys.is_empty() => format!("{name}: {}", shape.description),
+                keys => format!("{name}: {} Keys: {keys}.", shape.description),
+            };
             item.keys().iter().map(choice).collect()
         }
         _ => Vec::new(),
@@ -126,8 +135,12 @@ fn entry(text: &mut String, shape: &Shape, name: &str) {
     if let Some(facts) = facts(shape) {
         comment(text, &facts);
     }
-    for meaning in meanings(shape) {
-        comment(text, &meaning);
+    let meanings = meanings(shape);
+    if meanings.len() > MOST_MEANINGS {
+        let names = shape.item().map(Shape::keys).unwrap_or_default().iter().map(|(name, _)| name.as_str());
+        comment(text, &format!("One of {}: `plaus explain {name}`.", names.collect::<Vec<_>>().join(", ")));
+    } else {
+        meanings.iter().for_each(|meaning| comment(text, meaning));
     }
     let _ = match default(shape) {
         Some(default) => writeln!(text, "{name} = {default}"),

@@ -18,6 +18,7 @@ pub use problem::{Problem, SHOWN, ScenarioError, Source};
 pub use schema::{SCHEMA_FILE, SCHEMA_ID, published_schema, schema};
 
 use crate::registry::{Visitor, World};
+use crate::require::{Asked, Require, agree};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use schemars::JsonSchema;
@@ -31,6 +32,11 @@ pub struct Scenario {
     /// How to sample.
     #[serde(default)]
     pub sampler: Sampler,
+    /// What is required besides what the world demands itself: a list of tables, each with one requirement. What a
+    /// state lacks of one it loses in log density; an animation is a solution where all are met.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 256), extend("default" = []))]
+    pub require: Vec<Require>,
     /// What to sample: exactly one table `[world.SCENE]`.
     pub world: World,
 }
@@ -150,12 +156,32 @@ impl Scenario {
         self.sampler.adapt.unwrap_or_else(|| self.world.adapts())
     }
 
+    /// Builds the scene, under what is required besides, and hands it to `visitor`.
+    ///
+    /// # Errors
+    /// [`ConfigError`] where the settings make no scene, or a requirement can mean nothing in it.
+    pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, ConfigError> {
+        struct Ask<'a, V>(&'a [Require], V);
+        impl<V: Visitor> Visitor for Ask<'_, V> {
+            type Output = Result<V::Output, ConfigError>;
+            fn visit<S: Scene>(self, scene: S) -> Self::Output {
+                Ok(self.1.visit(Asked::new(scene, self.0)?))
+            }
+        }
+        if self.require.is_empty() {
+            self.world.visit(visitor)
+        } else {
+            self.world.visit(Ask(&self.require, visitor))?
+        }
+    }
+
     /// Whether the scene can be built and sampled.
     fn try_building(&self) -> Result<(), ConfigError> {
         struct Build<'a>(&'a Rules);
         impl Visitor for Build<'_> {
             type Output = Result<(), ConfigError>;
             fn visit<S: Scene>(self, scene: S) -> Self::Output {
+                agree(&scene.demands(), &scene.cast())?;
                 scene.moves(self.0).map(drop)
             }
         }
@@ -163,7 +189,7 @@ impl Scenario {
             let message = "tempering needs exact acceptance, as its swaps rest on the law of every rung: set sampler.rules.preset = \"exact\", or rungs = 1";
             return Err(ConfigError::new("sampler.tempering.rungs", message));
         }
-        self.world.visit(Build(&self.sampler.rules))?
+        self.visit(Build(&self.sampler.rules))?
     }
 
     /// The whole effective scenario as TOML: every key that is set, in full precision. Reading it back gives an equal
@@ -178,6 +204,6 @@ impl Scenario {
     /// The scenario of a scene with all settings at their defaults; `None` where there is no such scene.
     #[must_use]
     pub fn default_of(scene: &str) -> Option<Self> {
-        World::default_of(scene).map(|world| Self { sampler: Sampler::default(), world })
+        World::default_of(scene).map(|world| Self { sampler: Sampler::default(), require: Vec::new(), world })
     }
 }

@@ -40,7 +40,10 @@ pub(super) fn key_of(name: &str, shape: &Shape, tree: Option<&Tree>) -> Result<(
     let found = resolve(&plain, &shape.paths(tree), &shape.paths(None));
     let found = match found {
         Err(NoKey::Unknown(near)) => {
-            let inside = resolve(&plain, &shape.paths_in_lists(tree), &shape.paths_in_lists(None));
+            // What is required has so many keys that an end of one says little: those are written in full.
+            let mut ends = shape.paths_in_lists(tree);
+            ends.retain(|key| !key.starts_with("require[]"));
+            let inside = resolve(&plain, &ends, &shape.paths_in_lists(None));
             inside.map_err(|error| match error {
                 NoKey::Unknown(inside) => NoKey::Unknown(near.or(inside)),
                 ambiguous @ NoKey::Ambiguous(_) => ambiguous,

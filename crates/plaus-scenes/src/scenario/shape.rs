@@ -6,11 +6,9 @@ use super::schema::schema;
 use super::tree::{Data, Tree};
 use super::{Scenario, nearest};
 use crate::registry;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
-
-/// References followed below each other before a schema counts as recursive.
-const MAX_DEPTH: usize = 32;
 
 /// What may stand at a place of a scenario.
 #[derive(Debug, Clone)]
@@ -41,6 +39,8 @@ pub(super) enum Kind {
     Text,
     /// Values of one shape, so many from first to last.
     List(Box<Shape>, Bounds<i128>),
+    /// The same as what stands around it: what the reference names, in which it stands itself.
+    Again(String),
     /// The schema says it in words this module does not know; left to serde.
     Unknown,
 }
@@ -50,7 +50,7 @@ pub(super) fn scenario() -> &'static Shape {
     static SHAPE: OnceLock<Shape> = OnceLock::new();
     SHAPE.get_or_init(|| {
         let schema = schema();
-        let mut shape = Shape::of_schema(&schema, &schema, 0);
+        let mut shape = Shape::of_schema(&schema, &schema, &[]);
         let defaults = registry::NAMES.iter().filter_map(|name| Scenario::default_of(name));
         let order: Vec<String> = defaults.flat_map(|scenario| Tree::parse(&scenario.to_toml()).0.keys()).collect();
         shape.sort("", &order);
@@ -58,22 +58,35 @@ pub(super) fn scenario() -> &'static Shape {
     })
 }
 
+/// The shape of what a reference names that stands in itself.
+pub(super) fn again(reference: &str) -> Option<&'static Shape> {
+    static SHAPES: OnceLock<BTreeMap<String, Shape>> = OnceLock::new();
+    let shapes = SHAPES.get_or_init(|| {
+        let schema = schema();
+        let names = schema.get("$defs").and_then(Value::as_object).into_iter().flat_map(|defs| defs.keys());
+        let shape = |name: &String| {
+            let reference = format!("#/$defs/{name}");
+            let shape = Shape::of_schema(&json!({ "$ref": reference }), &schema, &[]);
+            (reference, shape)
+        };
+        names.map(shape).collect()
+    });
+    shapes.get(reference)
+}
+
 impl Shape {
-    /// The shape a part of the schema `root` describes.
-    pub(super) fn of_schema(part: &Value, root: &Value, depth: usize) -> Self {
+    /// The shape a part of the schema `root` describes, within what the references `open` name.
+    pub(super) fn of_schema(part: &Value, root: &Value, open: &[&str]) -> Self {
         let empty = Map::new();
         let part = part.as_object().unwrap_or(&empty);
-        let target = part.get("$ref").and_then(Value::as_str).and_then(|path| root.pointer(path.strip_prefix('#')?));
-        let inner = target.or_else(|| nullable(part)).filter(|_| depth < MAX_DEPTH);
-        let mut shape = match inner {
-            Some(inner) => Self::of_schema(inner, root, depth + 1),
-            None => Self {
-                description: String::new(),
-                unit: None,
-                example: None,
-                default: None,
-                kind: Kind::of_schema(part, root, depth),
-            },
+        let plain = |kind| Self { description: String::new(), unit: None, example: None, default: None, kind };
+        let reference = part.get("$ref").and_then(Value::as_str);
+        let target = reference.and_then(|path| root.pointer(path.strip_prefix('#')?));
+        let mut shape = match (reference.zip(target), nullable(part)) {
+            (Some((path, _)), _) if open.contains(&path) => plain(Kind::Again(path.to_owned())),
+            (Some((path, target)), _) => Self::of_schema(target, root, &[open, &[path]].concat()),
+            (None, Some(inner)) => Self::of_schema(inner, root, open),
+            (None, None) => plain(Kind::of_schema(part, root, open)),
         };
         if let Some(description) = part.get("description").and_then(Value::as_str) {
             shape.description = paragraphs(description);
@@ -109,7 +122,7 @@ impl Shape {
     }
 
     /// What stands in a list.
-    fn item(&self) -> Option<&Self> {
+    pub(super) fn item(&self) -> Option<&Self> {
         match &self.kind {
             Kind::List(item, _) => Some(item),
             _ => None,
@@ -162,7 +175,7 @@ impl Shape {
             Kind::Words(words) => nearest::any_of(words.iter().map(|(word, _)| format!("\"{word}\""))),
             Kind::Boolean => "true or false".into(),
             Kind::List(item, _) => item.range(),
-            Kind::Table(_) | Kind::OneOf(_) | Kind::Text | Kind::Unknown => String::new(),
+            Kind::Table(_) | Kind::OneOf(_) | Kind::Text | Kind::Again(_) | Kind::Unknown => String::new(),
         }
     }
 
@@ -189,6 +202,7 @@ impl Shape {
             Kind::Boolean => "a boolean".into(),
             Kind::Text => "a string".into(),
             Kind::List(item, _) => format!("a list, each {}", item.kind_in_words()),
+            Kind::Again(reference) => again(reference).map_or("a value".into(), Self::kind_in_words),
             Kind::Unknown => "a value".into(),
         }
     }
@@ -205,17 +219,16 @@ impl Shape {
 }
 
 impl Kind {
-    fn of_schema(part: &Map<String, Value>, root: &Value, depth: usize) -> Self {
+    fn of_schema(part: &Map<String, Value>, root: &Value, open: &[&str]) -> Self {
         let types = match part.get("type") {
             Some(Value::Array(types)) => types.iter().filter_map(Value::as_str).collect(),
             kind => kind.and_then(Value::as_str).into_iter().collect::<Vec<_>>(),
         };
         let named = types.into_iter().find(|kind| *kind != "null");
         match named {
-            _ if depth >= MAX_DEPTH => Self::Unknown,
             Some("object") => {
                 let keys = part.get("properties").and_then(Value::as_object).into_iter().flatten();
-                let keys = keys.map(|(name, inner)| (name.clone(), Shape::of_schema(inner, root, depth + 1))).collect();
+                let keys = keys.map(|(name, inner)| (name.clone(), Shape::of_schema(inner, root, open))).collect();
                 if part.contains_key("minProperties") { Self::OneOf(keys) } else { Self::Table(keys) }
             }
             Some("integer") => Self::Integer(Bounds::of_schema(part)),
@@ -227,7 +240,7 @@ impl Kind {
                     for (from, to) in [("minItems", "minimum"), ("maxItems", "maximum")] {
                         length.extend(part.get(from).map(|count| (to.to_owned(), count.clone())));
                     }
-                    Self::List(Box::new(Shape::of_schema(items, root, depth + 1)), Bounds::of_schema(&length))
+                    Self::List(Box::new(Shape::of_schema(items, root, open)), Bounds::of_schema(&length))
                 }
                 None => Self::Unknown,
             },

@@ -12,6 +12,9 @@ use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
 use plaus_sim::scenery::Surface;
 
+/// Names of what a ball can hit that stands still.
+pub(super) const FIXED: [&str; 6] = ["floor", "partitions", "wall_left", "wall_right", "wall_front", "wall_back"];
+
 /// Name of the wall whose normal points so.
 fn wall(normal: DVec3) -> &'static str {
     match (normal.x.abs() > normal.y.abs(), normal.x > 0.0, normal.y > 0.0) {

@@ -26,6 +26,7 @@ pub type Weights = crate::Weights<SpellingMoves>;
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::{Column, Member, Scalar, columns};
+use crate::require::Cast;
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::world::PlainWorld;
@@ -234,6 +235,13 @@ impl Scene for Spelling {
                 *value = bin.map_or(-1.0, f64::from);
             }
         }
+    }
+
+    fn cast(&self) -> Cast {
+        let bodies = (0..self.balls).map(|ball| format!("ball_{ball}")).collect();
+        let fixed = animate::FIXED.map(String::from).to_vec();
+        let last = self.config.drop_interval_s * f64::from(self.balls as u32);
+        Cast { bodies, fixed, longest: last + self.config.settle_s, faces: false }
     }
 
     fn animate(&self, draw: &Drops) -> Result<Animation, ModelError> {

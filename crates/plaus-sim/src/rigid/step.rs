@@ -313,7 +313,7 @@ impl RigidScratch {
         self.contacts.clear();
         for (a, t) in &self.touches {
             let (p, m) = (&self.places[*a], &self.members[*a]);
-            let law = world.law_at(p.body, &t, p.start.x + t.arm);
+            let law = world.law_at(p.body, t, p.start.x + t.arm);
             let k = response(m.inverse_mass, &m.inverse_inertia, t.arm);
             self.contacts.push(Contact::new(*a, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k));
         }

@@ -135,7 +135,7 @@ impl<'a, S: Scene> Animations<'a, S> {
     /// One animation of a folder; what the list says of it.
     fn file(&self, folder: &Path, replay: &Replay) -> Result<Value, Error> {
         let (scene, sample) = (&self.run.run().manifest().scene, replay.sample);
-        let name = format!("{scene}-{}-{}.{}", sample.chain, sample.draw, self.format.row().ending);
+        let name = format!("{scene}-{}.{}", sample.to_string().replace(':', "-"), self.format.row().ending);
         let path = folder.join(&name);
         let mut out = BufWriter::new(File::create_new(&path).map_err(Error::Output)?);
         let facts = self.clip(replay, |clip| {

@@ -211,7 +211,8 @@ impl Args {
         } else if run.folder().is_being_written() {
             console::note_line("note: the run is being written; this exports it as of its last checkpoint");
         }
-        if run.visit(super::diagnose::CountDraws)? == 0 {
+        let tables = !matches!(self.format, Format::Animation(_));
+        if run.visit(super::diagnose::CountDraws { statistics: tables })? == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         let written = run.visit(&self)?;

@@ -38,7 +38,8 @@ impl Menu for BowlingMoves {
         Row::own(
             "refine",
             0.25,
-            "Everything is shifted a little, by steps of any size down to a ten-thousandth of the paper's: what a shot that has many collisions hangs on.",
+            "Everything is shifted a little, by steps of any size down to a ten-thousandth of the paper's: what a \
+             shot that has many collisions hangs on.",
         ),
         Row::own(
             "mirror",
@@ -47,25 +48,23 @@ impl Menu for BowlingMoves {
         ),
     ];
 }
+
 /// All moves.
 pub(super) fn all(scene: &Bowling, rules: &Rules) -> Vec<Box<dyn Move<Bowling>>> {
-    use Quantity::{Across, Density, Drift, Gyration, Height, Hook, Radius, Roll, Speed, Twist};
     let steps = &scene.config.steps;
     let (ball, pins) = (scene.vars.which(|var| var.member.is_none()), scene.vars.named(&["offset"]));
-    let shift = |name, quantities: &[Quantity]| {
-        let chosen = ball.iter().filter(|&&var| quantities.iter().any(|quantity| *quantity as usize == var));
-        Box::new(ShiftAll::by(name, chosen.map(|&var| stride(scene, var)).collect()))
-    };
+    let strides = |vars: &[usize]| vars.iter().map(|&var| stride(scene, var)).collect();
+    let shift = |name, quantities: &[&str]| Box::new(ShiftAll::by(name, strides(&scene.vars.named(quantities))));
     let (symmetric, recipe) = (rules.symmetric_redraws(), rules.recipe());
-    let every = ball.iter().chain(&pins).map(|&var| stride(scene, var)).collect();
+    let every = strides(&scene.vars.which(|_| true));
     let (chance, sd) = (steps.pin_chance, steps.pin_mm);
     vec![
         Box::new(RedrawAll { name: "change_all", symmetric, recipe }),
-        shift("change_radius", &[Radius]),
-        shift("change_density", &[Density, Gyration]),
-        shift("change_position", &[Across, Height]),
-        shift("change_velocity", &[Speed, Drift]),
-        shift("change_spin", &[Roll, Hook, Twist]),
+        shift("change_radius", &["radius"]),
+        shift("change_density", &["density", "gyration"]),
+        shift("change_position", &["across", "height"]),
+        shift("change_velocity", &["speed", "drift"]),
+        shift("change_spin", &["roll", "hook", "twist"]),
         Box::new(ShiftSome { name: "change_pins", among: pins.clone(), chance, sd, adapts: true }),
         Box::new(RedrawOne { name: "redraw", among: ball, symmetric }),
         Box::new(RedrawSome { name: "redraw_pins", among: pins, chance: steps.redraw_chance }),

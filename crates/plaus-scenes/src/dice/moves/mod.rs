@@ -51,22 +51,26 @@ impl Menu for DiceMoves {
         Row::own(
             "recast",
             0.2,
-            "A die gets a fresh throw, and a fresh table where it has one of its own, from the place from where, tried out, it comes to rest near its target with a demanded face up.",
+            "A die gets a fresh throw, and a fresh table where it has one of its own, from the place from where, \
+             tried out, it comes to rest near its target with a demanded face up.",
         ),
         Row::own(
             "pick",
             0.1,
-            "Like recast, with throws that are tried until one is likely under the prior and comes to rest near its target; for dice thrown onto one table.",
+            "Like recast, with throws that are tried until one is likely under the prior and comes to rest near its \
+             target; for dice thrown onto one table.",
         ),
         Row::own(
             "turn",
             0.15,
-            "A die's throw begins in another of the orientations that its symmetry makes equal: another face comes up, and nothing else changes.",
+            "A die's throw begins in another of the orientations that its symmetry makes equal: another face comes \
+             up, and nothing else changes.",
         ),
         Row::own(
             "shift",
             0.15,
-            "A die's throw is shifted so that it comes to rest near its target, and so is its table where it has one of its own.",
+            "A die's throw is shifted so that it comes to rest near its target, and so is its table where it has \
+             one of its own.",
         ),
     ];
 }

@@ -38,6 +38,7 @@ impl Menu for SpellingMoves {
         Row::own("swap", 0.1, "Two balls exchange their drop positions, hence their turns to fall."),
     ];
 }
+
 /// All moves.
 pub(super) fn all(scene: &Spelling, rules: &Rules) -> Vec<Box<dyn Move<Spelling>>> {
     let steps = &scene.config.steps;

@@ -1,0 +1,76 @@
+//! Chains beside plain draws of the prior, in the same process, for as much processor time.
+
+use crate::clock::ProcessorClock;
+use crate::console;
+use crate::failure::Failure;
+use crate::interrupt;
+use crate::progress::Monitor;
+use crate::table::{grouped, short};
+use plaus_mcmc::chance::{ChancePulse, Parts, count};
+use plaus_run::{Diagnosis, Run, RunOf, RunVisitor};
+use plaus_scenes::Scene;
+use serde_json::json;
+
+/// Draws between two looks at the clock.
+const AT_A_TIME: u64 = 4;
+
+/// Makes draws of the prior for as long as the chains sampled after their warm-up, on one thread, and says how many
+/// independent solutions either makes in a minute of one processor.
+pub(super) fn with_prior(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, as_json: bool) -> Result<(), Failure> {
+    let share = diagnosis.iterations as f64 / monitor.done().saturating_sub(monitor.begun_at()).max(1) as f64;
+    let (Some(found), true) = (&diagnosis.independent, share <= 1.0) else {
+        console::note_line(
+            "nothing to compare with draws of the prior: that needs solutions after the warm-up, of a run made in one go",
+        );
+        return Ok(());
+    };
+    let seconds = monitor.processor_seconds() * share;
+    let clock = ProcessorClock::start();
+    let (draws, hits) = run.visit(Plain { goes_on: &|| clock.seconds() < seconds && !interrupt::asked() })??;
+    let took = clock.seconds();
+    let minute = |count: f64, seconds: f64| 60.0 * count / seconds;
+    let (chains, prior) = (minute(found.ess, seconds), minute(hits as f64, took));
+    if as_json {
+        let object = json!({
+            "event": "compare_prior",
+            "processor_seconds": took,
+            "draws": draws,
+            "solutions": hits,
+            "independent_a_minute": { "chains": chains, "prior": prior },
+        });
+        return console::print_line(&object.to_string());
+    }
+    let times = if hits > 0 { format!(": {} times as many", short(chains / prior)) } else { String::new() };
+    console::note_line(&format!(
+        "in a minute of one processor the chains make {} independent solutions, plain draws of the prior {} ({} of {} \
+         draws){times}",
+        short(chains),
+        short(prior),
+        grouped(hits),
+        grouped(draws),
+    ));
+    Ok(())
+}
+
+/// Draws of the prior, of which only hits are counted.
+struct Plain<'a> {
+    goes_on: &'a dyn Fn() -> bool,
+}
+
+impl RunVisitor for Plain<'_> {
+    type Output = Result<(u64, u64), Failure>;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+        let manifest = run.run().manifest();
+        manifest.judges_alone()?;
+        let (pulse, mut sums) = (ChancePulse::default(), (0, 0));
+        for batch in 0.. {
+            if !(self.goes_on)() {
+                break;
+            }
+            let made = count(run.scene(), Parts::NONE, manifest.plan.seed, batch, AT_A_TIME, &pulse);
+            let made = made.map_err(|error| Failure::Message(error.to_string()))?;
+            sums = (sums.0 + made.draws, sums.1 + made.hits.first().copied().unwrap_or(0));
+        }
+        Ok(sums)
+    }
+}

@@ -1,0 +1,80 @@
+//! Why not: how often each thing that is asked was met, by draws from the prior or by the states of a run.
+
+use crate::console;
+use crate::table::{grouped, lay_out, percent, short};
+use plaus_mcmc::ModelError;
+use plaus_run::{Phase, RunFileError, RunOf, RunVisitor};
+use plaus_scenes::require::{Clause, Tally};
+use plaus_scenes::{Scene, Visitor};
+use serde_json::{Value, json};
+
+/// So many draws from the prior of a scene.
+pub(crate) struct OfPrior {
+    pub(crate) draws: u64,
+    pub(crate) seed: u64,
+    /// Whether to tell how far it is.
+    pub(crate) tells: bool,
+}
+
+impl Visitor for OfPrior {
+    type Output = Result<Tally, ModelError>;
+
+    fn visit<S: Scene>(self, scene: S) -> Self::Output {
+        Tally::of_prior(&scene, self.seed, self.draws, |done| {
+            if self.tells && self.draws >= 1000 && done % (self.draws / 10) == 0 {
+                console::note_line(&format!("{} of {} draws", grouped(done), grouped(self.draws)));
+            }
+        })
+    }
+}
+
+/// All recorded states of a run, those of the warm-up too.
+pub(crate) struct OfRun;
+
+impl RunVisitor for OfRun {
+    type Output = Result<Tally, RunFileError>;
+
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+        let mut tally = Tally::new(run.scene().asked());
+        for chain in run.chains() {
+            for phase in [Phase::Warmup, Phase::Sampling] {
+                run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
+                    tally.add(&run.scene().answers(&stretch.entry.state));
+                    Ok(())
+                })?;
+            }
+        }
+        Ok(tally)
+    }
+}
+
+/// What was met and what not, as a table with the pairs that were never met together.
+pub(crate) fn in_words(tally: &Tally, states: &str) -> String {
+    let head = ["asked".to_owned(), format!("met by {states}"), String::new(), "best margin (nat)".to_owned()];
+    let row = |clause: &Clause| {
+        let share = percent(clause.met as f64 / tally.states as f64);
+        vec![clause.name.clone(), grouped(clause.met), share, short(clause.best)]
+    };
+    let all = (tally.clauses.len() > 1).then(|| {
+        let share = percent(tally.all as f64 / tally.states as f64);
+        vec!["all of it".to_owned(), grouped(tally.all), share]
+    });
+    let rows: Vec<Vec<String>> =
+        std::iter::once(head.to_vec()).chain(tally.clauses.iter().map(row)).chain(all).collect();
+    let mut text = format!("of {} {states}:\n{}", grouped(tally.states), lay_out(&rows));
+    for [one, other] in tally.never_together() {
+        text += &format!("never met together: {one}; {other}\n");
+    }
+    text
+}
+
+/// The same as JSON.
+pub(crate) fn to_json(tally: &Tally) -> Value {
+    let finite = |margin: f64| margin.is_finite().then_some(margin);
+    let clause = |clause: &Clause| {
+        let best = finite(clause.best);
+        json!({ "asked": clause.name, "met": clause.met, "best_margin": best })
+    };
+    let clauses: Vec<Value> = tally.clauses.iter().map(clause).collect();
+    json!({ "states": tally.states, "all": tally.all, "clauses": clauses, "never_together": tally.never_together() })
+}

@@ -1,0 +1,66 @@
+//! Solutions that a run finds in its warm-up: kept, shown and named where they are looked for, and no part of statistics.
+
+use crate::common::Place;
+
+/// Everything that takes a solution takes one of the warm-up.
+#[test]
+fn the_first_solutions_are_kept_and_can_be_looked_at() {
+    let place = Place::new();
+    place.ok("sample ball.toml --out run --solutions 5 --warmup 1000000 -q");
+    let list = place.ok("export run --format events --all-distinct --out all.csv");
+    assert!(list.err.contains("wrote all.csv"), "{}", list.err);
+    place.ok("gallery run --out page.html").says(&["distinct solutions"]);
+    let page = std::fs::read_to_string(place.path("page.html")).unwrap();
+    assert!(page.contains("gallery"), "{}", page.len());
+    let said = place.ok("sample ball.toml --out other --solutions 5 --warmup 1000000").out;
+    let named = said.split_whitespace().find(|word| word.contains(":w")).unwrap();
+    place
+        .ok(&format!("replay other --sample {named}"))
+        .says(&[&format!("sample {named} rebuilt bit for bit"), "satisfies"]);
+    place.ok(&format!("export other --format glb --sample {named} --out one.glb"));
+    place.ends("replay other --sample 0:w99999999", 2).says(&["there is no draw 0:w99999999", "are 0 to"]);
+    place.ends("replay other --sample 0:x1", 2).says(&["0:w17"]);
+    // No draw of it is a statistic.
+    place.ends("export run --format csv --out draws.csv", 2).says(&["whose draws are no statistics"]);
+    place.ends("diagnose run", 2).says(&["whose draws are no statistics"]);
+}
+
+/// However a run comes to its solutions: at once, on any number of threads, in two goes, in pieces.
+#[test]
+fn where_a_run_ends_in_its_warm_up_follows_from_its_plan() {
+    let place = Place::new();
+    let run = "sample ball.toml -q --chains 5 --warmup 100000 --thin 3";
+    for wanted in [1, 9] {
+        let whole = format!("whole{wanted}");
+        place.ok(&format!("{run} --solutions {wanted} --out {whole} --threads 1"));
+        place.ok(&format!("{run} --solutions {wanted} --out threads{wanted} --threads 4"));
+        assert!(place.bytes(&whole) == place.bytes(&format!("threads{wanted}")));
+        for piece in 1..=3 {
+            place.ok(&format!("{run} --solutions {wanted} --shard {piece}/3 --out cut{wanted}/{piece}"));
+        }
+        place.ok(&format!("merge cut{wanted} --out all{wanted} -q"));
+        assert!(place.bytes(&whole) == place.bytes(&format!("all{wanted}")));
+    }
+    place.ok("resume whole1 --solutions 9 -q");
+    assert!(place.bytes("whole1") == place.bytes("whole9"));
+}
+
+/// What is sampled after the warm-up does not depend on whether solutions were looked for.
+#[test]
+fn draws_for_statistics_are_those_of_any_run() {
+    let place = Place::new();
+    place.ok("sample ball.toml --out plain -q");
+    place.ends("sample ball.toml --out hunt --solutions 100000 -q", 1);
+    place.ok("export plain --format csv --out plain.csv");
+    place.ok("export hunt --format csv --out hunt.csv");
+    let read = |name| std::fs::read(place.path(name)).unwrap();
+    assert!(read("plain.csv") == read("hunt.csv"));
+    let count = |run: &str, key: &str| {
+        let said = place.run(&format!("diagnose {run} --json")).out;
+        serde_json::from_str::<serde_json::Value>(&said).unwrap()[key].as_u64().unwrap()
+    };
+    assert_eq!(count("plain", "distinct_while_adapting"), 0);
+    let early = count("hunt", "distinct_while_adapting");
+    assert!(early > 0 && count("hunt", "distinct") >= count("plain", "distinct"));
+    assert_eq!(count("hunt", "first_hit"), count("plain", "first_hit"));
+}

@@ -1,0 +1,47 @@
+//! Draws of the prior, counted.
+
+use super::{ChanceError, ChancePulse, DRAW, Parts, at_least, prior, streams};
+use crate::target::Goal;
+use plaus_dist::Seed;
+use serde::{Deserialize, Serialize};
+
+/// Draws between two looks at whether to stop.
+const AT_A_TIME: u64 = 16;
+
+/// What a batch counted.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Counted {
+    /// Independent draws of the prior.
+    pub draws: u64,
+    /// Those that reach the goal, then those that meet each of its parts.
+    pub hits: Vec<u64>,
+}
+
+/// Counts which of `draws` draws of the prior reach the goal of `target`, and which meet each of its `parts`.
+///
+/// # Errors
+/// [`ChanceError`] where the model fails, there are no draws to make, or the pulse was stopped.
+pub fn count<T: Goal>(
+    target: &T,
+    parts: Parts<'_, T>,
+    seed: Seed,
+    batch: u32,
+    draws: u64,
+    pulse: &ChancePulse,
+) -> Result<Counted, ChanceError> {
+    at_least("draws", draws, 1)?;
+    let (streams, mut scratch) = (streams(seed, batch), T::Scratch::default());
+    let mut met = vec![false; 1 + parts.count];
+    let mut hits = vec![0; met.len()];
+    for draw in 0..draws {
+        let state = prior(target, &mut streams.at(draw, DRAW), &mut scratch);
+        let state = state.map_err(|source| ChanceError::Model { batch, draw, source })?;
+        parts.look(target, &state, &mut met);
+        hits.iter_mut().zip(&met).for_each(|(hits, &met)| *hits += u64::from(met));
+        if (draw + 1).is_multiple_of(AT_A_TIME) || draw + 1 == draws {
+            pulse.made(if draw + 1 == draws { draw % AT_A_TIME + 1 } else { AT_A_TIME })?;
+        }
+    }
+    Ok(Counted { draws, hits })
+}

@@ -1,0 +1,161 @@
+//! How likely it is that a draw of the prior reaches the goal: three estimators that check each other.
+//!
+//! | | for | error, relative |
+//! | --- | --- | --- |
+//! | [`count()`]: draws of the prior | goals that come up now and then | `1/√hits` |
+//! | [`split()`]: particles climb the constraint, level by level | rare goals, also behind plateaus | about `√(ln(1/p)/particles)` |
+//! | [`stones()`]: chains on a ladder between prior and target | rare goals of smooth constraints | by how chains mix |
+//!
+//! All draw from [`Target::start`](crate::Target::start), which must have the law of the prior; draws of density 0 are
+//! no draws. Each comes in batches, which are functions of target, seed and number alone, so they can be made anywhere
+//! and in any order. [`Estimate`] is what they come to, with an error from how batches differ.
+//!
+//! Counting is right whatever the world is like. The two others go by what their particles and chains have seen: a way
+//! to the goal that none of them found is missing from both, and then they are too low. Where they [disagree](disagree)
+//! beyond their errors, at least one has missed something.
+
+mod above;
+mod count;
+mod estimate;
+mod split;
+mod stones;
+
+pub use count::{Counted, count};
+pub use estimate::{Disagreement, Estimate, Method, disagree, student};
+pub use split::{Split, Splitting, split};
+pub use stones::{Stoned, Stones, stones};
+
+use crate::chain::ChainError;
+use crate::target::{Goal, ModelError, State, StateOf, Target};
+use plaus_dist::{ChainStreams, Purpose, Seed, Stream};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+
+/// Draws of density 0 in a row that are too many.
+const TRIES: u64 = 10_000_000;
+/// What a draw of the prior is made from.
+const DRAW: Purpose = Purpose(4);
+/// Which particle another one is put in place of.
+const BRANCH: Purpose = Purpose(5);
+
+/// Why there is no estimate.
+#[derive(Debug, thiserror::Error)]
+pub enum ChanceError {
+    /// The model failed.
+    #[error("draw {draw} of batch {batch}: {source}")]
+    Model {
+        /// The batch.
+        batch: u32,
+        /// Number of the draw in it.
+        draw: u64,
+        /// How.
+        source: ModelError,
+    },
+    /// A chain failed.
+    #[error("batch {batch}: {source}")]
+    Chain {
+        /// The batch.
+        batch: u32,
+        /// How.
+        source: ChainError,
+    },
+    /// Nothing can be estimated from numbers like these.
+    #[error("`{name}` is {value}; it must be at least {least}")]
+    Plan {
+        /// The number.
+        name: &'static str,
+        /// What it is.
+        value: u64,
+        /// What it must be.
+        least: u64,
+    },
+    /// The operating system gave no thread.
+    #[error("cannot start worker threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// Somebody asked for an end.
+    #[error("stopped")]
+    Stopped,
+}
+
+/// Simulations made so far, for other threads, and a request to stop.
+#[derive(Debug, Default)]
+pub struct ChancePulse {
+    simulations: AtomicU64,
+    stopped: AtomicBool,
+}
+
+impl ChancePulse {
+    /// Simulations, of all batches.
+    #[must_use]
+    pub fn simulations(&self) -> u64 {
+        self.simulations.load(Relaxed)
+    }
+
+    /// Asks all batches to give up.
+    pub fn stop(&self) {
+        self.stopped.store(true, Relaxed);
+    }
+
+    /// Whether batches are to give up.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        self.stopped.load(Relaxed)
+    }
+
+    fn made(&self, simulations: u64) -> Result<(), ChanceError> {
+        self.simulations.fetch_add(simulations, Relaxed);
+        if self.is_stopped() { Err(ChanceError::Stopped) } else { Ok(()) }
+    }
+}
+
+/// Streams of a batch: none of them is a chain's of a run.
+fn streams(seed: Seed, batch: u32) -> ChainStreams {
+    seed.chain(1 << 63 | u64::from(batch))
+}
+
+/// A draw of the prior, wholly evaluated.
+fn prior<T: Target>(target: &T, stream: &mut Stream, scratch: &mut T::Scratch) -> Result<StateOf<T>, ModelError> {
+    for _ in 0..TRIES {
+        let draw = target.start(stream);
+        if !target.log_prior(&draw)?.is_zero() {
+            return State::evaluate(target, draw, scratch);
+        }
+    }
+    Err(ModelError::new(format!("none of {TRIES} start draws has positive prior density")))
+}
+
+/// Says of each part of a goal whether a state meets it, in as many places as there are parts.
+pub type Met<'a, T> = &'a (dyn Fn(&T, &StateOf<T>, &mut [bool]) + Sync);
+
+/// Parts of a goal that states may meet one by one: each is an event of its own, besides the goal.
+pub struct Parts<'a, T: Target> {
+    /// How many.
+    pub count: usize,
+    /// Which of them a state meets.
+    pub met: Met<'a, T>,
+}
+
+impl<T: Target> Clone for Parts<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T: Target> Copy for Parts<'_, T> {}
+
+impl<T: Target> Parts<'_, T> {
+    /// None: only the goal is asked about.
+    pub const NONE: Self = Self { count: 0, met: &|_, _, _| {} };
+}
+
+impl<T: Goal> Parts<'_, T> {
+    /// Whether a state reaches the goal, then whether it meets each part; `met` has a place more than there are parts.
+    fn look(&self, target: &T, state: &StateOf<T>, met: &mut [bool]) {
+        if let Some((all, parts)) = met.split_first_mut() {
+            *all = target.class(state).is_some();
+            (self.met)(target, state, parts);
+        }
+    }
+}
+
+fn at_least(name: &'static str, value: u64, least: u64) -> Result<(), ChanceError> {
+    if value < least { Err(ChanceError::Plan { name, value, least }) } else { Ok(()) }
+}

@@ -1,0 +1,329 @@
+//! Probabilities of goals, against exact ones; with the estimators that look right and are not.
+
+use plaus_dist::math::{self, powi};
+use plaus_dist::stream::below;
+use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Seed, Stream, open_unit};
+use plaus_mcmc::chance::{
+    ChanceError, ChancePulse, Estimate, Method, Parts, Splitting, Stoned, Stones, count, disagree, split, stones,
+};
+use plaus_mcmc::{Goal, Mixture, ModelError, Move, Path, Proposal, Simulated, SolutionClass, StateOf, Target};
+use statrs::distribution::{ContinuousCDF, Normal};
+use std::sync::Arc;
+
+/// Independent standard normal numbers, the first of which should be at least `past`.
+#[derive(Clone, Copy)]
+struct Tail {
+    past: f64,
+    /// Nats lost for each unit short of it.
+    slope: f64,
+    /// Width of plateaus of the constraint; 0: none.
+    plateau: f64,
+    /// Whether there is another way, which no slope leads to: a first number far below.
+    needle: bool,
+    /// Draws short by more are forbidden.
+    forbidden: f64,
+}
+
+const NEEDLE: f64 = -3.6;
+
+fn normal() -> Gaussian {
+    Gaussian::new(0.0, 1.0).unwrap()
+}
+
+fn tail_of(x: f64) -> f64 {
+    Normal::new(0.0, 1.0).unwrap().sf(x)
+}
+
+impl Tail {
+    const fn beyond(past: f64) -> Self {
+        Self { past, slope: 2.0 * past, plateau: 0.0, needle: false, forbidden: f64::INFINITY }
+    }
+
+    fn is_in_needle(&self, draw: [f64; 2]) -> bool {
+        self.needle && draw[0] < NEEDLE
+    }
+}
+
+impl Target for Tail {
+    type Draw = [f64; 2];
+    type Outcome = [f64; 2];
+    type Scratch = ();
+    fn start(&self, stream: &mut Stream) -> [f64; 2] {
+        [normal().sample(stream), normal().sample(stream)]
+    }
+    fn log_prior(&self, draw: &[f64; 2]) -> Result<LogDensity, ModelError> {
+        Ok(normal().log_density(&draw[0])? + normal().log_density(&draw[1])?)
+    }
+    fn simulate(
+        &self,
+        draw: &[f64; 2],
+        _: Option<&StateOf<Self>>,
+        _: LogPotential,
+        (): &mut (),
+    ) -> Result<Simulated<[f64; 2]>, ModelError> {
+        Ok(Simulated::Complete(*draw))
+    }
+    fn log_constraint(&self, &outcome: &[f64; 2]) -> Result<LogPotential, ModelError> {
+        let short = if self.is_in_needle(outcome) { 0.0 } else { (self.past - outcome[0]).max(0.0) };
+        if short > self.forbidden {
+            return Ok(LogPotential::ZERO);
+        }
+        let short = if self.plateau > 0.0 { (short / self.plateau).ceil() * self.plateau } else { short };
+        Ok(LogPotential::new(-self.slope * short)?)
+    }
+}
+
+impl Goal for Tail {
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+        let there = state.draw[0] >= self.past || self.is_in_needle(state.draw);
+        there.then(|| SolutionClass::of([0]))
+    }
+}
+
+/// Turns the draw a little towards a fresh one: the prior's own step.
+struct Turn(f64);
+
+impl Move<Tail> for Turn {
+    fn name(&self) -> &str {
+        "turn"
+    }
+    fn propose(
+        &self,
+        target: &Tail,
+        current: &StateOf<Tail>,
+        candidate: &mut [f64; 2],
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        for x in candidate.iter_mut() {
+            *x = (1.0 - self.0 * self.0).sqrt() * *x + self.0 * normal().sample(stream);
+        }
+        let there = target.log_prior(candidate)?;
+        Ok(Proposal::with_ratio(LogRatio::new(current.log_prior.value() - there.value())?))
+    }
+    fn log_ratio(&self, _: &Tail, from: &StateOf<Tail>, to: &StateOf<Tail>, _: Path) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
+    }
+}
+
+/// Whether the second number is positive.
+const UPPER: Parts<'static, Tail> = Parts { count: 1, met: &|_, state, met| met[0] = state.draw[1] > 0.0 };
+
+fn turns() -> Arc<Mixture<Tail>> {
+    Arc::new(Mixture::new(vec![(1.0, Box::new(Turn(0.4)) as _), (1.0, Box::new(Turn(0.12)) as _)]).unwrap())
+}
+
+const SPLITTING: Splitting = Splitting { particles: 100, steps: 40, least: 1e-15 };
+
+/// Estimates of batches, the sum of their simulations aside.
+fn climbed(target: &Tail, seed: u64, batches: u32, splitting: Splitting) -> (Vec<plaus_mcmc::chance::Split>, Estimate) {
+    let (moves, pulse) = (turns(), ChancePulse::default());
+    let made: Vec<_> = (0..batches)
+        .map(|batch| split((target, &moves), UPPER, Seed(seed), batch, splitting, &pulse).unwrap())
+        .collect();
+    let estimate = Estimate::split(&made, 0).unwrap();
+    (made, estimate)
+}
+
+/// Relative standard error of the mean of batches of ideal splitting, of a constraint without plateaus.
+fn ideal(p: f64, particles: u32, batches: u32) -> f64 {
+    ((math::powf(p, -1.0 / f64::from(particles)) - 1.0) / f64::from(batches)).sqrt()
+}
+
+/// Gaussian tails down to 1e-12, without plateaus and with; the textbook's factor for each death is off on plateaus.
+#[test]
+fn splitting_finds_gaussian_tails() {
+    for past in [3.090_232, 4.753_424, 5.997_807, 7.034_484] {
+        let p = tail_of(past);
+        let (batches, smooth) = climbed(&Tail::beyond(past), 1, 10, SPLITTING);
+        let error = ideal(p, 100, 10);
+        // Five standard errors of what is known to be the error: a false alarm in a million.
+        assert!((smooth.probability / p - 1.0).abs() < 5.0 * error, "{p:e}: {smooth:?}");
+        assert!((0.4..2.5).contains(&(smooth.error / p / error)), "{p:e}: {smooth:?}, {error}");
+        let textbook = |deaths: u64| powi(0.99, deaths as i32);
+        // Where each dies alone, both are one.
+        assert!(batches.iter().all(|one| (one.probability[0] / textbook(one.deaths) - 1.0).abs() < 1e-9));
+
+        let stepped = Tail { plateau: 0.8, ..Tail::beyond(past) };
+        let (batches, stepped) = climbed(&stepped, 2, 10, SPLITTING);
+        assert!((stepped.probability - p).abs() < 6.0 * stepped.error, "{p:e}: {stepped:?}");
+        let wrong = batches.iter().map(|one| textbook(one.deaths)).sum::<f64>() / 10.0;
+        assert!((wrong - p).abs() > 8.0 * stepped.error, "{p:e}: {wrong:e} passes for right");
+    }
+}
+
+/// Any event's probability comes out of the same particles, not only the goal's.
+#[test]
+fn splitting_estimates_parts_too() {
+    let (batches, _) = climbed(&Tail::beyond(4.0), 3, 24, SPLITTING);
+    let part = Estimate::split(&batches, 1).unwrap();
+    assert!((part.probability - 0.5).abs() < 5.0 * part.error && part.error < 0.05, "{part:?}");
+    // What the particles at the end alone would say is another thing: they are where the goal is.
+    assert!(batches.iter().all(|batch| batch.ancestors >= 1 && batch.levels > 100));
+}
+
+const STONES: Stones = Stones { rungs: 10, swap_every: 2, warmup: 500, iterations: 3000 };
+
+fn stepped_over(target: &Tail, seed: u64, batches: u32, plan: Stones) -> (Vec<Stoned>, Estimate) {
+    let (moves, pulse) = (turns(), ChancePulse::default());
+    let made: Vec<_> =
+        (0..batches).map(|batch| stones(target, &moves, Seed(seed), batch, plan, &pulse).unwrap()).collect();
+    let estimate = Estimate::stones(&made).unwrap();
+    (made, estimate)
+}
+
+/// The same by stepping stones, also where most of the prior is forbidden. Leaving out a factor shows.
+#[test]
+fn stepping_stones_find_gaussian_tails() {
+    for (past, forbidden) in [(3.090_232, f64::INFINITY), (5.997_807, f64::INFINITY), (3.090_232, 3.5)] {
+        let p = tail_of(past);
+        let (batches, found) = stepped_over(&Tail { forbidden, ..Tail::beyond(past) }, 4, 12, STONES);
+        assert!((found.probability - p).abs() < 6.0 * found.error, "{p:e}: {found:?}");
+        assert!(found.error < 0.15 * p, "{found:?}");
+        // Z alone takes the target for the goal.
+        let wrong = batches.iter().map(|one| math::exp(one.log_z)).sum::<f64>() / 12.0;
+        assert!((wrong - p).abs() > 6.0 * found.error, "{wrong:e} passes for {p:e}");
+        let plateaus = Tail { plateau: 0.8, ..Tail::beyond(past) };
+        let (_, plateaus) = stepped_over(&plateaus, 5, 12, STONES);
+        assert!((plateaus.probability - p).abs() < 6.0 * plateaus.error, "{p:e}: {plateaus:?}");
+        if forbidden.is_finite() {
+            // Of what is allowed alone it would be the larger by far.
+            let allowed = tail_of(past - forbidden);
+            assert!((found.probability / allowed - p).abs() > 6.0 * found.error, "{found:?}");
+        }
+    }
+}
+
+/// A way to the goal that only stepping stones find, by their many fresh draws: the estimates differ, and it is said.
+#[test]
+fn estimators_disagree_where_one_misses_a_way() {
+    let particles = Splitting { particles: 50, ..SPLITTING };
+    let plan = Stones { rungs: 8, swap_every: 1, warmup: 2000, iterations: 20_000 };
+    let look = |needle: bool| {
+        let target = Tail { needle, ..Tail::beyond(5.0) };
+        [climbed(&target, 1, 8, particles).1, stepped_over(&target, 1, 8, plan).1]
+    };
+    let plain = look(false);
+    assert_eq!(disagree(&plain), [], "{plain:?}");
+    let found = look(true);
+    let said = disagree(&found);
+    assert!(said.len() == 1 && (said[0].less, said[0].more) == (Method::Splitting, Method::Stones), "{found:?}");
+    // The way that was missed is most of it.
+    let p = tail_of(5.0) + tail_of(-NEEDLE);
+    assert!((found[1].probability - p).abs() < 6.0 * found[1].error && found[0].probability < 0.1 * p, "{found:?}");
+}
+
+/// Ten coins that should all show heads: a constraint of nothing but plateaus, and one count of all three methods.
+struct Coins;
+
+impl Target for Coins {
+    type Draw = [bool; 10];
+    type Outcome = u32;
+    type Scratch = ();
+    fn start(&self, stream: &mut Stream) -> [bool; 10] {
+        std::array::from_fn(|_| open_unit(stream) < 0.7)
+    }
+    fn log_prior(&self, draw: &[bool; 10]) -> Result<LogDensity, ModelError> {
+        let one = |&head: &bool| LogDensity::new(if head { math::ln(0.7) } else { math::ln(0.3) });
+        Ok(draw.iter().map(one).try_fold(LogDensity::ONE, |sum, one| one.map(|one| sum + one))?)
+    }
+    fn simulate(
+        &self,
+        draw: &[bool; 10],
+        _: Option<&StateOf<Self>>,
+        _: LogPotential,
+        (): &mut (),
+    ) -> Result<Simulated<u32>, ModelError> {
+        Ok(Simulated::Complete(draw.iter().map(|&head| u32::from(head)).sum()))
+    }
+    fn log_constraint(&self, &heads: &u32) -> Result<LogPotential, ModelError> {
+        Ok(LogPotential::new(2.0 * f64::from(heads))?)
+    }
+}
+
+impl Goal for Coins {
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+        (state.outcome == 10).then(|| SolutionClass::of([0]))
+    }
+}
+
+const EACH: Parts<'static, Coins> = Parts { count: 10, met: &|_, state, met| met.copy_from_slice(&state.draw) };
+
+/// Throws one coin again.
+struct Toss;
+
+impl Move<Coins> for Toss {
+    fn name(&self) -> &str {
+        "toss"
+    }
+    fn propose(
+        &self,
+        target: &Coins,
+        current: &StateOf<Coins>,
+        candidate: &mut [bool; 10],
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        candidate[below(stream, 10)] = open_unit(stream) < 0.7;
+        let there = target.log_prior(candidate)?;
+        Ok(Proposal::with_ratio(LogRatio::new(current.log_prior.value() - there.value())?))
+    }
+    fn log_ratio(
+        &self,
+        _: &Coins,
+        from: &StateOf<Coins>,
+        to: &StateOf<Coins>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
+    }
+}
+
+#[test]
+fn all_methods_agree_on_coins() {
+    let (pulse, seed, p) = (ChancePulse::default(), Seed(7), powi(0.7, 10));
+    let moves = Arc::new(Mixture::of(Box::new(Toss)));
+    let counted: Vec<_> = (0..8).map(|batch| count(&Coins, EACH, seed, batch, 4000, &pulse).unwrap()).collect();
+    let particles: Vec<_> =
+        (0..24).map(|batch| split((&Coins, &moves), EACH, seed, batch, SPLITTING, &pulse).unwrap()).collect();
+    let plan = Stones { rungs: 6, ..STONES };
+    let stoned: Vec<_> = (0..12).map(|batch| stones(&Coins, &moves, seed, batch, plan, &pulse).unwrap()).collect();
+    let all = [
+        Estimate::counted(&counted, 0).unwrap(),
+        Estimate::split(&particles, 0).unwrap(),
+        Estimate::stones(&stoned).unwrap(),
+    ];
+    for one in &all {
+        assert!((one.probability - p).abs() < 5.0 * one.error && one.error < 0.1 * p, "{one:?} is not {p}");
+    }
+    assert_eq!(disagree(&all), []);
+    for coin in 1..=10 {
+        let parts = [Estimate::counted(&counted, coin).unwrap(), Estimate::split(&particles, coin).unwrap()];
+        assert!(parts.iter().all(|part| (part.probability - 0.7).abs() < 5.0 * part.error), "{coin}: {parts:?}");
+    }
+    // The textbook's estimate takes plateaus for slopes.
+    let textbook = particles.iter().map(|one| powi(0.99, one.deaths as i32)).sum::<f64>() / 24.0;
+    assert!((textbook - p).abs() > 10.0 * all[1].error, "{textbook} passes for {p}");
+    // Who looks on sees every simulation.
+    let simulations = all.iter().map(|one| one.simulations).sum::<u64>();
+    assert!(pulse.simulations().abs_diff(simulations) <= 12 * 6, "{} of {simulations}", pulse.simulations());
+}
+
+#[test]
+fn batches_are_functions_of_their_number_and_can_be_stopped() {
+    let (moves, pulse) = (turns(), ChancePulse::default());
+    let target = Tail::beyond(3.0);
+    let one = |batch| split((&target, &moves), UPPER, Seed(3), batch, SPLITTING, &pulse).unwrap();
+    assert!(one(2) == one(2) && one(2) != one(3));
+    assert!(
+        count(&target, UPPER, Seed(3), 2, 100, &pulse).unwrap()
+            == count(&target, UPPER, Seed(3), 2, 100, &pulse).unwrap()
+    );
+    for wrong in [Splitting { particles: 1, ..SPLITTING }, Splitting { steps: 0, ..SPLITTING }] {
+        assert!(matches!(split((&target, &moves), UPPER, Seed(3), 0, wrong, &pulse), Err(ChanceError::Plan { .. })));
+    }
+    assert!(matches!(count(&target, UPPER, Seed(3), 0, 0, &pulse), Err(ChanceError::Plan { name: "draws", .. })));
+    let one_rung = Stones { rungs: 1, ..STONES };
+    assert!(matches!(stones(&target, &moves, Seed(3), 0, one_rung, &pulse), Err(ChanceError::Plan { .. })));
+    pulse.stop();
+    assert!(matches!(count(&target, UPPER, Seed(3), 0, 9, &pulse), Err(ChanceError::Stopped)));
+    assert!(matches!(stones(&target, &moves, Seed(3), 0, STONES, &pulse), Err(ChanceError::Stopped)));
+}

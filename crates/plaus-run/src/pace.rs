@@ -1,0 +1,40 @@
+//! How fast a run's chains are on this machine: a folder knows no clock.
+
+use crate::error::Error;
+use crate::read::RunOf;
+use plaus_mcmc::{Block, Control, Distinct, Plan, Progress, Pulse, Sink, Snapshot, Start, run_some};
+use plaus_scenes::Scene;
+
+/// Forgets what it is given.
+struct Nowhere;
+
+impl<D, O> Sink<D, O> for Nowhere {
+    type Error = std::convert::Infallible;
+    fn block(&mut self, _: u32, _: Block<D, O>, _: &Snapshot<D, O>) -> Result<(), Self::Error> {
+        Ok(())
+    }
+    fn round(&mut self, _: &Progress<'_>) -> Result<Control, Self::Error> {
+        Ok(Control::Continue)
+    }
+}
+
+/// Goes on with the first chain of a run, on one thread and to nowhere, until `pulse` is stopped; gives the iterations
+/// that it made. The run stays as it is. `None` where there is no chain to go on with.
+///
+/// # Errors
+/// [`Error`] where an iteration fails, or the run has a requirement that its folder does not hold.
+pub fn pace<S: Scene>(run: &RunOf<'_, S>, pulse: &Pulse) -> Result<Option<u64>, Error> {
+    let manifest = run.run().manifest();
+    manifest.judges_alone()?;
+    let first = run.chains().start;
+    let Some(snapshot) = run.snapshot(first).cloned() else { return Ok(None) };
+    let begun = snapshot.end_iteration;
+    // As long as any run may be.
+    let iterations = (1 << 48) - 1 - manifest.plan.warmup;
+    let plan = Plan { iterations, solutions: None, ..manifest.plan };
+    let moves = run.scene().moves(&run.run().scenario().sampler.rules)?;
+    let starts = vec![Start { snapshot, distinct: Distinct::default() }];
+    run_some(run.scene(), &moves, plan, first..first + 1, starts, 1, &mut Nowhere, pulse)
+        .map_err(|error| Error::Sampling(error.to_string()))?;
+    Ok(pulse.chains().first().map(|chain| chain.iterations.saturating_sub(begun)))
+}

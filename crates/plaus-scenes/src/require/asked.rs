@@ -1,0 +1,325 @@
+//! A scene of which more is required than what it demands itself.
+
+use super::claim::agree;
+use super::kinds::Require;
+use super::place::Place;
+use super::probe::{Cast, Probe};
+use super::score::{FAR, Mark};
+use crate::accuracy::AccuracyPreset;
+use crate::animation::Animation;
+use crate::model::{Column, Member, Scalar};
+use crate::rules::Rules;
+use crate::scene::{ConfigError, Scene, Until};
+use crate::world::PlainWorld;
+use plaus_dist::{LogDensity, LogPotential, Stream};
+use plaus_mcmc::view::{Sees, lent};
+use plaus_mcmc::{
+    Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, State, StateOf, Target, Variables, Vars,
+};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// A scene under requirements: `p ∝ p_w · p_c · Π p_r`. Its own moves propose, its own simulation still stops early.
+#[derive(Debug)]
+pub struct Asked<S> {
+    scene: S,
+    asks: Arc<Asks>,
+}
+
+/// What is required, and of whom.
+#[derive(Debug)]
+struct Asks {
+    requirements: Vec<Require>,
+    cast: Cast,
+    /// The most that all requirements together can bring.
+    most: f64,
+    /// The earliest time at which a motion may show that it is hopeless.
+    moment: Option<f64>,
+}
+
+/// An outcome, and how well each requirement is met.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Answer<O> {
+    /// The scene's own outcome.
+    pub outcome: O,
+    /// The scene's own log constraint.
+    pub own: LogPotential,
+    /// A mark a requirement, in their order.
+    pub marks: Vec<Mark>,
+}
+
+/// A bound is taken for smaller than a floor only where it is by more than this part of it: sums in another order may
+/// be off by some units in the last place.
+const ROUNDING: f64 = 1e-9;
+
+/// The key of a requirement.
+fn key(index: usize, one: &Require) -> String {
+    format!("require[{index}].{}", one.name())
+}
+
+impl<S: Scene> Asked<S> {
+    /// `scene` under `requirements`.
+    ///
+    /// # Errors
+    /// [`ConfigError`] where a requirement is about what there is not, can never be met, or contradicts another.
+    pub fn new(scene: S, requirements: &[Require]) -> Result<Self, ConfigError> {
+        let cast = scene.cast();
+        for (index, one) in requirements.iter().enumerate() {
+            one.check(&Place::of_entry(index, &cast).at(one.name()))?;
+        }
+        let said = requirements.iter().enumerate().map(|(index, one)| (key(index, one), one.clone()));
+        agree(&scene.demands().into_iter().chain(said).collect::<Vec<_>>(), &cast)?;
+        let nothing = Animation::new(0.0, Vec::new(), Vec::new());
+        let most = Self::bound(requirements, &Probe::until(&nothing, &cast, 0.0));
+        let moment = requirements.iter().filter_map(Require::moment).reduce(f64::min);
+        let asks = Asks { requirements: requirements.to_vec(), cast, most, moment };
+        Ok(Self { scene, asks: Arc::new(asks) })
+    }
+
+    /// The scene without the requirements.
+    pub fn scene(&self) -> &S {
+        &self.scene
+    }
+
+    /// What is required.
+    #[must_use]
+    pub fn requirements(&self) -> &[Require] {
+        &self.asks.requirements
+    }
+
+    /// The most that requirements can still bring.
+    fn bound(requirements: &[Require], probe: &Probe<'_>) -> f64 {
+        requirements.iter().fold(0.0, |sum, one| sum + one.reach(probe).most.log)
+    }
+
+    /// How well a motion that is known to its end meets each requirement.
+    #[must_use]
+    pub fn judge(&self, motion: &Animation) -> Vec<Mark> {
+        let probe = Probe::whole(motion, &self.asks.cast);
+        self.asks.requirements.iter().map(|one| one.reach(&probe).most).collect()
+    }
+
+    /// The most, in nats, that all requirements together can still bring, where a motion is known until `known`.
+    #[must_use]
+    pub fn most_after(&self, motion: &Animation, known: f64) -> f64 {
+        Self::bound(&self.asks.requirements, &Probe::until(motion, &self.asks.cast, known))
+    }
+
+    /// Whether the beginning of a motion shows already that it cannot exceed `floor`.
+    fn is_hopeless(&self, draw: &S::Draw, floor: LogPotential) -> Result<bool, ModelError> {
+        let (Some(moment), Some(own)) = (self.asks.moment, self.scene.most()) else { return Ok(false) };
+        // The window's end itself is to be known.
+        let until = moment.next_up();
+        let Some(begun) = self.scene.motion_to(draw, until)? else { return Ok(false) };
+        let most = own.value() + self.most_after(&begun, until);
+        Ok(most + ROUNDING * (1.0 + most.abs()) <= floor.value())
+    }
+
+    /// What the scene's own constraint must exceed where the whole must exceed `floor`.
+    fn own_floor(&self, floor: LogPotential) -> Result<LogPotential, ModelError> {
+        if self.asks.most == 0.0 || floor.is_zero() {
+            return Ok(floor);
+        }
+        // Rounding is monotone: own ≤ floor − most gives own + log ≤ floor.
+        Ok(LogPotential::new((floor.value() - self.asks.most).next_down().min(f64::MAX))?)
+    }
+
+    /// The marks of a draw that the scene itself does not forbid.
+    fn marks(&self, draw: &S::Draw, own: LogPotential) -> Result<Vec<Mark>, ModelError> {
+        if own.is_zero() {
+            // What the scene forbids may have no motion; nothing that is asked of it counts.
+            return Ok(vec![Mark { margin: -FAR, log: -FAR }; self.asks.requirements.len()]);
+        }
+        Ok(self.judge(&self.scene.motion(draw)?))
+    }
+
+    /// The state of the scene alone.
+    fn plain(state: &StateOf<Self>) -> StateOf<S> {
+        let State { draw, outcome, log_prior, .. } = state;
+        State {
+            draw: draw.clone(),
+            outcome: outcome.outcome.clone(),
+            log_prior: *log_prior,
+            log_constraint: outcome.own,
+        }
+    }
+}
+
+impl<S: Scene> Target for Asked<S> {
+    type Draw = S::Draw;
+    type Outcome = Answer<S::Outcome>;
+    type Scratch = S::Scratch;
+
+    fn start(&self, stream: &mut Stream) -> S::Draw {
+        self.scene.start(stream)
+    }
+
+    fn log_prior(&self, draw: &S::Draw) -> Result<LogDensity, ModelError> {
+        self.scene.log_prior(draw)
+    }
+
+    fn simulate(
+        &self,
+        draw: &S::Draw,
+        current: Option<&StateOf<Self>>,
+        floor: LogPotential,
+        scratch: &mut S::Scratch,
+    ) -> Result<Simulated<Self::Outcome>, ModelError> {
+        if !floor.is_zero() && self.is_hopeless(draw, floor)? {
+            return Ok(Simulated::CannotExceedFloor);
+        }
+        let own_floor = self.own_floor(floor)?;
+        let current = current.map(Self::plain);
+        let Simulated::Complete(outcome) = self.scene.simulate(draw, current.as_ref(), own_floor, scratch)? else {
+            return Ok(Simulated::CannotExceedFloor);
+        };
+        let own = self.scene.log_constraint(&outcome)?;
+        if own <= own_floor && !floor.is_zero() {
+            return Ok(Simulated::CannotExceedFloor);
+        }
+        let marks = self.marks(draw, own)?;
+        Ok(Simulated::Complete(Answer { outcome, own, marks }))
+    }
+
+    fn log_constraint(&self, answer: &Self::Outcome) -> Result<LogPotential, ModelError> {
+        let asked = answer.marks.iter().fold(0.0, |sum, mark| sum + mark.log);
+        Ok(answer.own + LogPotential::new(asked)?)
+    }
+
+    fn settle(&self, accepted: bool, scratch: &mut S::Scratch) {
+        self.scene.settle(accepted, scratch);
+    }
+}
+
+impl<S: Scene> Goal for Asked<S> {
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+        let met = state.outcome.marks.iter().all(Mark::met);
+        if met { self.scene.class(&Self::plain(state)) } else { None }
+    }
+}
+
+impl<S: Scene> Sees for Asked<S> {
+    type Seen = S;
+
+    fn seen(&self) -> &S {
+        &self.scene
+    }
+
+    fn state(state: &StateOf<Self>) -> Cow<'_, StateOf<S>> {
+        Cow::Owned(Self::plain(state))
+    }
+}
+
+/// Those of the scene.
+impl<S: Scene> Variables for Asked<S> {
+    fn vars(&self) -> &Vars {
+        self.scene.vars()
+    }
+
+    fn get<'a>(&self, draw: &'a S::Draw, var: usize) -> Option<&'a [f64]> {
+        self.scene.get(draw, var)
+    }
+
+    fn get_mut<'a>(&self, draw: &'a mut S::Draw, var: usize) -> Option<&'a mut [f64]> {
+        self.scene.get_mut(draw, var)
+    }
+
+    fn set_present(&self, draw: &mut S::Draw, var: usize, present: bool) {
+        self.scene.set_present(draw, var, present);
+    }
+
+    fn shift(&self, draw: &S::Draw, var: usize) -> f64 {
+        self.scene.shift(draw, var)
+    }
+
+    fn renew_own(&self, draw: &mut S::Draw, var: usize, stream: &mut Stream) {
+        self.scene.renew_own(draw, var, stream);
+    }
+
+    fn step_own(&self, draw: &mut S::Draw, var: usize, size: f64, stream: &mut Stream) {
+        self.scene.step_own(draw, var, size, stream);
+    }
+
+    fn renew_all(&self, draw: &mut S::Draw, recipe: Recipe, stream: &mut Stream) {
+        self.scene.renew_all(draw, recipe, stream);
+    }
+
+    fn renew_group(&self, draw: &mut S::Draw, group: usize, stream: &mut Stream) {
+        self.scene.renew_group(draw, group, stream);
+    }
+}
+
+impl<S: Scene> Scene for Asked<S> {
+    const ADAPTS: bool = S::ADAPTS;
+
+    fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
+        Ok(lent(&self.scene.moves(rules)?))
+    }
+
+    /// Those of the scene, and the margin of each requirement.
+    fn scalars(&self) -> Vec<Scalar> {
+        let margin = Column::result("margin", "nat");
+        let numbers = 1..=self.requirements().len() as u32;
+        let margins = numbers.map(|number| margin.of(Some(Member { kind: "requirement", number })));
+        self.scene.scalars().into_iter().chain(margins).collect()
+    }
+
+    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
+        let marks = &state.outcome.marks;
+        let (own, margins) = values.split_at_mut(values.len().saturating_sub(marks.len()));
+        self.scene.write_scalars(&Self::plain(state), own);
+        for (value, mark) in margins.iter_mut().zip(marks) {
+            *value = mark.margin;
+        }
+    }
+
+    fn animate(&self, draw: &S::Draw) -> Result<Animation, ModelError> {
+        self.scene.animate(draw)
+    }
+
+    fn animate_until(&self, draw: &S::Draw, until: Until) -> Result<Animation, ModelError> {
+        self.scene.animate_until(draw, until)
+    }
+
+    fn motion(&self, draw: &S::Draw) -> Result<Animation, ModelError> {
+        self.scene.motion(draw)
+    }
+
+    fn motion_to(&self, draw: &S::Draw, time: f64) -> Result<Option<Animation>, ModelError> {
+        self.scene.motion_to(draw, time)
+    }
+
+    fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
+        let scene = self.scene.at_accuracy(accuracy)?;
+        Ok(scene.map(|scene| Self { scene, asks: Arc::clone(&self.asks) }))
+    }
+
+    fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
+        self.scene.world()
+    }
+
+    fn cast(&self) -> Cast {
+        self.asks.cast.clone()
+    }
+
+    fn most(&self) -> Option<LogPotential> {
+        self.scene.most().and_then(|own| LogPotential::new(own.value() + self.asks.most).ok())
+    }
+
+    fn demands(&self) -> Vec<(String, Require)> {
+        let said = self.requirements().iter().enumerate();
+        let said = said.map(|(index, one)| (key(index, one), one.clone()));
+        self.scene.demands().into_iter().chain(said).collect()
+    }
+
+    fn asked(&self) -> Vec<String> {
+        let said = self.requirements().iter().enumerate().map(|(index, one)| key(index, one));
+        self.scene.asked().into_iter().chain(said).collect()
+    }
+
+    fn answers(&self, state: &StateOf<Self>) -> Vec<Mark> {
+        let own = self.scene.answers(&Self::plain(state));
+        own.into_iter().chain(state.outcome.marks.iter().copied()).collect()
+    }
+}

@@ -1,0 +1,119 @@
+//! Contradictions that can be known before anything is simulated.
+
+use super::event::Event;
+use super::kinds::Require;
+use super::probe::Cast;
+use super::score::Band;
+use super::when::Window;
+use crate::scene::ConfigError;
+use glam::DVec3;
+use plaus_dist::math;
+
+/// What a requirement claims of a thing that can be only one way.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Claim {
+    /// An axis of a body, in its own frame, is up to so many degrees, at the end or at a time.
+    Up {
+        /// Which body.
+        body: String,
+        /// When; `None`: at the end.
+        at: Option<f64>,
+        /// The axis.
+        axis: DVec3,
+        /// How far from upright it may be.
+        within_deg: f64,
+    },
+    /// A body comes to rest at a place.
+    Place {
+        /// Which body.
+        body: String,
+        /// x, y and z in mm, where they count.
+        at: [Option<f64>; 3],
+        /// How far off it may be, in mm.
+        within: f64,
+    },
+    /// An event happens within a window.
+    Time {
+        /// What.
+        event: Box<Event>,
+        /// When.
+        window: Window,
+    },
+    /// A number lies in a band.
+    Number {
+        /// Which number.
+        what: String,
+        /// Where it begins.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+    },
+}
+
+impl Claim {
+    pub(super) fn time(event: Event, window: Window) -> Self {
+        Self::Time { event: Box::new(event), window }
+    }
+
+    pub(super) fn number(what: String, band: Band) -> Self {
+        Self::Number { what, from: band.from, to: band.to }
+    }
+
+    /// Why both cannot be met; `None` where they may.
+    fn contradicts(&self, other: &Self, cast: &Cast) -> Option<String> {
+        let only = cast.only().unwrap_or_default();
+        match (self, other) {
+            (
+                Self::Up { body: a, at: when, axis, within_deg },
+                Self::Up { body: b, at: then, axis: another, within_deg: besides },
+            ) => {
+                let [a, b] = named(only, [a, b]);
+                let between = math::acos(axis.dot(*another).clamp(-1.0, 1.0)).to_degrees();
+                let apart = a == b && when == then && between > within_deg + besides;
+                apart.then(|| format!("two sides of {a} that lie {between:.0}° apart cannot both be up"))
+            }
+            (Self::Place { body: a, at: one, within }, Self::Place { body: b, at: two, within: besides }) => {
+                let [a, b] = named(only, [a, b]);
+                let squares =
+                    one.iter().zip(two).map(|(one, two)| one.zip(*two).map_or(0.0, |(x, y)| math::square(x - y)));
+                let between = squares.sum::<f64>().sqrt();
+                let apart = a == b && between > within + besides;
+                apart.then(|| format!("{a} cannot rest at two places {between:.3} mm apart"))
+            }
+            (Self::Time { event: a, window: one }, Self::Time { event: b, window: two }) => {
+                let [x, y] = named(only, [&a.body, &b.body]);
+                let alike =
+                    Event { body: x.into(), ..(**a).clone() }.is_same(&Event { body: y.into(), ..(**b).clone() });
+                let apart = alike && (one.to < two.from || two.to < one.from);
+                apart.then(|| "one event cannot happen in two windows that lie apart".to_owned())
+            }
+            (Self::Number { what: a, from, to }, Self::Number { what: b, from: low, to: high }) => (a == b
+                && (to < low || high < from))
+                .then(|| "a number cannot lie in two ranges that lie apart".to_owned()),
+            _ => None,
+        }
+    }
+}
+
+/// Names of bodies; one that is left out means the only one there is.
+fn named<'a>(only: &'a str, names: [&'a str; 2]) -> [&'a str; 2] {
+    names.map(|name| if name.is_empty() { only } else { name })
+}
+
+/// Refuses requirements, each with the key that says it, of which two contradict each other.
+pub(crate) fn agree(all: &[(String, Require)], cast: &Cast) -> Result<(), ConfigError> {
+    let claims: Vec<(usize, Claim)> = all
+        .iter()
+        .enumerate()
+        .flat_map(|(at, (_, one))| one.claims().into_iter().map(move |claim| (at, claim)))
+        .collect();
+    for (nth, (later, claim)) in claims.iter().enumerate() {
+        for (earlier, other) in &claims[..nth] {
+            let Some(why) = other.contradicts(claim, cast) else { continue };
+            let (key, beside) = (&all[*later].0, &all[*earlier].0);
+            let beside = if earlier == later { String::new() } else { format!(": see `{beside}`") };
+            return Err(ConfigError::new(key.clone(), why + &beside));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,89 @@
+//! What happens at a time: impacts, and coming to rest.
+
+use super::place::Place;
+use super::probe::Probe;
+use super::score::Span;
+use crate::scene::ConfigError;
+use plaus_animation::Impact;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// An event: the n-th impact of a body, or its coming to rest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Event {
+    /// Name of a body as in exports, or a pattern such as `ball_*`, which stands for all it fits. May be left out
+    /// where there is one body alone.
+    pub body: String,
+    /// What happens.
+    pub what: What,
+    /// Of impacts: with whom, a body or a part of the scenery; empty: with anything.
+    pub with: String,
+    /// Of impacts: which of them, from 1; −1 is the last, −2 the last but one.
+    #[schemars(range(min = -10_000, max = 10_000))]
+    pub nth: i32,
+    /// Of impacts: only those count at which the two meet at this speed or faster.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
+    pub faster_than: f64,
+}
+
+/// What happens.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum What {
+    /// It hits something.
+    #[default]
+    Impact,
+    /// It comes to rest: of several bodies, the last of them does.
+    Rest,
+}
+
+impl Default for Event {
+    fn default() -> Self {
+        Self { body: String::new(), what: What::Impact, with: String::new(), nth: 1, faster_than: 0.0 }
+    }
+}
+
+impl Event {
+    pub(super) fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.body("body", &self.body)?;
+        place.partner("with", &self.with)?;
+        if self.nth == 0 {
+            return Err(place.at("nth").wrong("there is no impact 0: they count from 1, or from −1 backwards"));
+        }
+        Ok(())
+    }
+
+    /// When it happens.
+    pub(super) fn time(&self, probe: &Probe<'_>) -> Span {
+        match self.what {
+            What::Rest => {
+                let bodies = probe.cast().matching(probe.name(&self.body));
+                let last = |a: Span, b: Span| Span { low: a.low.max(b.low), high: a.high.max(b.high) };
+                bodies.map(|body| probe.rest(body)).reduce(last).unwrap_or(Span::NEVER)
+            }
+            What::Impact => match (self.found(probe), probe.is_whole()) {
+                (Some(hit), true) => Span::at(hit.time),
+                (Some(hit), false) if self.nth > 0 => Span::at(hit.time),
+                // Later ones may take its place among the last.
+                (Some(hit), false) => Span::from(hit.time),
+                (None, true) => Span::NEVER,
+                (None, false) => Span::from(if self.nth > 0 { probe.known() } else { 0.0 }),
+            },
+        }
+    }
+
+    /// The impact, as far as it is known.
+    pub(super) fn found<'a>(&self, probe: &Probe<'a>) -> Option<&'a Impact> {
+        let nth = self.nth.unsigned_abs() as usize - 1;
+        let hits: Vec<&'a Impact> = probe.hits(&self.body, &self.with, self.faster_than).collect();
+        if self.nth > 0 { hits.get(nth).copied() } else { hits.iter().rev().nth(nth).copied() }
+    }
+
+    /// Whether the same is meant, whenever it happens.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        let of_impact = self.what == What::Rest
+            || (self.with == other.with && self.nth == other.nth && self.faster_than == other.faster_than);
+        self.body == other.body && self.what == other.what && of_impact
+    }
+}

@@ -1,0 +1,57 @@
+//! How long a body flies.
+
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::{Band, Reach, Span};
+use crate::require::when::When;
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A body flies, under gravity alone, for at least, or at most, so long in all.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct AirTime {
+    /// Name of a body. May be left out where there is one.
+    pub body: String,
+    /// No less. Unset: there is no such limit.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
+    pub at_least_s: Option<f64>,
+    /// No more. Unset: there is no such limit.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
+    pub at_most_s: Option<f64>,
+    /// What lies outside loses one nat each so many milliseconds.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e9, "x-unit" = "ms"))]
+    pub scale_ms: f64,
+    /// Only this window counts.
+    pub when: When,
+}
+
+impl Default for AirTime {
+    fn default() -> Self {
+        let (body, when) = (String::new(), When::default());
+        Self { body, at_least_s: None, at_most_s: None, scale_ms: 20.0, when }
+    }
+}
+
+impl Ask for AirTime {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.one_body("body", &self.body)?;
+        self.when.check(place)?;
+        place.limits(self.at_least_s, self.at_most_s)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let window = self.when.window();
+        let so_far: f64 =
+            probe.legs(&self.body, window).iter().filter(|leg| leg.is_flight()).map(|leg| leg.length).sum();
+        let high = if probe.sees_all(window) { so_far } else { f64::MAX };
+        let band = Band::of_limits(self.at_least_s, self.at_most_s, 1e-3 * self.scale_ms);
+        band.reach(Span { low: so_far, high })
+    }
+
+    fn moment(&self) -> Option<f64> {
+        Some(self.when.window().to).filter(|to| to.is_finite())
+    }
+}

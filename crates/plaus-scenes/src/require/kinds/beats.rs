@@ -1,0 +1,168 @@
+//! Events on the beats of a rhythm.
+
+use crate::require::event::{Event, What};
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::{FAR, Mark, Reach};
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Impacts come on beats: at regular times, or at those of a list.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Beats {
+    /// Name of a body, or a pattern such as `ball_*`. May be left out where there is one.
+    pub body: String,
+    /// With whom, a body or a part of the scenery, or a pattern; empty: with anything.
+    pub with: String,
+    /// Which impact of each body, from 1; −1 is the last.
+    #[schemars(range(min = -10_000, max = 10_000))]
+    pub nth: i32,
+    /// Only impacts count at which the two meet at this speed or faster.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
+    pub faster_than: f64,
+    /// What has to come on what.
+    pub each: Each,
+    /// Time from beat to beat: 0.5 is 120 beats a minute. Unset: `times_s` has them.
+    #[schemars(extend("minimum" = 1e-3, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
+    pub every_s: Option<f64>,
+    /// When the first of the regular beats is.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s"))]
+    pub offset_s: f64,
+    /// The beats, in place of regular ones.
+    #[schemars(length(max = 10_000), extend("x-unit" = "s"))]
+    pub times_s: Vec<f64>,
+    /// How far from a beat an impact may be.
+    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "ms"))]
+    pub within_ms: f64,
+    /// What is farther off loses one nat each so many milliseconds.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms"))]
+    pub scale_ms: f64,
+}
+
+/// What has to come on what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Each {
+    /// The `nth` impact of every body comes on a beat.
+    #[default]
+    Body,
+    /// Every impact that counts comes on a beat; where there is none, nothing is asked.
+    Impact,
+    /// On every beat of `times_s` comes an impact.
+    Beat,
+}
+
+impl Default for Beats {
+    fn default() -> Self {
+        Self {
+            body: String::new(),
+            with: String::new(),
+            nth: 1,
+            faster_than: 0.0,
+            each: Each::Body,
+            every_s: None,
+            offset_s: 0.0,
+            times_s: Vec::new(),
+            within_ms: 20.0,
+            scale_ms: 10.0,
+        }
+    }
+}
+
+impl Beats {
+    fn event(&self, body: &str) -> Event {
+        let with = self.with.clone();
+        Event { body: body.into(), what: What::Impact, with, nth: self.nth, faster_than: self.faster_than }
+    }
+
+    /// How far a time is from the nearest beat, in s.
+    fn off(&self, time: f64) -> f64 {
+        match self.every_s {
+            Some(every) => {
+                let beat = ((time - self.offset_s) / every).round().max(0.0);
+                (time - self.offset_s - beat * every).abs()
+            }
+            None => self.times_s.iter().map(|beat| (time - beat).abs()).fold(f64::INFINITY, f64::min),
+        }
+    }
+
+    fn margin(&self, off: f64) -> f64 {
+        ((1e-3 * self.within_ms - off) / (1e-3 * self.scale_ms)).max(-FAR)
+    }
+
+    /// Each single demand: from which margin to which.
+    fn parts(&self, probe: &Probe<'_>) -> Vec<Reach> {
+        let best = self.margin(0.0);
+        let open = Reach::between(-FAR, best);
+        let hits = || probe.hits(&self.body, &self.with, self.faster_than);
+        match self.each {
+            Each::Body => {
+                let bodies = probe.cast().matching(probe.name(&self.body));
+                let one = |body| {
+                    let time = self.event(body).time(probe);
+                    match (time.low == time.high, time.low.is_finite()) {
+                        (true, true) => Reach::certain(self.margin(self.off(time.low))),
+                        (true, false) => Reach::NEVER,
+                        _ => open,
+                    }
+                };
+                bodies.map(one).collect()
+            }
+            Each::Impact => {
+                let more = (!probe.is_whole()).then(|| Reach::between(-FAR, best));
+                hits().map(|hit| Reach::certain(self.margin(self.off(hit.time)))).chain(more).collect()
+            }
+            Each::Beat => {
+                let one = |beat: &f64| {
+                    let known = hits().map(|hit| (hit.time - beat).abs()).fold(f64::INFINITY, f64::min);
+                    let later = if probe.is_whole() { f64::INFINITY } else { (probe.known() - beat).max(0.0) };
+                    Reach::between(self.margin(known), self.margin(known.min(later)))
+                };
+                self.times_s.iter().map(one).collect()
+            }
+        }
+    }
+}
+
+impl Ask for Beats {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.body("body", &self.body)?;
+        place.partner("with", &self.with)?;
+        if self.nth == 0 {
+            return Err(place.at("nth").wrong("there is no impact 0: they count from 1, or from −1 backwards"));
+        }
+        let longest = place.cast().longest;
+        if let Some(late) = self.times_s.iter().find(|time| !(**time >= 0.0 && **time <= longest.min(3600.0))) {
+            let message =
+                format!("a beat at {late} s: beats are from 0 s to the end, {} s at most", longest.min(3600.0));
+            return Err(place.at("times_s").wrong(&message));
+        }
+        match (self.every_s, self.times_s.is_empty(), self.each) {
+            (Some(_), false, _) => Err(place.wrong("say the beats in one way: `every_s` or `times_s`")),
+            (None, true, _) => Err(place.wrong("there are no beats: give `every_s` or `times_s`")),
+            (Some(_), _, Each::Beat) => {
+                Err(place.at("each").wrong("regular beats have no end: list those that need an impact in `times_s`"))
+            }
+            (Some(_), ..) if self.offset_s > longest => {
+                Err(place.at("offset_s").wrong(&format!("the first beat is after the end, {longest} s")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Each demand costs what it lacks; the margin is that of the worst.
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let parts = self.parts(probe);
+        let whole = |end: fn(&Reach) -> Mark| {
+            let marks = parts.iter().map(end);
+            marks.fold(Mark { margin: self.margin(0.0), log: 0.0 }, |all, one| Mark {
+                margin: all.margin.min(one.margin),
+                log: all.log + one.log,
+            })
+        };
+        Reach { least: whole(|reach| reach.least), most: whole(|reach| reach.most) }
+    }
+}

@@ -1,0 +1,53 @@
+//! One event before another.
+
+use crate::require::event::Event;
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::{FAR, Reach};
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// One event happens, and another not before it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Before {
+    /// What comes first, and must come.
+    pub first: Event,
+    /// What comes later, if it comes.
+    pub then: Event,
+    /// How much later, at least.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "ms"))]
+    pub by_ms: f64,
+    /// Too early loses one nat each so many milliseconds.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms"))]
+    pub scale_ms: f64,
+}
+
+impl Default for Before {
+    fn default() -> Self {
+        Self { first: Event::default(), then: Event::default(), by_ms: 0.0, scale_ms: 20.0 }
+    }
+}
+
+impl Ask for Before {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        self.first.check(&place.at("first"))?;
+        self.then.check(&place.at("then"))?;
+        if self.first.is_same(&self.then) {
+            return Err(place.wrong("an event cannot come before itself"));
+        }
+        Ok(())
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let (first, then) = (self.first.time(probe), self.then.time(probe));
+        let margin = |first: f64, then: f64| match (first.is_finite(), then.is_finite()) {
+            (false, _) => -FAR,
+            (true, false) => FAR,
+            (true, true) => (then - first - 1e-3 * self.by_ms) / (1e-3 * self.scale_ms),
+        };
+        Reach::between(margin(first.high, then.low), margin(first.low, then.high))
+    }
+}

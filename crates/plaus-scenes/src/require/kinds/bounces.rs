@@ -1,0 +1,88 @@
+//! How often a body hits something.
+
+use crate::require::claim::Claim;
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::{Band, Reach, Span};
+use crate::require::when::When;
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A body hits something at least, or at most, so many times.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Bounces {
+    /// Name of a body, or a pattern such as `ball_*`: all impacts of those it fits count. May be left out where there
+    /// is one body.
+    pub body: String,
+    /// With whom, a body or a part of the scenery, or a pattern; empty: with anything.
+    pub with: String,
+    /// Only impacts count at which the two meet at this speed or faster: the last bounces of a thing are many and
+    /// small.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
+    pub faster_than: f64,
+    /// No fewer. Unset: there is no such limit.
+    #[schemars(extend("minimum" = 0, "maximum" = 1_000_000, "x-example" = 4))]
+    pub at_least: Option<u32>,
+    /// No more. Unset: there is no such limit.
+    #[schemars(extend("minimum" = 0, "maximum" = 1_000_000, "x-example" = 4))]
+    pub at_most: Option<u32>,
+    /// What a bounce too few or too many costs.
+    #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
+    pub nats_each: f64,
+    /// Only impacts in this window count.
+    pub when: When,
+}
+
+impl Default for Bounces {
+    fn default() -> Self {
+        Self {
+            body: String::new(),
+            with: String::new(),
+            faster_than: 0.05,
+            at_least: None,
+            at_most: None,
+            nats_each: 2.0,
+            when: When::default(),
+        }
+    }
+}
+
+impl Bounces {
+    /// Half a bounce of room on either side, so that no number lies on an edge.
+    fn band(&self) -> Band {
+        let from = self.at_least.map_or(f64::NEG_INFINITY, |n| f64::from(n) - 0.5);
+        let to = self.at_most.map_or(f64::INFINITY, |n| f64::from(n) + 0.5);
+        Band { from, to, scale: 1.0 / self.nats_each }
+    }
+}
+
+impl Ask for Bounces {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.body("body", &self.body)?;
+        place.partner("with", &self.with)?;
+        self.when.check(place)?;
+        place.limits(self.at_least.map(f64::from), self.at_most.map(f64::from))
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let window = self.when.window();
+        let hits = probe.hits(&self.body, &self.with, self.faster_than);
+        let count = hits.filter(|hit| hit.time >= window.from && hit.time <= window.to).count() as f64;
+        // So many that no more could matter, but a number: a body hits something as often as it likes.
+        let most = if probe.sees_all(window) { count } else { f64::MAX };
+        self.band().reach(Span { low: count, high: most })
+    }
+
+    fn moment(&self) -> Option<f64> {
+        Some(self.when.window().to).filter(|to| to.is_finite())
+    }
+
+    fn claims(&self) -> Vec<Claim> {
+        let what = format!("{} {} {} {:?}", self.body, self.with, self.faster_than, self.when.window());
+        let range = Band::of_limits(self.at_least.map(f64::from), self.at_most.map(f64::from), 1.0);
+        vec![Claim::number(format!("bounces {what}"), range)]
+    }
+}

@@ -1,0 +1,135 @@
+//! Requirements made of others: all of them, any, not one, at least so many.
+
+use crate::require::claim::Claim;
+use crate::require::kinds::{Ask, Require};
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::{FAR, Mark, Reach};
+use crate::scene::ConfigError;
+use plaus_dist::math::ln_add_exp;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// All of several requirements: what they cost adds up.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct All(#[schemars(length(min = 1, max = 64))] pub Vec<Require>);
+
+/// Any of several requirements: their densities add up.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct AnyOf(#[schemars(length(min = 1, max = 64))] pub Vec<Require>);
+
+/// A requirement must not be met. What it costs is by how much it is met.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Not(pub Box<Require>);
+
+/// At least so many of several requirements: the margin is that of the last one needed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AtLeast {
+    /// How many.
+    #[schemars(range(min = 1, max = 64))]
+    pub count: u32,
+    /// Of which.
+    #[schemars(length(min = 1, max = 64))]
+    pub of: Vec<Require>,
+}
+
+/// The k-th largest of some margins; as small as can be where there are fewer.
+pub(super) fn kth_best(margins: &[f64], k: usize) -> f64 {
+    let mut margins = margins.to_vec();
+    margins.sort_by(|a, b| b.total_cmp(a));
+    if k == 0 { FAR } else { margins.get(k - 1).copied().unwrap_or(-FAR) }
+}
+
+/// The latest of the moments of some requirements, where each has one.
+pub(super) fn deepest<'a>(of: impl IntoIterator<Item = &'a Require>) -> Option<f64> {
+    of.into_iter().map(|one| one.moment()).try_fold(0.0, |latest, moment| Some(f64::max(latest, moment?)))
+}
+
+fn check(of: &[Require], place: &Place<'_>) -> Result<(), ConfigError> {
+    of.iter().enumerate().try_for_each(|(index, one)| one.check(&place.entry(index).at(one.name())))
+}
+
+/// Both ends of what some requirements can come to, put together in one way.
+fn put_together(of: &[Require], probe: &Probe<'_>, together: impl Fn(&[Mark]) -> Mark) -> Reach {
+    let each: Vec<Reach> = of.iter().map(|one| one.reach(probe)).collect();
+    let end = |end: fn(&Reach) -> Mark| together(&each.iter().map(end).collect::<Vec<_>>());
+    Reach { least: end(|reach| reach.least), most: end(|reach| reach.most) }
+}
+
+impl Ask for All {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        check(&self.0, place)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        put_together(&self.0, probe, |marks| Mark {
+            margin: marks.iter().map(|mark| mark.margin).fold(FAR, f64::min),
+            log: marks.iter().fold(0.0, |sum, mark| sum + mark.log),
+        })
+    }
+
+    fn moment(&self) -> Option<f64> {
+        // One that cannot be met ends it.
+        self.0.iter().filter_map(Require::moment).reduce(f64::min)
+    }
+
+    fn claims(&self) -> Vec<Claim> {
+        self.0.iter().flat_map(Require::claims).collect()
+    }
+}
+
+impl Ask for AnyOf {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        check(&self.0, place)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        put_together(&self.0, probe, |marks| Mark {
+            margin: marks.iter().map(|mark| mark.margin).fold(-FAR, f64::max),
+            log: marks.iter().fold(f64::NEG_INFINITY, |sum, mark| ln_add_exp(sum, mark.log)),
+        })
+    }
+
+    fn moment(&self) -> Option<f64> {
+        deepest(&self.0)
+    }
+}
+
+impl Ask for Not {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        self.0.check(&place.at(self.0.name()))
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        self.0.reach(probe).opposite()
+    }
+
+    fn moment(&self) -> Option<f64> {
+        self.0.moment()
+    }
+}
+
+impl Ask for AtLeast {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        let (wanted, all) = (self.count, self.of.len());
+        if wanted as usize > all {
+            return Err(place.at("count").wrong(&format!("at least {wanted} of {all} requirements can never be met")));
+        }
+        check(&self.of, &place.at("of"))
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        put_together(&self.of, probe, |marks| {
+            let margins: Vec<f64> = marks.iter().map(|mark| mark.margin).collect();
+            Mark::of(kth_best(&margins, self.count as usize))
+        })
+    }
+
+    fn moment(&self) -> Option<f64> {
+        deepest(&self.of)
+    }
+}

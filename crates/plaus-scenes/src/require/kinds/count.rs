@@ -1,0 +1,63 @@
+//! How many bodies do something.
+
+use crate::require::kinds::combine::{deepest, kth_best};
+use crate::require::kinds::{Ask, Require};
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::{FAR, Mark, Reach};
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// At least, or at most, so many of several bodies do something.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Count {
+    /// Which bodies: a pattern such as `die_*`.
+    #[serde(default = "everybody")]
+    pub of: String,
+    /// No fewer. Unset: there is no such limit.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0, "maximum" = 10_000, "x-example" = 4))]
+    pub at_least: Option<u32>,
+    /// No more. Unset: there is no such limit.
+    #[serde(default)]
+    #[schemars(extend("minimum" = 0, "maximum" = 10_000, "x-example" = 4))]
+    pub at_most: Option<u32>,
+    /// What they do: a requirement that names no body.
+    pub that: Box<Require>,
+}
+
+fn everybody() -> String {
+    "*".into()
+}
+
+impl Ask for Count {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.body("of", &self.of)?;
+        place.limits(self.at_least.map(f64::from), self.at_most.map(f64::from))?;
+        let bodies = place.cast().matching(&self.of).count();
+        if let Some(wanted) = self.at_least.filter(|wanted| *wanted as usize > bodies) {
+            return Err(place.at("at_least").wrong(&format!("{wanted} of {bodies}: there are no more bodies")));
+        }
+        self.that.check(&place.at("that").counted().at(self.that.name()))
+    }
+
+    /// The margin of the one that decides.
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let each = probe.cast().matching(probe.name(&self.of)).map(|body| self.that.reach(&probe.about(body)));
+        let each: Vec<Reach> = each.collect();
+        let mark = |end: fn(&Reach) -> Mark| {
+            let margins: Vec<f64> = each.iter().map(|reach| end(reach).margin).collect();
+            let least = self.at_least.map_or(FAR, |k| kth_best(&margins, k as usize));
+            (least, self.at_most.map_or(-FAR, |k| kth_best(&margins, k as usize + 1)))
+        };
+        let ((low, too_low), (high, too_high)) = (mark(|reach| reach.least), mark(|reach| reach.most));
+        let limit = |too: f64| if self.at_most.is_some() { (-too).next_down() } else { FAR };
+        Reach::between(low.min(limit(too_high)), high.min(limit(too_low)))
+    }
+
+    fn moment(&self) -> Option<f64> {
+        deepest([self.that.as_ref()])
+    }
+}

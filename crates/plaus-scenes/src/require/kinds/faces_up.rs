@@ -1,0 +1,138 @@
+//! Which face, or axis, of a body is up.
+
+use crate::require::claim::Claim;
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::Reach;
+use crate::require::when::When;
+use crate::scene::ConfigError;
+use glam::DVec3;
+use plaus_animation::{Shape, Track};
+use plaus_dist::math;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A face of a die, or an axis of a body, is up: at the end, or at a time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct FacesUp {
+    /// Name of a body. May be left out where there is one.
+    pub body: String,
+    /// Which face, of a body with pips. Unset: `axis` counts.
+    #[schemars(extend("minimum" = 1, "maximum" = 6, "x-example" = 6))]
+    pub face: Option<u32>,
+    /// Which axis of the body.
+    pub axis: Axis,
+    /// How far from upright it may be.
+    #[schemars(extend("minimum" = 0.1, "maximum" = 180.0, "x-unit" = "degree"))]
+    pub within_deg: f64,
+    /// What lies outside loses one nat each so many degrees.
+    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e4, "x-unit" = "degree"))]
+    pub scale_deg: f64,
+    /// At which time: `at_s`, `frame` or `from_s`. Without one: at the end.
+    pub when: When,
+}
+
+/// An axis of a body, in its own frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    /// Its first.
+    X,
+    /// Against its first.
+    MinusX,
+    /// Its second.
+    Y,
+    /// Against its second.
+    MinusY,
+    /// Its third: of a pin, towards its head.
+    #[default]
+    Z,
+    /// Against its third.
+    MinusZ,
+}
+
+/// Axes in the order of the pips of a shape.
+const AXES: [(Axis, DVec3); 6] = [
+    (Axis::X, DVec3::X),
+    (Axis::MinusX, DVec3::NEG_X),
+    (Axis::Y, DVec3::Y),
+    (Axis::MinusY, DVec3::NEG_Y),
+    (Axis::Z, DVec3::Z),
+    (Axis::MinusZ, DVec3::NEG_Z),
+];
+
+/// Where the faces 1 to 6 of a die lie.
+const FACES: [DVec3; 6] = [DVec3::Z, DVec3::Y, DVec3::X, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
+
+impl Axis {
+    fn vector(self) -> DVec3 {
+        AXES.into_iter().find(|(axis, _)| *axis == self).map_or(DVec3::Z, |(_, vector)| vector)
+    }
+}
+
+impl Default for FacesUp {
+    fn default() -> Self {
+        let (body, when) = (String::new(), When::default());
+        Self { body, face: None, axis: Axis::Z, within_deg: 20.0, scale_deg: 10.0, when }
+    }
+}
+
+/// Angle in degrees between an axis of a body and the vertical.
+pub(super) fn tilt(track: &Track, axis: DVec3, time: f64) -> f64 {
+    let up = track.orientation(time) * axis;
+    math::acos(up.y.clamp(-1.0, 1.0)).to_degrees()
+}
+
+impl FacesUp {
+    fn axis_of(&self, shape: &Shape) -> Option<DVec3> {
+        let Some(face) = self.face else { return Some(self.axis.vector()) };
+        let Shape::Cuboid { pips: Some(pips), .. } = shape else { return None };
+        pips.iter().zip(AXES).find(|(pip, _)| u32::from(**pip) == face).map(|(_, (_, vector))| vector)
+    }
+}
+
+impl Ask for FacesUp {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.one_body("body", &self.body)?;
+        if self.face.is_some() && !place.cast().faces {
+            return Err(place.at("face").wrong("no body here has faces with pips; ask for an `axis`"));
+        }
+        self.when.check(place)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let margin = |angle: f64| (self.within_deg - angle) / self.scale_deg;
+        let Some(time) = probe.moment(self.when.instant()) else { return Reach::between(margin(180.0), margin(0.0)) };
+        let track = probe.track(&self.body);
+        let angle = track.and_then(|track| Some(tilt(track, self.axis_of(&track.shape)?, time)));
+        angle.map_or(Reach::NEVER, |angle| Reach::certain(margin(angle)))
+    }
+
+    fn moment(&self) -> Option<f64> {
+        self.when.instant()
+    }
+
+    fn claims(&self) -> Vec<Claim> {
+        let face = self.face.and_then(|face| FACES.get(face as usize - 1));
+        let axis = face.copied().unwrap_or(self.axis.vector());
+        vec![Claim::Up { body: self.body.clone(), at: self.when.instant(), axis, within_deg: self.within_deg }]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_lie_where_a_die_has_them() {
+        let shape = Shape::die(0.016);
+        for (face, vector) in (1..).zip(FACES) {
+            let up = FacesUp { face: Some(face), ..FacesUp::default() };
+            assert_eq!(up.axis_of(&shape), Some(vector));
+        }
+        let up = FacesUp { face: Some(1), ..FacesUp::default() };
+        assert_eq!(up.axis_of(&Shape::ball(1.0)), None);
+    }
+}

@@ -1,0 +1,63 @@
+//! An impact within a window of time.
+
+use crate::require::claim::Claim;
+use crate::require::event::{Event, What};
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::Reach;
+use crate::require::when::When;
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// An impact happens, when asked for: the first of a body, the last, or another.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Impact {
+    /// Name of a body, or a pattern such as `ball_*`: any of those it fits. May be left out where there is one body.
+    pub body: String,
+    /// With whom, a body or a part of the scenery, or a pattern; empty: with anything.
+    pub with: String,
+    /// Which of its impacts, from 1; −1 is the last, −2 the last but one.
+    #[schemars(range(min = -10_000, max = 10_000))]
+    pub nth: i32,
+    /// Only impacts count at which the two meet at this speed or faster.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
+    pub faster_than: f64,
+    /// When.
+    pub when: When,
+}
+
+impl Default for Impact {
+    fn default() -> Self {
+        let Event { body, with, nth, faster_than, .. } = Event::default();
+        Self { body, with, nth, faster_than, when: When::default() }
+    }
+}
+
+impl Impact {
+    fn event(&self) -> Event {
+        let Self { body, with, nth, faster_than, .. } = self.clone();
+        Event { body, what: What::Impact, with, nth, faster_than }
+    }
+}
+
+impl Ask for Impact {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        self.event().check(place)?;
+        self.when.check(place)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        self.when.band().reach(self.event().time(probe))
+    }
+
+    fn moment(&self) -> Option<f64> {
+        Some(self.when.window().to).filter(|to| to.is_finite() && self.nth > 0)
+    }
+
+    fn claims(&self) -> Vec<Claim> {
+        vec![Claim::time(self.event(), self.when.window())]
+    }
+}

@@ -1,0 +1,71 @@
+//! How hard a body hits something.
+
+use crate::require::event::{Event, What};
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::{Band, FAR, Reach, Span};
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The impulse of an impact is at least, or at most, so large.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Impulse {
+    /// Name of a body, or a pattern such as `ball_*`: any of those it fits. May be left out where there is one body.
+    pub body: String,
+    /// With whom, a body or a part of the scenery, or a pattern; empty: with anything.
+    pub with: String,
+    /// Which of its impacts, from 1; −1 is the last, −2 the last but one.
+    #[schemars(range(min = -10_000, max = 10_000))]
+    pub nth: i32,
+    /// Only impacts count at which the two meet at this speed or faster.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
+    pub faster_than: f64,
+    /// No less. Unset: there is no such limit.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "N·s", "x-example" = 0.01))]
+    pub at_least: Option<f64>,
+    /// No more. Unset: there is no such limit.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "N·s", "x-example" = 0.01))]
+    pub at_most: Option<f64>,
+    /// What lies outside loses one nat each such part of the limit: 0.1 is a tenth.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e3))]
+    pub scale: f64,
+}
+
+impl Default for Impulse {
+    fn default() -> Self {
+        let Event { body, with, nth, faster_than, .. } = Event::default();
+        Self { body, with, nth, faster_than, at_least: None, at_most: None, scale: 0.1 }
+    }
+}
+
+impl Impulse {
+    fn event(&self) -> Event {
+        let Self { body, with, nth, faster_than, .. } = self.clone();
+        Event { body, what: What::Impact, with, nth, faster_than }
+    }
+
+    fn band(&self) -> Band {
+        let limit = self.at_most.or(self.at_least).filter(|limit| *limit > 0.0).unwrap_or(1.0);
+        Band::of_limits(self.at_least, self.at_most, self.scale * limit)
+    }
+}
+
+impl Ask for Impulse {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        self.event().check(place)?;
+        place.limits(self.at_least, self.at_most)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let event = self.event();
+        let certain = probe.is_whole() || self.nth > 0;
+        match event.found(probe).filter(|_| certain) {
+            Some(hit) => self.band().reach(Span::at(hit.impulse)),
+            None if probe.is_whole() => Reach::NEVER,
+            None => Reach::between(-FAR, self.band().reach(Span { low: 0.0, high: f64::MAX }).most.margin),
+        }
+    }
+}

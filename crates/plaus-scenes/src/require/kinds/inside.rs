@@ -1,0 +1,151 @@
+//! Inside a region: at some time, always, never.
+
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::{FAR, Reach};
+use crate::require::ways::{Leg, Quadratic, extremes_of_smallest};
+use crate::require::when::When;
+use crate::scene::ConfigError;
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A body's middle is inside a region, a box or a ball, at some time of a window, always, or never.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Inside {
+    /// Name of a body. May be left out where there is one.
+    pub body: String,
+    /// From where to where along x. Unset: anywhere.
+    #[schemars(extend("x-unit" = "mm"))]
+    pub x_mm: Option<[f64; 2]>,
+    /// From where to where along y. Unset: anywhere.
+    #[schemars(extend("x-unit" = "mm"))]
+    pub y_mm: Option<[f64; 2]>,
+    /// From where to where upwards. Unset: anywhere.
+    #[schemars(extend("x-unit" = "mm"))]
+    pub z_mm: Option<[f64; 2]>,
+    /// Middle of a ball in place of a box.
+    #[schemars(extend("x-unit" = "mm"))]
+    pub centre_mm: Option<[f64; 3]>,
+    /// Radius of the ball.
+    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub radius_mm: f64,
+    /// Whether at some time, always, never, or at the end.
+    pub how: How,
+    /// What lies outside loses one nat each so many millimetres.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub scale_mm: f64,
+    /// In which window.
+    pub when: When,
+}
+
+/// When a region holds a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum How {
+    /// At some time of the window.
+    Sometimes,
+    /// Throughout the window.
+    Always,
+    /// At no time of the window.
+    Never,
+    /// At the end of the motion.
+    #[default]
+    AtEnd,
+}
+
+impl Default for Inside {
+    fn default() -> Self {
+        Self {
+            body: String::new(),
+            x_mm: None,
+            y_mm: None,
+            z_mm: None,
+            centre_mm: None,
+            radius_mm: 100.0,
+            how: How::default(),
+            scale_mm: 5.0,
+            when: When::default(),
+        }
+    }
+}
+
+impl Inside {
+    fn sides(&self) -> [(&'static str, Option<[f64; 2]>); 3] {
+        [("x_mm", self.x_mm), ("y_mm", self.y_mm), ("z_mm", self.z_mm)]
+    }
+
+    /// Least and largest depth below the region's skin over a leg, in mm; negative outside.
+    fn depths(&self, leg: &Leg) -> [f64; 2] {
+        if let Some(centre) = self.centre_mm {
+            let [near, far] = leg.distances(1e-3 * DVec3::from_array(centre));
+            return [self.radius_mm - 1e3 * far, self.radius_mm - 1e3 * near];
+        }
+        let walls = self.sides().into_iter().enumerate().filter_map(|(axis, (_, side))| Some((axis, side?)));
+        let depths: Vec<Quadratic> = walls
+            .flat_map(|(axis, [low, high])| {
+                let c = [leg.p[axis], leg.v[axis], 0.5 * leg.a[axis]].map(|c| 1e3 * c);
+                [[c[0] - low, c[1], c[2]], [high - c[0], -c[1], -c[2]]]
+            })
+            .collect();
+        extremes_of_smallest(&depths, leg.length)
+    }
+
+    /// How deep inside anything can be, in mm.
+    fn deepest(&self) -> f64 {
+        let half = self.sides().into_iter().filter_map(|(_, side)| side.map(|[low, high]| 0.5 * (high - low)));
+        if self.centre_mm.is_some() { self.radius_mm } else { half.fold(f64::INFINITY, f64::min) }
+    }
+}
+
+impl Ask for Inside {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.one_body("body", &self.body)?;
+        self.when.check(place)?;
+        for (key, [low, high]) in self.sides().into_iter().filter_map(|(key, side)| Some((key, side?))) {
+            if !(low < high && low.abs() <= 1e6 && high.abs() <= 1e6) {
+                return Err(place
+                    .at(key)
+                    .wrong("from where to where, in mm: the first is the smaller one, at most 1e6"));
+            }
+        }
+        let boxed = self.sides().iter().any(|(_, side)| side.is_some());
+        match (boxed, self.centre_mm) {
+            (true, Some(_)) => {
+                Err(place.wrong("a box or a ball: `centre_mm` and `x_mm`, `y_mm`, `z_mm` exclude each other"))
+            }
+            (false, None) => Err(place.wrong("which region? Give `x_mm`, `y_mm` or `z_mm`, or `centre_mm`")),
+            (_, Some(centre)) if !centre.iter().all(|x| x.abs() <= 1e6) => {
+                Err(place.at("centre_mm").wrong("beyond 1e6 mm"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let nats = |depth: f64| (depth / self.scale_mm).clamp(-FAR, FAR);
+        let window = self.when.window();
+        let at_end = self.how == How::AtEnd;
+        let whole = if at_end { probe.is_whole() } else { probe.sees_all(window) };
+        let window = if at_end { probe.at_end() } else { window };
+        if probe.is_whole() && probe.track(&self.body).is_none() {
+            return if self.how == How::Never { Reach::certain(1.0) } else { Reach::NEVER };
+        }
+        let legs = if at_end && !whole { Vec::new() } else { probe.legs(&self.body, window) };
+        let depths = legs.iter().map(|leg| self.depths(leg));
+        let [least, most] =
+            depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], d| [low.min(d[0]), high.max(d[1])]);
+        let best = nats(self.deepest());
+        match self.how {
+            How::Sometimes | How::AtEnd => Reach::between(nats(most), if whole { nats(most) } else { best }),
+            How::Always => Reach::between(if whole { nats(least) } else { -FAR }, nats(least).min(best)),
+            How::Never => Reach::between(nats(most), if whole { nats(most) } else { best }).opposite(),
+        }
+    }
+
+    fn moment(&self) -> Option<f64> {
+        Some(self.when.window().to).filter(|to| to.is_finite() && self.how != How::AtEnd)
+    }
+}

@@ -1,0 +1,72 @@
+//! Passing a point.
+
+use crate::require::kinds::Ask;
+use crate::require::kinds::inside::{How, Inside};
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::Reach;
+use crate::require::when::When;
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A body's middle passes near a point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Passes {
+    /// Name of a body. May be left out where there is one.
+    pub body: String,
+    /// The point along x.
+    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub x_mm: f64,
+    /// Along y.
+    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub y_mm: f64,
+    /// Its height.
+    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub z_mm: f64,
+    /// A body that comes closer than this meets it.
+    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub within_mm: f64,
+    /// What stays farther off loses one nat each so many millimetres.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub scale_mm: f64,
+    /// In which window.
+    pub when: When,
+}
+
+impl Default for Passes {
+    fn default() -> Self {
+        let (body, when) = (String::new(), When::default());
+        Self { body, x_mm: 0.0, y_mm: 0.0, z_mm: 0.0, within_mm: 10.0, scale_mm: 5.0, when }
+    }
+}
+
+impl Passes {
+    /// Some time inside a ball about the point.
+    fn ball(&self) -> Inside {
+        Inside {
+            body: self.body.clone(),
+            centre_mm: Some([self.x_mm, self.y_mm, self.z_mm]),
+            radius_mm: self.within_mm,
+            how: How::Sometimes,
+            scale_mm: self.scale_mm,
+            when: self.when,
+            ..Inside::default()
+        }
+    }
+}
+
+impl Ask for Passes {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        self.ball().check(place)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        self.ball().reach(probe)
+    }
+
+    fn moment(&self) -> Option<f64> {
+        self.ball().moment()
+    }
+}

@@ -1,0 +1,57 @@
+//! How long a way a body goes.
+
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::{Band, Reach, Span};
+use crate::require::ways;
+use crate::require::when::When;
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The way of a body is at least, or at most, so long.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct PathLength {
+    /// Name of a body. May be left out where there is one.
+    pub body: String,
+    /// No less. Unset: there is no such limit.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1e9, "x-unit" = "mm", "x-example" = 500.0))]
+    pub at_least_mm: Option<f64>,
+    /// No more. Unset: there is no such limit.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1e9, "x-unit" = "mm", "x-example" = 500.0))]
+    pub at_most_mm: Option<f64>,
+    /// What lies outside loses one nat each so many millimetres.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e9, "x-unit" = "mm"))]
+    pub scale_mm: f64,
+    /// Only this window counts.
+    pub when: When,
+}
+
+impl Default for PathLength {
+    fn default() -> Self {
+        let (body, when) = (String::new(), When::default());
+        Self { body, at_least_mm: None, at_most_mm: None, scale_mm: 20.0, when }
+    }
+}
+
+impl Ask for PathLength {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.one_body("body", &self.body)?;
+        self.when.check(place)?;
+        place.limits(self.at_least_mm, self.at_most_mm)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let window = self.when.window();
+        let so_far: f64 = 1e3 * probe.legs(&self.body, window).iter().map(ways::Leg::path_length).sum::<f64>();
+        let high = if probe.sees_all(window) { so_far } else { f64::MAX };
+        let band = Band::of_limits(self.at_least_mm, self.at_most_mm, 1.0 * self.scale_mm);
+        band.reach(Span { low: so_far, high })
+    }
+
+    fn moment(&self) -> Option<f64> {
+        Some(self.when.window().to).filter(|to| to.is_finite())
+    }
+}

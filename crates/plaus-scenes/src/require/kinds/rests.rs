@@ -1,0 +1,47 @@
+//! Coming to rest within a window of time.
+
+use crate::require::claim::Claim;
+use crate::require::event::{Event, What};
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::Reach;
+use crate::require::when::When;
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A body comes to rest, when asked for: `to_s` alone is "by", `from_s` alone "not before".
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Rests {
+    /// Name of a body; of a pattern such as `ball_*`, the last body that it fits. May be left out where there is one.
+    pub body: String,
+    /// When.
+    pub when: When,
+}
+
+impl Rests {
+    fn event(&self) -> Event {
+        Event { body: self.body.clone(), what: What::Rest, ..Event::default() }
+    }
+}
+
+impl Ask for Rests {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        self.event().check(place)?;
+        self.when.check(place)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        self.when.band().reach(self.event().time(probe))
+    }
+
+    fn moment(&self) -> Option<f64> {
+        Some(self.when.window().to).filter(|to| to.is_finite())
+    }
+
+    fn claims(&self) -> Vec<Claim> {
+        vec![Claim::time(self.event(), self.when.window())]
+    }
+}

@@ -1,0 +1,64 @@
+//! Where a body comes to rest.
+
+use crate::require::claim::Claim;
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::Reach;
+use crate::require::ways::level;
+use crate::scene::ConfigError;
+use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A body comes to rest with its middle near a place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct RestsAt {
+    /// Name of a body. May be left out where there is one.
+    pub body: String,
+    /// Place along x.
+    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub x_mm: f64,
+    /// Place along y.
+    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub y_mm: f64,
+    /// Height. Unset: any.
+    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = 8.0))]
+    pub z_mm: Option<f64>,
+    /// A body closer than this meets it.
+    #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub within_mm: f64,
+    /// What lies farther off loses one nat each so many millimetres.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub scale_mm: f64,
+}
+
+impl Default for RestsAt {
+    fn default() -> Self {
+        Self { body: String::new(), x_mm: 0.0, y_mm: 0.0, z_mm: None, within_mm: 10.0, scale_mm: 5.0 }
+    }
+}
+
+impl Ask for RestsAt {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.one_body("body", &self.body)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let margin = |off: f64| (self.within_mm - off) / self.scale_mm;
+        if !probe.is_whole() {
+            return Reach::up_to(margin(0.0));
+        }
+        let last = probe.track(&self.body).and_then(|track| track.pieces.last()).filter(|piece| piece.rests());
+        let Some(last) = last else { return Reach::NEVER };
+        let at = 1e3 * level(last.position);
+        let off = at - DVec3::new(self.x_mm, self.y_mm, self.z_mm.unwrap_or(at.z));
+        Reach::certain(margin(off.length()))
+    }
+
+    fn claims(&self) -> Vec<Claim> {
+        let at = [Some(self.x_mm), Some(self.y_mm), self.z_mm];
+        vec![Claim::Place { body: self.body.clone(), at, within: self.within_mm }]
+    }
+}

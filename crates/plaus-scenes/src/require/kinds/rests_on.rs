@@ -1,0 +1,57 @@
+//! On what a body lies.
+
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::probe::matches;
+use crate::require::score::Reach;
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A body lies on another, or on a part of the scenery: what it touched last before it came to rest, as far as a
+/// motion's impacts and contacts tell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct RestsOn {
+    /// Name of a body. May be left out where there is one.
+    pub body: String,
+    /// On what: a body or a part of the scenery, or a pattern.
+    pub on: String,
+    /// What it costs to lie elsewhere.
+    #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
+    pub nats: f64,
+}
+
+impl Default for RestsOn {
+    fn default() -> Self {
+        Self { body: String::new(), on: String::new(), nats: 2.0 }
+    }
+}
+
+impl Ask for RestsOn {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.one_body("body", &self.body)?;
+        if self.on.is_empty() {
+            return Err(place.at("on").wrong("on what?"));
+        }
+        place.partner("on", &self.on)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        if !probe.is_whole() {
+            return Reach::between(-self.nats, self.nats);
+        }
+        let body = probe.name(&self.body);
+        let other = |one: &'_ str, other: &'_ str| if one == body { other.to_owned() } else { one.to_owned() };
+        let motion = probe.motion();
+        let hit = motion.impacts.iter().rev().find(|hit| hit.involves(body));
+        let hit = hit.map(|hit| (hit.time, other(&hit.body, &hit.other)));
+        let contact = motion.contacts.iter().filter(|contact| contact.involves(body));
+        let contact = contact.max_by(|a, b| a.end.total_cmp(&b.end));
+        let contact = contact.map(|contact| (contact.end, other(&contact.body, &contact.other)));
+        let last = hit.into_iter().chain(contact).max_by(|a, b| a.0.total_cmp(&b.0));
+        let met = last.is_some_and(|(_, name)| matches(&self.on, &name));
+        Reach::certain(if met { self.nats } else { -self.nats })
+    }
+}

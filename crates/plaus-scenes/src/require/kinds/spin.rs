@@ -1,0 +1,75 @@
+//! How fast a body turns at an impact.
+
+use crate::require::event::{Event, What};
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::score::{Band, FAR, Reach, Span};
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A body turns at least, or at most, so fast as it hits something, or as it leaves it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Spin {
+    /// Name of a body, or a pattern such as `ball_*`: any of those it fits. May be left out where there is one body.
+    pub body: String,
+    /// With whom, a body or a part of the scenery, or a pattern; empty: with anything.
+    pub with: String,
+    /// Which of its impacts, from 1; −1 is the last, −2 the last but one.
+    #[schemars(range(min = -10_000, max = 10_000))]
+    pub nth: i32,
+    /// Only impacts count at which the two meet at this speed or faster.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
+    pub faster_than: f64,
+    /// No less. Unset: there is no such limit.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "rad/s", "x-example" = 1.0))]
+    pub at_least: Option<f64>,
+    /// No more. Unset: there is no such limit.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "rad/s", "x-example" = 1.0))]
+    pub at_most: Option<f64>,
+    /// Whether after the impact, and not before it.
+    pub after: bool,
+    /// What lies outside loses one nat each so much.
+    #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "rad/s"))]
+    pub scale: f64,
+}
+
+impl Default for Spin {
+    fn default() -> Self {
+        let Event { body, with, nth, faster_than, .. } = Event::default();
+        Self { body, with, nth, faster_than, at_least: None, at_most: None, after: false, scale: 2.0 }
+    }
+}
+
+impl Spin {
+    fn event(&self) -> Event {
+        let Self { body, with, nth, faster_than, .. } = self.clone();
+        Event { body, what: What::Impact, with, nth, faster_than }
+    }
+
+    fn band(&self) -> Band {
+        Band::of_limits(self.at_least, self.at_most, self.scale)
+    }
+}
+
+impl Ask for Spin {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        self.event().check(place)?;
+        place.limits(self.at_least, self.at_most)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        let event = self.event();
+        let certain = probe.is_whole() || self.nth > 0;
+        match event.found(probe).filter(|_| certain) {
+            Some(hit) => {
+                let state = probe.party(hit, &self.body).and_then(|track| probe.at_hit(track, hit.time, self.after));
+                state.map_or(Reach::NEVER, |state| self.band().reach(Span::at(state.spin.length())))
+            }
+            None if probe.is_whole() => Reach::NEVER,
+            None => Reach::between(-FAR, self.band().reach(Span { low: 0.0, high: f64::MAX }).most.margin),
+        }
+    }
+}

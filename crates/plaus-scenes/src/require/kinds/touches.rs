@@ -1,0 +1,91 @@
+//! Whether two things touch.
+
+use crate::require::kinds::Ask;
+use crate::require::place::Place;
+use crate::require::probe::Probe;
+use crate::require::probe::matches;
+use crate::require::score::{FAR, Reach};
+use crate::require::ways;
+use crate::require::when::When;
+use crate::scene::ConfigError;
+use plaus_animation::Track;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A body touches another, or a part of the scenery. Of two bodies that never touch, how far they stayed apart counts.
+/// `not` makes it a body that never touches the other.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Touches {
+    /// Name of a body, or a pattern: any of those it fits. May be left out where there is one body.
+    pub body: String,
+    /// What it touches: a body or a part of the scenery, or a pattern; empty: anything.
+    pub with: String,
+    /// What it costs not to touch it, or, under `not`, to touch it.
+    #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
+    pub nats: f64,
+    /// Bodies that stay apart lose one nat more each so many millimetres.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
+    pub scale_mm: f64,
+    /// In which window.
+    pub when: When,
+}
+
+impl Default for Touches {
+    fn default() -> Self {
+        Self { body: String::new(), with: String::new(), nats: 2.0, scale_mm: 20.0, when: When::default() }
+    }
+}
+
+impl Touches {
+    fn touched(&self, probe: &Probe<'_>) -> bool {
+        let window = self.when.window();
+        let body = probe.name(&self.body);
+        let fits = |one: &str, other: &str| matches(body, one) && (self.with.is_empty() || matches(&self.with, other));
+        let contacts = probe.motion().contacts.iter().filter(|contact| contact.start < probe.known());
+        let mut contacts = contacts.filter(|contact| contact.end >= window.from && contact.start <= window.to);
+        let mut hits = probe.hits(&self.body, &self.with, 0.0);
+        hits.any(|hit| hit.time >= window.from && hit.time <= window.to)
+            || contacts.any(|contact| fits(&contact.body, &contact.other) || fits(&contact.other, &contact.body))
+    }
+
+    /// How far apart the two stay, at least, in mm, as balls about them: 0 where that is not known.
+    fn gap(&self, probe: &Probe<'_>) -> f64 {
+        let Some([from, to]) = probe.seen(self.when.window()) else { return 0.0 };
+        let tracks = |pattern: &str| {
+            let names: Vec<&str> = probe.cast().matching(pattern).collect();
+            names.into_iter().filter_map(|name| probe.track(name)).collect::<Vec<&Track>>()
+        };
+        let (ones, others) = (tracks(probe.name(&self.body)), tracks(&self.with));
+        let pairs = ones.iter().flat_map(|one| others.iter().map(move |other| (*one, *other)));
+        let gap = |(one, other): (&Track, &Track)| {
+            let legs = ways::relative(one, other, from, to);
+            let nearest = legs.iter().map(|leg| leg.distances(glam::DVec3::ZERO)[0]).fold(f64::INFINITY, f64::min);
+            1e3 * (nearest - one.shape.reach() - other.shape.reach()).max(0.0)
+        };
+        let least = pairs.filter(|(one, other)| one.name != other.name).map(gap).fold(f64::INFINITY, f64::min);
+        if least.is_finite() { least } else { 0.0 }
+    }
+}
+
+impl Ask for Touches {
+    fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        place.body("body", &self.body)?;
+        place.partner("with", &self.with)?;
+        self.when.check(place)
+    }
+
+    fn reach(&self, probe: &Probe<'_>) -> Reach {
+        if self.touched(probe) {
+            return Reach::certain(self.nats);
+        }
+        if !probe.sees_all(self.when.window()) {
+            return Reach::between(-FAR, self.nats);
+        }
+        Reach::certain(-self.nats - self.gap(probe) / self.scale_mm)
+    }
+
+    fn moment(&self) -> Option<f64> {
+        Some(self.when.window().to).filter(|to| to.is_finite())
+    }
+}

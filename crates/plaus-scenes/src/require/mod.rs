@@ -1,0 +1,47 @@
+//! What can be required of a motion, in any scene: one vocabulary, `[[require]]` in scenario files.
+//!
+//! ```
+//! use plaus_scenes::Scenario;
+//!
+//! let text = "
+//! [world.ball2d]
+//! [[require]]
+//! impact = { when = { at_s = 0.3, within_ms = 20 } }
+//! [[require]]
+//! not = { inside = { x_mm = [-500, 0], how = 'sometimes' } }
+//! ";
+//! let scenario = Scenario::read("inline", text, &[])?;
+//! assert_eq!(scenario.require.len(), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Each kind is one file in `kinds` and one row there. It gives a **margin**, in nats by a stated scale, which is at
+//! least 0 where it is met; what the margin lacks is what the state loses in log density. All kinds look at a motion
+//! through one [`Probe`], on its closed-form pieces, never on samples in time. Of a motion that is known in part only,
+//! the same function says between which margins it will end up: so what stops a hopeless simulation early cannot
+//! disagree with what judges a whole one.
+//!
+//! Places are in millimetres in the axes of the scenario files, z up; times in seconds of the animation.
+
+mod asked;
+mod claim;
+mod event;
+mod kinds;
+mod place;
+mod probe;
+mod score;
+mod tally;
+mod ways;
+mod when;
+
+pub use asked::{Answer, Asked};
+pub(crate) use claim::agree;
+pub use event::{Event, What};
+pub use kinds::*;
+pub use probe::{Cast, Probe};
+pub use score::{Band, FAR, Mark, Reach, Span};
+pub use tally::{Clause, Tally};
+pub use when::{When, Window};
+
+/// Most requirements in one another.
+pub const DEEPEST: usize = 8;

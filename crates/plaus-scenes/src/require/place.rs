@@ -1,0 +1,102 @@
+//! Where a requirement stands in a scenario, to blame it there.
+
+use super::probe::{Cast, matches};
+use crate::scenario::nearest;
+use crate::scene::ConfigError;
+
+/// A table of a scenario that asks for something.
+#[derive(Debug, Clone)]
+pub(super) struct Place<'a> {
+    key: String,
+    cast: &'a Cast,
+    /// Whether a body need not be named, because each of several is asked in turn.
+    counted: bool,
+}
+
+impl<'a> Place<'a> {
+    /// The entry `index` of the list of requirements.
+    pub(super) fn of_entry(index: usize, cast: &'a Cast) -> Self {
+        Self { key: format!("require[{index}]"), cast, counted: false }
+    }
+
+    /// A key of it.
+    pub(super) fn at(&self, key: &str) -> Self {
+        Self { key: format!("{}.{key}", self.key), ..self.clone() }
+    }
+
+    /// An entry of the list that it is.
+    pub(super) fn entry(&self, index: usize) -> Self {
+        Self { key: format!("{}[{index}]", self.key), ..self.clone() }
+    }
+
+    /// The same, in which bodies need not be named.
+    pub(super) fn counted(&self) -> Self {
+        Self { counted: true, ..self.clone() }
+    }
+
+    pub(super) fn cast(&self) -> &'a Cast {
+        self.cast
+    }
+
+    /// What is wrong here.
+    pub(super) fn wrong(&self, message: &str) -> ConfigError {
+        ConfigError::new(self.key.clone(), message)
+    }
+
+    /// Refuses a name, or pattern, that no body has.
+    pub(super) fn body(&self, key: &str, name: &str) -> Result<(), ConfigError> {
+        let place = self.at(key);
+        if name.is_empty() {
+            let one = self.counted || self.cast.only().is_some();
+            return if one { Ok(()) } else { Err(place.wrong(&format!("which body? There are {}", self.bodies()))) };
+        }
+        if self.cast.matching(name).next().is_some() {
+            return Ok(());
+        }
+        Err(place.wrong(&self.unknown(name, &self.cast.bodies)))
+    }
+
+    /// The same, of one body alone.
+    pub(super) fn one_body(&self, key: &str, name: &str) -> Result<(), ConfigError> {
+        self.body(key, name)?;
+        if name.contains('*') { Err(self.at(key).wrong("one body is asked for here, not a pattern")) } else { Ok(()) }
+    }
+
+    /// Refuses a name of what nothing can touch; empty is anything.
+    pub(super) fn partner(&self, key: &str, name: &str) -> Result<(), ConfigError> {
+        let all: Vec<String> = self.cast.bodies.iter().chain(&self.cast.fixed).cloned().collect();
+        if name.is_empty() || all.iter().any(|known| matches(name, known)) {
+            return Ok(());
+        }
+        Err(self.at(key).wrong(&self.unknown(name, &all)))
+    }
+
+    /// Refuses limits that leave nothing, or ask for nothing.
+    pub(super) fn limits(&self, at_least: Option<f64>, at_most: Option<f64>) -> Result<(), ConfigError> {
+        match (at_least, at_most) {
+            (None, None) => Err(self.wrong("it asks for nothing: say what is the least, or the most")),
+            (Some(least), Some(most)) if least > most => {
+                Err(self.wrong(&format!("at least {least} and at most {most}: nothing is both")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn unknown(&self, name: &str, all: &[String]) -> String {
+        let near = nearest(name, all.iter().map(String::as_str));
+        let near = near.map(|near| format!("did you mean \"{near}\"? ")).unwrap_or_default();
+        format!("there is no {name:?}; {near}there are {}", listed(all))
+    }
+
+    fn bodies(&self) -> String {
+        listed(&self.cast.bodies)
+    }
+}
+
+/// Names in a sentence, the first few of many.
+fn listed(names: &[String]) -> String {
+    const SHOWN: usize = 12;
+    let more = names.len().saturating_sub(SHOWN);
+    let shown = names.iter().take(SHOWN).cloned().collect::<Vec<_>>().join(", ");
+    if more > 0 { format!("{shown} and {more} more") } else { shown }
+}

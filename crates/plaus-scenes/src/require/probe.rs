@@ -1,0 +1,218 @@
+//! One way to ask a motion: bodies by name, events by time. All kinds of requirements ask through it.
+
+use super::score::Span;
+use super::ways::{self, Leg};
+use super::when::Window;
+use glam::DVec3;
+use plaus_animation::{Animation, Impact, Track};
+
+/// Who is in a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cast {
+    /// Names of bodies, as in animations.
+    pub bodies: Vec<String>,
+    /// Names of what stands still and can be touched.
+    pub fixed: Vec<String>,
+    /// When the simulation ends at the latest, in s.
+    pub longest: f64,
+    /// Whether bodies are dice, whose faces have pips.
+    pub faces: bool,
+}
+
+impl Cast {
+    /// The only body there is.
+    pub(super) fn only(&self) -> Option<&str> {
+        match self.bodies.as_slice() {
+            [one] => Some(one),
+            _ => None,
+        }
+    }
+
+    /// The bodies that a pattern stands for.
+    pub(super) fn matching<'a>(&'a self, pattern: &'a str) -> impl Iterator<Item = &'a str> {
+        self.bodies.iter().map(String::as_str).filter(move |name| matches(pattern, name))
+    }
+}
+
+/// Whether `pattern`, in which each `*` stands for any letters, is `name`.
+pub(super) fn matches(pattern: &str, name: &str) -> bool {
+    let Some((head, rest)) = pattern.split_once('*') else { return pattern == name };
+    let Some(name) = name.strip_prefix(head) else { return false };
+    (0..=name.len()).filter(|&cut| name.is_char_boundary(cut)).any(|cut| matches(rest, &name[cut..]))
+}
+
+/// How a body moves.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moving {
+    /// In m/s.
+    pub(super) velocity: DVec3,
+    /// In rad/s.
+    pub(super) spin: DVec3,
+}
+
+/// A motion as far as it is known.
+#[derive(Debug, Clone, Copy)]
+pub struct Probe<'a> {
+    motion: &'a Animation,
+    cast: &'a Cast,
+    /// Until when all is known; infinite where the motion is known to its end.
+    known: f64,
+    /// Whom a requirement that names no body is about.
+    whom: Option<&'a str>,
+}
+
+impl<'a> Probe<'a> {
+    /// A motion that is known to its end.
+    #[must_use]
+    pub fn whole(motion: &'a Animation, cast: &'a Cast) -> Self {
+        Self { motion, cast, known: f64::INFINITY, whom: cast.only() }
+    }
+
+    /// A motion of which everything before `known` s is there, and of what comes later some, or nothing.
+    #[must_use]
+    pub fn until(motion: &'a Animation, cast: &'a Cast, known: f64) -> Self {
+        Self { known, ..Self::whole(motion, cast) }
+    }
+
+    /// The same, about `whom` where no body is named.
+    pub(super) fn about(self, whom: &'a str) -> Self {
+        Self { whom: Some(whom), ..self }
+    }
+
+    /// Whether the motion is known to its end.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.known == f64::INFINITY
+    }
+
+    /// Until when it is known.
+    pub(super) fn known(&self) -> f64 {
+        self.known
+    }
+
+    /// Who there is.
+    pub(super) fn cast(&self) -> &'a Cast {
+        self.cast
+    }
+
+    /// The body that is named, or that the requirement is about.
+    pub(super) fn name<'b>(&self, name: &'b str) -> &'b str
+    where
+        'a: 'b,
+    {
+        if name.is_empty() { self.whom.unwrap_or_default() } else { name }
+    }
+
+    /// A body's motion; `None` where it has none, as a ball that is not dropped.
+    pub(super) fn track(&self, name: &str) -> Option<&'a Track> {
+        let name = self.name(name);
+        self.motion.tracks.iter().find(|track| track.name == name)
+    }
+
+    /// When the motion ends, or how far it is known.
+    pub(super) fn end(&self) -> f64 {
+        if self.is_whole() { self.motion.duration } else { self.known }
+    }
+
+    /// The part of a window that is known; `None` where none of it is. What comes after the end is as at the end.
+    pub(super) fn seen(&self, window: Window) -> Option<[f64; 2]> {
+        let end = self.end();
+        match self.is_whole() {
+            true => Some([window.from.clamp(0.0, end), window.to.clamp(0.0, end)]),
+            false => (window.from < end).then(|| [window.from.max(0.0), window.to.min(end)]),
+        }
+    }
+
+    /// Whether all of a window is known.
+    pub(super) fn sees_all(&self, window: Window) -> bool {
+        self.is_whole() || window.to < self.known
+    }
+
+    /// The end of the motion, as a window.
+    pub(super) fn at_end(&self) -> Window {
+        Window { from: self.end(), to: self.end() }
+    }
+
+    /// A time at which a body is looked at, no later than the end; `None` where it is not known yet. Without a time:
+    /// the end.
+    pub(super) fn moment(&self, time: Option<f64>) -> Option<f64> {
+        match time {
+            Some(time) if time < self.known => Some(time.min(self.end())),
+            _ => self.is_whole().then(|| self.end()),
+        }
+    }
+
+    /// Of the two that meet, the one that `body` stands for.
+    pub(super) fn party(&self, hit: &Impact, body: &str) -> Option<&'a Track> {
+        let name = if matches(self.name(body), &hit.body) { &hit.body } else { &hit.other };
+        self.motion.tracks.iter().find(|track| track.name == *name)
+    }
+
+    /// How a body moves just before a time, or just after it.
+    pub(super) fn at_hit(&self, track: &Track, time: f64, after: bool) -> Option<Moving> {
+        let next = if after {
+            track.pieces.partition_point(|piece| piece.start <= time)
+        } else {
+            track.pieces.partition_point(|piece| piece.start < time)
+        };
+        let piece = track.pieces.get(next.saturating_sub(1))?;
+        let spin = piece.turn.spin + piece.turn.own * (piece.orientation(time) * DVec3::Z);
+        Some(Moving { velocity: piece.velocity(time), spin })
+    }
+
+    /// The known motion of a body in a window.
+    pub(super) fn legs(&self, name: &str, window: Window) -> Vec<Leg> {
+        let Some((track, [from, to])) = self.track(name).zip(self.seen(window)) else { return Vec::new() };
+        ways::legs(track, from, to)
+    }
+
+    /// Impacts of bodies that `body` stands for with what `with` does (anything, where it is empty), at which they
+    /// met at `faster` m/s or more, in order of time, as far as they are known.
+    pub(super) fn hits<'b>(&self, body: &'b str, with: &'b str, faster: f64) -> impl Iterator<Item = &'a Impact> + 'b
+    where
+        'a: 'b,
+    {
+        let (body, known) = (self.name(body), self.known);
+        let fits = move |one: &str, other: &str| matches(body, one) && (with.is_empty() || matches(with, other));
+        self.motion.impacts.iter().filter(move |hit| {
+            hit.time < known && hit.speed >= faster && (fits(&hit.body, &hit.other) || fits(&hit.other, &hit.body))
+        })
+    }
+
+    /// When a body comes to rest.
+    pub(super) fn rest(&self, name: &str) -> Span {
+        let last = self.track(name).and_then(|track| track.pieces.last());
+        match (last.filter(|piece| piece.rests()), self.is_whole()) {
+            (Some(piece), true) => Span::at(piece.start.max(0.0)),
+            (None, true) => Span::NEVER,
+            // A body that lies still may be struck again.
+            (Some(piece), false) => Span::from(piece.start.clamp(0.0, self.known)),
+            (None, false) => Span::from(self.known),
+        }
+    }
+
+    /// All that is known of the motion.
+    pub(super) fn motion(&self) -> &'a Animation {
+        self.motion
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::matches;
+
+    #[test]
+    fn stars_stand_for_any_letters() {
+        for (pattern, name, fits) in [
+            ("die_1", "die_1", true),
+            ("die_1", "die_10", false),
+            ("die_*", "die_10", true),
+            ("*", "", true),
+            ("*_1*", "die_10", true),
+            ("*x", "die", false),
+            ("ä*", "äb", true),
+        ] {
+            assert_eq!(matches(pattern, name), fits, "{pattern} {name}");
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Why not: how often each requirement was met, and which never together.
+
+use super::score::Mark;
+use crate::scene::Scene;
+use plaus_dist::{Purpose, Seed};
+use plaus_mcmc::{ModelError, State};
+
+/// Tries of a draw that the prior allows.
+const TRIES: u64 = 1000;
+
+/// What was seen of one thing that is asked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clause {
+    /// What it is called.
+    pub name: String,
+    /// How many states met it.
+    pub met: u64,
+    /// The best margin of all, in nats; −∞ where there was no state.
+    pub best: f64,
+}
+
+/// What was seen of all that is asked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tally {
+    /// States that were looked at.
+    pub states: u64,
+    /// States that met everything.
+    pub all: u64,
+    /// One a thing that is asked.
+    pub clauses: Vec<Clause>,
+    /// How many states met both of two: that of `a < b` at `b (b − 1) / 2 + a`.
+    both: Vec<u64>,
+}
+
+impl Tally {
+    /// Nothing seen yet of what goes by these names.
+    #[must_use]
+    pub fn new(names: Vec<String>) -> Self {
+        let clauses: Vec<Clause> =
+            names.into_iter().map(|name| Clause { name, met: 0, best: f64::NEG_INFINITY }).collect();
+        let pairs = clauses.len() * clauses.len().saturating_sub(1) / 2;
+        Self { states: 0, all: 0, clauses, both: vec![0; pairs] }
+    }
+
+    /// What draws from a scene's prior come to: so many of those that the prior allows, by streams of `seed`. `tell` is
+    /// told how many are done.
+    ///
+    /// # Errors
+    /// [`ModelError`] where a simulation fails.
+    pub fn of_prior<S: Scene>(scene: &S, seed: u64, draws: u64, mut tell: impl FnMut(u64)) -> Result<Self, ModelError> {
+        let mut tally = Self::new(scene.asked());
+        let (streams, mut scratch) = (Seed(seed).chain(0), S::Scratch::default());
+        for nth in 0..draws {
+            let mut stream = streams.at(nth, Purpose::START);
+            for _ in 0..TRIES {
+                let draw = scene.start(&mut stream);
+                if !scene.log_prior(&draw)?.is_zero() {
+                    let state = State::evaluate(scene, draw, &mut scratch)?;
+                    tally.add(&scene.answers(&state));
+                    break;
+                }
+            }
+            tell(nth + 1);
+        }
+        Ok(tally)
+    }
+
+    /// One state more, with a mark for each thing that is asked.
+    pub fn add(&mut self, marks: &[Mark]) {
+        self.states += 1;
+        self.all += u64::from(marks.iter().all(Mark::met));
+        for (b, (clause, mark)) in self.clauses.iter_mut().zip(marks).enumerate() {
+            clause.met += u64::from(mark.met());
+            clause.best = clause.best.max(mark.margin);
+            for a in (0..b).filter(|&a| mark.met() && marks[a].met()) {
+                self.both[b * (b - 1) / 2 + a] += 1;
+            }
+        }
+    }
+
+    /// Pairs that were each met, and never in one state.
+    #[must_use]
+    pub fn never_together(&self) -> Vec<[&str; 2]> {
+        let pairs = (1..self.clauses.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+        let apart = pairs.filter(|&(a, b)| {
+            self.clauses[a].met > 0 && self.clauses[b].met > 0 && self.both[b * (b - 1) / 2 + a] == 0
+        });
+        apart.map(|(a, b)| [self.clauses[a].name.as_str(), self.clauses[b].name.as_str()]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_never_met_together_is_found() {
+        let mut tally = Tally::new(["a", "b", "c", "d"].map(String::from).to_vec());
+        for margins in [[1.0, -1.0, 0.0, -3.0], [-1.0, 2.0, 1.0, -2.0]] {
+            tally.add(&margins.map(Mark::of));
+        }
+        assert_eq!((tally.states, tally.all), (2, 0));
+        assert_eq!(tally.clauses.iter().map(|clause| clause.met).collect::<Vec<_>>(), [1, 1, 2, 0]);
+        assert_eq!(tally.clauses[3].best, -2.0);
+        assert_eq!(tally.never_together(), [["a", "b"]]);
+    }
+}

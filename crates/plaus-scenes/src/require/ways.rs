@@ -1,0 +1,209 @@
+//! Exact questions to motions in closed form: extremes of distances over pieces, without samples in time.
+
+use glam::DVec3;
+use plaus_animation::{Piece, Track};
+use plaus_sim::roots::{refine, roots_of_quadratic};
+
+/// Standard gravity, m/s²: that of all scenes, to a part in a thousand.
+const GRAVITY: f64 = 9.806_65;
+
+/// A part of a piece: position `p + v t + ½ a t²` for `t` from 0 to `length`, in m and s, z up.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Leg {
+    pub(super) p: DVec3,
+    pub(super) v: DVec3,
+    pub(super) a: DVec3,
+    pub(super) length: f64,
+}
+
+/// From an animation's axes to a scenario's, in which z points up; exact.
+pub(super) fn level(v: DVec3) -> DVec3 {
+    DVec3::new(v.x, -v.z, v.y)
+}
+
+impl Leg {
+    /// Where it is after `t` s.
+    pub(super) fn at(&self, t: f64) -> DVec3 {
+        self.p + t * (self.v + 0.5 * t * self.a)
+    }
+
+    fn of(piece: &Piece, from: f64, to: f64) -> Self {
+        Self {
+            p: level(piece.position(from)),
+            v: if from < piece.start { DVec3::ZERO } else { level(piece.velocity(from)) },
+            a: if from < piece.start { DVec3::ZERO } else { level(piece.acceleration) },
+            length: (to - from).max(0.0),
+        }
+    }
+
+    /// The motion of this leg as seen from another that begins with it and lasts as long.
+    pub(super) fn seen_from(&self, other: &Self) -> Self {
+        Self { p: self.p - other.p, v: self.v - other.v, a: self.a - other.a, ..*self }
+    }
+
+    /// Times at which the distance from `point` may be least or most: the ends, and where it neither grows nor shrinks.
+    fn turning_points(&self, point: DVec3) -> Vec<f64> {
+        let p = self.p - point;
+        // Half the derivative of the squared distance.
+        let c = [p.dot(self.v), self.v.dot(self.v) + p.dot(self.a), 1.5 * self.v.dot(self.a), 0.5 * self.a.dot(self.a)];
+        let value = |t: f64| c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+        let slope = |t: f64| c[1] + t * (2.0 * c[2] + t * 3.0 * c[3]);
+        let mut ends = vec![0.0];
+        let bends = roots_of_quadratic([c[1], 2.0 * c[2], 3.0 * c[3]]).into_iter().flatten();
+        ends.extend(bends.filter(|t| *t > 0.0 && *t < self.length));
+        ends.push(self.length);
+        let crossings = ends.windows(2).filter_map(|pair| {
+            let (low, high) = (value(pair[0]), value(pair[1]));
+            (low * high < 0.0).then(|| refine(|t| (value(t), slope(t)), pair[0], pair[1], low > 0.0))
+        });
+        let crossings: Vec<f64> = crossings.collect();
+        ends.extend(crossings);
+        ends
+    }
+
+    /// Least and largest distance from a point, in m.
+    pub(super) fn distances(&self, point: DVec3) -> [f64; 2] {
+        let distances = self.turning_points(point).into_iter().map(|t| self.at(t).distance(point));
+        distances.fold([f64::INFINITY, 0.0], |[low, high], d| [low.min(d), high.max(d)])
+    }
+
+    /// Whether gravity is all that changes its velocity.
+    pub(super) fn is_flight(&self) -> bool {
+        self.a.x == 0.0 && self.a.y == 0.0 && (self.a.z + GRAVITY).abs() < 1e-3 * GRAVITY
+    }
+
+    /// How long its way is, in m.
+    pub(super) fn path_length(&self) -> f64 {
+        let (a, along) = (self.a.length(), self.a.normalize_or_zero());
+        if a == 0.0 {
+            return self.v.length() * self.length;
+        }
+        // Speed √(w² + u²) with u = u₀ + a t along the acceleration and w across it.
+        let u = self.v.dot(along);
+        let w = (self.v - u * along).length();
+        let whole = |u: f64| {
+            let speed = (u * u + w * w).sqrt();
+            let bent = if w == 0.0 { 0.0 } else { w * w * asinh(u / w) };
+            0.5 * (u * speed + bent)
+        };
+        ((whole(u + a * self.length) - whole(u)) / a).max(0.0)
+    }
+}
+
+/// Inverse hyperbolic sine, odd to the last bit.
+fn asinh(x: f64) -> f64 {
+    let y = x.abs();
+    plaus_dist::math::ln_1p(y + y * y / (1.0 + (1.0 + y * y).sqrt())).copysign(x)
+}
+
+/// A quadratic `c₀ + c₁ t + c₂ t²`.
+pub(super) type Quadratic = [f64; 3];
+
+fn value(c: &Quadratic, t: f64) -> f64 {
+    c[0] + t * (c[1] + t * c[2])
+}
+
+/// Least and largest value, over `0 ≤ t ≤ length`, of the smallest of some quadratics. Where the smallest of them is
+/// least or largest is an end, a vertex of one or a crossing of two.
+pub(super) fn extremes_of_smallest(all: &[Quadratic], length: f64) -> [f64; 2] {
+    let mut times = vec![0.0, length];
+    times.extend(all.iter().filter(|c| c[2] != 0.0).map(|c| -0.5 * c[1] / c[2]));
+    for (i, a) in all.iter().enumerate() {
+        for b in &all[..i] {
+            let difference = std::array::from_fn(|k| a[k] - b[k]);
+            times.extend(roots_of_quadratic(difference).into_iter().flatten());
+        }
+    }
+    let inside = times.into_iter().filter(|t| (0.0..=length).contains(t));
+    let smallest = inside.map(|t| all.iter().map(|c| value(c, t)).fold(f64::INFINITY, f64::min));
+    smallest.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], f| [low.min(f), high.max(f)])
+}
+
+/// The legs of a body between two times; one without length where both are the same.
+pub(super) fn legs(track: &Track, from: f64, to: f64) -> Vec<Leg> {
+    let first = track.pieces.partition_point(|piece| piece.start <= from).saturating_sub(1);
+    let mut legs = Vec::new();
+    for (index, piece) in track.pieces.iter().enumerate().skip(first) {
+        let start = if legs.is_empty() { from } else { piece.start };
+        if start > to || (start == to && !legs.is_empty()) {
+            break;
+        }
+        let mut end = track.pieces.get(index + 1).map_or(to, |next| next.start.min(to));
+        // Before its first piece a body waits.
+        if start < piece.start && end > piece.start {
+            legs.push(Leg::of(piece, start, piece.start));
+            legs.push(Leg::of(piece, piece.start, end));
+            continue;
+        }
+        end = end.max(start);
+        legs.push(Leg::of(piece, start, end));
+    }
+    legs
+}
+
+/// The motion of one body as seen from another between two times, leg by leg.
+pub(super) fn relative(one: &Track, other: &Track, from: f64, to: f64) -> Vec<Leg> {
+    let mut cuts: Vec<f64> = [one, other].iter().flat_map(|track| &track.pieces).map(|piece| piece.start).collect();
+    cuts.retain(|time| *time > from && *time < to);
+    cuts.extend([from, to]);
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    if cuts.len() == 1 {
+        cuts.push(to);
+    }
+    let pairs = cuts.windows(2).filter_map(|pair| {
+        let [a, b] = [one, other].map(|track| legs(track, pair[0], pair[1]).into_iter().next());
+        Some(a?.seen_from(&b?))
+    });
+    pairs.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plaus_dist::{Seed, Stream};
+    use rand::RngExt;
+
+    fn leg(stream: &mut Stream) -> Leg {
+        let mut v = |scale: f64| DVec3::from_array(std::array::from_fn(|_| scale * stream.random_range(-1.0..1.0)));
+        Leg { p: v(1.0), v: v(3.0), a: v(10.0), length: 0.7 }
+    }
+
+    /// Beside many samples: the extremes are never inside them, and not farther off than the samples are apart.
+    #[test]
+    fn extremes_are_those_of_dense_samples() {
+        let mut stream = Seed(1).chain(0).at(0, plaus_dist::Purpose::START);
+        let steps = 4000;
+        for _ in 0..200 {
+            let leg = leg(&mut stream);
+            let point = DVec3::new(stream.random_range(-1.0..1.0), 0.3, -0.2);
+            let times = (0..=steps).map(|i| leg.length * f64::from(i) / f64::from(steps));
+            let sampled: Vec<f64> = times.clone().map(|t| leg.at(t).distance(point)).collect();
+            let [least, most] =
+                sampled.iter().fold([f64::INFINITY, 0.0], |[a, b], d| [f64::min(a, *d), f64::max(b, *d)]);
+            let [low, high] = leg.distances(point);
+            // Between two samples the distance changes by at most the top speed over half a step.
+            let slack = (3.0 * 1.8 + 0.7 * 17.4) * 0.5 * leg.length / f64::from(steps);
+            assert!(low <= least + 1e-12 && low >= least - slack, "{low} {least}");
+            assert!(high >= most - 1e-12 && high <= most + slack, "{high} {most}");
+            let walked: f64 = times.clone().zip(times.skip(1)).map(|(a, b)| leg.at(a).distance(leg.at(b))).sum();
+            assert!((leg.path_length() / walked - 1.0).abs() < 1e-5, "{} {walked}", leg.path_length());
+        }
+    }
+
+    #[test]
+    fn the_smallest_of_quadratics_is_least_and_largest_where_it_is_said() {
+        let mut stream = Seed(2).chain(0).at(0, plaus_dist::Purpose::START);
+        let steps = 4000;
+        for _ in 0..200 {
+            let all: Vec<Quadratic> = (0..6).map(|_| std::array::from_fn(|_| stream.random_range(-1.0..1.0))).collect();
+            let smallest = |t: f64| all.iter().map(|c| value(c, t)).fold(f64::INFINITY, f64::min);
+            let sampled = (0..=steps).map(|i| smallest(2.0 * f64::from(i) / f64::from(steps)));
+            let [least, most] = sampled.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| [a.min(f), b.max(f)]);
+            let [low, high] = extremes_of_smallest(&all, 2.0);
+            let slack = 5.0 * 2.0 / f64::from(steps);
+            assert!(low <= least + 1e-12 && low >= least - slack, "{low} {least}");
+            assert!(high >= most - 1e-12 && high <= most + slack, "{high} {most}");
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Windows of time.
+
+use super::place::Place;
+use super::score::Band;
+use crate::scene::ConfigError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// When: a time with what it may be off, a window, or a frame. Without any of them: at any time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct When {
+    /// About this time; see `within_ms`.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.2))]
+    pub at_s: Option<f64>,
+    /// How far from `at_s` it may be.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms"))]
+    pub within_ms: f64,
+    /// Not before.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
+    pub from_s: Option<f64>,
+    /// Not after.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 2.5))]
+    pub to_s: Option<f64>,
+    /// In this frame, counted from 0: half a frame off at most.
+    #[schemars(extend("minimum" = 0, "maximum" = 1_000_000))]
+    pub frame: Option<u32>,
+    /// Frames a second, for `frame`.
+    #[schemars(extend("minimum" = 1.0, "maximum" = 1000.0, "x-unit" = "1/s"))]
+    pub fps: f64,
+    /// What lies outside loses one nat each so many milliseconds. Unset: half of what it may be off, or 50 ms where
+    /// the window has an open end.
+    #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms", "x-example" = 5.0))]
+    pub scale_ms: Option<f64>,
+}
+
+impl Default for When {
+    fn default() -> Self {
+        Self { at_s: None, within_ms: 10.0, from_s: None, to_s: None, frame: None, fps: 24.0, scale_ms: None }
+    }
+}
+
+/// From one time to another, in s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// Begin; −∞ where there is none.
+    pub from: f64,
+    /// End; ∞ where there is none.
+    pub to: f64,
+}
+
+impl When {
+    /// The window.
+    #[must_use]
+    pub fn window(&self) -> Window {
+        let about = |at: f64, within: f64| Window { from: at - within, to: at + within };
+        match (self.at_s, self.frame) {
+            (Some(at), _) => about(at, 1e-3 * self.within_ms),
+            (_, Some(frame)) => about(f64::from(frame) / self.fps, 0.5 / self.fps),
+            _ => Window { from: self.from_s.unwrap_or(f64::NEG_INFINITY), to: self.to_s.unwrap_or(f64::INFINITY) },
+        }
+    }
+
+    /// The window with what lies a nat outside.
+    #[must_use]
+    pub fn band(&self) -> Band {
+        let Window { from, to } = self.window();
+        let half = 0.5 * (to - from);
+        let usual = if half.is_finite() && half > 0.0 { 0.5 * half } else { 0.05 };
+        Band { from, to, scale: self.scale_ms.map_or(usual, |scale| 1e-3 * scale) }
+    }
+
+    /// The one time that is meant, for what holds at a time; `None`: at the end.
+    #[must_use]
+    pub fn instant(&self) -> Option<f64> {
+        self.at_s.or_else(|| self.frame.map(|frame| f64::from(frame) / self.fps)).or(self.from_s)
+    }
+
+    /// Refuses what is no window.
+    pub(super) fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
+        let place = place.at("when");
+        let ways = [self.at_s.is_some(), self.frame.is_some(), self.from_s.is_some() || self.to_s.is_some()];
+        if ways.iter().filter(|way| **way).count() > 1 {
+            return Err(place.wrong("say it in one way: `at_s`, `frame`, or `from_s` and `to_s`"));
+        }
+        let Window { from, to } = self.window();
+        if from > to {
+            return Err(place.wrong(&format!("an empty window: it ends at {to} s, before it begins at {from} s")));
+        }
+        if from > place.cast().longest {
+            let longest = place.cast().longest;
+            return Err(place.wrong(&format!("it begins at {from} s, after the end: nothing moves beyond {longest} s")));
+        }
+        Ok(())
+    }
+}

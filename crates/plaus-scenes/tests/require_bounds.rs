@@ -1,0 +1,175 @@
+//! What a motion that is known in part can still come to: for every kind, over many draws and times, the whole motion
+//! never comes to more or to less. Twins that claim to know more than they do are found out.
+
+use plaus_dist::{Purpose, Seed};
+use plaus_mcmc::Target;
+use plaus_scenes::animation::Animation;
+use plaus_scenes::ball2d::Ball2d;
+use plaus_scenes::dice::{self, Dice};
+use plaus_scenes::require::{Asked, Cast, Probe, Require};
+use plaus_scenes::{Scene, ball2d};
+use rand::RngExt;
+
+/// At least one of every kind, with numbers that some motions of a ball meet and some do not.
+const OF_A_BALL: &[&str] = &[
+    "impact = { nth = 2, when = { at_s = 0.6, within_ms = 50 } }",
+    "impact = { nth = -1, when = { from_s = 0.9 } }",
+    "impact = { with = 'table', faster_than = 1.5, when = { frame = 8 } }",
+    "rests = { when = { to_s = 1.1 } }",
+    "bounces = { at_least = 2, at_most = 3, when = { to_s = 0.9 } }",
+    "bounces = { at_least = 3, faster_than = 1.0 }",
+    "rests_at = { x_mm = 50, within_mm = 100, scale_mm = 50 }",
+    "rests_on = { on = 'table' }",
+    "inside = { x_mm = [20, 200], z_mm = [60, 500], how = 'sometimes', scale_mm = 20 }",
+    "inside = { x_mm = [-100, 100], how = 'always', scale_mm = 20 }",
+    "inside = { x_mm = [-300, -20], how = 'never', when = { from_s = 0.4, to_s = 1.0 } }",
+    "inside = { centre_mm = [50, 0, 50], radius_mm = 100, scale_mm = 20 }",
+    "passes = { x_mm = 50, z_mm = 150, within_mm = 30, scale_mm = 20 }",
+    "touches = { with = 'table', when = { from_s = 0.5, to_s = 0.6 } }",
+    "before = { first = { nth = 2 }, then = { nth = 3 }, by_ms = 200, scale_ms = 50 }",
+    "before = { first = { nth = 3 }, then = { what = 'rest' }, by_ms = 100 }",
+    "beats = { every_s = 0.3, within_ms = 40, scale_ms = 40, each = 'impact' }",
+    "beats = { times_s = [0.3, 0.8], within_ms = 40, scale_ms = 40, each = 'beat' }",
+    "beats = { nth = 2, every_s = 0.5, within_ms = 40, scale_ms = 40 }",
+    "speed = { nth = 2, at_least = 2.0, scale = 0.2 }",
+    "speed = { nth = -1, at_most = 1.5, after = true }",
+    "spin = { nth = 1, at_most = 1.0 }",
+    "impulse = { nth = 2, at_least = 1.5 }",
+    "air_time = { at_least_s = 0.8, at_most_s = 1.2 }",
+    "path_length = { at_least_mm = 900, at_most_mm = 1100, when = { to_s = 0.8 } }",
+    "count = { at_least = 1, that = { rests_at = { x_mm = 50, within_mm = 100 } } }",
+    "all = [{ impact = { when = { to_s = 0.4 } } }, { passes = { x_mm = 50, z_mm = 150 } }]",
+    "any = [{ impact = { nth = 2, when = { to_s = 0.5 } } }, { inside = { x_mm = [0, 50] } }]",
+    "not = { inside = { x_mm = [20, 200], how = 'sometimes' } }",
+    "at_least = { count = 2, of = [{ rests = { when = { to_s = 1.0 } } }, { path_length = { at_least_mm = 900 } }, \
+     { bounces = { at_least = 3, when = { to_s = 0.9 } } }] }",
+];
+
+/// What only bodies that turn, or several of them, can do.
+const OF_DICE: &[&str] = &[
+    "faces_up = { body = 'die_1', face = 6, within_deg = 30 }",
+    "faces_up = { body = 'die_2', axis = 'minus_x', within_deg = 60, when = { at_s = 0.2 } }",
+    "stands = { body = 'die_1', when = { frame = 6 } }",
+    "relative = { body = 'die_1', to = 'die_2', x_mm = 20, y_mm = 0, within_mm = 40, when = { at_s = 0.3 } }",
+    "relative = { body = 'die_1', to = 'die_2', z_mm = 0 }",
+    "touches = { body = 'die_1', with = 'die_2' }",
+    "not = { touches = { body = 'die_*', with = 'die_*', when = { to_s = 0.3 } } }",
+    "count = { of = 'die_*', at_least = 1, at_most = 1, that = { faces_up = { face = 6 } } }",
+    "count = { of = 'die_*', at_most = 1, that = { bounces = { at_least = 4, when = { to_s = 0.4 } } } }",
+    "spin = { body = 'die_1', nth = 2, at_least = 10, after = true }",
+    "beats = { body = 'die_*', every_s = 0.1, within_ms = 20 }",
+    "rests = { body = 'die_*', when = { to_s = 0.9 } }",
+    "rests_on = { body = 'die_2', on = 'table' }",
+];
+
+fn requirement(text: &str) -> Require {
+    toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+fn balls() -> Ball2d {
+    Ball2d::new(&ball2d::Config { collisions: 3, sigma_theta_deg: 15.0, ..ball2d::Config::default() }).unwrap()
+}
+
+fn two_dice() -> Dice {
+    Dice::new(&dice::Config { dice: 2, constraints: Vec::new(), ..dice::Config::default() }).unwrap()
+}
+
+/// The part of a motion before `known`, as a simulation that stops there would leave it.
+fn beginning(motion: &Animation, known: f64) -> Animation {
+    let mut begun = motion.clone();
+    for track in &mut begun.tracks {
+        let kept = track.pieces.partition_point(|piece| piece.start < known).max(1);
+        track.pieces.truncate(kept);
+    }
+    begun.impacts.retain(|hit| hit.time < known);
+    begun.contacts.retain(|contact| contact.start < known);
+    begun.duration = begun.duration.min(known);
+    begun
+}
+
+/// Of how many pairs of a draw and a time the bounds hold and fail. `claimed` says, of how much is known, how much is
+/// said to be known.
+fn bounds<S: Scene>(scene: &S, texts: &[&str], draws: u64, claimed: impl Fn(f64) -> f64) -> Vec<[u32; 2]> {
+    let cast = scene.cast();
+    let mut seen = vec![[0; 2]; texts.len()];
+    let requirements: Vec<Require> = texts.iter().map(|text| requirement(text)).collect();
+    for nth in 0..draws {
+        let mut stream = Seed(7).chain(0).at(nth, Purpose::START);
+        let draw = scene.start(&mut stream);
+        let motion = scene.motion(&draw).unwrap();
+        for _ in 0..6 {
+            let known = stream.random_range(0.0..1.1) * motion.duration;
+            let begun = beginning(&motion, known);
+            for (one, seen) in requirements.iter().zip(&mut seen) {
+                let whole = one.reach(&Probe::whole(&motion, &cast));
+                assert_eq!(whole.least, whole.most, "{one:?} is certain of a whole motion");
+                let reach = one.reach(&Probe::until(&begun, &cast, claimed(known)));
+                let (log, margin) = (whole.most.log, whole.most.margin);
+                let holds = within(reach.least.log, log, reach.most.log)
+                    && within(reach.least.margin, margin, reach.most.margin);
+                seen[usize::from(!holds)] += 1;
+            }
+        }
+    }
+    seen
+}
+
+/// Up to rounding: sums of legs that are cut in other places.
+fn within(least: f64, value: f64, most: f64) -> bool {
+    let slack = 1e-9 * (1.0 + value.abs());
+    least <= value + slack && value <= most + slack
+}
+
+#[test]
+fn a_whole_motion_comes_to_nothing_that_its_beginning_ruled_out() {
+    for (text, [_, failed]) in OF_A_BALL.iter().zip(bounds(&balls(), OF_A_BALL, 150, |known| known)) {
+        assert_eq!(failed, 0, "{text}");
+    }
+    for (text, [_, failed]) in OF_DICE.iter().zip(bounds(&two_dice(), OF_DICE, 12, |known| known)) {
+        assert_eq!(failed, 0, "{text}");
+    }
+}
+
+/// A twin that takes a beginning for the whole is found out, of every kind.
+#[test]
+fn who_takes_a_beginning_for_the_whole_is_found_out() {
+    for (text, [_, failed]) in OF_A_BALL.iter().zip(bounds(&balls(), OF_A_BALL, 150, |_| f64::INFINITY)) {
+        assert!(failed > 0, "{text}");
+    }
+    for (text, [_, failed]) in OF_DICE.iter().zip(bounds(&two_dice(), OF_DICE, 12, |_| f64::INFINITY)) {
+        assert!(failed > 0, "{text}");
+    }
+}
+
+/// A simulation that ends early tells the same of its beginning as the whole one does.
+#[test]
+fn a_simulation_that_ends_early_bounds_the_whole() {
+    let scene = two_dice();
+    let requirements: Vec<Require> = OF_DICE.iter().map(|text| requirement(text)).collect();
+    let asked = Asked::new(two_dice(), &requirements).unwrap();
+    let mut told = 0;
+    for nth in 0..12 {
+        let mut stream = Seed(11).chain(0).at(nth, Purpose::START);
+        let draw = scene.start(&mut stream);
+        let marks = asked.judge(&scene.motion(&draw).unwrap());
+        let log: f64 = marks.iter().map(|mark| mark.log).sum();
+        for known in [0.05, 0.15, 0.3, 0.6] {
+            let begun = scene.motion_to(&draw, known).unwrap().unwrap();
+            let most = asked.most_after(&begun, known);
+            assert!(log <= most + 1e-9 * (1.0 + log.abs()), "{log} {most}");
+            told += u32::from(most < asked.most_after(&begun, 0.0));
+        }
+    }
+    assert!(told > 0, "no beginning ruled anything out");
+}
+
+/// Every kind there is stands in one of the lists.
+#[test]
+fn no_kind_is_left_out() {
+    for name in Require::NAMES {
+        let all = OF_A_BALL.iter().chain(OF_DICE);
+        assert!(all.clone().any(|text| requirement(text).name() == *name), "{name}");
+    }
+    let cast = Cast { bodies: Vec::new(), fixed: Vec::new(), longest: 1.0, faces: false };
+    assert_ne!(cast, two_dice().cast());
+}

@@ -1,0 +1,141 @@
+//! What chains sample under requirements, beside draws from the prior weighed by hand: of each group of kinds the means
+//! agree within three standard errors. A twin that forgets what is required is found out.
+
+use plaus_dist::{Purpose, Seed};
+use plaus_mcmc::{Chain, State, StateOf, Target};
+use plaus_scenes::ball2d::{self, Ball2d};
+use plaus_scenes::require::{Asked, Mark, Require, Tally};
+use plaus_scenes::{Rules, Scene};
+
+/// Draws from the prior, and iterations of a chain.
+const DRAWS: u64 = 60_000;
+const ITERATIONS: u64 = 60_000;
+/// Stretches of a chain whose means its standard error is taken from: each far longer than the chain remembers.
+const STRETCHES: usize = 30;
+
+/// Small cases, one a group of kinds. Scales are wide, so that the prior reaches what is asked.
+const CASES: &[&[&str]] = &[
+    &[
+        "impact = { nth = 2, when = { at_s = 0.6, within_ms = 30, scale_ms = 60 } }",
+        "rests = { when = { to_s = 1.1, scale_ms = 80 } }",
+    ],
+    &["bounces = { at_least = 3, when = { to_s = 0.98 }, nats_each = 3 }"],
+    &[
+        "inside = { x_mm = [-40, 60], how = 'always', scale_mm = 40 }",
+        "passes = { x_mm = 40, z_mm = 120, within_mm = 20, scale_mm = 50 }",
+    ],
+    &["rests_at = { x_mm = 150, within_mm = 30, scale_mm = 60 }"],
+    &["before = { first = { nth = 2 }, then = { nth = 3 }, by_ms = 240, scale_ms = 60 }"],
+    &["beats = { every_s = 0.31, within_ms = 20, scale_ms = 50, each = 'impact' }"],
+    &["speed = { nth = 3, at_least = 2.2, scale = 0.15 }", "impulse = { nth = 2, at_most = 1.2, scale = 0.3 }"],
+    &["air_time = { at_least_s = 1.2, scale_ms = 80 }", "path_length = { at_most_mm = 1100, scale_mm = 80 }"],
+    &[
+        "any = [{ rests_at = { x_mm = 150, within_mm = 30, scale_mm = 60 } }, { rests_at = { x_mm = -100, within_mm = 30, scale_mm = 40 } }]",
+    ],
+    &[
+        "not = { inside = { x_mm = [0, 80], scale_mm = 30 } }",
+        "at_least = { count = 1, of = [{ rests = { when = { to_s = 1.0, scale_ms = 60 } } }, \
+         { impact = { nth = 3, when = { from_s = 0.9, scale_ms = 60 } } }] }",
+    ],
+];
+
+fn ball() -> Ball2d {
+    let config = ball2d::Config { collisions: 3, sigma_d: 2.0, tolerance: 2.0, ..ball2d::Config::default() };
+    Ball2d::new(&config).unwrap()
+}
+
+/// What is compared: where the ball comes to rest, two angles, and whether all that `asked` requires is met.
+fn looked_at(asked: &Asked<Ball2d>, state: &StateOf<Asked<Ball2d>>) -> [f64; 4] {
+    let mut values = vec![0.0; 4];
+    let State { draw, outcome, log_prior, .. } = state;
+    let own =
+        State { draw: draw.clone(), outcome: outcome.outcome, log_prior: *log_prior, log_constraint: outcome.own };
+    asked.scene().write_scalars(&own, &mut values);
+    let met = asked.judge(&asked.motion(draw).unwrap()).iter().all(Mark::met);
+    [values[0], values[1], values[2], f64::from(u8::from(met))]
+}
+
+/// Means with standard errors, of draws from the prior weighed by what they are worth.
+fn weighed(scene: &Asked<Ball2d>) -> [[f64; 2]; 4] {
+    let mut seen: Vec<(f64, [f64; 4])> = Vec::new();
+    for nth in 0..DRAWS {
+        let draw = scene.start(&mut Seed(3).chain(9).at(nth, Purpose::START));
+        let state = State::evaluate(scene, draw, &mut ()).unwrap();
+        seen.push((state.log_constraint.value().exp(), looked_at(scene, &state)));
+    }
+    let whole: f64 = seen.iter().map(|(weight, _)| weight).sum();
+    std::array::from_fn(|k| {
+        let mean = seen.iter().map(|(weight, values)| weight * values[k]).sum::<f64>() / whole;
+        let squares: f64 = seen.iter().map(|(weight, values)| (weight * (values[k] - mean)).powi(2)).sum();
+        [mean, squares.sqrt() / whole]
+    })
+}
+
+/// The same of a chain of `scene`, looked at as `asked` does.
+fn sampled(scene: &Asked<Ball2d>, asked: &Asked<Ball2d>) -> [[f64; 2]; 4] {
+    let moves = scene.moves(&Rules::default()).unwrap();
+    let mut chain = Chain::start(scene, &moves, Seed(4).chain(0)).unwrap();
+    for _ in 0..2000 {
+        chain.step().unwrap();
+    }
+    let mut stretches = vec![[0.0; 4]; STRETCHES];
+    let each = ITERATIONS / STRETCHES as u64;
+    for stretch in &mut stretches {
+        for _ in 0..each {
+            chain.step().unwrap();
+            let values = looked_at(asked, chain.state());
+            (0..4).for_each(|k| stretch[k] += values[k] / each as f64);
+        }
+    }
+    std::array::from_fn(|k| {
+        let n = STRETCHES as f64;
+        let mean = stretches.iter().map(|stretch| stretch[k]).sum::<f64>() / n;
+        let squares: f64 = stretches.iter().map(|stretch| (stretch[k] - mean).powi(2)).sum();
+        [mean, (squares / (n - 1.0) / n).sqrt()]
+    })
+}
+
+fn asked(texts: &[&str]) -> Asked<Ball2d> {
+    let requirements: Vec<Require> = texts.iter().map(|text| toml::from_str(text).unwrap()).collect();
+    Asked::new(ball(), &requirements).unwrap()
+}
+
+/// By how many standard errors the two are apart, at most.
+fn apart(one: [[f64; 2]; 4], other: [[f64; 2]; 4]) -> f64 {
+    let each = one.iter().zip(other).map(|([a, error], [b, besides])| (a - b).abs() / error.hypot(besides).max(1e-12));
+    each.fold(0.0, f64::max)
+}
+
+#[test]
+fn chains_sample_what_is_required() {
+    for texts in CASES {
+        let scene = asked(texts);
+        let z = apart(weighed(&scene), sampled(&scene, &scene));
+        assert!(z < 3.0, "{texts:?}: {z} standard errors");
+    }
+}
+
+#[test]
+fn a_chain_that_forgets_what_is_required_is_found_out() {
+    for texts in CASES {
+        let scene = asked(texts);
+        let z = apart(weighed(&scene), sampled(&asked(&[]), &scene));
+        assert!(z > 3.0, "{texts:?}: only {z} standard errors");
+    }
+}
+
+/// Of draws from the prior: what each thing that is asked is met by, and what never comes together.
+#[test]
+fn a_tally_tells_what_is_met_and_what_never_together() {
+    let early = "impact = { nth = 2, when = { to_s = 0.6 } }";
+    let late = "not = { impact = { nth = 2, when = { to_s = 0.7 } } }";
+    let never = "bounces = { at_least = 4 }";
+    let scene = asked(&[early, late, never]);
+    let tally = Tally::of_prior(&scene, 1, 2000, |_| {}).unwrap();
+    let [_, early, late, never] = tally.clauses.as_slice() else { panic!("{tally:?}") };
+    assert_eq!((tally.states, tally.all), (2000, 0));
+    assert!(early.met > 0 && late.met > 0 && early.met + late.met <= 2000, "{tally:?}");
+    // A ball makes three bounces: half a bounce below what would do, at two nats each.
+    assert_eq!((never.met, never.best), (0, -1.0));
+    assert_eq!(tally.never_together(), [["require[0].impact", "require[1].not"]]);
+}

@@ -1,0 +1,146 @@
+//! Each kind of requirement, of a motion that is written down: two balls and a die, whose answers can be computed by
+//! hand.
+
+use glam::{DQuat, DVec3};
+use plaus_scenes::animation::{Animation, Contact, Impact, Look, Piece, Shape, Track, Turn, UPRIGHT, upright};
+use plaus_scenes::require::{Cast, FAR, Probe, Require};
+
+const G: f64 = 9.806_65;
+
+/// Ball `a` rises at 2 m/s from the origin and goes along x at 1 m/s, is back at 0.408 s, and rests there. Ball
+/// `b` stands upright at (1, 0, 0) m; `a` lies on its side. The die `die_1` lies at (0, 0.5, 0) m with its 5 up, from
+/// 0.1 s on; it turned before.
+fn motion() -> (Animation, Cast) {
+    let fall = DVec3::new(0.0, 0.0, -G);
+    let landing = 4.0 / G;
+    let a = vec![
+        Piece::ballistic(0.0, DVec3::ZERO, upright(DVec3::new(1.0, 0.0, 2.0)), upright(fall)),
+        Piece::resting(landing, upright(DVec3::X * landing)),
+    ];
+    // The 5 lies along −y: a quarter turn about x brings it up.
+    let five_up = UPRIGHT * DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2);
+    let turning = Turn { orientation: UPRIGHT, spin: DVec3::X * 3.0, own: 0.0 };
+    let place = upright(DVec3::Y * 0.5);
+    let die =
+        vec![Piece::resting(0.0, place).turning(turning), Piece::resting(0.1, place).turning(Turn::still(five_up))];
+    let track = |name: &str, shape, pieces| Track::new(name, shape, Look::nth(0), pieces);
+    let tracks = vec![
+        track("a", Shape::ball(0.1), a),
+        track("b", Shape::ball(0.2), vec![Piece::resting(0.0, upright(DVec3::X)).turning(Turn::still(UPRIGHT))]),
+        track("die_1", Shape::die(0.016), die),
+    ];
+    let hit = |time, body: &str, other: &str, speed, impulse| {
+        Impact::new(time, body, other, DVec3::ZERO, DVec3::Y).with_strength(speed, impulse)
+    };
+    let impacts = vec![hit(0.1, "die_1", "floor", 0.5, 0.01), hit(landing, "a", "floor", 2.0, 0.3)];
+    let contact = Contact {
+        start: 0.1,
+        end: 0.2,
+        body: "die_1".into(),
+        other: "rail".into(),
+        point: DVec3::ZERO,
+        slip: 0.1,
+        roll: 0.0,
+        force: 1.0,
+    };
+    let cast = Cast {
+        bodies: ["a", "b", "die_1"].map(String::from).to_vec(),
+        fixed: ["floor", "rail"].map(String::from).to_vec(),
+        longest: 10.0,
+        faces: true,
+    };
+    (Animation::new(1.0, tracks, impacts).with_contacts(vec![contact]), cast)
+}
+
+#[test]
+fn margins_are_those_computed_by_hand() {
+    let landing = 4.0 / G;
+    let top = 2.0 * 2.0 / (2.0 * G);
+    // Speed along the parabola: ∫ √(1 + (2 − g t)²) dt over the flight, by its antiderivative.
+    let arc = |u: f64| 0.5 * (u * (1.0 + u * u).sqrt() + (u + (1.0 + u * u).sqrt()).ln());
+    let way = (arc(2.0) - arc(-2.0)) / G;
+    let cases: &[(&str, f64)] = &[
+        ("impact = { body = 'a', when = { at_s = 0.4, within_ms = 20, scale_ms = 10 } }", (0.42 - landing) / 0.01),
+        ("impact = { body = 'a', with = 'b' }", -FAR),
+        ("impact = { body = '*', nth = -1, when = { to_s = 0.5, scale_ms = 10 } }", (0.5 - landing) / 0.01),
+        ("impact = { body = '*', nth = 2, faster_than = 1.0 }", -FAR),
+        ("rests = { body = 'a', when = { from_s = 0.5, scale_ms = 10 } }", (landing - 0.5) / 0.01),
+        ("rests = { body = '*', when = { to_s = 1, scale_ms = 100 } }", (1.0 - landing) / 0.1),
+        ("bounces = { body = 'a', at_least = 2 }", -1.0),
+        ("bounces = { body = '*', at_most = 1, nats_each = 3 }", -1.5),
+        ("bounces = { body = '*', at_least = 1, when = { to_s = 0.3 } }", 1.0),
+        ("faces_up = { body = 'die_1', face = 5 }", 2.0),
+        ("faces_up = { body = 'die_1', face = 1 }", -7.0),
+        ("faces_up = { body = 'die_1', axis = 'minus_y' }", 2.0),
+        (
+            "faces_up = { body = 'die_1', axis = 'z', scale_deg = 1, when = { at_s = 0.05 } }",
+            20.0 - 0.15_f64.to_degrees(),
+        ),
+        ("stands = { body = 'die_1' }", -4.5),
+        ("rests_at = { body = 'a', x_mm = 400, within_mm = 10, scale_mm = 1 }", 10.0 - (1e3 * landing - 400.0)),
+        ("rests_at = { body = 'die_1', y_mm = 480, z_mm = 0, scale_mm = 5 }", -2.0),
+        ("rests_on = { body = 'die_1', on = 'rail' }", 2.0),
+        ("rests_on = { body = 'a', on = 'rail' }", -2.0),
+        ("inside = { body = 'a', z_mm = [100, 300], how = 'sometimes', scale_mm = 1 }", 100.0),
+        ("inside = { body = 'a', z_mm = [-10, 200], how = 'always', scale_mm = 1 }", 200.0 - 1e3 * top),
+        ("inside = { body = 'a', z_mm = [100, 300], how = 'never', scale_mm = 1 }", -100.0),
+        ("inside = { body = 'a', x_mm = [0, 100], scale_mm = 1 }", 100.0 - 1e3 * landing),
+        ("inside = { body = 'b', centre_mm = [1000, 30, 40], radius_mm = 60, how = 'always', scale_mm = 1 }", 10.0),
+        ("passes = { body = 'a', x_mm = 203.944, z_mm = 213.944, within_mm = 5, scale_mm = 1 }", -5.0),
+        ("touches = { body = 'a', with = 'floor' }", 2.0),
+        ("touches = { body = 'die_1', with = 'rail', when = { from_s = 0.15, to_s = 0.16 } }", 2.0),
+        // Middles come to 1 − 0.408 m of each other at the end, less the radii.
+        ("touches = { body = 'a', with = 'b', scale_mm = 1 }", -2.0 - 1e3 * (1.0 - landing - 0.3)),
+        ("not = { touches = { body = 'a', with = 'floor' } }", -2.0),
+        (
+            "before = { first = { body = 'die_1' }, then = { body = 'a' }, by_ms = 300, scale_ms = 1 }",
+            1e3 * (landing - 0.1) - 300.0,
+        ),
+        ("before = { first = { body = 'b' }, then = { body = 'a' } }", -FAR),
+        ("before = { first = { body = 'a' }, then = { body = 'b' } }", FAR),
+        ("beats = { body = 'a', every_s = 0.4, within_ms = 20, scale_ms = 1 }", 20.0 - 1e3 * (landing - 0.4)),
+        (
+            "beats = { body = '*', each = 'impact', every_s = 0.1, within_ms = 20, scale_ms = 1 }",
+            20.0 - 1e3 * (landing - 0.4),
+        ),
+        ("beats = { body = '*', each = 'beat', times_s = [0.1, 0.2], within_ms = 20, scale_ms = 1 }", -80.0),
+        ("speed = { body = 'a', at_least = 2, scale = 1 }", 5.0_f64.sqrt() - 2.0),
+        ("speed = { body = 'a', at_most = 0.5, after = true, scale = 1 }", 0.5),
+        ("spin = { body = 'die_1', at_least = 2, scale = 1 }", 1.0),
+        ("spin = { body = 'die_1', at_most = 1, after = true, scale = 1 }", 1.0),
+        ("impulse = { body = 'a', at_most = 0.2, scale = 0.1 }", -5.0),
+        ("air_time = { body = 'a', at_least_s = 0.4, scale_ms = 1 }", 1e3 * (landing - 0.4)),
+        ("air_time = { body = 'b', at_most_s = 0.1, scale_ms = 100 }", 1.0),
+        ("path_length = { body = 'a', at_least_mm = 600, scale_mm = 1 }", 1e3 * way - 600.0),
+        ("relative = { body = 'a', to = 'b', x_mm = -600, y_mm = 0, within_mm = 10, scale_mm = 1 }", 2.114),
+        ("count = { at_least = 1, that = { stands = {} } }", 4.5),
+        ("count = { at_least = 2, that = { stands = {} } }", -4.5),
+        ("count = { at_most = 1, that = { stands = {} } }", 4.5),
+        ("count = { of = 'b', at_most = 0, that = { stands = {} } }", -4.5),
+        ("all = [{ touches = { body = 'a', with = 'floor' } }, { stands = { body = 'die_1' } }]", -4.5),
+        ("any = [{ touches = { body = 'a', with = 'floor' } }, { stands = { body = 'die_1' } }]", 2.0),
+        ("at_least = { count = 1, of = [{ stands = { body = 'die_1' } }, { stands = { body = 'b' } }] }", 4.5),
+    ];
+    let (motion, cast) = motion();
+    for (text, wanted) in cases {
+        let one: Require = toml::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        let found = one.reach(&Probe::whole(&motion, &cast)).most.margin;
+        assert!((found - wanted).abs() < 2e-3 * (1.0 + wanted.abs().min(1.0)), "{text}: {found}, not {wanted}");
+    }
+}
+
+/// What several requirements cost together: the sum for all of them, the log of the sum of densities for any.
+#[test]
+fn costs_of_several_add_up() {
+    let (motion, cast) = motion();
+    let log = |text: &str| {
+        let one: Require = toml::from_str(text).unwrap();
+        one.reach(&Probe::whole(&motion, &cast)).most.log
+    };
+    let parts = "[{ stands = { body = 'die_1' } }, { bounces = { body = 'a', at_least = 2 } }]";
+    assert!((log(&format!("all = {parts}")) + 5.5).abs() < 1e-12);
+    let any = ((-4.5_f64).exp() + (-1.0_f64).exp()).ln();
+    assert!((log(&format!("any = {parts}")) - any).abs() < 1e-12);
+    let beats = log("beats = { body = '*', each = 'beat', times_s = [0.1, 0.2, 0.5], within_ms = 20, scale_ms = 10 }");
+    assert!((beats - (-8.0 - (92.112 - 20.0) / 10.0)).abs() < 1e-3, "{beats}");
+}
