@@ -151,7 +151,8 @@ impl Hunt<'_> {
             }
             last = next.nearest.map(|n| n.1).or(last);
             // Nothing that touches approaches: an overlap may grow to twice what it is until then.
-            let least = (LEAST * self.level).max(-next.nearest.map_or(0.0, |n| n.0));
+            let overlap = -next.nearest.map_or(0.0, |n| n.0);
+            let least = (LEAST * self.level).max(overlap.min(CREEP * self.spec.size));
             time += next.step.max(least / speed.max(f64::MIN_POSITIVE));
             if time >= self.until || time.is_nan() {
                 return None;
