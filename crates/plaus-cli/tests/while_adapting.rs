@@ -1,4 +1,5 @@
-//! Solutions that a run finds in its warm-up: kept, shown and named where they are looked for, and no part of statistics.
+//! Solutions that a run finds in its warm-up: kept, shown and named where they are looked for, and no part of
+//! statistics.
 
 use crate::common::Place;
 

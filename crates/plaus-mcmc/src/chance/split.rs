@@ -8,8 +8,8 @@
 //! `Σ_rounds w/N · (dead that meet it) + w/N · (living ones at the end that meet it)`,  `w = Π (1 − k/N)`.
 //!
 //! Dying together is what makes that right where many particles are at one level: constraints that count fulfilled
-//! parts have nothing but plateaus. The usual estimator, a factor `1 − 1/N` for each death, is not even consistent there
-//! (C. Walter, "Rare event simulation and splitting for discontinuous random variables", ESAIM: P&S 19, 2015, arXiv
+//! parts have nothing but plateaus. The usual estimator, a factor `1 − 1/N` for each death, is not even consistent
+//! there (C. Walter, "Rare event simulation and splitting for discontinuous random variables", ESAIM: P&S 19, 2015, arXiv
 //! 1507.00919, whose correction this is; the weighted sum is unbiased for any event, and any rule of stopping, by
 //! Bréhier, Gazeau, Goudenège, Lelièvre & Rousset, "Unbiasedness of some generalized adaptive multilevel splitting
 //! algorithms", Annals of Applied Probability 26, 2016). It needs draws of the prior above ℓ that are independent of

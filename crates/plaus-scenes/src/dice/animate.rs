@@ -24,7 +24,8 @@ pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError
     Ok(motion.with_scenery(scenery).with_view(view))
 }
 
-/// The dice alone, simulated for so many seconds at most, and the corners of a box that holds the ways of their middles, in the simulator's axes.
+/// The dice alone, simulated for so many seconds at most, and the corners of a box that holds the ways of their
+/// middles, in the simulator's axes.
 pub(super) fn motion(scene: &Dice, draw: &Draw, longest: f64) -> Result<(Animation, [DVec3; 2]), ModelError> {
     let (mut tracks, mut impacts, mut duration) = (Vec::new(), Vec::new(), 0.0_f64);
     let (mut contacts, half) = (Vec::new(), scene.plan.cuboid.half());

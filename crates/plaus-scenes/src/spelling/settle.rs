@@ -1,4 +1,5 @@
-//! What becomes of a draw: the balls are simulated group by group, see [`crate::model::groups`]. What a candidate leaves
+//! What becomes of a draw: the balls are simulated group by group, see [`crate::model::groups`]. What a candidate
+//! leaves
 //! as it is need not be simulated again: groups of the same balls with the same starts among the same vertices.
 
 use super::Rest;
