@@ -142,7 +142,7 @@ fn wrong_requests_are_refused() {
     for (arguments, says) in [
         ("export run --format glb --out a.glb", "--sample CHAIN:DRAW, --all-distinct, or --confirmed"),
         ("export run --format csv --sample 0:0 --out a.csv", "csv and zarr hold all draws"),
-        ("export run --format glb --sample 0:900 --out a.glb", "there is no draw 900"),
+        ("export run --format glb --sample 0:900 --out a.glb", "there is no draw 0:900"),
         ("export run --format usda --sample 9:0 --out a.usda", "there is no chain 9"),
         ("export run --format glb --sample 0:0 --out -", "animations are files"),
         ("export run --format glb --sample 0:0 --out a.glb --fps 0", "--fps 0"),

@@ -124,9 +124,9 @@ fn samples_that_do_not_exist_are_refused() {
     place.ok("sample ball.toml --out run -q");
     for format in ["glb", "usda", "poses", "events"] {
         for (sample, says) in [
-            ("0:900", "there is no draw 900: the draws of each chain are 0 to 899"),
+            ("0:900", "there is no draw 0:900: the draws of each chain are 0 to 899"),
             ("4:0", "there is no chain 4: the chains are 0 to 3"),
-            ("0:0 --sample 0:900", "there is no draw 900"),
+            ("0:0 --sample 0:900", "there is no draw 0:900"),
         ] {
             place.ends(&format!("export run --format {format} --sample {sample} --out out"), 2).says(&[says]);
         }
