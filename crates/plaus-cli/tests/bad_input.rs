@@ -124,7 +124,7 @@ fn samples_that_do_not_exist_are_refused() {
     place.ok("sample ball.toml --out run -q");
     place.ends("replay run --sample 4:0", 2).says(&["there is no chain 4: the chains are 0 to 3"]);
     place.ends("replay run --sample 0:900", 2).says(&["there is no draw 0:900: the draws of each chain are 0 to 899"]);
-    place.ends("replay run --sample 0:18446744073709551615", 2).says(&["there is no draw 18446744073709551615"]);
+    place.ends("replay run --sample 0:18446744073709551615", 2).says(&["there is no draw 0:18446744073709551615"]);
     place.ends("replay run --sample seven", 2).says(&["write CHAIN:DRAW, e.g. 0:17"]);
     for fps in ["0", "-1", "nan", "1e300"] {
         place.ends(&format!("replay run --sample 0:0 --fps={fps}"), 2).says(&["must be above 0"]);

@@ -166,7 +166,7 @@ fn what_makes_no_whole_is_refused_by_name() {
         ),
         ("cut/1 cut/2 scenario/3 cut/4", &["scenario/3: is no piece", "`sigma_d = 0.2`", "not `sigma_d = 0.1`"]),
         ("cut/1 nowhere", &["nowhere: there is no such run"]),
-        ("ball.toml", &["ball.toml: is no run"]),
+        ("ball.toml", &["ball.toml: is no file that `plaus chance --out` wrote"]),
     ] {
         place.ends(&format!("merge {pieces} --out all"), 2).says(says);
     }
