@@ -6,12 +6,12 @@
 //! | [`split()`]: particles climb the constraint, level by level | rare goals, also behind plateaus | about `√(ln(1/p)/particles)` |
 //! | [`stones()`]: chains on a ladder between prior and target | rare goals of smooth constraints | by how chains mix |
 //!
-//! All draw from [`Target::start`](crate::Target::start), which must have the law of the prior; draws of density 0 are
+//! All draw from [`Target::start`], which must have the law of the prior; draws of density 0 are
 //! no draws. Each comes in batches, which are functions of target, seed and number alone, so they can be made anywhere
 //! and in any order. [`Estimate`] is what they come to, with an error from how batches differ.
 //!
 //! Counting is right whatever the world is like. The two others go by what their particles and chains have seen: a way
-//! to the goal that none of them found is missing from both, and then they are too low. Where they [disagree](disagree)
+//! to the goal that none of them found is missing from both, and then they are too low. Where they [`disagree`]
 //! beyond their errors, at least one has missed something.
 
 mod above;

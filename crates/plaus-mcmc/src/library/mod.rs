@@ -1,4 +1,4 @@
-//! Moves over sets of variables, for any target that declares its [`Variables`](crate::vars::Variables).
+//! Moves over sets of variables, for any target that declares its [`Variables`].
 //!
 //! | move | what it does | log ratio |
 //! | --- | --- | --- |

@@ -56,7 +56,7 @@ impl Sizes {
         (math::exp(log).min(1.0), is_wide)
     }
 
-    /// A step that leaves the standard normal law as it is, see [`normal_step`]; and whether its size comes from the
+    /// A step that leaves the standard normal law as it is, see `normal_step`; and whether its size comes from the
     /// whole range.
     pub fn step(self, z: f64, stream: &mut Stream) -> (f64, bool) {
         let (s, is_wide) = self.sample(stream);
