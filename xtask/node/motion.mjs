@@ -5,8 +5,8 @@ export function clips(text) {
 
 // Times in seconds, positions in metres and quaternions (x, y, z, w) as arrays.
 function body({ t, p, tq, q, step, ...about }) {
-  const places = { times: summed(t, 1).map((x) => x / 16000), values: summed(p, 3).map((x) => x * step), width: 3 };
-  const turns = q ? { times: summed(tq, 1).map((x) => x / 16000), values: summed(q, 4), width: 4 } : null;
+  const places = { times: summed(t, 1).map((x) => x / 128000), values: summed(p, 3).map((x) => x * step), width: 3 };
+  const turns = q ? { times: summed(tq, 1).map((x) => x / 128000), values: summed(q, 4), width: 4 } : null;
   return { ...about, places, turns };
 }
 

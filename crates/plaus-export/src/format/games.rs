@@ -15,7 +15,7 @@ pub(super) struct Json;
 /// Begin of such a file.
 const HEAD: &str = "{\"plaus_motion\":1,";
 /// Milliseconds are divided into so many parts.
-const TIME: f64 = 16.0;
+const TIME: f64 = 128.0;
 /// Largest number of a share.
 const FULL: f64 = 32767.0;
 
@@ -25,7 +25,7 @@ impl Exporter for Json {
             name: "json",
             ending: "json",
             about: "compact motion for games: whole numbers, a throw of a die in a few kB",
-            help: "Per clip and body, keys as differences of whole numbers: times in sixteenths of a millisecond, \
+            help: "Per clip and body, keys as differences of whole numbers: times in parts of 1/128 ms, \
                 positions in steps of `step` metres, quaternions in parts of 32767; straight lines between them, as for \
                 glb. docs/engines.md has a reader of 40 lines.",
         }
