@@ -2,7 +2,7 @@
 
 use super::place::Place;
 use super::probe::Probe;
-use super::score::Span;
+use super::score::{Band, FAR, Reach, Span};
 use crate::scene::ConfigError;
 use plaus_animation::Impact;
 use schemars::JsonSchema;
@@ -78,6 +78,21 @@ impl Event {
         let nth = self.nth.unsigned_abs() as usize - 1;
         let hits: Vec<&'a Impact> = probe.hits(&self.body, &self.with, self.faster_than).collect();
         if self.nth > 0 { hits.get(nth).copied() } else { hits.iter().rev().nth(nth).copied() }
+    }
+
+    /// Where a number of the impact, none where it is not known, may still lie in `band`.
+    pub(super) fn measured(
+        &self,
+        probe: &Probe<'_>,
+        band: &Band,
+        number: impl FnOnce(&Impact) -> Option<f64>,
+    ) -> Reach {
+        let certain = probe.is_whole() || self.nth > 0;
+        match self.found(probe).filter(|_| certain) {
+            Some(hit) => number(hit).map_or(Reach::NEVER, |number| band.reach(Span::at(number))),
+            None if probe.is_whole() => Reach::NEVER,
+            None => Reach::between(-FAR, band.reach(Span { low: 0.0, high: f64::MAX }).most.margin),
+        }
     }
 
     /// Whether the same is meant, whenever it happens.

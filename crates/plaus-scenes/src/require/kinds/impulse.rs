@@ -4,7 +4,7 @@ use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
-use crate::require::score::{Band, FAR, Reach, Span};
+use crate::require::score::{Band, Reach};
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -60,12 +60,6 @@ impl Ask for Impulse {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        let event = self.event();
-        let certain = probe.is_whole() || self.nth > 0;
-        match event.found(probe).filter(|_| certain) {
-            Some(hit) => self.band().reach(Span::at(hit.impulse)),
-            None if probe.is_whole() => Reach::NEVER,
-            None => Reach::between(-FAR, self.band().reach(Span { low: 0.0, high: f64::MAX }).most.margin),
-        }
+        self.event().measured(probe, &self.band(), |hit| Some(hit.impulse))
     }
 }

@@ -4,7 +4,7 @@ use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
-use crate::require::score::{Band, FAR, Reach, Span};
+use crate::require::score::{Band, Reach};
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -61,15 +61,9 @@ impl Ask for Speed {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        let event = self.event();
-        let certain = probe.is_whole() || self.nth > 0;
-        match event.found(probe).filter(|_| certain) {
-            Some(hit) => {
-                let state = probe.party(hit, &self.body).and_then(|track| probe.at_hit(track, hit.time, self.after));
-                state.map_or(Reach::NEVER, |state| self.band().reach(Span::at(state.velocity.length())))
-            }
-            None if probe.is_whole() => Reach::NEVER,
-            None => Reach::between(-FAR, self.band().reach(Span { low: 0.0, high: f64::MAX }).most.margin),
-        }
+        self.event().measured(probe, &self.band(), |hit| {
+            let track = probe.party(hit, &self.body)?;
+            Some(probe.at_hit(track, hit.time, self.after)?.velocity.length())
+        })
     }
 }
