@@ -3,7 +3,7 @@
 use crate::error::RunFileError;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::thread;
@@ -27,6 +27,15 @@ pub trait Disk: Sync {
     /// # Errors
     /// As the operating system says.
     fn sync(&self, path: &Path) -> io::Result<()>;
+
+    /// Waits until everything written to files that lie in `folder` is on the disk.
+    ///
+    /// # Errors
+    /// As the operating system says.
+    fn sync_within(&self, folder: &Path, files: &[PathBuf]) -> io::Result<()> {
+        let _ = folder;
+        files.iter().try_for_each(|file| self.sync(file))
+    }
 
     /// Renames a file or a folder in one step, in place of any file of the new name.
     ///
@@ -52,6 +61,11 @@ pub trait Disk: Sync {
     /// As the operating system says.
     fn create_folder(&self, path: &Path) -> io::Result<()>;
 }
+
+/// More files than this are waited for all at once, with whatever else is on its way to that disk: a file at a time
+/// takes milliseconds each.
+#[cfg(target_os = "linux")]
+const MANY: usize = 64;
 
 /// Files that are waited for at a time: a disk takes hardly longer for so many than for one.
 const AT_A_TIME: usize = 16;
@@ -112,6 +126,14 @@ impl Disk for RealDisk {
             true => Ok(()), // a folder cannot be opened as a file there
             false => OpenOptions::new().append(true).open(path)?.sync_all(),
         }
+    }
+
+    #[cfg(target_os = "linux")]
+    fn sync_within(&self, folder: &Path, files: &[PathBuf]) -> io::Result<()> {
+        if files.len() > MANY {
+            return Ok(rustix::fs::syncfs(File::open(folder)?)?);
+        }
+        files.iter().try_for_each(|file| self.sync(file))
     }
 
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {

@@ -104,8 +104,14 @@ fn copy(pieces: &Pieces, out: &Folder, merging: &Merging<'_>) -> Result<u64, Err
                 return Err(pieces.unfinished(piece, 0, end));
             };
             copy_chain(pieces, piece, chain, (records, end_iteration), draft, merging)?;
-            Ok(write(draft, merging.disk, chain, &bytes)?)
+            let path = draft.checkpoint(chain);
+            Ok(merging.disk.append(&path, &bytes).map_err(RunFileError::io(&path, "write"))?)
         })?;
+        // Waited for at once: a run has two files a chain, and there may be many chains.
+        let files = chains.iter().flat_map(|&(_, chain)| [draft.records(chain), draft.checkpoint(chain)]);
+        let files: Vec<PathBuf> = files.collect();
+        let synced = merging.disk.sync_within(draft.path(), &files);
+        synced.map_err(RunFileError::io(draft.path(), "write"))?;
         seal(pieces, draft, merging.disk)
     })?;
     Ok(total)
