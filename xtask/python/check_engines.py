@@ -53,10 +53,10 @@ def wait_for(what, condition, seconds=PATIENCE):
 ACCIDENTS = """#!/bin/sh
 case "$*" in *--shard=task/*) piece="${SLURM_ARRAY_TASK_ID}" ;; *) piece=${*#*--shard=}; piece=${piece%%/*} ;; esac
 folder=$(dirname -- "$0")
-case "$1" in sample) ;; *) exec "$PLAUS" "$@" ;; esac
+case "$1" in sample) room=200 ;; chance) room=4 ;; *) exec "$PLAUS" "$@" ;; esac
 if [ "$piece" = 2 ] && mkdir -- "$folder/full" 2>/dev/null; then
     trap '' XFSZ
-    ulimit -f 200
+    ulimit -f "$room"
 elif [ "$piece" = 3 ] && mkdir -- "$folder/killed" 2>/dev/null; then
     "$PLAUS" "$@" &
     plaus=$!
@@ -72,9 +72,13 @@ exec "$PLAUS" "$@"
 class Job:
     """A job in a folder of its own, with the whole run to compare with."""
 
+    # What a piece says whose disk is full.
+    FULL = "The run is safe up to iteration"
+    CALLED = ""
+
     def __init__(self, arguments, engine):
         self.engine, self.plaus = engine, str(arguments.plaus.resolve())
-        self.place = arguments.work.resolve() / engine
+        self.place = arguments.work.resolve() / f"{engine}{self.CALLED}"
         shutil.rmtree(self.place, ignore_errors=True)
         self.place.mkdir(parents=True)
         self.path = self.place / JOB
@@ -82,27 +86,34 @@ class Job:
         self.named = False
         scenario = self.place / FILE
         shutil.copy(arguments.scenario, scenario)
-        # Some seconds a piece, and records of a few megabytes.
-        length = 600_000 if arguments.quick else 3_000_000
-        self.run = ["--chains", "6", "--set", "rungs=2", "--iterations", str(length), "--thin", "20", "--seed", "3"]
         # Installed where all machines see it, under a name that needs quoting.
         accidents = self.place / "plaus with 'accidents'.sh"
         accidents.write_text(ACCIDENTS.replace("$PLAUS", self.plaus))
         accidents.chmod(0o755)
+        self.begin(scenario, ["--to", engine, "--shards", PIECES, "--program", accidents], arguments.quick)
+
+    def begin(self, scenario, to, quick):
+        """Makes the whole, and writes the job."""
+        # Some seconds a piece, and records of a few megabytes.
+        length = 600_000 if quick else 3_000_000
+        self.run = ["--chains", "6", "--set", "rungs=2", "--iterations", str(length), "--thin", "20", "--seed", "3"]
         self.call("sample", scenario, "--out", self.place / "whole", "--quiet", *self.run)
-        self.call("submit", scenario, "--to", engine, "--shards", PIECES, "--out", self.path, "--program", accidents, *self.run)
+        self.call("submit", scenario, *to, "--out", self.path, *self.run)
+
+    def is_done(self):
+        return (self.path / "run").exists()
 
     def call(self, *words, code=0):
         words = [self.plaus, *map(str, words)]
         done = subprocess.run(words, capture_output=True, text=True, cwd=self.place)
-        demand(done.returncode == code, f"{words}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+        demand(done.returncode in (code if isinstance(code, tuple) else (code,)), f"{words}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
         return done.stdout + done.stderr
 
     def status(self):
         done = subprocess.run([self.plaus, "status", "--json", str(self.path)], capture_output=True, text=True)
         status = json.loads(done.stdout)
-        failed = [piece["signal"] for piece in status["pieces"] if piece["standing"] == "failed"]
-        self.named = self.named or any("The run is safe up to iteration" in (one["why"] or "") for one in failed)
+        failed = [piece["why"] for piece in status["pieces"] if piece["standing"] == "failed"]
+        self.named = self.named or any(self.FULL in (why or "") for why in failed)
         return status
 
     def standings(self):
@@ -154,6 +165,49 @@ class Job:
         demand(not out.exists(), "a refused merge left something")
 
 
+class ChanceJob(Job):
+    """The same of a chance: batches are the pieces, each in a file."""
+
+    FULL = "File too large"
+    CALLED = "-chance"
+
+    def begin(self, scenario, to, quick):
+        # Some seconds a piece, whose batches take some tenths of one each.
+        work = ["--particles", "200", "--steps", "100"] if quick else ["--particles", "400", "--steps", "200"]
+        self.run = ["--set", "tolerance=0.02", "--batches", "16", "--seed", "3", *work, "--iterations", "4000"]
+        # 1 where methods disagree: it is the bytes that matter here.
+        self.call("chance", scenario, "--out", self.place / "whole.json", "--quiet", *self.run, code=(0, 1))
+        self.call("submit", "--chance", scenario, *to, "--out", self.path, *self.run)
+
+    def is_done(self):
+        return (self.path / "chance.json").exists()
+
+    def at_work(self):
+        batches = [piece.get("batches") for piece in self.status()["pieces"]]
+        return any(of and 0 < of[0] < of[1] for of in batches)
+
+    def is_the_whole(self):
+        whole, merged = self.place / "whole.json", self.path / "chance.json"
+        demand(whole.read_bytes() == merged.read_bytes(), f"{merged}: not the bytes of {whole}")
+        return 1
+
+    def refuses(self):
+        pieces, out = self.path / "pieces", self.place / "refused.json"
+        merge, two, aside = ["merge", pieces, "--out", out], pieces / "2.json", self.place / "aside.json"
+        two.rename(aside)
+        demand("piece 2/4 is missing" in self.call(*merge, code=2), "a missing piece is not named")
+        other = ["--method", "counting", "--batches", "16", "--seed", "4", "--quiet"]
+        self.call("chance", self.place / FILE, "--shard", "2/4", "--out", two, *other)
+        said = self.call(*merge, code=2)
+        demand("is no piece of the same" in said and "2.json" in said, f"another scenario is not named: {said}")
+        shutil.copy(aside, two)
+        shutil.copy(aside, pieces / "twice.json")
+        said = self.call(*merge, code=2)
+        demand("twice.json: is piece 2/4" in said, f"a piece that is there twice is not named: {said}")
+        (pieces / "twice.json").unlink()
+        demand(not out.exists(), "a refused merge left something")
+
+
 # What our part of a server says begins so; HyperQueue prints lines of its own.
 SAID = "plaus: "
 
@@ -196,7 +250,7 @@ def check_hyperqueue(job, python):
     wait_for("tasks end with their worker", lambda: "running" not in job.standings())
     rounds = 0
     server = serve()
-    while not (job.path / "run").exists():
+    while not job.is_done():
         rounds += 1
         demand(rounds <= 4, f"the job does not come to its end: {job.standings()}")
         submit(server)
@@ -249,7 +303,7 @@ def check_openjd(job, python):
     session.send_signal(signal.SIGKILL)
     session.wait()
     rounds = 0
-    while not (job.path / "run").exists():
+    while not job.is_done():
         rounds += 1
         demand(rounds <= 6, f"the job does not come to its end: {job.standings()}")
         run().wait()
@@ -276,7 +330,7 @@ def check_slurm(job, _):
         rounds = 0
         while True:
             wait_for("Slurm's queue", lambda: cluster.is_idle())
-            if (job.path / "run").exists():
+            if job.is_done():
                 break
             job.status()
             rounds += 1
@@ -421,6 +475,16 @@ def measure_speed(job, python, seconds):
     return [statistics.median(share) for share in zip(*shares)]
 
 
+def measure(job, python, speed):
+    """What needs one engine only."""
+    twice_at_once(job)
+    took, spent = (1000 * seconds for seconds in measure_start(job))
+    print(f"a piece of one iteration: {took:.0f} ms (median of 21), {spent:.0f} ms of processor", flush=True)
+    if speed:
+        clock, spent = measure_speed(job, python, speed)
+        print(f"speed: {clock:.3f} by the clock, {spent:.3f} by the processor (medians of 3 pairs)", flush=True)
+
+
 CHECKS = {"hyperqueue": check_hyperqueue, "openjd": check_openjd, "slurm": check_slurm}
 
 
@@ -440,27 +504,24 @@ def main() -> int:
         return 0
     python = environment(arguments.venv, REQUIREMENTS)
     for engine in arguments.engines:
-        begin = time.monotonic()
         if engine == "slurm" and not all(shutil.which(name) for name in ["slurmctld", "slurmd", "sbatch"]):
             print("slurm: SKIPPED, it is not installed (Debian: slurm-wlm)", flush=True)
             continue
         try:
-            job = Job(arguments, engine)
-            how = CHECKS[engine](job, python)
-            files = job.is_the_whole()
-            job.had_accidents()
-            job.refuses()
-            if engine == arguments.engines[0]:
-                twice_at_once(job)
-                took, spent = (1000 * seconds for seconds in measure_start(job))
-                print(f"a piece of one iteration: {took:.0f} ms (median of 21), {spent:.0f} ms of processor", flush=True)
-                if arguments.speed:
-                    clock, spent = measure_speed(job, python, arguments.speed)
-                    print(f"speed: {clock:.3f} by the clock, {spent:.3f} by the processor (medians of 3 pairs)", flush=True)
+            for kind in (Job, ChanceJob):
+                begin = time.monotonic()
+                job = kind(arguments, engine)
+                how = CHECKS[engine](job, python)
+                files = job.is_the_whole()
+                job.had_accidents()
+                job.refuses()
+                what = f"{files} files are those" if kind is Job else "batches of a chance are those"
+                print(f"{engine}: {what} of one machine; {how}; {time.monotonic() - begin:.0f} s", flush=True)
+                if engine == arguments.engines[0] and kind is Job:
+                    measure(job, python, arguments.speed)
         except Wrong as wrong:
             print(f"{engine}: WRONG: {wrong}", flush=True)
             return 1
-        print(f"{engine}: {files} files are those of one machine; {how}; {time.monotonic() - begin:.0f} s", flush=True)
     return 0
 
 

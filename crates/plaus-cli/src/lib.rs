@@ -18,6 +18,7 @@ mod failure;
 mod glossary;
 mod interrupt;
 mod label;
+mod likely;
 mod plots;
 mod progress;
 mod report;
@@ -27,7 +28,9 @@ mod table;
 mod why;
 
 pub use label::of as label_of;
+pub use likely::{in_words as chance_in_words, to_json as chance_to_json};
 pub use report::to_json as diagnosis_to_json;
+pub use why::to_json as tally_to_json;
 
 use clap::Parser;
 use failure::{Failure, Outcome};

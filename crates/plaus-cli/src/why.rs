@@ -24,6 +24,7 @@ impl Visitor for OfPrior {
             if self.tells && self.draws >= 1000 && done % (self.draws / 10) == 0 {
                 console::note_line(&format!("{} of {} draws", grouped(done), grouped(self.draws)));
             }
+            true
         })
     }
 }
@@ -68,8 +69,9 @@ pub(crate) fn in_words(tally: &Tally, states: &str) -> String {
     text
 }
 
-/// The same as JSON.
-pub(crate) fn to_json(tally: &Tally) -> Value {
+/// What `plaus check --draws N --json` prints.
+#[must_use]
+pub fn to_json(tally: &Tally) -> Value {
     let finite = |margin: f64| margin.is_finite().then_some(margin);
     let clause = |clause: &Clause| {
         let best = finite(clause.best);

@@ -12,6 +12,7 @@ mod every_format;
 mod first_hour;
 #[cfg(unix)]
 mod jobs;
+mod jobs_of_chances;
 mod mutated;
 mod output;
 #[cfg(unix)]

@@ -89,8 +89,10 @@ fn however_it_is_asked_the_file_is_the_same() {
     for piece in 1..=3 {
         place.ok(&format!("{ask} --out pieces/{{shard}} --shard {piece}/3"));
     }
-    place.ends("merge pieces/1 pieces/3 --out no.json", 2).says(&["batch 1 of Counting is in none of the pieces"]);
-    place.ends("merge pieces/1 pieces/2 pieces/3 pieces/3 --out no.json", 2).says(&["is there twice"]);
+    place.ends("merge pieces/1 pieces/3 --out no.json", 2).says(&["piece 2/3 is missing: batch 1 is in none"]);
+    place
+        .ends("merge pieces/1 pieces/2 pieces/3 pieces/3 --out no.json", 2)
+        .says(&["pieces/3: is piece 3/3: batch 2 is there twice"]);
     place.ok("merge pieces/1 pieces/2 pieces/3 --out whole.json");
     assert!(read("one.json") == read("whole.json"));
     place.ends("merge pieces/1 pieces/2 pieces/3 --out whole.json", 2).says(&["exists already"]);

@@ -125,20 +125,29 @@ impl Folder {
     /// # Errors
     /// [`RunFileProblem::Locked`] where another process writes it.
     pub fn claim(&self) -> Result<File, RunFileError> {
-        let path = self.lock();
-        let file = File::options().append(true).create(true).open(&path).map_err(RunFileError::io(&path, "open"))?;
-        match file.try_lock() {
-            Ok(()) => Ok(file),
-            Err(TryLockError::WouldBlock) => Err(RunFileError::new(&self.0, RunFileProblem::Locked)),
-            Err(TryLockError::Error(source)) => Err(RunFileError::io(&path, "lock")(source)),
-        }
+        claim(&self.lock(), &self.0)
     }
 
     /// Whether another process is writing the run now, as far as can be told.
     #[must_use]
     pub fn is_being_written(&self) -> bool {
-        File::open(self.lock()).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+        is_claimed(&self.lock())
     }
+}
+
+/// Claims `what` for writing by a lock on the file `lock`, until the returned file is dropped or the process ends.
+pub(crate) fn claim(lock: &Path, what: &Path) -> Result<File, RunFileError> {
+    let file = File::options().append(true).create(true).open(lock).map_err(RunFileError::io(lock, "open"))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(RunFileError::new(what, RunFileProblem::Locked)),
+        Err(TryLockError::Error(source)) => Err(RunFileError::io(lock, "lock")(source)),
+    }
+}
+
+/// Whether another process holds a lock on the file `lock`, as far as can be told.
+pub(crate) fn is_claimed(lock: &Path) -> bool {
+    File::open(lock).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
 /// The folder a path lies in.

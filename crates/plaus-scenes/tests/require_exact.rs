@@ -131,7 +131,7 @@ fn a_tally_tells_what_is_met_and_what_never_together() {
     let late = "not = { impact = { nth = 2, when = { to_s = 0.7 } } }";
     let never = "bounces = { at_least = 4 }";
     let scene = asked(&[early, late, never]);
-    let tally = Tally::of_prior(&scene, 1, 2000, |_| {}).unwrap();
+    let tally = Tally::of_prior(&scene, 1, 2000, |_| true).unwrap();
     let [_, early, late, never] = tally.clauses.as_slice() else { panic!("{tally:?}") };
     assert_eq!((tally.states, tally.all), (2000, 0));
     assert!(early.met > 0 && late.met > 0 && early.met + late.met <= 2000, "{tally:?}");

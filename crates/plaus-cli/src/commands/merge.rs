@@ -22,10 +22,10 @@ const EVERY: f64 = 2.0;
 /// Which pieces, and where to.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Pieces of a run, or folders of some; they stay as they are
+    /// Pieces of a run, or files that `plaus chance --shard` wrote, or folders of some; they stay as they are
     #[arg(required = true, value_name = "PIECES")]
     pieces: Vec<PathBuf>,
-    /// Folder to make for the whole run; must not exist
+    /// Folder to make for the whole run, or file for the whole chance; must not exist
     #[arg(long, alias = "output", value_name = "RUN")]
     out: PathBuf,
     /// Number of threads; 0: one per core. Results do not depend on it
@@ -39,8 +39,8 @@ pub(crate) struct Args {
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         interrupt::listen()?;
-        if self.pieces.iter().all(|piece| piece.is_file()) {
-            return self.chances();
+        if let Some(files) = plaus_run::chance::files_at(&self.pieces)? {
+            return self.chances(&files);
         }
         let (clock, pulse, over) = (Stopwatch::start(), MergePulse::default(), AtomicBool::new(false));
         let merged = thread::scope(|scope| {
@@ -68,10 +68,10 @@ impl Args {
     }
 
     /// Pieces that are files are what `plaus chance` wrote.
-    fn chances(&self) -> Result<Outcome, Failure> {
-        let whole = plaus_run::chance::merge(&self.pieces, &self.out, &RealDisk)?;
+    fn chances(&self, files: &[PathBuf]) -> Result<Outcome, Failure> {
+        let whole = plaus_run::chance::merge(files, &self.out, &RealDisk)?;
         if !self.quiet {
-            let (pieces, batches, out) = (self.pieces.len(), whole.done().0, quoted(&self.out));
+            let (pieces, batches, out) = (files.len(), whole.done().0, quoted(&self.out));
             console::note_line(&format!("merged {pieces} pieces: {batches} batches\n\nnext:\n  plaus chance {out}"));
         }
         Ok(Outcome::Done)

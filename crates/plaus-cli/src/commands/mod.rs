@@ -1,5 +1,6 @@
 //! The subcommands, one a file.
 
+mod asking;
 mod chance;
 mod check;
 mod compare;

@@ -81,7 +81,7 @@ impl Args {
             plaus_run::confirm::possible(&recipe.scenario, ACCURACY)?;
         }
         let shard = self.shard.as_deref().map(shards::named).transpose()?;
-        let folder = Folder::new(shards::folder(&self.out, shard));
+        let folder = Folder::new(shards::place(&self.out, shard));
         let sample = if self.go_on { plaus_run::sample_or_go_on } else { plaus_run::sample_shard };
         self.watching.watch(&folder, self.go_on, |sampling| {
             sample(&folder, &recipe, shard, sampling).map_err(|error| match error {

@@ -22,13 +22,12 @@ pub(super) fn named(text: &str) -> Result<Shard, Failure> {
     format!("{value}/{of}").parse().map_err(|error: ShardError| refuse(&format!("{name} is `{value}`: {error}")))
 }
 
-/// The folder of a piece: `{shard}` as the last part of `out` is its number. Nowhere else, so that folders may be
-/// called what they like.
-pub(super) fn folder(out: &Path, shard: Option<Shard>) -> PathBuf {
-    match shard {
-        Some(shard) if out.file_name().is_some_and(|name| name == PLACE) => {
-            out.with_file_name(shard.piece().to_string())
-        }
+/// Where a piece lies: `{shard}` as the last part of `out`, or `{shard}.json`, stands for its number. Nowhere else, so
+/// that folders may be called what they like.
+pub(super) fn place(out: &Path, shard: Option<Shard>) -> PathBuf {
+    let name = out.file_name().and_then(|name| name.to_str());
+    match (shard, name.and_then(|name| name.strip_prefix(PLACE))) {
+        (Some(shard), Some(end @ ("" | ".json"))) => out.with_file_name(format!("{}{end}", shard.piece())),
         _ => out.to_owned(),
     }
 }

@@ -6,7 +6,7 @@ use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::progress::{LONGEST_SILENCE, Signal, State, host, read_signal};
 use crate::table::{grouped, lay_out, percent, rate};
-use plaus_run::{Folder, Shard};
+use plaus_run::{Folder, Shard, chance};
 use serde::Serialize;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -68,6 +68,14 @@ pub(crate) struct PieceStatus {
     pub(crate) signal: Option<Signal>,
     /// Seconds since it last said something.
     pub(crate) silent: Option<u64>,
+    /// Of a chance: batches that are made, and that are to be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) batches: Option<[usize; 2]>,
+    /// Why it broke off.
+    pub(crate) why: Option<String>,
+    /// Whether it is of a chance, not of a run.
+    #[serde(skip)]
+    is_chance: bool,
 }
 
 impl PieceStatus {
@@ -89,13 +97,50 @@ impl PieceStatus {
                 State::Running => Standing::Running,
             },
         };
-        Self { standing, folder: folder.path().to_owned(), signal, silent }
+        let why = signal.as_ref().and_then(|signal| signal.why.clone());
+        Self { standing, folder: folder.path().to_owned(), signal, silent, batches: None, why, is_chance: false }
+    }
+
+    /// Looks at a piece of a chance, which is in a file.
+    pub(crate) fn of_batches(path: PathBuf) -> Self {
+        let found = chance::read(&path);
+        let written = std::fs::metadata(&path).and_then(|file| file.modified()).ok();
+        let silent = written.and_then(|time| time.elapsed().ok()).map(|ago| ago.as_secs());
+        let batches = found.as_ref().ok().and_then(Option::as_ref).map(|found| <[usize; 2]>::from(found.done()));
+        let said = std::fs::read_to_string(super::chance::why_file(&path)).ok();
+        let stopped = said.as_deref() == Some(super::chance::GOES_ON);
+        let why = found.err().map(|error| error.to_string()).or(said.filter(|_| !stopped));
+        let standing = match (batches, &why) {
+            (Some([done, due]), _) if done == due => Standing::Done,
+            _ if chance::is_being_written(&path) => Standing::Running,
+            (_, Some(_)) => Standing::Failed,
+            _ if stopped => Standing::Stopped,
+            (None, None) => Standing::Waiting,
+            (Some(_), None) => Standing::Died,
+        };
+        let why = why.filter(|_| standing == Standing::Failed);
+        Self { standing, folder: path, signal: None, silent, batches, why, is_chance: true }
+    }
+
+    /// The share of its work that is done.
+    fn share(&self) -> f64 {
+        // Pieces that have not said anything are taken to be as long as the others.
+        match (&self.signal, self.batches, self.standing) {
+            (_, _, Standing::Done) => 1.0,
+            (Some(signal), ..) => signal.iteration as f64 / signal.end.max(1) as f64,
+            (_, Some([done, due]), _) => done as f64 / due.max(1) as f64,
+            (None, None, _) => 0.0,
+        }
     }
 }
 
 /// All pieces of a job.
 pub(crate) fn of_job(job: &Job) -> Vec<(Shard, PieceStatus)> {
-    job.pieces().map(|shard| (shard, PieceStatus::of(&job.piece(shard)))).collect()
+    let status = |shard| match job.is_chance() {
+        true => PieceStatus::of_batches(job.batches(shard)),
+        false => PieceStatus::of(&job.piece(shard)),
+    };
+    job.pieces().map(|shard| (shard, status(shard))).collect()
 }
 
 /// How many of a job's pieces stand how, in a line.
@@ -108,9 +153,12 @@ pub(crate) fn in_a_line(job: &Job) -> String {
 struct Summary {
     pieces: usize,
     standings: BTreeMap<&'static str, usize>,
-    /// Share of the iterations that are done.
+    /// Share of the iterations, or batches, that are done.
     share: f64,
     iterations_per_second: f64,
+    /// Whether batches are what there is to do.
+    #[serde(skip)]
+    batches: bool,
     /// Seconds until the last of those at work ends, at its speed.
     eta_seconds: Option<f64>,
 }
@@ -121,12 +169,6 @@ impl Summary {
         for piece in pieces {
             *standings.entry(piece.standing.in_words()).or_insert(0) += 1;
         }
-        // Pieces that have not said anything are taken to be as long as the others.
-        let share_of = |piece: &PieceStatus| match (&piece.signal, piece.standing) {
-            (_, Standing::Done) => 1.0,
-            (Some(signal), _) => signal.iteration as f64 / signal.end.max(1) as f64,
-            (None, _) => 0.0,
-        };
         let running = || pieces.iter().filter(|piece| piece.standing == Standing::Running);
         let running = || running().filter_map(|piece| piece.signal.as_ref());
         let left = |signal: &Signal| {
@@ -136,7 +178,8 @@ impl Summary {
         Self {
             pieces: pieces.len(),
             standings,
-            share: pieces.iter().map(share_of).sum::<f64>() / pieces.len().max(1) as f64,
+            batches: pieces.iter().any(|piece| piece.is_chance),
+            share: pieces.iter().map(PieceStatus::share).sum::<f64>() / pieces.len().max(1) as f64,
             iterations_per_second: running().map(|signal| signal.iterations_per_second).fold(0.0, |sum, one| sum + one),
             eta_seconds: running().map(left).filter(|left| left.is_finite()).reduce(f64::max),
         }
@@ -145,13 +188,12 @@ impl Summary {
     fn in_words(&self) -> String {
         let counts: Vec<String> = self.standings.iter().map(|(name, count)| format!("{count} {name}")).collect();
         let eta = self.eta_seconds.map(|eta| format!("  those at work end in {}", in_words(eta))).unwrap_or_default();
-        format!(
-            "{} pieces: {}  {} of the iterations  {}{eta}",
-            self.pieces,
-            counts.join(", "),
-            percent(self.share),
-            rate(self.iterations_per_second)
-        )
+        let (counts, share) = (counts.join(", "), percent(self.share));
+        if self.batches {
+            return format!("{} pieces: {counts}  {share} of the batches", self.pieces);
+        }
+        let rate = rate(self.iterations_per_second);
+        format!("{} pieces: {counts}  {share} of the iterations  {rate}{eta}", self.pieces)
     }
 }
 
@@ -163,7 +205,7 @@ impl Args {
             if let Some(job) = Job::open(path)? {
                 pieces.extend(of_job(&job).into_iter().map(|(_, piece)| piece));
                 let run = job.merged();
-                merged = Some(run.manifest().exists().then(|| run.path().to_owned()));
+                merged = Some(run.exists().then_some(run));
             } else if !path.is_dir() {
                 let message = format!("{}: there is no job here, and no piece of a run", path.display());
                 return Err(Failure::Message(message));
@@ -203,14 +245,18 @@ impl Args {
             order.sort_by_key(|piece| rank(piece));
             order.truncate(SHOWN);
         }
-        let mut rows = vec![["piece", "", "iteration", "of", "", "distinct", "said"].map(str::to_owned).to_vec()];
+        let head = match summary.batches {
+            true => ["piece", "", "batches", "of", "", "", "said"],
+            false => ["piece", "", "iteration", "of", "", "distinct", "said"],
+        };
+        let mut rows = vec![head.map(str::to_owned).to_vec()];
         rows.extend(order.iter().map(|piece| row(piece)));
         let mut text = lay_out(&rows);
         if order.len() < pieces.len() {
             text += &format!("and {} more pieces (`--all`)\n", pieces.len() - order.len());
         }
         for piece in &order {
-            if let Some(why) = piece.signal.as_ref().and_then(|signal| signal.why.as_ref()) {
+            if let Some(why) = &piece.why {
                 text += &format!("{}: {why}\n", piece.folder.display());
             }
         }
@@ -220,9 +266,12 @@ impl Args {
 
 fn row(piece: &PieceStatus) -> Vec<String> {
     let standing = piece.standing.in_words().to_owned();
+    let ago = format!("{} ago", in_words(piece.silent.unwrap_or(0) as f64));
     let Some(signal) = &piece.signal else {
         let name = piece.folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        return vec![name, standing];
+        let Some([done, due]) = piece.batches else { return vec![name, standing] };
+        let [done, due] = [done, due].map(|batches| grouped(batches as u64));
+        return vec![name, standing, done, due, String::new(), String::new(), ago];
     };
     vec![
         format!("{}/{}", signal.piece, signal.of),
@@ -231,6 +280,6 @@ fn row(piece: &PieceStatus) -> Vec<String> {
         grouped(signal.end),
         rate(signal.iterations_per_second),
         grouped(signal.distinct),
-        format!("{} ago", in_words(piece.silent.unwrap_or(0) as f64)),
+        ago,
     ]
 }

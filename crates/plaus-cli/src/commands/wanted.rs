@@ -35,6 +35,17 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
+    /// Reads the scenario for a chance, which has no chains; gives the iterations of each rung besides.
+    pub(super) fn of_chance(self) -> Result<(Recipe, Option<u64>), Failure> {
+        let Self { chains, warmup, thin, solutions, iterations, .. } = &self;
+        let of_runs = [("chains", chains), ("warmup", warmup), ("thin", thin), ("solutions", solutions)];
+        if let Some((name, _)) = of_runs.iter().find(|(_, value)| value.is_some()) {
+            return Err(Failure::Message(format!("--{name} goes with a run, not with --chance")));
+        }
+        let iterations = *iterations;
+        Ok((Self { iterations: None, ..self }.recipe()?, iterations))
+    }
+
     /// Reads the scenario, with all that the command line says in force.
     pub(super) fn recipe(self) -> Result<Recipe, Failure> {
         let flags = [

@@ -3,7 +3,10 @@
 use super::Chance;
 use crate::disk::Disk;
 use crate::error::{Error, RunFileError, RunFileProblem};
+use crate::folder::parent_of;
+use crate::shard::Shard;
 use serde::{Deserialize, Serialize};
+use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -41,9 +44,7 @@ pub(super) fn write(path: &Path, disk: &dyn Disk, chance: &Chance) -> Result<(),
     let envelope = Envelope { format: FORMAT, chance: chance.clone(), checksum };
     let mut json = serde_json::to_vec_pretty(&envelope).map_err(|error| broken(path, error))?;
     json.push(b'\n');
-    let folder = crate::folder::parent_of(path);
-    std::fs::create_dir_all(&folder).map_err(RunFileError::io(&folder, "make the folder"))?;
-    let next = path.with_extension(format!("{}.next", std::process::id()));
+    let next = beside(path, "next");
     let written = disk.write(&next, &json).and_then(|()| disk.rename(&next, path));
     written.map_err(RunFileError::io(path, "write"))?;
     Ok(())
@@ -96,9 +97,38 @@ fn difference(found: &Chance, wanted: &Chance) -> Option<String> {
     })
 }
 
-/// What the file holds already of what is to be asked.
-pub(super) fn go_on(path: &Path, begun: Chance) -> Result<Chance, Error> {
+/// A hidden file beside the one at `path`.
+fn beside(path: &Path, what: &str) -> PathBuf {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    parent_of(path).join(format!(".{name}.{what}"))
+}
+
+/// Always empty; whoever writes the file at `path` holds a lock on it.
+fn lock_of(path: &Path) -> PathBuf {
+    beside(path, "lock")
+}
+
+/// Claims the file at `path` for writing, until what is returned is dropped or the process ends.
+pub(super) fn claim(path: &Path) -> Result<File, Error> {
+    let folder = parent_of(path);
+    std::fs::create_dir_all(&folder).map_err(RunFileError::io(&folder, "make the folder"))?;
+    Ok(crate::folder::claim(&lock_of(path), path)?)
+}
+
+/// Whether another process is writing the file at `path` now, as far as can be told.
+#[must_use]
+pub fn is_being_written(path: &Path) -> bool {
+    crate::folder::is_claimed(&lock_of(path))
+}
+
+/// What the file holds already of what is to be asked. Of `begun` it need not be known by which methods: then those of
+/// the file are taken.
+pub(super) fn go_on(path: &Path, mut begun: Chance, knows_methods: bool) -> Result<Chance, Error> {
     let Some(found) = read(path)? else { return Ok(begun) };
+    if !knows_methods {
+        begun.methods.clone_from(&found.methods);
+        begun.why.clone_from(&found.why);
+    }
     let other = difference(&found, &begun);
     let other = other.or_else(|| (found.shard != begun.shard).then(|| "it is of other batches".to_owned()));
     match other {
@@ -107,45 +137,100 @@ pub(super) fn go_on(path: &Path, begun: Chance) -> Result<Chance, Error> {
     }
 }
 
+/// The files at these paths, each one or a folder of some; `None` where one of them is no file, and no folder that holds
+/// files alone: runs, say.
+///
+/// # Errors
+/// [`Error`] where a folder cannot be read.
+pub fn files_at(paths: &[PathBuf]) -> Result<Option<Vec<PathBuf>>, Error> {
+    let mut found = Vec::new();
+    for path in paths {
+        if path.is_file() {
+            found.push(path.clone());
+            continue;
+        }
+        if !path.is_dir() || path.join("manifest.json").exists() {
+            return Ok(None);
+        }
+        let mut within = Vec::new();
+        for entry in std::fs::read_dir(path).map_err(RunFileError::io(path, "read"))? {
+            let entry = entry.map_err(RunFileError::io(path, "read"))?;
+            if !entry.file_name().to_string_lossy().starts_with('.') {
+                within.push(entry.path());
+            }
+        }
+        if within.is_empty() || !within.iter().all(|file| file.is_file()) {
+            return Ok(None);
+        }
+        within.sort();
+        found.extend(within);
+    }
+    Ok(Some(found))
+}
+
 /// Puts pieces together into `out`, byte for byte what one machine would have written.
 ///
 /// # Errors
-/// [`Error`] where a piece is unfinished, missing, there twice, or of another asking; or where `out` exists.
+/// [`Error`], naming the piece, where one is unfinished, being written, missing, there twice, or of another asking; or
+/// where `out` exists.
 pub fn merge(pieces: &[PathBuf], out: &Path, disk: &dyn Disk) -> Result<Chance, Error> {
     if std::fs::symlink_metadata(out).is_ok() {
         return Err(RunFileError::new(out, RunFileProblem::Exists).into());
     }
-    let refuse = |path: &Path, what: String| Error::from(RunFileError::new(path, RunFileProblem::Pieces(what)));
-    let mut whole: Option<Chance> = None;
+    let (mut whole, mut there): (Option<Chance>, Vec<Option<Shard>>) = (None, Vec::new());
     for path in pieces {
-        let Some(piece) = read(path)? else { return Err(refuse(path, "there is no such file".to_owned())) };
+        let piece = finished(path)?;
         let all = whole.get_or_insert_with(|| question(&piece));
         if let Some(difference) = difference(&piece, all) {
             return Err(refuse(path, format!("is no piece of the same: {difference}")));
         }
-        let (done, due) = piece.done();
-        if done < due {
-            return Err(refuse(
-                path,
-                format!("only {done} of its {due} batches are made: the same command goes on with it"),
-            ));
+        let twice = piece.batches().find(|batch| {
+            all.counted.contains_key(batch) || all.split.contains_key(batch) || all.stones.contains_key(batch)
+        });
+        if let Some(twice) = twice {
+            let shown = piece.shard.map_or("all of it".to_owned(), |shard| format!("piece {shard}"));
+            return Err(refuse(path, format!("is {shown}: batch {twice} is there twice")));
         }
-        let numbers = piece.batches();
-        let there = |batch: u32| {
-            all.counted.contains_key(&batch) || all.split.contains_key(&batch) || all.stones.contains_key(&batch)
-        };
-        if let Some(twice) = numbers.clone().find(|&batch| there(batch)) {
-            return Err(refuse(path, format!("batch {twice} is there twice")));
-        }
+        there.push(piece.shard);
         all.counted.extend(piece.counted);
         all.split.extend(piece.split);
         all.stones.extend(piece.stones);
     }
     let Some(whole) = whole else { return Err(Error::Request("there are no pieces to merge".to_owned())) };
-    if let Some((method, batch)) = whole.missing().first() {
-        let message = format!("batch {batch} of {method:?} is in none of the pieces");
-        return Err(refuse(out, message));
+    if let Some(&(_, batch)) = whole.missing().first() {
+        return Err(Error::Request(format!("{}: batch {batch} is in none of them", missing(&there, batch, &whole))));
     }
+    let folder = parent_of(out);
+    std::fs::create_dir_all(&folder).map_err(RunFileError::io(&folder, "make the folder"))?;
     write(out, disk, &whole)?;
     Ok(whole)
+}
+
+fn refuse(path: &Path, what: String) -> Error {
+    RunFileError::new(path, RunFileProblem::Pieces(what)).into()
+}
+
+/// A piece with all its batches.
+fn finished(path: &Path) -> Result<Chance, Error> {
+    let Some(piece) = read(path)? else { return Err(refuse(path, "there is no such file".to_owned())) };
+    if is_being_written(path) {
+        return Err(RunFileError::new(path, RunFileProblem::Locked).into());
+    }
+    let (done, due) = piece.done();
+    if done < due {
+        return Err(refuse(
+            path,
+            format!("only {done} of its {due} batches are made: the same command goes on with it"),
+        ));
+    }
+    Ok(piece)
+}
+
+/// Which piece is missing. It has a name where all were cut into equally many.
+fn missing(there: &[Option<Shard>], batch: u32, whole: &Chance) -> String {
+    let of = there.first().copied().flatten().map(Shard::of);
+    let of = of.filter(|&of| there.iter().all(|shard| shard.is_some_and(|shard| shard.of() == of)));
+    let holds = |shard: &Shard| shard.range(whole.asking.batches).is_ok_and(|range| range.contains(&batch));
+    let named = of.and_then(|of| Shard::all(of).find(holds));
+    named.map_or("a piece is missing".to_owned(), |shard| format!("piece {shard} is missing"))
 }

@@ -7,7 +7,7 @@ mod answer;
 mod file;
 
 pub use answer::{Answer, answers};
-pub use file::{merge, read};
+pub use file::{files_at, is_being_written, merge, read};
 
 use crate::disk::Disk;
 use crate::error::Error;
@@ -179,10 +179,14 @@ impl<S: Scene> Asked<'_, '_, S> {
         if let Some(shard) = shard {
             shard.range(asking.batches).map_err(|error| Error::Request(error.to_string()))?;
         }
-        let (methods, why) = self.methods()?;
+        // Held to the end.
+        let _claim = place.map(|(path, _)| file::claim(path)).transpose()?;
+        let found = self.methods()?;
+        let knows_methods = found.is_some();
+        let (methods, why) = found.unwrap_or((vec![Method::Counting], "stopped".to_owned()));
         let begun = self.begin(methods, why)?;
         let begun = match place {
-            Some((path, _)) => file::go_on(path, begun)?,
+            Some((path, _)) => file::go_on(path, begun, knows_methods)?,
             None => begun,
         };
         let tasks = begun.missing();
@@ -190,6 +194,9 @@ impl<S: Scene> Asked<'_, '_, S> {
         let pool = pool.map_err(|error| Error::Sampling(format!("cannot start worker threads: {error}")))?;
         let held = Mutex::new(begun);
         let one = |&(method, batch): &Task| -> Result<(), Error> {
+            if pulse.is_stopped() {
+                return Ok(());
+            }
             let made = match self.make(method, batch) {
                 Err(ChanceError::Stopped) => return Ok(()),
                 made => made.map_err(|error| Error::Sampling(error.to_string()))?,
@@ -221,7 +228,8 @@ impl<S: Scene> Asked<'_, '_, S> {
     }
 
     /// Which methods fit, and why. Every piece finds the same: from the first batch of draws, whoever's that is.
-    fn methods(&self) -> Result<(Vec<Method>, String), Error> {
+    /// `None` where it was stopped before that is known: nothing more is made then.
+    fn methods(&self) -> Result<Option<(Vec<Method>, String)>, Error> {
         let Inquiry { recipe, asking, methods, pulse, .. } = self.inquiry;
         let exact = recipe.scenario.sampler.rules.is_exact();
         if !methods.is_empty() {
@@ -233,23 +241,23 @@ impl<S: Scene> Asked<'_, '_, S> {
             let mut methods = methods.clone();
             methods.sort_unstable();
             methods.dedup();
-            return Ok((methods, "as asked for".to_owned()));
+            return Ok(Some((methods, "as asked for".to_owned())));
         }
         if !exact {
-            return Ok((vec![Method::Counting], "moves are not exact, so only draws of the prior count".to_owned()));
+            let why = "moves are not exact, so only draws of the prior count";
+            return Ok(Some((vec![Method::Counting], why.to_owned())));
         }
         let pilot = match count(&self.scene, Parts::NONE, asking.seed, 0, asking.draws, pulse) {
-            // Nothing more is made then.
-            Err(ChanceError::Stopped) => return Ok((vec![Method::Counting], "stopped".to_owned())),
+            Err(ChanceError::Stopped) => return Ok(None),
             pilot => pilot.map_err(|error| Error::Sampling(error.to_string()))?,
         };
         let (hits, draws) = (pilot.hits.first().copied().unwrap_or(0), pilot.draws);
         let seen = format!("{hits} of the first {draws} draws of the prior reach it");
         if hits >= ENOUGH {
-            return Ok((vec![Method::Counting], format!("{seen}: counting is enough")));
+            return Ok(Some((vec![Method::Counting], format!("{seen}: counting is enough"))));
         }
         let all = vec![Method::Counting, Method::Splitting, Method::Stones];
-        Ok((all, format!("{seen}: too few to count alone")))
+        Ok(Some((all, format!("{seen}: too few to count alone"))))
     }
 
     /// Names of what is demanded, where it is more than one thing.

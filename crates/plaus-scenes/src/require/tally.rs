@@ -42,12 +42,17 @@ impl Tally {
         Self { states: 0, all: 0, clauses, both: vec![0; pairs] }
     }
 
-    /// What draws from a scene's prior come to: so many of those that the prior allows, by streams of `seed`. `tell` is
-    /// told how many are done.
+    /// What draws from a scene's prior come to: so many of those that the prior allows, by streams of `seed`. `go_on` is
+    /// told how many are done, and says whether there are to be more.
     ///
     /// # Errors
     /// [`ModelError`] where a simulation fails.
-    pub fn of_prior<S: Scene>(scene: &S, seed: u64, draws: u64, mut tell: impl FnMut(u64)) -> Result<Self, ModelError> {
+    pub fn of_prior<S: Scene>(
+        scene: &S,
+        seed: u64,
+        draws: u64,
+        mut go_on: impl FnMut(u64) -> bool,
+    ) -> Result<Self, ModelError> {
         let mut tally = Self::new(scene.asked());
         let (streams, mut scratch) = (Seed(seed).chain(0), S::Scratch::default());
         for nth in 0..draws {
@@ -60,7 +65,9 @@ impl Tally {
                     break;
                 }
             }
-            tell(nth + 1);
+            if !go_on(nth + 1) {
+                break;
+            }
         }
         Ok(tally)
     }

@@ -8,6 +8,7 @@
 //! | `pieces/3` | a piece: a run of its own |
 //! | `logs/` | what the tasks printed |
 //! | `run` | the whole run, once it is merged |
+//! | `chance.json` | instead, where batches of `plaus chance` are the pieces: all of them, merged |
 
 use crate::commands::shards::PLACE;
 use crate::failure::Failure;
@@ -39,11 +40,15 @@ pub(crate) struct Description {
     pub(super) plaus: String,
     pub(super) engine: Engine,
     pub(super) pieces: u32,
-    pub(super) chains: u32,
+    /// What is cut into pieces: so many chains, or batches.
+    pub(super) total: u32,
     /// Name of the scenario file in the job's folder `scenario`.
     pub(super) scenario: String,
     pub(super) overrides: Vec<String>,
     pub(super) solutions: Option<u64>,
+    /// Flags of `plaus chance`, where that is what is asked; not there where it is a run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) chance: Option<Vec<String>>,
     /// Threads of each piece.
     pub(super) threads: usize,
     /// The program, where it lies on all machines.
@@ -73,7 +78,7 @@ impl Job {
     /// Makes the folder of a job, and writes what does not depend on the engine.
     pub(super) fn create(path: &Path, recipe: &Recipe, what: Description) -> Result<Self, Failure> {
         Shard::new(1, what.pieces)
-            .and_then(|first| first.range(what.chains))
+            .and_then(|first| first.range(what.total))
             .map_err(|error| Failure::Message(format!("--shards {}: {error}", what.pieces)))?;
         text_of(path)?;
         let job = Self { path: std::path::absolute(path).map_err(|error| refuse(path, &error))?, what };
@@ -117,14 +122,24 @@ impl Job {
         &self.path
     }
 
-    /// The folder of the whole run.
-    pub(crate) fn merged(&self) -> Folder {
-        Folder::new(self.path.join("run"))
+    /// Whether its pieces are batches of `plaus chance`, each in a file.
+    pub(crate) fn is_chance(&self) -> bool {
+        self.what.chance.is_some()
     }
 
-    /// The folder of a piece.
+    /// Where all pieces are merged into: the folder of a run, or the file of a chance.
+    pub(crate) fn merged(&self) -> PathBuf {
+        self.path.join(if self.is_chance() { "chance.json" } else { "run" })
+    }
+
+    /// The folder of a piece of a run.
     pub(crate) fn piece(&self, shard: Shard) -> Folder {
         Folder::new(self.path.join("pieces").join(shard.piece().to_string()))
+    }
+
+    /// The file of a piece of a chance.
+    pub(crate) fn batches(&self, shard: Shard) -> PathBuf {
+        self.path.join("pieces").join(format!("{}.json", shard.piece()))
     }
 
     /// Its pieces.
@@ -141,20 +156,24 @@ impl Job {
 
     /// The command of a piece, one argument each; `piece` is its number, or what stands for it.
     pub(super) fn piece_command(&self, piece: &str) -> Result<Vec<String>, Failure> {
-        let Description { pieces, scenario, overrides, solutions, threads, program, .. } = &self.what;
+        let Description { pieces, scenario, overrides, solutions, chance, threads, program, .. } = &self.what;
         let scenario = text_of(&self.path.join("scenario").join(scenario))?;
-        let out = text_of(&self.path.join("pieces").join(PLACE))?;
-        let mut words = vec![program.clone(), "sample".to_owned(), scenario];
+        let (verb, end) = if chance.is_some() { ("chance", ".json") } else { ("sample", "") };
+        let out = text_of(&self.path.join("pieces").join(format!("{PLACE}{end}")))?;
+        let mut words = vec![program.clone(), verb.to_owned(), scenario];
         words.extend(overrides.iter().map(|set| format!("--set={set}")));
         words.extend(solutions.map(|wanted| format!("--solutions={wanted}")));
-        words.extend([format!("--shard={piece}/{pieces}"), format!("--out={out}"), "--continue".to_owned()]);
+        words.extend(chance.iter().flatten().cloned());
+        words.extend([format!("--shard={piece}/{pieces}"), format!("--out={out}")]);
+        // A chance goes on with what is there anyway.
+        words.extend(chance.is_none().then(|| "--continue".to_owned()));
         words.extend([format!("--threads={threads}"), "--quiet".to_owned()]);
         Ok(words)
     }
 
     /// The command that makes the whole of the pieces, one argument each.
     pub(super) fn merge_command(&self) -> Result<Vec<String>, Failure> {
-        let (pieces, out) = (text_of(&self.path.join("pieces"))?, text_of(self.merged().path())?);
+        let (pieces, out) = (text_of(&self.path.join("pieces"))?, text_of(&self.merged())?);
         Ok(vec![self.what.program.clone(), "merge".to_owned(), pieces, format!("--out={out}"), "--quiet".to_owned()])
     }
 }

@@ -100,6 +100,7 @@ fn finish(job: &Job, mut failed: Vec<u32>) -> Result<Outcome, Failure> {
     if !merged.success() {
         return Err(Failure::Message("the pieces could not be merged, see above".to_owned()));
     }
-    console::note_line(&format!("done: plaus diagnose {}", in_shell(&[job.merged().path().display().to_string()])));
+    let look = if job.is_chance() { "chance" } else { "diagnose" };
+    console::note_line(&format!("done: plaus {look} {}", in_shell(&[job.merged().display().to_string()])));
     Ok(Outcome::Done)
 }

@@ -7,11 +7,13 @@ mod local;
 pub(crate) use job::Job;
 use job::{Description, Engine};
 
+use super::asking::How;
 use super::status::{self, Standing};
 use super::wanted::Wanted;
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use engines::in_shell;
+use plaus_run::chance::Asking;
 use plaus_run::manifest::VERSION;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -25,7 +27,7 @@ pub(crate) struct Args {
     /// Engine that runs the pieces
     #[arg(long, value_name = "ENGINE", required_unless_present = "again")]
     to: Option<Engine>,
-    /// Pieces to cut the run into: at most as many as it has chains
+    /// Pieces to cut the run into: at most as many as it has chains, or a chance has batches
     #[arg(long, value_name = "N", required_unless_present = "again", value_parser = clap::value_parser!(u32).range(1..))]
     shards: Option<u32>,
     /// Folder to make for the job, on a disk that all machines share; must not exist
@@ -34,6 +36,10 @@ pub(crate) struct Args {
     /// Submit those pieces of a job that are not finished and not at work: they go on from their checkpoints
     #[arg(long, value_name = "JOB", conflicts_with_all = ["scenario", "to", "shards", "out", "program"])]
     again: Option<PathBuf>,
+    /// Estimate how likely what is demanded is, as `plaus chance` does, instead of sampling; `--iterations` are those of
+    /// a rung then
+    #[arg(long, conflicts_with = "again")]
+    chance: bool,
     /// Submit the job. Without this, it is only written and shown
     #[arg(long)]
     go: bool,
@@ -46,6 +52,8 @@ pub(crate) struct Args {
     /// What the engine's own command is given besides, e.g. `-- --partition=long --time=24:00:00`
     #[arg(last = true, value_name = "OPTIONS")]
     options: Vec<String>,
+    #[command(flatten, next_help_heading = "With --chance")]
+    how: How,
 }
 
 impl Args {
@@ -62,8 +70,8 @@ impl Args {
             .filter(|(_, standing)| !matches!(standing.standing, Standing::Done | Standing::Running))
             .map(|(shard, _)| shard.piece())
             .collect();
-        if job.merged().path().exists() {
-            console::note_line(&format!("this job is done: {}", job.merged().path().display()));
+        if job.merged().exists() {
+            console::note_line(&format!("this job is done: {}", job.merged().display()));
             return Ok(Outcome::Done);
         }
         let commands = engines::write(&job, &wanted)?;
@@ -89,19 +97,32 @@ impl Args {
             let out = out.display();
             return Err(Failure::Message(format!("{out}: HyperQueue replaces `%{{…}}` in names; choose another")));
         }
-        let recipe = wanted.recipe()?;
         let program = match self.program {
             Some(program) => program,
             None => this_program()?,
+        };
+        let (recipe, total, chance) = if self.chance {
+            let (recipe, iterations) = wanted.of_chance()?;
+            let asking = self.how.asking(Asking::new(recipe.plan().seed), iterations);
+            let mut words = self.how.words();
+            words.extend(iterations.map(|iterations| format!("--iterations={iterations}")));
+            (recipe, asking.batches, Some(words))
+        } else if let Some(word) = self.how.words().first() {
+            return Err(Failure::Message(format!("{word} goes with --chance")));
+        } else {
+            let recipe = wanted.recipe()?;
+            let chains = recipe.scenario.sampler.chains;
+            (recipe, chains, None)
         };
         let what = Description {
             plaus: VERSION.to_owned(),
             engine,
             pieces,
-            chains: recipe.scenario.sampler.chains,
+            total,
             scenario: recipe.file.clone(),
             overrides: recipe.overrides.clone(),
             solutions: recipe.solutions,
+            chance,
             threads: usize::from(self.threads),
             program: job::text_of(&program)?,
             options: self.options,

@@ -1,0 +1,87 @@
+//! How a chance is asked for: what `plaus chance` and `plaus submit --chance` share, so that they mean the same.
+
+use plaus_mcmc::chance::Method;
+use plaus_run::chance::Asking;
+
+/// Methods, and how much work each makes.
+#[derive(Debug, Clone, PartialEq, Eq, Default, clap::Args)]
+pub(crate) struct How {
+    /// Use this method; may be given several times. Unless given: counting, and all three where few draws hit
+    #[arg(long, value_name = "METHOD", value_enum)]
+    method: Vec<Way>,
+    /// Batches of each method: independent of each other, each as much work. Four times as many halve the error
+    #[arg(long, value_name = "B", value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    batches: Option<u32>,
+    /// Draws of the prior that a batch counts
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    draws: Option<u64>,
+    /// Particles of a batch of splitting
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
+    particles: Option<u32>,
+    /// Steps that a copied particle makes
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    steps: Option<u64>,
+    /// Rungs of a batch of stepping stones
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=256))]
+    rungs: Option<u32>,
+}
+
+/// A method, as the command line calls it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Way {
+    /// Draws of the prior, counted
+    Counting,
+    /// Particles that climb the constraint
+    Splitting,
+    /// Chains on a ladder between prior and target
+    Stones,
+}
+
+impl From<Way> for Method {
+    fn from(way: Way) -> Self {
+        match way {
+            Way::Counting => Self::Counting,
+            Way::Splitting => Self::Splitting,
+            Way::Stones => Self::Stones,
+        }
+    }
+}
+
+impl How {
+    /// Methods that are asked for; none: those that fit.
+    pub(super) fn methods(&self) -> Vec<Method> {
+        self.method.iter().copied().map(Method::from).collect()
+    }
+
+    /// What is asked, where `asking` is what would be asked unless somebody said otherwise; `iterations` is of each
+    /// rung.
+    pub(super) fn asking(&self, mut asking: Asking, iterations: Option<u64>) -> Asking {
+        let Asking { batches, draws, splitting, stones, .. } = &mut asking;
+        *batches = self.batches.unwrap_or(*batches);
+        *draws = self.draws.unwrap_or(*draws);
+        splitting.particles = self.particles.unwrap_or(splitting.particles);
+        splitting.steps = self.steps.unwrap_or(splitting.steps);
+        stones.rungs = self.rungs.unwrap_or(stones.rungs);
+        stones.iterations = iterations.unwrap_or(stones.iterations);
+        stones.warmup = stones.iterations / 4;
+        asking
+    }
+
+    /// The flags that say the same, one word each.
+    pub(super) fn words(&self) -> Vec<String> {
+        let Self { method, batches, draws, particles, steps, rungs } = self;
+        let named = |way: &Way| {
+            let name = clap::ValueEnum::to_possible_value(way).map(|value| value.get_name().to_owned());
+            format!("--method={}", name.unwrap_or_default())
+        };
+        let numbers = [
+            ("batches", batches.map(u64::from)),
+            ("draws", *draws),
+            ("particles", particles.map(u64::from)),
+            ("steps", *steps),
+            ("rungs", rungs.map(u64::from)),
+        ];
+        let numbers = numbers.into_iter().filter_map(|(name, number)| Some(format!("--{name}={}", number?)));
+        method.iter().map(named).chain(numbers).collect()
+    }
+}

@@ -1,0 +1,102 @@
+//! How likely what is demanded is, in words and as JSON.
+
+use crate::table::{grouped, lay_out, percent, short};
+use plaus_mcmc::chance::{Estimate, Method};
+use plaus_run::chance::{Answer, Chance, answers};
+use serde_json::{Value, json};
+
+/// What `plaus chance --json` prints.
+#[must_use]
+pub fn to_json(chance: &Chance) -> Value {
+    let (done, due) = chance.done();
+    json!({
+        "scene": chance.scene,
+        "scenario": chance.scenario.file,
+        "scenario_hash": chance.scenario.hash,
+        "asking": chance.asking,
+        "methods": chance.methods,
+        "why": chance.why,
+        "batches_done": done,
+        "batches_due": due,
+        "answers": answers(chance),
+    })
+}
+
+fn name(method: Method) -> &'static str {
+    match method {
+        Method::Counting => "counting",
+        Method::Splitting => "splitting",
+        Method::Stones => "stones",
+    }
+}
+
+/// As `plaus chance` prints it.
+#[must_use]
+pub fn in_words(chance: &Chance) -> String {
+    let answers = answers(chance);
+    let Some((all, parts)) = answers.split_first() else { return String::new() };
+    let mut text =
+        format!("{} ({}): how likely is what is demanded, before anything is?\n", chance.scene, chance.scenario.file);
+    text += &format!("{}\n\n", chance.why);
+    let mut rows = vec![["method", "probability", "error", "from", "to", "simulations"].map(str::to_owned).to_vec()];
+    rows.extend(all.estimates.iter().map(|one| row(format!("  {}", name(one.method)), one)));
+    text += &lay_out(&rows);
+    text += &verdict(all);
+    if !parts.is_empty() {
+        let mut rows = vec![["part", "probability", "error", "from", "to", "by"].map(str::to_owned).to_vec()];
+        for part in parts {
+            let Some(best) = &part.best else { continue };
+            let mut cells = row(format!("  {}", part.name), best);
+            cells.pop();
+            let doubt = if part.disagreements.is_empty() { "" } else { ", not agreed" };
+            cells.push(format!("{}{doubt}", name(best.method)));
+            rows.push(cells);
+        }
+        text += &format!("\n{}", lay_out(&rows));
+    }
+    text
+}
+
+fn row(name: String, one: &Estimate) -> Vec<String> {
+    let [from, to] = one.interval;
+    let numbers = [one.probability, one.error, from, to].map(short);
+    std::iter::once(name).chain(numbers).chain([grouped(one.simulations)]).collect()
+}
+
+/// The answer in a sentence.
+fn verdict(all: &Answer) -> String {
+    let Some(best) = all.best.filter(|best| best.probability > 0.0) else {
+        let most = all.estimates.first().map(|one| one.interval[1]);
+        let most = most.map(|most| format!(": less often than {}, if by counting", short(most))).unwrap_or_default();
+        return format!("\nnothing reached it{most}\n");
+    };
+    let once =
+        if best.probability < 0.5 { format!(", once in {}", often(1.0 / best.probability)) } else { String::new() };
+    let mut text = if all.disagreements.is_empty() {
+        let error =
+            if best.error > 0.0 { percent(best.error / best.probability) } else { "an unknown error".to_owned() };
+        let agreed = if all.estimates.len() > 1 { "; the methods agree" } else { "" };
+        format!("\n{}{once}, give or take {error}{agreed}\n", short(best.probability))
+    } else {
+        format!("\nat least about {}{once}: the methods do not agree\n", short(best.interval[0]))
+    };
+    for one in &all.disagreements {
+        let factor = one.factor.map_or("something where the other finds nothing".to_owned(), |factor| {
+            format!("{} times as much", short(factor))
+        });
+        let (more, less) = (name(one.more), name(one.less));
+        text += &format!(
+            "  {more} finds {factor} as {less}: a way to the goal was missed, or it was not looked long enough; more \
+             --batches tell\n"
+        );
+    }
+    for &method in &all.lopsided {
+        text += &format!("  more than half of what {} says rests on one batch: take more --batches\n", name(method));
+    }
+    text
+}
+
+/// A large number that is only known roughly.
+fn often(times: f64) -> String {
+    if times < 1e6 { grouped(times.round() as u64) } else { format!("{times:.1e}") }
+}
