@@ -3,6 +3,7 @@
 //! The package itself, with its documentation, is in `python/plaus`.
 
 mod arrays;
+mod chance;
 mod clock;
 mod errors;
 mod motion;
@@ -13,6 +14,7 @@ mod sampling;
 mod scenario;
 mod sim;
 mod target;
+mod wait;
 
 use pyo3::prelude::*;
 
@@ -23,6 +25,8 @@ mod _plaus {
     use pyo3::exceptions::PyValueError;
     use std::ffi::OsString;
 
+    #[pymodule_export]
+    use crate::chance::{chance, read_chance};
     #[pymodule_export]
     use crate::errors::{Problem, RunError, ScenarioError, WorldError};
     #[pymodule_export]

@@ -1,23 +1,17 @@
-//! Sampling in threads of its own, while Python waits without its lock, looks at how far it is, and can stop it.
+//! Sampling: what is known of a run while it goes on, and where it is kept.
 
 use crate::clock::now;
-use crate::errors::{RunError, of_run};
 use crate::requirement::{Asked, ByPython};
 use crate::scenario::Scenario;
+use crate::wait::{Wait, Watched};
 use plaus_mcmc::{Control, Ending, Plan, Progress, Pulse};
 use plaus_run::disk::{Disk, RealDisk};
 use plaus_run::{Folder, Manifest, More, Recipe, Sampling, Watch};
-use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
-use std::{io, panic, thread};
-
-/// How often it is looked whether there is a reason to stop.
-const TICK: Duration = Duration::from_millis(50);
 
 /// What is known of a run while it goes on.
 #[derive(Default)]
@@ -126,91 +120,23 @@ impl Job {
     }
 }
 
-/// What came of a job: none where its thread panicked.
-type Done = Option<Result<Ending, plaus_run::Error>>;
-
-/// Why a run ended before its plan said.
-#[derive(Default)]
-struct Stop {
-    why: Option<&'static str>,
-    raised: Option<PyErr>,
-}
-
-impl Stop {
-    fn because(&mut self, why: &'static str, pulse: &Pulse) {
-        self.why.get_or_insert(why);
-        pulse.stop();
-    }
-}
-
-/// Waits for a job, looking now and then whether it is to stop.
-struct Wait<'py> {
-    py: Python<'py>,
-    board: Arc<Board>,
-    max_time: Option<f64>,
-    poll: Option<Bound<'py, PyAny>>,
-    interval: f64,
-}
-
-impl Wait<'_> {
-    fn over(&self, done: Receiver<Done>) -> PyResult<(Ending, Stop, f64)> {
-        let done = Mutex::new(done);
-        let (mut stop, begun, mut shown) = (Stop::default(), now(), f64::NEG_INFINITY);
-        loop {
-            let wait = || done.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(TICK);
-            match self.py.detach(wait) {
-                Ok(Some(Ok(ending))) => return Ok((ending, stop, now() - begun)),
-                Ok(Some(Err(error))) => return Err(stop.raised.unwrap_or_else(|| of_run(self.py, &error))),
-                Ok(None) | Err(RecvTimeoutError::Disconnected) => {
-                    let message = "plaus panicked while sampling: a bug of plaus; its message is on the standard error";
-                    return Err(RunError::new_err(message));
-                }
-                Err(RecvTimeoutError::Timeout) => {}
-            }
-            if let Err(error) = self.py.check_signals() {
-                // The first asks for an end at the last round; the second does not wait for it.
-                if stop.why == Some("interrupted") || !error.is_instance_of::<PyKeyboardInterrupt>(self.py) {
-                    self.board.pulse.stop();
-                    return Err(error);
-                }
-                stop.because("interrupted", &self.board.pulse);
-            }
-            if self.max_time.is_some_and(|most| now() - begun >= most) {
-                stop.because("out_of_time", &self.board.pulse);
-            }
-            if stop.why.is_none() && now() - shown >= self.interval {
-                shown = now();
-                self.show(now() - begun, &mut stop);
-            }
-        }
+impl Watched for Board {
+    fn stop(&self) {
+        self.pulse.stop();
     }
 
-    fn show(&self, seconds: f64, stop: &mut Stop) {
-        let Some(poll) = &self.poll else { return };
-        let plan = *self.board.plan.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some((plan, before)) = plan else { return };
-        let chains = self.board.pulse.chains();
-        let ask = || -> PyResult<bool> {
-            let state = PyDict::new(self.py);
-            state.set_item("seconds", seconds)?;
-            state.set_item("warmup", plan.warmup)?;
-            state.set_item("iterations_planned", plan.end())?;
-            state.set_item("iterations_before", before)?;
-            state.set_item("solutions_wanted", plan.solutions)?;
-            state.set_item("distinct", self.board.pulse.distinct())?;
-            state.set_item("iterations", chains.iter().map(|chain| chain.iterations).collect::<Vec<_>>())?;
-            state.set_item("satisfied", chains.iter().map(|chain| chain.hits).collect::<Vec<_>>())?;
-            let answer = poll.call1((state,))?;
-            Ok(answer.is_none() || answer.is_truthy()?)
-        };
-        match ask() {
-            Ok(true) => {}
-            Ok(false) => stop.because("callback", &self.board.pulse),
-            Err(error) => {
-                stop.because("callback", &self.board.pulse);
-                stop.raised = Some(error);
-            }
-        }
+    fn tell(&self, state: &Bound<'_, PyDict>) -> PyResult<bool> {
+        let plan = *self.plan.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some((plan, before)) = plan else { return Ok(false) };
+        let chains = self.pulse.chains();
+        state.set_item("warmup", plan.warmup)?;
+        state.set_item("iterations_planned", plan.end())?;
+        state.set_item("iterations_before", before)?;
+        state.set_item("solutions_wanted", plan.solutions)?;
+        state.set_item("distinct", self.pulse.distinct())?;
+        state.set_item("iterations", chains.iter().map(|chain| chain.iterations).collect::<Vec<_>>())?;
+        state.set_item("satisfied", chains.iter().map(|chain| chain.hits).collect::<Vec<_>>())?;
+        Ok(true)
     }
 }
 
@@ -240,23 +166,11 @@ pub(crate) fn sample<'py>(
     let board = Arc::new(Board::default());
     let by = asked.map(|asked| ByPython { asked: Arc::new(asked), others: others.map(Arc::new) });
     let job = Job { task, folder: Folder::new(folder), threads, fleeting, by, board: Arc::clone(&board) };
-    let (tell, done) = sync_channel::<Done>(1);
-    let work = move || {
-        let made = panic::catch_unwind(panic::AssertUnwindSafe(|| job.run())).ok();
-        // Nobody listens any more where a second Ctrl-C came.
-        let _ = tell.send(made);
-    };
-    let spawned = thread::Builder::new().name("plaus".to_owned()).spawn(work);
-    spawned.map_err(|error| RunError::new_err(format!("cannot start a thread: {error}")))?;
-    let wait = Wait { py, board, max_time, poll, interval };
-    let (ending, stop, seconds) = wait.over(done)?;
-    if let Some(error) = stop.raised {
-        return Err(error);
-    }
-    let ending = match (ending, stop.why) {
+    let over = Wait { py, max_time, poll, interval }.over(&*board, move || job.run())?;
+    let ending = match (over.made, over.why) {
         (Ending::Complete, _) => "complete",
         (Ending::EnoughSolutions, _) => "enough_solutions",
         (Ending::Stopped, why) => why.unwrap_or("stopped"),
     };
-    Ok((ending, seconds))
+    Ok((ending, over.seconds))
 }

@@ -1,12 +1,18 @@
 //! Scenarios: from a file, a text or a dictionary.
 
 use crate::errors::{ScenarioError, of_scenario};
+use crate::wait::{Wait, Watched};
+use plaus_mcmc::ModelError;
 use plaus_run::Recipe;
+use plaus_scenes::require::Tally;
 use plaus_scenes::scenario::ScenarioError as Wrong;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use plaus_scenes::{Scene, Visitor};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use toml::{Table, Value};
 
 /// Longest scenario that is read, in bytes.
@@ -37,6 +43,45 @@ impl Scenario {
         let Recipe { file, text, overrides, .. } = &self.recipe;
         let all = overrides.iter().cloned().chain(more).collect();
         Self::read(py, self.shown.clone(), file.clone(), text.clone(), all)
+    }
+}
+
+impl Scenario {
+    /// What so many draws from the prior meet; Ctrl-C ends it.
+    fn drawn(&self, py: Python<'_>, draws: u64) -> PyResult<Tally> {
+        struct OfPrior {
+            draws: u64,
+            seed: u64,
+            stopped: Arc<AtomicBool>,
+        }
+        impl Visitor for OfPrior {
+            type Output = Result<Tally, ModelError>;
+            fn visit<S: Scene>(self, scene: S) -> Self::Output {
+                Tally::of_prior(&scene, self.seed, self.draws, |_| !self.stopped.load(Relaxed))
+            }
+        }
+        let stopped = Arc::new(AtomicBool::new(false));
+        let (seed, scenario) = (self.recipe.scenario.sampler.seed, self.recipe.scenario.clone());
+        let visitor = OfPrior { draws, seed, stopped: Arc::clone(&stopped) };
+        let job = move || Ok(scenario.visit(visitor)??);
+        let over = Wait { py, max_time: None, poll: None, interval: f64::INFINITY }.over(&Stopped(stopped), job)?;
+        match over.why {
+            Some(_) => Err(PyKeyboardInterrupt::new_err(())),
+            None => Ok(over.made),
+        }
+    }
+}
+
+/// Work that looks at a flag.
+struct Stopped(Arc<AtomicBool>);
+
+impl Watched for Stopped {
+    fn stop(&self) {
+        self.0.store(true, Relaxed);
+    }
+
+    fn tell(&self, _: &Bound<'_, PyDict>) -> PyResult<bool> {
+        Ok(false)
     }
 }
 
@@ -99,9 +144,21 @@ impl Scenario {
 
     /// Every key with the value in force, defaults too, as nested dictionaries. What is wrong was raised when the
     /// scenario was made.
-    fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let tables: Table = self.toml().parse().map_err(|error| PyValueError::new_err(format!("{error}")))?;
-        to_python(py, &Value::Table(tables))
+    ///
+    /// With `draws`: so many animations are drawn from the prior, and what comes back is how many of them met each
+    /// thing that is asked, the best margin of each, and pairs that were never met together: what `plaus check
+    /// --draws N --json` prints.
+    #[pyo3(signature = (*, draws = None))]
+    fn check<'py>(&self, py: Python<'py>, draws: Option<u64>) -> PyResult<Bound<'py, PyAny>> {
+        let Some(draws) = draws else {
+            let tables: Table = self.toml().parse().map_err(|error| PyValueError::new_err(format!("{error}")))?;
+            return to_python(py, &Value::Table(tables));
+        };
+        if draws == 0 {
+            return Err(PyValueError::new_err("draws is 0, but must be at least 1"));
+        }
+        let tally = self.drawn(py, draws)?;
+        py.import("json")?.call_method1("loads", (plaus_cli::tally_to_json(&tally).to_string(),))
     }
 
     /// Every key with the value in force, as the text of a scenario file.

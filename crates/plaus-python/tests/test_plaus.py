@@ -319,16 +319,20 @@ def test_what_a_callback_raises_is_raised():
         short(iterations=10_000_000, callback=broken)
 
 
-def ctrl_c_once_there_are_draws():
+def ctrl_c_once(is_far):
     """A callback that has the process interrupted, a little after it was called: not while it runs."""
     sent = []
 
     def callback(progress):
-        if not sent and min(progress.iterations, default=0) > 3000:
+        if not sent and is_far(progress):
             sent.append(threading.Timer(0.05, lambda: os.kill(os.getpid(), signal.SIGINT)))
             sent[0].start()
 
     return callback
+
+
+def ctrl_c_once_there_are_draws():
+    return ctrl_c_once(lambda progress: min(progress.iterations, default=0) > 3000)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
@@ -395,6 +399,129 @@ def test_a_fork_in_the_middle(run):
     made = short(iterations=10_000_000, max_time=2.0, callback=fork)
     assert os.waitstatus_to_exitcode(os.waitpid(child[0], 0)[1]) == 0
     assert made.ending == "out_of_time" and os.path.isdir(made.path) and os.path.isdir(run.path)
+
+
+# --- chances
+
+# What few balls do, in little work.
+RARE = ["collisions=1", "sigma_theta_deg=3", "target=4.2", "sigma_d=0.1", "tolerance=0.1", "downward=reject"]
+
+
+def rare(**how):
+    """A chance of a second or less."""
+    little = {"batches": 4, "draws": 50, "particles": 20, "steps": 5, "rungs": 4, "iterations": 100}
+    return plaus.chance(SCENARIOS / "ball2d.toml", **{"set": RARE, "progress": False, **little, **how})
+
+
+def test_a_chance_is_what_the_command_says(tmp_path):
+    made = rare(out=tmp_path / "a.json", threads=1)
+    little = "--batches=4 --draws=50 --particles=20 --steps=5 --rungs=4 --iterations=100 --json".split()
+    words = ["chance", SCENARIOS / "ball2d.toml", *(f"--set={key}" for key in RARE), *little, "--out", tmp_path / "b.json"]
+    said = subprocess.run([*COMMAND, *words], check=False, capture_output=True, text=True)
+    assert said.returncode in (0, 1), said.stderr
+    assert json.loads(said.stdout) == made.facts
+    assert filecmp.cmp(tmp_path / "a.json", tmp_path / "b.json", shallow=False)
+    shown = subprocess.run([*COMMAND, "chance", tmp_path / "a.json"], check=False, capture_output=True, text=True)
+    assert shown.stdout == str(made) and "splitting" in str(made)
+    assert made.methods == ["counting", "splitting", "stones"] and made.batches == (12, 12)
+    assert (made.ending, made.path) == ("complete", str(tmp_path / "a.json")) and made.seconds > 0
+    again = plaus.Chance.open(tmp_path / "a.json")
+    assert again.facts == made.facts and again.ending is None and again.scenario.scene == "ball2d"
+    best = made.best
+    assert best in made.estimates and made.probability == best.probability and made.error == best.error
+    assert made.interval == best.interval and best.interval[0] <= best.probability <= best.interval[1]
+
+
+def test_a_chance_is_that_of_plain_draws():
+    made = plaus.chance(
+        {"world": {"ball2d": {"collisions": 1, "target": 0.0, "tolerance": 0.5}}},
+        set=["downward=reject"],
+        methods="counting",
+        batches=8,
+        draws=4000,
+        progress=False,
+    )
+    assert made.methods == ["counting"] and made.why == "as asked for"
+    # The share of plain draws that `check` finds is the same probability, by other draws.
+    plain = made.scenario.check(draws=20_000)
+    assert set(plain) == {"states", "all", "clauses", "never_together"} and plain["states"] == 20_000
+    p = plain["all"] / plain["states"]
+    assert 0.05 < p < 0.95 and abs(made.probability - p) < 5 * math.hypot(made.error, math.sqrt(p * (1 - p) / 20_000))
+
+
+def test_requirements_of_a_scenario_are_counted_one_by_one():
+    text = "[world.ball2d]\ntarget = 0\ntolerance = 0.5\n[[require]]\nimpact = { when = { at_s = 2.0, within_ms = 100 } }\n"
+    scenario = plaus.Scenario.from_text(text)
+    found = scenario.check(draws=500)
+    assert len(found["clauses"]) == 2 and all(0 <= clause["met"] <= 500 for clause in found["clauses"])
+    assert found["all"] <= min(clause["met"] for clause in found["clauses"])
+    made = plaus.chance(scenario, methods=["counting"], batches=2, draws=250, progress=False)
+    assert [part.name for part in made.parts] == [clause["asked"] for clause in found["clauses"]]
+    assert all(part.probability >= made.probability for part in made.parts)
+    for wrong, error in [(0, ValueError), (-1, OverflowError), (1.5, TypeError)]:
+        with pytest.raises(error):
+            scenario.check(draws=wrong)
+
+
+def test_a_chance_that_was_cut_short_goes_on(tmp_path):
+    seen = []
+    how = {"batches": 40, "iterations": 10_000, "progress": False}
+    enough = lambda far: seen.append(far) or far.batches < 3
+    cut = rare(out=tmp_path / "cut.json", callback=enough, threads=1, **how)
+    assert cut.ending == "callback" and 3 <= cut.batches[0] < 120, cut
+    assert seen[-1].batches >= 3 and seen[-1].batches_planned == 120 and "simulations/s" in str(seen[-1])
+    late = rare(out=tmp_path / "cut.json", max_time=1e-9, **how)
+    assert late.ending == "out_of_time" and late.batches[0] >= cut.batches[0]
+    done = rare(out=tmp_path / "cut.json", **how)
+    rare(out=tmp_path / "whole.json", **how)
+    assert done.ending == "complete" and filecmp.cmp(tmp_path / "cut.json", tmp_path / "whole.json", shallow=False)
+    nothing = rare(draws=10**9, max_time=0.01)
+    assert nothing.best is None and math.isnan(nothing.probability) and nothing.interval == (0.0, 1.0), nothing
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of another kind")
+def test_ctrl_c_gives_what_batches_say(tmp_path):
+    made = rare(batches=100_000, out=tmp_path / "a.json", callback=ctrl_c_once(lambda far: far.batches > 2))
+    assert made.ending == "interrupted" and 2 < made.batches[0] < 100_000
+    assert plaus.Chance.open(tmp_path / "a.json").batches == made.batches
+    with pytest.raises(KeyboardInterrupt):
+        threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        plaus.Scenario.default("bowling").check(draws=10**9)
+
+
+def test_chances_that_cannot_be_asked_are_refused(tmp_path):
+    for how, error in [
+        ({"batches": 1}, ValueError),
+        ({"particles": 10**9}, ValueError),
+        ({"rungs": 1.5}, TypeError),
+        ({"draws": 0}, ValueError),
+        ({"seed": -1}, ValueError),
+        ({"methods": ["luck"]}, ValueError),
+        ({"methods": [1]}, TypeError),
+        ({"max_time": math.nan}, ValueError),
+        ({"callback": 3}, TypeError),
+        ({"set": "traget=1"}, plaus.ScenarioError),
+        ({"set": [*RARE, "preset=as-printed"], "methods": ["stones"]}, plaus.RunError),
+    ]:
+        with pytest.raises(error):
+            rare(**how)
+    rare(out=tmp_path / "a.json", methods=["counting"])
+    before = (tmp_path / "a.json").read_bytes()
+    for other in ({"seed": 8}, {"methods": ["splitting"]}, {"draws": 60}):
+        with pytest.raises(plaus.RunError, match="a.json: holds another run"):
+            rare(**{"out": tmp_path / "a.json", "methods": ["counting"], **other})
+    assert (tmp_path / "a.json").read_bytes() == before
+    (tmp_path / "a.json").write_bytes(before.replace(b'"hits"', b'"hitz"'))
+    with pytest.raises(plaus.RunError, match="is no file that"):
+        plaus.Chance.open(tmp_path / "a.json")
+    with pytest.raises(FileNotFoundError):
+        plaus.Chance.open(tmp_path / "none.json")
+
+    def wrong(far):
+        raise ValueError("of the callback")
+
+    with pytest.raises(ValueError, match="of the callback"):
+        rare(callback=wrong, batches=1000)
 
 
 # --- requirements

@@ -7,7 +7,8 @@
 
 A `Scenario` says what must happen; `sample` draws animations from the distribution of all that fit, by Markov chain
 Monte Carlo, and gives a `Run`: its draws as arrays, its solutions, their motion and impacts, a page that plays them.
-A `Requirement` asks for what no scenario file can say, by a function of yours. `plaus.sim` is the simulator alone.
+`chance` says how likely that is before it is demanded. A `Requirement` asks for what no scenario file can say, by a
+function of yours. `plaus.sim` is the simulator alone.
 
 Lengths are metres, times seconds, angles radians unless a name says otherwise (`offset_mm`); y points up in motions.
 """
@@ -23,6 +24,7 @@ from plaus._plaus import (
     WorldError,
     __version__,
 )
+from plaus._chance import Answer, Chance, ChanceProgress, Disagreement, Estimate, chance
 from plaus._motion import Events, Poses, Replay
 from plaus._requirement import Requirement
 from plaus._run import Gallery, Run, Sample, Solution, Table
@@ -30,7 +32,12 @@ from plaus._sampling import Progress, resume, sample
 from plaus._target import Move, Target, TargetRun, check_moves, sample_target
 
 __all__ = [
+    "Answer",
+    "Chance",
+    "ChanceProgress",
     "CheckReport",
+    "Disagreement",
+    "Estimate",
     "Events",
     "Gallery",
     "Move",
@@ -52,6 +59,7 @@ __all__ = [
     "TargetRun",
     "WorldError",
     "__version__",
+    "chance",
     "check_moves",
     "resume",
     "sample",

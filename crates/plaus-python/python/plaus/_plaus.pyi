@@ -69,9 +69,13 @@ class Scenario:
     def set(self, *overrides: str, **keys: Any) -> Scenario:
         """The same with some keys changed: `set("sigma_d=0.05")` as on the command line, or `set(sigma_d=0.05)`, or
         `set(**{"weights.aim": 2})`. A key is a full dotted name or an end of it that no other key has."""
-    def check(self) -> dict[str, Any]:
+    def check(self, *, draws: int | None = None) -> dict[str, Any]:
         """Every key with the value in force, defaults too, as nested dictionaries. What is wrong was raised when the
-        scenario was made."""
+        scenario was made.
+
+        With `draws`: so many animations are drawn from the prior, and what comes back is how many of them met each
+        thing that is asked, the best margin of each, and pairs that were never met together: what `plaus check --draws
+        N --json` prints."""
     @property
     def toml(self) -> str:
         """Every key with the value in force, as the text of a scenario file."""
@@ -169,7 +173,7 @@ class RunFolder:
     def columns(self, warmup: bool) -> list[tuple[str, str, str, Any]]:
         """Columns of a phase: name, unit, role, and an array (chain, draw)."""
     def solutions(self) -> list[tuple[int, int, int, float, bool]]:
-        """The first draw of each distinct solution: chain, draw, iteration, log p."""
+        """The first draw of each distinct solution: chain, draw, iteration, log p, and whether it is of the warm-up."""
     def replay(self, samples: Sequence[tuple[int, int, bool]], accuracy: str | None = None) -> list[tuple[str, Motion]]:
         """What is known of samples that are simulated again, as JSON, and their motions."""
     def gallery(self, count: int) -> tuple[str, int, int]:
@@ -194,6 +198,24 @@ def sample(
 ) -> tuple[str, float]:
     """Samples into `folder`, or goes on with the run there where `scenario` is None; gives how it ended, and
     seconds."""
+
+def chance(
+    scenario: Scenario,
+    *,
+    overrides: Sequence[str],
+    numbers: Mapping[str, int | None],
+    methods: Sequence[str],
+    out: str | os.PathLike[str] | None,
+    threads: int | None,
+    max_time: float | None,
+    poll: Callable[[dict[str, Any]], bool] | None,
+    interval: float,
+) -> tuple[tuple[str, str, str, str], str | None, float]:
+    """Asks how likely what a scenario demands is; gives what is known (JSON, words, the scenario's name and text), why
+    it was stopped, and seconds."""
+
+def read_chance(path: str | os.PathLike[str]) -> tuple[str, str, str, str]:
+    """Reads a file that an inquiry was kept in."""
 
 def command(arguments: Sequence[str]) -> int:
     """Does what a command line says, its first word being the program's name, and gives the exit code."""

@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, nullcontext
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from plaus import _plaus
 from plaus._numbers import _whole
@@ -47,6 +47,12 @@ class Progress:
         """Done share of the planned iterations, in [0, 1]."""
         return min(self.iterations, default=0) / max(1, self.iterations_planned)
 
+    @property
+    def _bar(self) -> float:
+        """How full a bar is: solutions count where they are wanted."""
+        found = min(1.0, self.distinct / self.solutions_wanted) if self.solutions_wanted else 0.0
+        return max(self.share, found)
+
     def __str__(self) -> str:
         wanted = f" of {self.solutions_wanted}" if self.solutions_wanted is not None else ""
         return (
@@ -56,6 +62,13 @@ class Progress:
 
     def __repr__(self) -> str:
         return f"<Progress {self}>"
+
+
+class _Far(Protocol):
+    """How far something is: as text, and as a bar."""
+
+    @property
+    def _bar(self) -> float: ...
 
 
 class _Shown:
@@ -68,7 +81,7 @@ class _Shown:
         self._on = wanted if wanted is not None else notebook or sys.stderr.isatty()
         self._notebook = notebook
 
-    def show(self, progress: Progress) -> None:
+    def show(self, progress: _Far) -> None:
         """Shows how far it is."""
         if not self._on:
             return
@@ -95,14 +108,42 @@ class _Shown:
             sys.stderr.flush()
 
 
-def _bar(progress: Progress) -> str:
-    share = progress.share
-    if progress.solutions_wanted:
-        share = max(share, min(1.0, progress.distinct / progress.solutions_wanted))
+def _bar(progress: _Far) -> str:
     return (
-        f'<progress value="{share:.4f}" max="1" style="width:16em;vertical-align:middle"></progress> '
+        f'<progress value="{progress._bar:.4f}" max="1" style="width:16em;vertical-align:middle"></progress> '
         f'<span style="font-variant-numeric:tabular-nums">{progress}</span>'
     )
+
+
+Made = TypeVar("Made")
+Seen = TypeVar("Seen", bound="_Far")
+
+
+def _watched(
+    work: Callable[[Callable[[dict[str, Any]], bool], float], Made],
+    kind: Callable[[dict[str, Any]], Seen],
+    callback: Callable[[Seen], object] | None,
+    progress: bool | None,
+    max_time: float | None,
+) -> Made:
+    """Does work, which is given a function to tell how far it is and how often, and shows that."""
+    if callback is not None and not callable(callback):
+        raise TypeError(f"callback: a function of the progress is expected, not a {type(callback).__name__}")
+    if max_time is not None and not float(max_time) > 0.0:
+        raise ValueError(f"max_time is {max_time}, but must be a number of seconds above 0")
+    shown = _Shown(progress)
+    begun_in = os.getpid()
+
+    def poll(state: dict[str, Any]) -> bool:
+        now = kind(state)
+        shown.show(now)
+        return callback is None or callback(now) is not False
+
+    try:
+        return work(poll, _INTERVAL)
+    finally:
+        if os.getpid() == begun_in:
+            shown.end()
 
 
 def _required(requirement: Requirement | Callable[..., Any] | None) -> Requirement | None:
@@ -119,19 +160,6 @@ def _go(
     progress: bool | None,
     **how: Any,
 ) -> Run:
-    if callback is not None and not callable(callback):
-        raise TypeError(f"callback: a function of the progress is expected, not a {type(callback).__name__}")
-    max_time = how["max_time"]
-    if max_time is not None and not float(max_time) > 0.0:
-        raise ValueError(f"max_time is {max_time}, but must be a number of seconds above 0")
-    shown = _Shown(progress)
-    begun_in = os.getpid()
-
-    def poll(state: dict[str, Any]) -> bool:
-        now = Progress(state)
-        shown.show(now)
-        return callback is None or callback(now) is not False
-
     asked = None
     others: AbstractContextManager[Any] = nullcontext()
     if requirement is not None:
@@ -139,21 +167,20 @@ def _go(
         others = requirement._asking(
             scenario.set(*how["overrides"]) if scenario is not None else Run(folder.path).scenario
         )
-    try:
+    def work(poll: Callable[[dict[str, Any]], bool], interval: float) -> tuple[str, float]:
         with others as by:
-            ending, seconds = _plaus.sample(
+            return _plaus.sample(
                 scenario,
                 folder.path,
                 fleeting=folder.fleeting,
                 asked=asked,
                 others=by and by.ask,
                 poll=poll,
-                interval=_INTERVAL,
+                interval=interval,
                 **how,
             )
-    finally:
-        if os.getpid() == begun_in:
-            shown.end()
+
+    ending, seconds = _watched(work, Progress, callback, progress, how["max_time"])
     return Run(folder.path, _folder=folder, _ended=(ending, seconds), _requirement=requirement)
 
 
