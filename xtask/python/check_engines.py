@@ -502,7 +502,7 @@ def main() -> int:
     if arguments.serve:
         serve(arguments.serve)
         return 0
-    python = environment(arguments.venv, REQUIREMENTS)
+    python = environment(arguments.venv.absolute(), REQUIREMENTS)
     for engine in arguments.engines:
         if engine == "slurm" and not all(shutil.which(name) for name in ["slurmctld", "slurmd", "sbatch"]):
             print("slurm: SKIPPED, it is not installed (Debian: slurm-wlm)", flush=True)
