@@ -55,12 +55,22 @@ pub(crate) fn clients() -> Result<(), Failure> {
 
 /// Whether Blender plays exports as they are.
 pub(crate) fn blender() -> Result<(), Failure> {
-    steps::run(vec![
+    steps::run(exported(Step::new("Blender plays them", clients::blender)))
+}
+
+/// Whether Godot does.
+pub(crate) fn godot() -> Result<(), Failure> {
+    steps::run(exported(Step::new("Godot plays them", clients::godot)))
+}
+
+/// What some program makes of exports of every scene.
+fn exported(program: Step) -> Vec<Step> {
+    vec![
         Step::command("plaus in release", cargo(&["build", "--release", "--package", "plaus-cli"])),
         Step::command("every shape", cargo(&["build", "--package", "plaus-export", "--example", "tumbling"])),
         Step::new("exports of every scene", clients::export),
-        Step::new("Blender plays them", clients::blender),
-    ])
+        program,
+    ]
 }
 
 fn format() -> Step {
