@@ -40,12 +40,22 @@ pub(crate) fn nearest(both: &Both) -> Meeting {
                 |p| in_common(both, p.nearest(None)),
             )
         }
-        _ => searched(both).unwrap_or_else(|search| search.deepest()),
+        _ => match searched(both) {
+            Searched::Nearest(m) => m,
+            Searched::Overlap(search) => search.deepest(),
+        },
     }
 }
 
+/// What came of a search.
+enum Searched<'b, 'p> {
+    Nearest(Meeting),
+    /// The cores overlap; this was looked at.
+    Overlap(Search<'b, 'p>),
+}
+
 /// The nearest points of cores that are not both polyhedra, or else what a search has seen.
-fn searched<'b, 'p>(both: &'b Both<'p>) -> Result<Meeting, Search<'b, 'p>> {
+fn searched<'b, 'p>(both: &'b Both<'p>) -> Searched<'b, 'p> {
     match (both.first.core, both.second.core) {
         (Core::Discs(_), Core::Discs(_)) => two_of_discs(both),
         (Core::Discs(_), _) => with_polyhedron(both, 0),
@@ -132,7 +142,8 @@ impl Search<'_, '_> {
         for _ in 0..ROUNDS {
             let shift = n * (-2.0 * self.both.apart(n)).max(ASIDE * self.both.size());
             let moved = Placed { centre: self.both.first.centre + shift, ..self.both.first };
-            let Ok(m) = searched(&Both { first: moved, second: self.both.second }) else { break };
+            let moved = Both { first: moved, second: self.both.second };
+            let Searched::Nearest(m) = searched(&moved) else { break };
             let (along, turned) = (m.normal.dot(shift), (m.normal - n).length());
             found = Some(Meeting { points: [m.points[0] - shift, m.points[1]], gap: m.gap - along, ..m });
             n = m.normal;
@@ -159,10 +170,10 @@ impl Search<'_, '_> {
 }
 
 /// A core of discs, the first (0) or the second (1), and a polyhedron.
-fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Result<Meeting, Search<'b, 'p>> {
+fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Searched<'b, 'p> {
     let (own, other) = (both.piece(discs), both.piece(1 - discs));
     let (Core::Discs(core), Core::Polyhedron(hull)) = (own.core, other.core) else {
-        return Ok(both.at_point(0, both.first.centre, Mark::Nearest));
+        return Searched::Nearest(both.at_point(0, both.first.centre, Mark::Nearest));
     };
     let mut search = Search { both, near: None, far: (f64::NEG_INFINITY, DVec3::Z) };
     let ends = ends(own, other, hull);
@@ -193,12 +204,12 @@ fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Result<Meeting, 
         if apart > TOUCHING * size
             && let Some(m) = over_face(both, discs, core, normal, apart)
         {
-            return Ok(m);
+            return Searched::Nearest(m);
         }
         if let Some(m) = search.near
             && search.is_proved(&m)
         {
-            return Ok(m);
+            return Searched::Nearest(m);
         }
         // No corner and no edge is in the other, but it goes through a face.
     }
@@ -207,7 +218,7 @@ fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Result<Meeting, 
             search.along(cap * -sign);
         }
     }
-    Err(search)
+    Searched::Overlap(search)
 }
 
 /// Corners of a polyhedron as a core of discs sees them.
@@ -245,7 +256,7 @@ fn over_face(both: &Both, discs: usize, core: &Discs, normal: DVec3, apart: f64)
 }
 
 /// Two cores of discs.
-fn two_of_discs<'b, 'p>(both: &'b Both<'p>) -> Result<Meeting, Search<'b, 'p>> {
+fn two_of_discs<'b, 'p>(both: &'b Both<'p>) -> Searched<'b, 'p> {
     let mut search = Search { both, near: None, far: (f64::NEG_INFINITY, DVec3::Z) };
     for of in 0..2 {
         let (own, other) = (both.piece(of), both.piece(1 - of));
@@ -280,14 +291,14 @@ fn two_of_discs<'b, 'p>(both: &'b Both<'p>) -> Result<Meeting, Search<'b, 'p>> {
     let size = both.size();
     let distance = search.distance();
     if distance <= TOUCHING * size {
-        return Err(search);
+        return Searched::Overlap(search);
     }
     let (apart, normal) = search.far;
     match search.near {
-        Some(m) if search.is_proved(&m) => Ok(m),
+        Some(m) if search.is_proved(&m) => Searched::Nearest(m),
         // Sides that cross, whose points are on no rim.
-        _ if apart > TOUCHING * size => Ok(crossing_sides(both, normal, apart)),
-        _ => Err(search),
+        _ if apart > TOUCHING * size => Searched::Nearest(crossing_sides(both, normal, apart)),
+        _ => Searched::Overlap(search),
     }
 }
 
