@@ -135,6 +135,7 @@ fn whole(code: &str) -> Option<String> {
         return None;
     }
     let named = |word: &&str| match *word {
+        "RUN" if rest.contains("--accuracy") => DIE.to_owned(),
         "RUN" => "runs/ball2d".to_owned(),
         "JOB" => "job".to_owned(),
         "FOLDER" => "runs/plots".to_owned(),

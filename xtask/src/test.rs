@@ -37,7 +37,7 @@ pub(crate) fn ci() -> Result<(), Failure> {
     steps::run(all)
 }
 
-/// Every command that README, docs and scenario files show. Not among what CI runs as yet: some that are shown fail.
+/// Every command that README, docs and scenario files show.
 pub(crate) fn shown() -> Result<(), Failure> {
     let release = cargo(&["build", "--release", "--package", "plaus-cli"]);
     let all =
@@ -117,6 +117,7 @@ fn with_clients() -> Vec<Step> {
         Step::new("pieces on engines, quick", crate::engines::quick),
     ];
     all.extend(clients::steps());
+    all.push(Step::new("every command that is shown", documented::run));
     all
 }
 
