@@ -176,15 +176,17 @@ pub enum WorldError {
         /// Index of a point near there.
         point: usize,
     },
-    /// Two bodies whose contact is not served.
-    #[error("bodies {a} and {b}: contact of {what} is not served")]
-    UnservedPair {
-        /// The lower index.
-        a: usize,
-        /// The higher index.
-        b: usize,
-        /// What they are.
-        what: &'static str,
+    /// A solid of a compound that is none.
+    #[error("solid {member} of a compound: {field} is {value}, expected {expected}")]
+    BadMember {
+        /// Its index.
+        member: usize,
+        /// Which number.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
     },
     /// A state that was made for another world.
     #[error("the state has {state} bodies, the world {world}")]

@@ -33,6 +33,7 @@
 //!
 //! Listening is optional and costs nothing where it is not wanted: pass a [`trace::Trace`] for all motions and impacts, [`trace::While`] to stop early, or `&mut ()`.
 pub mod accuracy;
+mod broad;
 mod detect;
 pub mod error;
 pub mod field;

@@ -2,6 +2,7 @@
 //!
 //! Nothing else moves. A body far from others is touched only at its own events.
 
+use crate::broad::BoxTree;
 use crate::links::Links;
 use crate::mechanics::{Impact, Mechanics};
 use crate::queue::{Event, Happening, Tournament};
@@ -34,6 +35,8 @@ pub struct Scratch<S> {
     group: Vec<u32>,
     marks: Marks,
     worklist: Vec<Meeting>,
+    tree: BoxTree,
+    near: Vec<u32>,
     settle: S,
 }
 
@@ -124,6 +127,7 @@ const MOST_AT_ONCE: usize = 80;
 impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     /// Looks at every body for the first time, or restores the queue of a state that was paused.
     fn start(&mut self) -> Option<Outcome> {
+        self.scratch.tree.reset();
         if self.state.started {
             self.scratch.queue.rebuild(&self.state.events, &self.state.places);
             return self.state.all_resting(self.mechanics).then_some(Outcome::AllAtRest);
@@ -292,6 +296,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
         self.state.boxes[k] =
             self.mechanics.swept(k, body, self.mechanics.clock(body).max(self.state.time), event.time);
+        self.scratch.tree.change(k, &self.state.boxes[k]);
         self.state.events[k] = event;
     }
 
@@ -303,8 +308,9 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
         let mut event = self.state.events[k];
         let around = self.state.boxes[k];
-        for (j, near) in self.state.boxes.iter().enumerate() {
-            if !near.meets(&around) || j == k {
+        self.scratch.tree.meeting(&self.state.boxes, &around, &mut self.scratch.near);
+        for j in self.scratch.near.iter().map(|&j| j as usize) {
+            if j == k {
                 continue;
             }
             let other = &self.state.bodies[j];

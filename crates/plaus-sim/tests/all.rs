@@ -26,5 +26,6 @@ mod rigid_extremes;
 mod rigid_hulls;
 mod rigid_ledges;
 mod rigid_mirror;
+mod rigid_pieces;
 mod rigid_pins;
 mod rigid_roll;

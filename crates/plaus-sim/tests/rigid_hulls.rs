@@ -8,7 +8,7 @@ use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, Start, Table, T
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{ConvexHull, Cuboid, Shape, Solid};
 use plaus_sim::trace::{Observer, Trace};
-use plaus_sim::worlds::{Alley, DieOnTable};
+use plaus_sim::worlds::DieOnTable;
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State, WorldError};
 
 const M: Material = Material(0);
@@ -374,10 +374,7 @@ fn nothing_fast_or_small_or_heavy_passes() {
 }
 
 #[test]
-fn what_is_not_served_is_said() {
-    let pin = Shape::Revolution(Alley::default().pin().unwrap().into());
-    let error = Rigid::new(plain(vec![solid(Solid::Cube), pin], vec![flat()], WOOD)).unwrap_err();
-    assert!(matches!(error, WorldError::UnservedPair { a: 0, b: 1, .. }), "{error}");
+fn overlaps_at_the_start_are_said() {
     // A hull in another at the start is named as dice are.
     let world = world(vec![solid(Solid::Octahedron); 2], vec![flat()], WOOD);
     let at = |x: f64| Start::at_rest(DVec3::new(x, 0.0, 0.1));

@@ -58,7 +58,7 @@ pub(crate) fn sphere_surface(
             let c = squared_distance(path.x - scenery.mesh().vertices[k as usize], path.v, path.a, radius);
             falls_of_quartic(&c, from, until, |t| scenery.is_over_vertex(k, path.after(t), SEAM * radius))
         }
-        Surface::Part { .. } => None,
+        Surface::Part { .. } | Surface::Spot { .. } => None,
     }
 }
 

@@ -61,10 +61,6 @@ impl Rigid {
         Some(CuboidPair::new(a.x - b.x, placed(i, a)?, placed(j, b)?))
     }
 
-    pub(super) fn are_cuboids(&self, pair: [usize; 2]) -> bool {
-        pair.iter().all(|&k| matches!(self.specs[k].skin, Skin::Cuboid { .. }))
-    }
-
     /// First time in `[from, until]` at which two cuboids touch while approaching. Of bodies in lasting contact (`linked`) only at points that are not part of it yet.
     pub(super) fn first_of_cuboids(
         &self,

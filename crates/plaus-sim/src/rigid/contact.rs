@@ -3,6 +3,7 @@
 use super::body::{MOST_TOUCHES, Motion, Phase, Pose, Turning};
 use super::part::{Part, farthest_side};
 use super::solve::{Contact, Member};
+use super::spots::Spot;
 use super::step::{RigidScratch, TOUCHING};
 use super::strike::{Point, strike};
 use super::{Rigid, Spec};
@@ -14,8 +15,9 @@ use glam::{DMat3, DVec3};
 /// A point of a body on a part.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Touch {
+    /// Its name, and the part that it is of.
+    pub(crate) surface: Surface,
     pub(crate) part: u16,
-    pub(crate) point: u16,
     /// From the centre of gravity to the point of contact, in world axes.
     pub(crate) arm: DVec3,
     /// Unit normal out of the part.
@@ -24,8 +26,18 @@ pub(crate) struct Touch {
 }
 
 impl Touch {
-    pub(crate) fn surface(&self) -> Surface {
-        Surface::Part { part: self.part, point: self.point }
+    /// A touch by a numbered point of a body.
+    pub(crate) fn of_point(part: u16, point: u16, arm: DVec3, normal: DVec3, gap: f64) -> Self {
+        Self { surface: Surface::Part { part, point }, part, arm, normal, gap }
+    }
+
+    /// The number of the body's point, if it has one.
+    #[inline]
+    pub(crate) fn point(&self) -> Option<usize> {
+        match self.surface {
+            Surface::Part { point, .. } => Some(usize::from(point)),
+            _ => None,
+        }
     }
 }
 
@@ -45,7 +57,14 @@ pub(crate) fn response(inverse_mass: f64, inverse_inertia: &DMat3, arm: DVec3) -
 impl Rigid {
     /// A point of a body, wherever it is.
     #[inline]
-    pub(super) fn touch(&self, index: usize, pose: &Pose, part: u16, point: u16) -> Touch {
+    pub(super) fn touch(&self, index: usize, pose: &Pose, surface: Surface) -> Touch {
+        let (part, point) = match surface {
+            Surface::Part { part, point } => (part, point),
+            Surface::Spot { part, piece, point } => {
+                return self.spot_touch(index, pose, part, Spot::of_surface(piece, point));
+            }
+            _ => (0, 0),
+        };
         let (spec, part_here, k) = (&self.specs[index], &self.parts[usize::from(part)], usize::from(point));
         if k >= spec.hull
             && let Some(touch) = self.ledge_touch(index, pose, part, point)
@@ -61,19 +80,17 @@ impl Rigid {
         };
         let arm = pose.r * feeler.centre;
         let foot = part_here.foot(pose.x + arm, feeler.radius);
-        Touch {
-            part,
-            point,
-            arm: arm - foot.normal * feeler.radius,
-            normal: foot.normal,
-            gap: foot.distance - feeler.radius,
-        }
+        Touch::of_point(part, point, arm - foot.normal * feeler.radius, foot.normal, foot.distance - feeler.radius)
     }
 
     /// Calls `each` for the points of a body that are within `within` of a part.
     pub(super) fn for_touches(&self, index: usize, pose: &Pose, within: f64, mut each: impl FnMut(Touch)) {
         let spec = &self.specs[index];
         for (k, part) in self.parts.iter().enumerate() {
+            if self.ground(spec, k).is_some() {
+                self.for_spots(index, pose, k, within, &mut each);
+                continue;
+            }
             let k = k as u16;
             match part {
                 Part::Plane(plane) => {
@@ -86,7 +103,7 @@ impl Rigid {
                         let gap = height + lever.dot(feeler.centre) - feeler.radius;
                         if gap <= within {
                             let arm = pose.r * feeler.centre - plane.normal * feeler.radius;
-                            each(Touch { part: k, point: point as u16, arm, normal: plane.normal, gap });
+                            each(Touch::of_point(k, point as u16, arm, plane.normal, gap));
                         }
                     }
                     let swing = pose.r.transpose() * plane.normal.cross(pose.w);
@@ -95,7 +112,7 @@ impl Rigid {
                         let gap = height + lever.dot(feeler.centre) - feeler.radius;
                         if gap <= within {
                             let arm = pose.r * feeler.centre - plane.normal * feeler.radius;
-                            each(Touch { part: k, point: point as u16, arm, normal: plane.normal, gap });
+                            each(Touch::of_point(k, point as u16, arm, plane.normal, gap));
                         }
                     }
                 }
@@ -115,7 +132,7 @@ impl Rigid {
                             if side.is_some() && height + above > within {
                                 continue;
                             }
-                            let touch = self.touch(index, pose, k, point as u16);
+                            let touch = self.touch(index, pose, Surface::Part { part: k, point: point as u16 });
                             if touch.gap <= within {
                                 each(touch);
                             }
@@ -134,13 +151,14 @@ impl Rigid {
                     let up = pose.r.transpose() * DVec3::Z;
                     for (point, feeler) in spec.feelers.iter().enumerate() {
                         if pose.x.z + up.dot(feeler.centre) - feeler.radius <= high {
-                            let touch = self.touch(index, pose, k, point as u16);
+                            let touch = self.touch(index, pose, Surface::Part { part: k, point: point as u16 });
                             if touch.gap <= within {
                                 each(touch);
                             }
                         }
                     }
                 }
+                Part::Solid(_) | Part::Mesh(_) => {}
             }
         }
     }
@@ -150,13 +168,16 @@ impl Rigid {
         let spec = &self.specs[index];
         let noted = body.touching();
         // Which point of a ring is the lowest goes with the velocities, and those an impact has changed.
-        if body.listed != body.path.t || noted.len() == MOST_TOUCHES || !spec.rings.is_empty() {
+        let moves = |s: &Surface| matches!(s, Surface::Spot { .. });
+        if body.listed != body.path.t
+            || noted.len() == MOST_TOUCHES
+            || !spec.rings.is_empty()
+            || noted.iter().any(moves)
+        {
             return self.for_touches(index, pose, TOUCHING * spec.gap, each);
         }
-        for surface in noted {
-            if let Surface::Part { part, point } = *surface {
-                each(self.touch(index, pose, part, point));
-            }
+        for &surface in noted {
+            each(self.touch(index, pose, surface));
         }
     }
 
@@ -173,9 +194,9 @@ impl Rigid {
 
     /// The law at a point of contact.
     #[inline]
-    pub(super) fn law_at(&self, index: usize, part: u16, point: DVec3) -> Law {
-        let part = &self.parts[usize::from(part)];
-        let law = self.laws.of(self.specs[index].material, part.material());
+    pub(super) fn law_at(&self, index: usize, t: &Touch, point: DVec3) -> Law {
+        let part = &self.parts[usize::from(t.part)];
+        let law = self.laws.of(self.specs[index].material, part.material(t.surface));
         match part {
             Part::Table(table) => table.law(point, law),
             Part::Block { stretches, .. } => {
@@ -208,7 +229,7 @@ impl Rigid {
         let mut count = 0;
         self.for_touches(index, &body.pose(), TOUCHING * spec.gap, |t| {
             if count < found.len() {
-                found[count] = t.surface();
+                found[count] = t.surface;
                 count += 1;
             }
         });
@@ -221,7 +242,7 @@ impl Rigid {
         &self,
         index: usize,
         body: &mut Turning,
-        (part, point): (u16, u16),
+        surface: Surface,
         report: &mut dyn FnMut(&Impact),
     ) -> bool {
         let spec = &self.specs[index];
@@ -229,11 +250,11 @@ impl Rigid {
         let pose = body.pose();
         let mut members = [RigidScratch::member(spec, &pose.r, pose.v, pose.w)];
         let hurried = body.is_hurried();
-        let first = self.point_on_part(&self.touch(index, &pose, part, point), index, &pose, hurried, &members[0]);
+        let first = self.point_on_part(&self.touch(index, &pose, surface), index, &pose, hurried, &members[0]);
         let Some(first) = first.filter(Point::is_struck) else { return false };
         let mut points = vec![first];
         self.for_known_touches(index, body, &pose, |t| {
-            if (t.part, t.point) != (part, point) {
+            if t.surface != surface {
                 points.extend(self.point_on_part(&t, index, &pose, hurried, &members[0]));
             }
         });
@@ -253,10 +274,10 @@ impl Rigid {
         if t.gap > TOUCHING * spec.gap {
             return None;
         }
-        let law = self.law_at(index, t.part, pose.x + t.arm);
+        let law = self.law_at(index, t, pose.x + t.arm);
         let k = response(member.inverse_mass, &member.inverse_inertia, t.arm);
         let contact = Contact::new(0, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k);
         let approach = -pose.velocity(t.arm).dot(t.normal);
-        Some(Point::new(contact, approach, &law, self.settle_speed(spec, &law), hurried, Other::Surface(t.surface())))
+        Some(Point::new(contact, approach, &law, self.settle_speed(spec, &law), hurried, Other::Surface(t.surface)))
     }
 }

@@ -108,7 +108,7 @@ pub(super) fn resist(
             continue;
         }
         let place = &places[*k];
-        let law = world.law_at(place.body, touch.part, place.start.x + touch.arm);
+        let law = world.law_at(place.body, touch, place.start.x + touch.arm);
         let torque = load * touch.arm.length();
         let member = &mut members[*k];
         let about = touch.normal * member.w.dot(touch.normal);

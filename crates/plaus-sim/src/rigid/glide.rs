@@ -25,10 +25,14 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     let part = &world.parts[usize::from(touch.part)];
     let n = touch.normal;
     let level = n.cross(world.gravity).length() <= LEVEL * world.strength && n.dot(world.gravity) < 0.0;
-    if !spec.is_ball || !level || matches!(part, Part::Table(_)) || is_leaving(part, body) {
+    if !spec.is_ball
+        || !level
+        || matches!(part, Part::Table(_) | Part::Solid(_) | Part::Mesh(_))
+        || is_leaving(part, body)
+    {
         return false;
     }
-    let law = world.law_at(index, touch.part, body.path.x);
+    let law = world.law_at(index, touch, body.path.x);
     if body.path.v.dot(n).abs() > world.settle_speed(spec, &law) {
         return false;
     }
@@ -72,7 +76,7 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
         end(spec, world.gravity, body);
         body.expiry = body.path.t + f64::EPSILON * body.path.t.max(spec.rattle);
     }
-    body.list(std::iter::once(touch.surface()));
+    body.list(std::iter::once(touch.surface));
     true
 }
 

@@ -4,8 +4,8 @@
 
 use super::body::{Pose, Turning};
 use super::convex::{ConvexPair, Quest};
-use super::{BodySpec, Rigid, Skin, Spec};
-use crate::error::WorldError;
+use super::rows::Row;
+use super::{Rigid, Spec};
 use crate::shape::hull_pair::{Feature, HullPair, Meeting, Placed};
 use crate::shape::{MOST_CORNERS, Polyhedron, Shape};
 use glam::DVec3;
@@ -72,22 +72,7 @@ pub(super) fn core(shape: &Shape) -> Option<(Arc<Polyhedron>, f64)> {
         Shape::Ball(radius) => Some((Arc::new(Polyhedron::point()), *radius)),
         Shape::Cuboid(c) => Some((Arc::new(Polyhedron::cuboid(c.half() - c.rounding())), c.rounding())),
         Shape::Hull(h) => Some((Arc::new(h.core.clone()), h.rounding())),
-        Shape::Revolution(_) => None,
-    }
-}
-
-/// The first pair of bodies that could go through each other unseen.
-pub(super) fn check_pairs(bodies: &[BodySpec]) -> Result<(), WorldError> {
-    let find = |is: fn(&Shape) -> bool| bodies.iter().position(|b| is(&b.shape));
-    let hull = find(|s| matches!(s, Shape::Hull(_)));
-    let revolved = find(|s| matches!(s, Shape::Revolution(_)));
-    match (hull, revolved) {
-        (Some(a), Some(b)) => Err(WorldError::UnservedPair {
-            a: a.min(b),
-            b: a.max(b),
-            what: "a convex polyhedron and a body of revolution",
-        }),
-        _ => Ok(()),
+        Shape::Revolution(_) | Shape::Compound(_) => None,
     }
 }
 
@@ -100,17 +85,11 @@ impl Rigid {
     /// Both bodies as polyhedra, if at least one is one.
     #[inline]
     pub(super) fn hulls(&self, pair: [usize; 2], [a, b]: [&Pose; 2]) -> Option<HullPair<'_>> {
-        if !self.are_hulls(pair) {
+        if self.row(pair) != Row::Hulls {
             return None;
         }
         let [s, t] = pair.map(|k| &self.specs[k]);
         Some(HullPair::new(a.x - b.x, placed(s, a)?, placed(t, b)?))
-    }
-
-    /// Whether at least one of two bodies is a polyhedron other than a cuboid.
-    #[inline]
-    pub(super) fn are_hulls(&self, pair: [usize; 2]) -> bool {
-        pair.iter().any(|&k| matches!(self.specs[k].skin, Skin::Hull))
     }
 
     /// First time in `[from, until]` at which two bodies, one of them a polyhedron, touch while approaching, as for cuboids.

@@ -81,7 +81,7 @@ impl RigidScratch {
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let p = &self.places[*k];
             let spec = &world.specs[p.body];
-            let after = world.touch(p.body, &p.end, t.part, t.point);
+            let after = world.touch(p.body, &p.end, t.surface);
             let mean = t.mean_velocity(&after, world.fixed_feeler(p.body, t), [&p.begin(), &p.end], h);
             let missing = c.target - mean.dot(t.normal);
             off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * spec.gap;
@@ -112,7 +112,7 @@ impl RigidScratch {
             let old = self.contacts[c];
             let (mut next, gap, touching) = if let Some((a, t)) = self.touches.get(c) {
                 let (p, m) = (&self.places[*a], &self.members[*a]);
-                let after = world.touch(p.body, &p.end, t.part, t.point);
+                let after = world.touch(p.body, &p.end, t.surface);
                 let k = response(m.inverse_mass, &m.inverse_inertia, after.arm);
                 (
                     Contact::new(*a, None, [after.arm, DVec3::ZERO], after.normal, old.friction, k),
@@ -155,8 +155,8 @@ impl RigidScratch {
 impl Rigid {
     /// The ball at a point of contact, where it is fixed in its body: not a point of a ring, nor of an edge.
     fn fixed_feeler(&self, body: usize, t: &Touch) -> Option<&Feeler> {
-        let (spec, point) = (&self.specs[body], usize::from(t.point));
-        let moves = spec.is_ball || spec.ring_of(point).is_some() || self.is_at_ledge(body, t.part, t.point);
+        let (spec, point) = (&self.specs[body], t.point()?);
+        let moves = spec.is_ball || spec.ring_of(point).is_some() || self.is_at_ledge(body, t);
         if moves { None } else { spec.feelers.get(point) }
     }
 }

@@ -116,9 +116,10 @@ impl Rigid {
         }
     }
 
-    /// Whether a point of a body on a part is none of the body, but a corner of a box or where edges cross.
-    pub(super) fn is_at_ledge(&self, index: usize, part: u16, point: u16) -> bool {
-        usize::from(point) >= self.specs[index].hull && self.ledge(index, part).is_some()
+    /// Whether a point of a body on a part is not fixed in the body: a corner of a box, where edges cross, or whatever pieces touch with.
+    pub(super) fn is_at_ledge(&self, index: usize, t: &Touch) -> bool {
+        let Some(point) = t.point() else { return true };
+        point >= self.specs[index].hull && self.ledge(index, t.part).is_some()
     }
 
     /// A point at an edge or a corner of a box, wherever it is.
@@ -135,7 +136,7 @@ impl Rigid {
             Feature::Corner { .. } => DVec3::ZERO,
         };
         let meeting = pair.again(feature, out);
-        Some(Touch { part, point, arm: meeting.arms[0], normal: meeting.normal, gap: meeting.gap })
+        Some(Touch::of_point(part, point, meeting.arms[0], meeting.normal, meeting.gap))
     }
 
     /// Calls `each` for the points at edges and corners of a box that are within `within` of it.
@@ -152,7 +153,7 @@ impl Rigid {
         pair.touching(&pair.nearest(None), within, |m| {
             if !matches!(m.feature, Feature::Corner { of: 0, .. }) {
                 let point = number(core, m.feature);
-                each(Touch { part, point, arm: m.arms[0], normal: m.normal, gap: m.gap });
+                each(Touch::of_point(part, point, m.arms[0], m.normal, m.gap));
             }
         });
     }

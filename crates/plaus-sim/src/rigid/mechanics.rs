@@ -79,20 +79,12 @@ impl Mechanics for Rigid {
     }
 
     fn first_new_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
-        if bodies.iter().all(|b| b.phase == Phase::Rest) {
-            None
-        } else if self.are_cuboids(pair) {
-            self.first_of_cuboids(pair, bodies, [from, until], true)
-        } else if self.are_hulls(pair) {
-            self.first_of_hulls(pair, bodies, [from, until], true)
-        } else {
-            None
-        }
+        if bodies.iter().all(|b| b.phase == Phase::Rest) { None } else { self.first_new(pair, bodies, from, until) }
     }
 
     fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface, report: &mut dyn FnMut(&Impact)) -> bool {
         match surface {
-            Surface::Part { part, point } => self.hit_part(index, body, (part, point), report),
+            Surface::Part { .. } | Surface::Spot { .. } => self.hit_part(index, body, surface, report),
             _ => false,
         }
     }

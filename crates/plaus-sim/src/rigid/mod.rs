@@ -1,4 +1,5 @@
-//! Worlds of turning bodies: balls, cuboids, bodies of revolution and convex polyhedra among planes, boxes and tables with a spline surface.
+//! Worlds of turning bodies: balls, cuboids, bodies of revolution, convex polyhedra, cylinders, cones, capsules and compounds of them among planes, boxes, tables with a spline surface, solids at any
+//! angle and triangle meshes.
 //!
 //! A body in the air is on a parabola and rotates freely, both in closed form; a ball on level ground slides and rolls in
 //! closed form. A body touches when the first of its [feelers](crate::shape::Feeler) comes within half of `accuracy.gap` of a
@@ -19,8 +20,12 @@
 //! that error: about 1e-3 of a body's weight times its size at the standard preset, 1e-6 at reference. A ring is felt at its
 //! lowest point, in lasting contact also at three others of the rim, so that it may be some millimetres in the edge of a box.
 //!
-//! A convex polyhedron may meet any body but one of revolution, and touches boxes with faces and edges too, not only with its corners as a cuboid does. One that is wedged between boxes so that each
+//! Every shape meets every other; which row of the table serves a pair is in `rows.rs`. A convex polyhedron touches boxes with faces and edges too, not only with its corners as a cuboid does. One that is wedged between boxes so that each
 //! pushes it into the other may find no rest: it sinks, by a fifth of its size at worst in the tests, until its run is out of events.
+//!
+//! Convex pieces in lasting contact are looked at eight times within a step for points that are not part of it, and beside
+//! a triangle that a body hangs below by each hundredth of its size: so deep a new point may be seen. Turning bodies on
+//! meshes are young: in a hollow ball of triangles a box was seen to fall through (example `shapes`).
 //!
 //! Rolling and spinning resistance act in the steps of lasting contact on fixed parts, with the distance of the point from the centre of gravity as the radius; not between bodies, nor on
 //! a ball that glides: that goes on until it meets something or the run ends.
@@ -40,6 +45,7 @@
 
 mod blocks;
 mod body;
+mod bound;
 mod boxes;
 mod capsule;
 mod contact;
@@ -48,10 +54,10 @@ mod detect;
 mod energy;
 mod glide;
 mod hulls;
+mod hunt;
 mod kicks;
 mod ledges;
 mod mechanics;
-mod meet;
 mod newton;
 mod pair;
 mod part;
@@ -59,24 +65,30 @@ mod pile;
 mod rest;
 mod revolved;
 mod rim;
+mod rows;
 mod slip;
 mod solve;
 mod spec;
+mod spots;
 mod step;
+mod still;
 mod strike;
 mod tumble;
 
 pub use body::{Phase, Start, Turning};
 pub use glide::Stretch;
 use ledges::Ledge;
-pub use part::{Part, Table};
+pub use part::{Part, SolidPart, Table};
 use spec::{RIM_POINTS, Skin, Spec};
 pub use step::RigidScratch;
+use still::Still;
 
 use crate::accuracy::Accuracy;
+use crate::broad::BoxTree;
 use crate::error::WorldError;
 use crate::material::{Laws, Material};
 use crate::mechanics::Mechanics;
+use crate::scenery::Aabb;
 use crate::shape::{MassProperties, Shape};
 use crate::simulate::{Outcome, Scratch, simulate};
 use crate::state::State;
@@ -132,6 +144,8 @@ pub struct Rigid {
     parts: Vec<Part>,
     /// Those parts that are boxes, as polyhedra see them.
     ledges: Vec<Option<Ledge>>,
+    /// Parts as bodies meet them by their pieces; empty where none do.
+    stills: Vec<Still>,
     laws: Laws,
     gravity: DVec3,
     strength: f64,
@@ -157,13 +171,11 @@ impl Rigid {
         }
         let mut spacing = f64::INFINITY;
         for (k, part) in world.parts.iter().enumerate() {
-            world.laws.require(part.material())?;
-            part.check(k)?;
+            part.check(k, &world.laws)?;
             if let Part::Table(table) = part {
                 spacing = spacing.min(world.skin * table.height.grid().spacing);
             }
         }
-        hulls::check_pairs(&world.bodies)?;
         let strength = world.gravity.length();
         let specs = world
             .bodies
@@ -172,11 +184,12 @@ impl Rigid {
             .map(|(k, b)| Spec::new(k, b, &world, spacing, strength))
             .collect::<Result<_, _>>()?;
         let ledges = Ledge::all(&world)?;
+        let stills = Still::all(&world)?;
         let RigidWorld { parts, laws, gravity, accuracy, sink, duration, .. } = world;
         if sink.is_nan() {
             return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
         }
-        Ok(Self { specs, parts, ledges, laws, gravity, strength, accuracy, sink, duration })
+        Ok(Self { specs, parts, ledges, stills, laws, gravity, strength, accuracy, sink, duration })
     }
 
     /// A state in which every body waits for its release.
@@ -187,11 +200,16 @@ impl Rigid {
         if starts.len() != self.specs.len() {
             return Err(WorldError::WrongState { state: starts.len(), world: self.specs.len() });
         }
+        let around = |(start, spec): (&Start, &Spec)| Aabb::around([start.position]).grown(spec.reach);
+        let boxes: Vec<Aabb> = starts.iter().zip(&self.specs).map(around).collect();
+        let (mut tree, mut near) = (BoxTree::default(), Vec::new());
         for (k, start) in starts.iter().enumerate() {
             self.check_start(k, start)?;
             let body = Turning::waiting(start);
-            for (j, other) in starts[..k].iter().enumerate().filter(|(_, s)| s.time == start.time) {
-                let depth = -self.gap([j, k], [&Turning::waiting(other), &body]);
+            tree.meeting(&boxes, &boxes[k], &mut near);
+            let earlier = near.iter().map(|&j| j as usize).filter(|&j| j < k && starts[j].time == start.time);
+            for j in earlier {
+                let depth = -self.gap([j, k], [&Turning::waiting(&starts[j]), &body]);
                 if depth > OVERLAP * self.specs[j].size.min(self.specs[k].size) {
                     return Err(WorldError::BodiesOverlap { a: j, b: k, depth });
                 }

@@ -1,12 +1,12 @@
 //! Two bodies: how near they are, when they touch, and their impact.
 //!
-//! Balls and bodies of revolution are looked at as the balls and rings of their skins, cuboids by their faces against balls; two cuboids are in `boxes.rs`. First contacts are found by advancement with a
+//! Balls and bodies of revolution are looked at as the balls and rings of their skins, cuboids by their faces against balls; what serves which pair is in `rows.rs`. First contacts are found by advancement with a
 //! second-order bound on the nearest points' approach; should another pair of points have come first, the overlap is seen and the time bisected.
 
 use super::body::{Motion, Phase, Pose, Turning};
 use super::capsule::capsules;
 use super::detect::earliest;
-use super::revolved::{revolved_and_ball, two_revolved};
+use super::spots::Spot;
 use super::step::{RigidScratch, pair_contact};
 use super::strike::{Point, strike};
 use super::{Rigid, Skin, Spec, step};
@@ -20,6 +20,7 @@ use glam::DVec3;
 pub(crate) enum Feature {
     Cuboids(cuboid_pair::Feature),
     Hulls(hull_pair::Feature),
+    Pieces(Spot),
 }
 
 /// The nearest points of two bodies.
@@ -30,7 +31,7 @@ pub(crate) struct PairTouch {
     /// From each centre of gravity to its nearest point.
     pub(crate) arms: [DVec3; 2],
     pub(crate) gap: f64,
-    /// What meets there, of two cuboids or polyhedra.
+    /// What meets there, of bodies that are looked at by their faces, edges and corners.
     pub(crate) feature: Option<Feature>,
 }
 
@@ -88,7 +89,7 @@ pub(super) fn nearer(best: &mut Option<PairTouch>, other: PairTouch) {
     }
 }
 
-fn swapped(t: PairTouch) -> PairTouch {
+pub(super) fn swapped(t: PairTouch) -> PairTouch {
     PairTouch { normal: -t.normal, arms: [t.arms[1], t.arms[0]], ..t }
 }
 
@@ -113,36 +114,14 @@ impl Rigid {
         (step::KEEP * self.pair_gap([i, j])).min(gap + fastest * h)
     }
 
-    /// The nearest points of two bodies.
-    pub(super) fn pair_touch(&self, [i, j]: [usize; 2], [a, b]: [&Pose; 2]) -> PairTouch {
-        let (s, t) = (&self.specs[i], &self.specs[j]);
-        if let Some(cuboids) = self.cuboids([i, j], [a, b]) {
-            return cuboids.nearest().into();
-        }
-        if let Some(hulls) = self.hulls([i, j], [a, b]) {
-            return hulls.nearest(None).into();
-        }
-        let offset = a.x - b.x;
-        match (&s.skin, &t.skin) {
-            (Skin::Ball, Skin::Ball) => balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]),
-            (Skin::Revolved, Skin::Ball) => revolved_and_ball(s, a, offset, t.reach),
-            (Skin::Ball, Skin::Revolved) => swapped(revolved_and_ball(t, b, -offset, s.reach)),
-            (Skin::Revolved, Skin::Revolved) => two_revolved([s, t], [a, b], offset),
-            // What polyhedra meet has been looked at, and what they cannot meet is no world.
-            (Skin::Hull, _) | (_, Skin::Hull) => balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]),
-            (Skin::Cuboid { .. }, _) => cuboid_and_balls(s, a, t, b, offset),
-            (_, Skin::Cuboid { .. }) => swapped(cuboid_and_balls(t, b, s, a, -offset)),
-        }
-    }
-
-    /// First time in `[from, until]` at which two bodies touch while approaching.
-    pub(super) fn first_pair(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
-        if self.are_cuboids(pair) {
-            return self.first_of_cuboids(pair, bodies, [from, until], false);
-        }
-        if self.are_hulls(pair) {
-            return self.first_of_hulls(pair, bodies, [from, until], false);
-        }
+    /// First time in `[from, until]` at which two bodies touch while approaching, for rows that look at balls and rings.
+    pub(super) fn first_of_feelers(
+        &self,
+        pair: [usize; 2],
+        bodies: [&Turning; 2],
+        from: f64,
+        until: f64,
+    ) -> Option<f64> {
         let [s, t] = pair.map(|k| &self.specs[k]);
         let level = self.pair_gap(pair);
         let pull = (bodies[0].path.a - bodies[1].path.a).length();
@@ -272,7 +251,7 @@ impl Rigid {
 }
 
 /// A cuboid and the balls of another body; `offset` from the other to the cuboid.
-fn cuboid_and_balls(s: &Spec, a: &Pose, t: &Spec, b: &Pose, offset: DVec3) -> PairTouch {
+pub(super) fn cuboid_and_balls(s: &Spec, a: &Pose, t: &Spec, b: &Pose, offset: DVec3) -> PairTouch {
     let Skin::Cuboid { half, rounding } = s.skin else { return balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]) };
     let core = half - rounding;
     let mut best: Option<PairTouch> = None;

@@ -1,12 +1,13 @@
-//! What stands still: half spaces, boxes, and tables with a spline surface.
+//! What stands still: half spaces, boxes, tables with a spline surface, solids of any shape at any angle, and triangle meshes.
 
 use super::glide::Stretch;
 use crate::error::WorldError;
 use crate::field::Spline;
-use crate::material::{Law, Material};
-use crate::scenery::{Aabb, Plane};
-use crate::shape::Ring;
-use glam::{DMat3, DVec3};
+use crate::material::{Law, Laws, Material};
+use crate::scenery::{Aabb, Mesh, Plane, Surface};
+use crate::shape::{Ring, Shape};
+use glam::{DMat3, DQuat, DVec3};
+use std::sync::Arc;
 
 /// A fixed part of the world.
 #[derive(Debug, Clone)]
@@ -24,6 +25,23 @@ pub enum Part {
     },
     /// A table with an uneven surface.
     Table(Box<Table>),
+    /// Any shape that stands still at any angle.
+    Solid(Box<SolidPart>),
+    /// A triangle mesh, solid behind its faces, whose corners run anticlockwise seen from outside; its triangles have the materials. It need not be closed. Edges between triangles in one plane are not felt.
+    Mesh(Arc<Mesh>),
+}
+
+/// A shape that stands still.
+#[derive(Debug, Clone)]
+pub struct SolidPart {
+    /// The shape about its centre of gravity.
+    pub shape: Shape,
+    /// Where that is, in m.
+    pub at: DVec3,
+    /// Turns the shape's axes into world axes.
+    pub turn: DQuat,
+    /// What it is made of.
+    pub material: Material,
 }
 
 /// A surface `z = height(x, y)`, solid below.
@@ -102,6 +120,9 @@ impl Table {
     }
 }
 
+/// Most triangles of a mesh under turning bodies: each takes about a kilobyte.
+const MOST_TRIANGLES: usize = 1 << 20;
+
 /// How far the length of a plane's normal may be from 1: rounding.
 const UNIT: f64 = 1e-12;
 
@@ -109,16 +130,33 @@ const UNIT: f64 = 1e-12;
 pub(crate) const ROUNDS: usize = 4;
 
 impl Part {
-    pub(crate) fn material(&self) -> Material {
-        match self {
-            Self::Plane(plane) => plane.material,
-            Self::Block { material, .. } => *material,
-            Self::Table(table) => table.material,
+    /// What it is made of where it is touched.
+    #[inline]
+    pub(crate) fn material(&self, surface: Surface) -> Material {
+        match (self, surface) {
+            (Self::Plane(plane), _) => plane.material,
+            (Self::Block { material, .. }, _) => *material,
+            (Self::Table(table), _) => table.material,
+            (Self::Solid(solid), _) => solid.material,
+            (Self::Mesh(mesh), Surface::Spot { piece, .. }) => mesh.faces[piece as usize].material,
+            (Self::Mesh(_), _) => Material(0),
         }
     }
 
     /// Checks the numbers of the part with this index.
-    pub(crate) fn check(&self, index: usize) -> Result<(), WorldError> {
+    pub(crate) fn check(&self, index: usize, laws: &Laws) -> Result<(), WorldError> {
+        match self {
+            Self::Mesh(mesh) if mesh.len() > MOST_TRIANGLES => {
+                return Err(WorldError::BadSurface {
+                    surface: format!("part {index}"),
+                    field: "number of triangles",
+                    value: mesh.len() as f64,
+                    expected: "at most 1,048,576",
+                });
+            }
+            Self::Mesh(mesh) => return mesh.faces.iter().try_for_each(|f| laws.require(f.material)),
+            _ => laws.require(self.material(Surface::Part { part: 0, point: 0 }))?,
+        }
         let bad = |field, value, expected| {
             Err(WorldError::BadSurface { surface: format!("part {index}"), field, value, expected })
         };
@@ -154,6 +192,14 @@ impl Part {
                 Ok(())
             }
             Self::Table(table) => table.check(),
+            Self::Solid(solid) => {
+                if let Some(value) = solid.at.to_array().into_iter().find(|x| !x.is_finite()) {
+                    return bad("place", value, "finite numbers");
+                }
+                let length = solid.turn.length();
+                if length > 0.0 && length.is_finite() { Ok(()) } else { bad("length of its turn", length, "a turn") }
+            }
+            Self::Mesh(_) => Ok(()),
         }
     }
 
@@ -164,6 +210,8 @@ impl Part {
             Self::Plane(plane) => Foot { normal: plane.normal, distance: plane.distance(p) },
             Self::Block { bounds, .. } => block_foot(bounds, p),
             Self::Table(table) => table.foot(p, if radius > 0.0 { ROUNDS } else { 0 }),
+            // Met by pieces, not by feelers.
+            Self::Solid(_) | Self::Mesh(_) => Foot { normal: DVec3::Z, distance: f64::INFINITY },
         }
     }
 
@@ -173,6 +221,7 @@ impl Part {
             Self::Plane(plane) => plane.normal,
             Self::Block { bounds, .. } => up_at_ring(bounds, ring, x, r),
             Self::Table(table) => table.foot(x, ROUNDS).normal,
+            Self::Solid(_) | Self::Mesh(_) => DVec3::Z,
         }
     }
 

@@ -28,10 +28,10 @@ impl RigidScratch {
         }
         for (k, t) in &self.touches {
             let p = &self.places[*k];
-            if world.is_at_ledge(p.body, t.part, t.point) {
+            if world.is_at_ledge(p.body, t) {
                 let there = p.drifted(&world.specs[p.body], p.start.v, p.start.w, h).0;
                 let rate = p.start.velocity(t.arm).dot(t.normal);
-                let bend = world.touch(p.body, &there, t.part, t.point).gap - t.gap - h * rate;
+                let bend = world.touch(p.body, &there, t.surface).gap - t.gap - h * rate;
                 worst = worst.max(bend.abs() / world.specs[p.body].size);
             }
         }
@@ -57,8 +57,7 @@ impl RigidScratch {
         let deep_at_ledge = |(k, t): &(usize, Touch)| {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
             let rise = PUSH * world.accuracy.settle * spec.speed * h;
-            at_ledges
-                && world.touch(p.body, &p.end, t.part, t.point).gap < (KEEP * spec.gap).min(t.gap + rise) - spec.gap
+            at_ledges && world.touch(p.body, &p.end, t.surface).gap < (KEEP * spec.gap).min(t.gap + rise) - spec.gap
         };
         (self.pairs.iter().any(deep) || self.touches.iter().any(deep_at_ledge)).then_some(0.5)
     }
@@ -72,14 +71,14 @@ impl RigidScratch {
     pub(super) fn fine(&self, world: &Rigid) -> f64 {
         let cuboids = self.pairs.iter().filter(|p| p.1.feature.is_some());
         let fine = cuboids.map(|(ab, _)| CLOSE * world.pair_gap(ab.map(|k| self.places[k].body)));
-        let ledges = self.touches.iter().filter(|(k, t)| world.is_at_ledge(self.places[*k].body, t.part, t.point));
+        let ledges = self.touches.iter().filter(|(k, t)| world.is_at_ledge(self.places[*k].body, t));
         let fine_at_ledges = ledges.map(|(k, _)| CLOSE * world.specs[self.places[*k].body].gap);
         fine.chain(fine_at_ledges).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether polyhedra touch edges or corners of boxes.
     pub(super) fn is_at_ledges(&self, world: &Rigid) -> bool {
-        self.touches.iter().any(|(k, t)| world.is_at_ledge(self.places[*k].body, t.part, t.point))
+        self.touches.iter().any(|(k, t)| world.is_at_ledge(self.places[*k].body, t))
     }
 
     /// The least gap of all contacts, over the gap at which bodies touch.

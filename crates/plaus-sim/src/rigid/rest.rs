@@ -33,19 +33,22 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if let [place] = &group.places[..] {
         let spec = &world.specs[place.body];
         if spec.is_ball {
-            let [(_, only)] = &group.touches[..] else { return false };
-            return only.normal.cross(world.gravity).length() <= 1e-9 * world.strength
-                && place.start.v == DVec3::ZERO
-                && place.start.w == DVec3::ZERO;
-        }
-        if group.touches.len() < 3 && !(spec.is_round && lies(&group.touches, place.start.r.z_axis, spec.size)) {
+            if let [(_, only)] = &group.touches[..] {
+                return only.normal.cross(world.gravity).length() <= 1e-9 * world.strength
+                    && place.start.v == DVec3::ZERO
+                    && place.start.w == DVec3::ZERO;
+            }
+            if group.touches.iter().all(|t| t.1.point().is_some()) {
+                return false;
+            }
+        } else if group.touches.len() < 3 && !(spec.is_round && lies(&group.touches, place.start.r.z_axis, spec.size)) {
             return false;
         }
         let normal = group.touches.first().map_or(DVec3::Z, |t| t.1.normal);
         if group.touches.len() >= 3 && group.touches.iter().all(|t| t.1.normal == normal) {
             // Flat ground: the centre of gravity above the points, and not steeper than friction allows.
             let first = &group.touches[0].1;
-            let law = world.law_at(place.body, first.part, place.start.x + first.arm);
+            let law = world.law_at(place.body, first, place.start.x + first.arm);
             let press = -world.gravity.dot(normal);
             let slide = (world.gravity + normal * press).length();
             // What is left of its motion is to be stopped by friction within a step: on ice it slides on.

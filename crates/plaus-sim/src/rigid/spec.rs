@@ -1,9 +1,10 @@
 //! What follows from a body's shape and mass.
 
 use super::tumble::Inertia;
-use super::{BodySpec, RigidWorld, hulls, step};
+use super::{BodySpec, Part, RigidWorld, hulls, step};
 use crate::error::WorldError;
 use crate::material::Material;
+use crate::shape::piece::Piece;
 use crate::shape::{Feeler, MassProperties, Polyhedron, Ring, Shape};
 use glam::DVec3;
 use std::sync::Arc;
@@ -38,6 +39,8 @@ pub(crate) struct Spec {
     pub(crate) skin: Skin,
     /// What polyhedra meet: a core, and the radius of what is round it. Only in worlds with polyhedra.
     pub(super) core: Option<(Arc<Polyhedron>, f64)>,
+    /// Its convex pieces, where something is met by them.
+    pub(super) pieces: Vec<Piece>,
     /// A capsule along the body's z axis that holds it: heights of its ends, and its radius.
     pub(crate) capsule: [f64; 3],
 }
@@ -49,6 +52,7 @@ pub(crate) enum Skin {
     Revolved,
     Cuboid { half: DVec3, rounding: f64 },
     Hull,
+    Compound,
 }
 
 /// How far moments of inertia may be off by rounding: 1e-9.
@@ -100,6 +104,7 @@ impl Spec {
             Shape::Revolution(r) => (Skin::Revolved, r.rings().to_vec()),
             Shape::Cuboid(c) => (Skin::Cuboid { half: c.half(), rounding: c.rounding() }, Vec::new()),
             Shape::Hull(_) => (Skin::Hull, Vec::new()),
+            Shape::Compound(_) => (Skin::Compound, Vec::new()),
         };
         let has_hulls = world.bodies.iter().any(|b| matches!(b.shape, Shape::Hull(_)));
         let core = if has_hulls { hulls::core(&b.shape) } else { None };
@@ -107,7 +112,13 @@ impl Spec {
         let arms = feelers.iter().map(|f| f.centre.length()).collect();
         let ring_arms = rings.iter().map(|r| (r.circle * r.circle + r.height * r.height).sqrt()).collect();
         let is_ball = matches!(skin, Skin::Ball);
-        let is_round = is_ball || matches!(skin, Skin::Revolved);
+        let is_round =
+            is_ball || matches!(skin, Skin::Revolved) || matches!(&b.shape, Shape::Compound(c) if c.is_round());
+        let pieces = if meets_by_pieces(world) { b.shape.pieces() } else { Vec::new() };
+        if pieces.len() > MOST_PIECES {
+            let expected = "at most 256";
+            return Err(WorldError::BadBody { body, field: "convex pieces", value: pieces.len() as f64, expected });
+        }
         Ok(Self {
             mass,
             inertia,
@@ -128,8 +139,15 @@ impl Spec {
             foot,
             skin,
             core,
+            pieces,
             capsule,
         })
+    }
+
+    /// Whether it is one of several solids, or of one without a way of its own to meet others.
+    #[inline]
+    pub(crate) fn is_compound(&self) -> bool {
+        matches!(self.skin, Skin::Compound)
     }
 
     /// The balls on the axis of a body of revolution.
@@ -176,6 +194,17 @@ impl Spec {
         };
         (Feeler { centre: along * ring.circle + DVec3::new(0.0, 0.0, ring.height), radius: ring.radius }, quarter)
     }
+}
+
+/// Most convex pieces of a body: names of points of contact count them.
+const MOST_PIECES: usize = 256;
+
+/// Whether bodies of a world meet something by their convex pieces.
+fn meets_by_pieces(world: &RigidWorld) -> bool {
+    let any = |is: fn(&Shape) -> bool| world.bodies.iter().any(|b| is(&b.shape));
+    any(|s| matches!(s, Shape::Compound(_)))
+        || world.parts.iter().any(|p| matches!(p, Part::Solid(_) | Part::Mesh(_)))
+        || any(|s| matches!(s, Shape::Hull(_))) && any(|s| matches!(s, Shape::Revolution(_)))
 }
 
 /// A ball about the axis that holds these rings: height of its centre, and its radius.

@@ -202,12 +202,12 @@ impl RigidScratch {
             let (spec, pose, hurried) = (&world.specs[index], bodies[index].pose(), bodies[index].is_hurried());
             let (at, before) = (self.places.len(), self.touches.len());
             world.for_known_touches(index, &bodies[index], &pose, |t| {
-                let law = world.law_at(index, t.part, pose.x + t.arm);
+                let law = world.law_at(index, &t, pose.x + t.arm);
                 if hurried && law.restitution < 1.0
                     || pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law)
                 {
                     self.touches.push((at, t));
-                    self.loads.push(bodies[index].load(t.surface()));
+                    self.loads.push(bodies[index].load(t.surface));
                 } else {
                     self.leaving.push((at, t));
                 }
@@ -248,9 +248,10 @@ impl RigidScratch {
         for (k, t) in &self.touches {
             let p = &self.places[*k];
             let spec = &world.specs[p.body];
-            if spec.ring_of(usize::from(t.point)).is_some() {
+            if let Some(axis) = world.rim_axis(p.body, t) {
                 // The lowest point of a tilted ring runs around it as its axis goes round the normal, however slowly the body turns: a coin that wobbles.
-                let (axis, round) = (p.start.r.z_axis, t.normal.cross(p.start.r.z_axis));
+                let axis = p.start.r * axis;
+                let round = t.normal.cross(axis);
                 let tilt = round.length();
                 if tilt * spec.size > TOUCHING * spec.gap {
                     time = time.min(WOBBLE * tilt * tilt / p.start.w.cross(axis).dot(round).abs());
@@ -312,7 +313,7 @@ impl RigidScratch {
         self.contacts.clear();
         for (a, t) in &self.touches {
             let (p, m) = (&self.places[*a], &self.members[*a]);
-            let law = world.law_at(p.body, t.part, p.start.x + t.arm);
+            let law = world.law_at(p.body, t, p.start.x + t.arm);
             let k = response(m.inverse_mass, &m.inverse_inertia, t.arm);
             self.contacts.push(Contact::new(*a, None, [t.arm, DVec3::ZERO], t.normal, law.friction, k));
         }
@@ -333,7 +334,7 @@ impl RigidScratch {
             body.set_motion(&world.specs[p.body], Motion::default());
             body.begin(Phase::Rest, DVec3::ZERO);
             let touches = || self.touches.iter().filter(|t| t.0 == k).map(|t| &t.1);
-            body.list(touches().map(Touch::surface));
+            body.list(touches().map(|t| t.surface));
             let tidy = TIDY * world.specs[p.body].gap;
             let (low, high) =
                 touches().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| (l.min(t.gap), h.max(t.gap)));
@@ -348,7 +349,7 @@ impl RigidScratch {
             let up = if world.strength > 0.0 { -world.gravity / world.strength } else { DVec3::ZERO };
             for _ in 0..LIFTS {
                 let pose = body.pose();
-                let again = touches().map(|t| world.touch(p.body, &pose, t.part, t.point)).filter(|t| t.gap < 0.0);
+                let again = touches().map(|t| world.touch(p.body, &pose, t.surface)).filter(|t| t.gap < 0.0);
                 let Some(t) = again.min_by(|a, b| a.gap.total_cmp(&b.gap)) else { break };
                 let rise = up.dot(t.normal);
                 body.path.x -= if rise > 0.1 { up * (t.gap / rise) } else { t.normal * t.gap };
@@ -368,7 +369,7 @@ impl RigidScratch {
             (body.path.v, body.spin) = (p.end.v, p.spin);
             body.begin(Phase::Step, DVec3::ZERO);
             body.expiry = body.path.t + h;
-            body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface()));
+            body.list(self.touches.iter().filter(|t| t.0 == k).map(|t| t.1.surface));
         }
         let first_pair = self.touches.len();
         for ((c, first), (ab, _)) in self.contacts[first_pair..].iter().zip(&self.firsts[first_pair..]).zip(&self.pairs)

@@ -11,6 +11,7 @@ mod track;
 pub use aabb::Aabb;
 pub(crate) use aabb::{greater, lesser};
 pub use dome::Dome;
+pub(crate) use mesh::Face;
 pub use mesh::Mesh;
 pub use plane::Plane;
 
@@ -44,6 +45,15 @@ pub enum Surface {
         /// Which point of the body.
         point: u16,
     },
+    /// A fixed part of such a world, touched by a convex piece of a body.
+    Spot {
+        /// Index of the part.
+        part: u16,
+        /// Which piece of the part: the triangle of a mesh.
+        piece: u32,
+        /// What touches there, and with which piece of the body.
+        point: u32,
+    },
 }
 
 impl fmt::Display for Surface {
@@ -55,6 +65,7 @@ impl fmt::Display for Surface {
             Self::Edge(k) => write!(f, "mesh edge {k}"),
             Self::Vertex(k) => write!(f, "vertex {k}"),
             Self::Part { part, point } => write!(f, "part {part} (by point {point})"),
+            Self::Spot { part, piece, .. } => write!(f, "piece {piece} of part {part}"),
         }
     }
 }
@@ -204,7 +215,7 @@ impl Scenery {
             Surface::Vertex(k) => {
                 self.mesh.around_vertex(k).first().map_or(Material(0), |&f| self.mesh.faces[f as usize].material)
             }
-            Surface::Part { .. } => unreachable!("{NO_PARTS}"),
+            Surface::Part { .. } | Surface::Spot { .. } => unreachable!("{NO_PARTS}"),
         }
     }
 
@@ -232,7 +243,7 @@ impl Scenery {
                 sharp(offset - edge.direction * edge.direction.dot(offset))
             }
             Surface::Vertex(k) => sharp(x - self.mesh.vertices[k as usize]),
-            Surface::Part { .. } => unreachable!("{NO_PARTS}"),
+            Surface::Part { .. } | Surface::Spot { .. } => unreachable!("{NO_PARTS}"),
         }
     }
 }

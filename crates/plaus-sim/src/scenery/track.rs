@@ -17,7 +17,7 @@ impl Scenery {
             }
             Surface::Edge(k) => self.around_edge(k, x),
             Surface::Vertex(k) => self.nearest([k], x),
-            Surface::Part { .. } => None,
+            Surface::Part { .. } | Surface::Spot { .. } => None,
         }
     }
 

@@ -4,20 +4,28 @@
 //! ball of radius 0, a rounded one has its rounding radius, a sphere is a single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot. Two bodies with
 //! flat faces are looked at by their faces, edges and corners.
 
+mod compound;
+pub(crate) mod convex_pair;
 mod cuboid;
 pub(crate) mod cuboid_pair;
+mod frustum;
 mod hull;
 pub(crate) mod hull_pair;
 mod mass;
+pub(crate) mod piece;
 mod revolution;
 
+pub use compound::{Compound, Convex, Member};
 pub use cuboid::Cuboid;
+pub use frustum::Frustum;
+pub(crate) use frustum::SLOTS;
 pub use hull::{ConvexHull, Solid};
 pub(crate) use hull::{MOST_CORNERS, On, Polyhedron};
 pub use mass::MassProperties;
 pub use revolution::{Profile, Revolution, Ring};
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use piece::{Core, Piece};
 use std::sync::Arc;
 
 /// A ball fixed in a body: centre in m from the centre of gravity along the body's axes, and radius in m.
@@ -40,6 +48,8 @@ pub enum Shape {
     Revolution(Arc<Revolution>),
     /// A convex polyhedron.
     Hull(Arc<ConvexHull>),
+    /// One or several convex solids, each with a pose: cylinders, cones and capsules among them.
+    Compound(Arc<Compound>),
 }
 
 impl Shape {
@@ -51,6 +61,7 @@ impl Shape {
             Self::Cuboid(c) => (c.half() - c.rounding()).length() + c.rounding(),
             Self::Revolution(r) => r.reach(),
             Self::Hull(h) => h.reach(),
+            Self::Compound(c) => c.reach(),
         }
     }
 
@@ -62,6 +73,7 @@ impl Shape {
             Self::Cuboid(c) => c.half().min_element(),
             Self::Revolution(r) => r.rings()[0].circle,
             Self::Hull(h) => h.size(),
+            Self::Compound(c) => c.size(),
         }
     }
 
@@ -73,6 +85,7 @@ impl Shape {
             Self::Cuboid(c) => c.corners().into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect(),
             Self::Revolution(r) => r.row().to_vec(),
             Self::Hull(h) => h.corners().iter().map(|&centre| Feeler { centre, radius: h.rounding() }).collect(),
+            Self::Compound(c) => c.pieces.iter().flat_map(Piece::feelers).collect(),
         }
     }
 
@@ -81,6 +94,7 @@ impl Shape {
     pub fn feelers_between(&self, spacing: f64) -> Vec<Feeler> {
         match self {
             Self::Ball(_) | Self::Revolution(_) => Vec::new(),
+            Self::Compound(c) => c.pieces.iter().flat_map(|p| p.feelers_between(spacing)).collect(),
             Self::Cuboid(c) => {
                 c.between(spacing).into_iter().map(|centre| Feeler { centre, radius: c.rounding() }).collect()
             }
@@ -98,6 +112,25 @@ impl Shape {
             Self::Cuboid(c) => c.mass_properties(density),
             Self::Revolution(r) => r.mass_properties(density),
             Self::Hull(h) => h.mass_properties(density),
+            Self::Compound(c) => c.mass_properties(density),
+        }
+    }
+
+    /// The convex pieces that the body is made of; of a body of revolution the balls on its axis and the discs within its rings.
+    pub(crate) fn pieces(&self) -> Vec<Piece> {
+        match self {
+            Self::Ball(radius) => vec![Piece::ball(*radius, DVec3::ZERO)],
+            Self::Cuboid(c) => vec![Convex::Cuboid(*c).piece(DVec3::ZERO, DMat3::IDENTITY)],
+            Self::Hull(h) => vec![Convex::Hull(h.clone()).piece(DVec3::ZERO, DMat3::IDENTITY)],
+            Self::Revolution(r) => {
+                let balls = r.row().iter().map(|f| Piece::ball(f.radius, f.centre));
+                let discs = r.rings().iter().map(|ring| {
+                    let core = Core::Discs(frustum::Discs::new([0.0; 2], [ring.circle; 2]));
+                    Piece::new(core, ring.radius, DVec3::new(0.0, 0.0, ring.height), DMat3::IDENTITY)
+                });
+                balls.chain(discs).collect()
+            }
+            Self::Compound(c) => c.pieces.clone(),
         }
     }
 }

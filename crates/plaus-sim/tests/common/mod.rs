@@ -3,6 +3,7 @@
 
 pub mod smooth;
 pub mod turning;
+pub mod zoo;
 
 use glam::DVec3;
 use plaus_sim::marbles::{Marble, MarbleSpec, MarbleWorld, Marbles, Start};

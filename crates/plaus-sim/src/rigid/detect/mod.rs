@@ -44,7 +44,7 @@ pub(super) fn earliest(f: f64, rate: f64, m: f64) -> f64 {
 }
 
 /// A search for the first contact of one body.
-pub(super) struct Search<'s> {
+pub(in crate::rigid) struct Search<'s> {
     pub(super) spec: &'s Spec,
     pub(super) body: &'s Turning,
     /// Largest angular speed.
@@ -81,6 +81,10 @@ impl Rigid {
         };
         let mut search = Search { spec, body, fastest, turning, axial, until: until - body.path.t, found: None };
         for (k, part) in self.parts.iter().enumerate() {
+            if let Some(ground) = self.ground(spec, k) {
+                search.pieces(k as u16, ground);
+                continue;
+            }
             match part {
                 Part::Plane(plane) => {
                     if let Some((time, point)) = search.half_space(k as u16, (plane.normal, plane.offset), None) {
@@ -92,6 +96,7 @@ impl Rigid {
                     _ => search.block(k as u16, part),
                 },
                 Part::Table(table) => search.table(k as u16, table),
+                Part::Solid(_) | Part::Mesh(_) => {}
             }
         }
         let (time, surface) = search.found?;
@@ -108,8 +113,12 @@ impl Search<'_> {
     }
 
     pub(super) fn hit(&mut self, time: f64, part: u16, point: usize) {
+        self.strikes(time, Surface::Part { part, point: point as u16 });
+    }
+
+    pub(super) fn strikes(&mut self, time: f64, surface: Surface) {
         self.until = time;
-        self.found = Some((time, Surface::Part { part, point: point as u16 }));
+        self.found = Some((time, surface));
     }
 
     /// When the sphere around the body comes down to `level` along `normal`.

@@ -16,7 +16,8 @@ use super::MassProperties;
 use crate::error::WorldError;
 use glam::{DMat3, DQuat, DVec3};
 use integrals::Moments;
-use principal::principal;
+pub(super) use integrals::outer;
+pub(super) use principal::principal;
 use std::collections::BTreeMap;
 
 /// Most corners of one face: all points at which a body stands on flat ground are kept (`MOST_TOUCHES` of a body), and some of a wall beside it.

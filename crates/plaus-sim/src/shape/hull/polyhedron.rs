@@ -53,7 +53,7 @@ pub(crate) enum On {
 
 impl Polyhedron {
     /// From corners (at most [`MOST_CORNERS`]) and loops of their indices that form a closed surface.
-    pub(super) fn new(corners: Vec<DVec3>, loops: &[Vec<usize>]) -> Self {
+    pub(crate) fn new(corners: Vec<DVec3>, loops: &[Vec<usize>]) -> Self {
         let mut edges: Vec<Edge> = Vec::new();
         for (k, face) in loops.iter().enumerate() {
             for (a, b) in around(face) {

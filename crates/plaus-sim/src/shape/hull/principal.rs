@@ -14,7 +14,7 @@ const EQUAL: f64 = 1e-12;
 const SWEEPS: usize = 20;
 
 /// Moments, and the axes as columns of a rotation. Axes that are principal already stay as they are.
-pub(super) fn principal(tensor: DMat3) -> (DVec3, DMat3) {
+pub(crate) fn principal(tensor: DMat3) -> (DVec3, DMat3) {
     let mut m: [[f64; 3]; 3] = tensor.to_cols_array_2d();
     let mut axes = [DVec3::X, DVec3::Y, DVec3::Z];
     let tiny = ROUNDING * (m[0][0] + m[1][1] + m[2][2]);

@@ -176,7 +176,7 @@ impl<'h> HullPair<'h> {
 }
 
 /// From a part of a core's surface to a point: the direction, how far, and whether the foot is on that part.
-fn foot(core: &Polyhedron, p: DVec3, on: On) -> (DVec3, f64, bool) {
+pub(crate) fn foot(core: &Polyhedron, p: DVec3, on: On) -> (DVec3, f64, bool) {
     let above = |face: u8| core.face(face).normal.dot(p) - core.face(face).offset;
     let (away, is_on) = match on {
         On::Face(face) => return (core.face(face).normal, above(face), core.is_over(face, p, 0.0)),

@@ -1,0 +1,441 @@
+//! When convex pieces first touch: those of two bodies, or of a body and what stands still.
+//!
+//! Along a fixed direction every point of a body keeps a height that can shrink only so fast: its rate is known, and
+//! its acceleration is bounded by what gravity and the body's rotation can do. The lowest of the heights `p·n + (p·(n ×
+//! ω) + n·v) τ` is minus the support function in the direction `−(n + τ n × ω)`, so a lower bound on the gap of two
+//! pieces along the normal of their nearest points follows from two support functions, whatever the pieces are; it is
+//! concave in τ, and its first root cannot be overshot. The bodies are advanced by the least of those roots
+//! (conservative advancement: Mirtich, *Impulse-based Dynamic Simulation* (1996), ch. 2.3, here of second order).
+//!
+//! Bodies in lasting contact are looked at [`LOOKS`] times within a step, for points away from those that it is made
+//! of: the steps deal with these.
+
+use super::body::{Phase, Pose, Turning};
+use super::bound::Bound;
+use super::detect::{Search, earliest};
+use super::spots::{Spot, for_elements};
+use super::still::Ground;
+use super::tumble::Tumble;
+use super::{Rigid, Spec, step};
+use crate::scenery::Surface;
+use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
+use glam::{DMat3, DVec3};
+
+/// Most advancements of one search; then the time reached is handed on as an event, and the bodies are looked at anew.
+const MOST_ADVANCES: usize = 400;
+
+/// Least advancement near contact: the time in which points move by this part of the gap at which bodies touch. Default
+/// 0.1.
+const LEAST: f64 = 0.1;
+
+/// Looks at bodies in lasting contact within one of their steps. Default 8.
+const LOOKS: u32 = 8;
+
+/// Halvings of the time between two such looks.
+const HALVINGS: usize = 12;
+
+/// Distance over the size within which a point counts as part of the contact that lasts. Default 0.25.
+const PART_OF_IT: f64 = 0.25;
+
+/// Cosine of the angle between the normals of points that are part of one contact. Default 0.995.
+const ALIKE: f64 = 0.995;
+
+/// How far ahead what stands still is looked at at once, over the body's reach. Default 2.
+const AHEAD: f64 = 2.0;
+
+/// Way over the size that a body may go between two looks where it is below the plane of a triangle, beside it. Default
+/// 0.01.
+const CREEP: f64 = 0.01;
+
+/// What a body may touch.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Target<'w> {
+    Body(&'w Spec, &'w Turning),
+    Ground(Ground<'w>),
+}
+
+/// A search for the first contact of a body with another, or with a part.
+pub(super) struct Hunt<'w> {
+    pub(super) spec: &'w Spec,
+    pub(super) body: &'w Turning,
+    pub(super) target: Target<'w>,
+    /// Gap at which they touch, in m.
+    pub(super) level: f64,
+    pub(super) from: f64,
+    pub(super) until: f64,
+    /// Whether they are in lasting contact.
+    pub(super) linked: bool,
+}
+
+/// Where both are.
+pub(super) struct Scene {
+    pub(super) a: Pose,
+    pub(super) b: Pose,
+}
+
+/// What pieces that are looked at do next.
+struct Next {
+    /// How long at least nothing new touches.
+    step: f64,
+    /// The point that approaches fastest, and its rate.
+    struck: Option<(f64, Spot)>,
+    /// The nearest points, if nothing else was found.
+    nearest: Option<(f64, Spot)>,
+}
+
+impl Hunt<'_> {
+    fn other(&self) -> Option<(&Spec, &Turning)> {
+        match self.target {
+            Target::Body(spec, body) => Some((spec, body)),
+            Target::Ground(_) => None,
+        }
+    }
+
+    /// The first touch in `[from, until]` while approaching, and of which points.
+    pub(super) fn first(&self) -> Option<(f64, Spot)> {
+        let mut tumbles = [Some(self.body.tumble(self.spec)), self.other().map(|(spec, body)| body.tumble(spec))];
+        if self.linked {
+            return self.looked(&mut tumbles);
+        }
+        let still = DVec3::ZERO;
+        let (pull, other_reach) = self
+            .other()
+            .map_or((self.body.path.a.length(), 0.0), |(s, b)| ((self.body.path.a - b.path.a).length(), s.reach));
+        let swing = [fastest(self.spec, self.body), self.other().map_or(0.0, |(s, b)| fastest(s, b))];
+        let reach = self.spec.reach + other_reach;
+        let turning = |w: f64, s: &Spec| w * w * (1.0 + s.wobble) * s.reach;
+        let m = pull + turning(swing[0], self.spec) + self.other().map_or(0.0, |(s, _)| turning(swing[1], s));
+        let (longest, gain) = ((reach / pull).sqrt(), (pull * reach).sqrt());
+        let mut time = self.from;
+        let mut window: Option<(f64, Vec<u32>)> = None;
+        let mut last = None;
+        for _ in 0..MOST_ADVANCES {
+            if let Some((_, b)) = self.other() {
+                let offset = self.body.path.at(time) - b.path.at(time);
+                let away = offset.length() - reach - self.level;
+                if away > 0.0 {
+                    let dv = velocity(self.body, time) - velocity(b, time);
+                    let step = earliest(away, offset.dot(dv) / offset.length(), pull);
+                    // Never less than a thousandth of the gap, so that it ends.
+                    time +=
+                        step + 1e-3 * self.level / (dv.length() + (pull * self.level).sqrt()).max(f64::MIN_POSITIVE);
+                    if time >= self.until || time.is_nan() {
+                        return None;
+                    }
+                    continue;
+                }
+            }
+            let scene = self.scene(&mut tumbles, time);
+            let relative = scene.a.v - self.other().map_or(still, |_| scene.b.v);
+            let speed = relative.length() + (swing[0] * self.spec.reach + swing[1] * other_reach) + gain;
+            let mut next = Next { step: longest.min(self.until - time), struck: None, nearest: None };
+            if let Target::Ground(Ground::Still(ground)) = self.target {
+                if window.as_ref().is_none_or(|w| time >= w.0) {
+                    let end = (time + AHEAD * reach / speed).min(self.until);
+                    let start = self.body.path.t;
+                    let swept = self.body.path.bounds(time - start, end - start);
+                    let mut near = window.take().map_or_else(Vec::new, |w| w.1);
+                    ground.meeting(&swept.grown(self.spec.reach * (1.0 + 1e-9) + self.level), &mut near);
+                    window = Some((end, near));
+                }
+                if let Some((end, _)) = window {
+                    next.step = next.step.min(end - time);
+                }
+            }
+            let near = window.as_ref().map_or(&[][..], |w| &w.1);
+            self.look(&scene, near, (speed, m), &mut next);
+            if let Some((_, spot)) = next.struck {
+                return Some((time, spot));
+            }
+            last = next.nearest.map(|n| n.1).or(last);
+            // Nothing that touches approaches: an overlap may grow to twice what it is until then.
+            let overlap = -next.nearest.map_or(0.0, |n| n.0);
+            let least = (LEAST * self.level).max(overlap.min(CREEP * self.spec.size));
+            time += next.step.max(least / speed.max(f64::MIN_POSITIVE));
+            if time >= self.until || time.is_nan() {
+                return None;
+            }
+        }
+        last.map(|spot| (time, spot))
+    }
+
+    fn scene(&self, tumbles: &mut [Option<Tumble>; 2], time: f64) -> Scene {
+        let mut pose = |k: usize, spec: &Spec, b: &Turning| {
+            let dt = time - b.path.t;
+            let free = spec.wobble != 0.0 && b.turns_freely();
+            let (mut r, mut spin) = (DMat3::from_quat(b.turn), None);
+            if let Some(tumble) = &mut tumbles[k] {
+                r = tumble.at(dt);
+                spin = tumble.spin();
+            }
+            let w = if free { spin.unwrap_or_else(|| b.drift_spin(spec, dt)) } else { b.spin };
+            Pose { x: b.path.after(dt), r, v: b.path.velocity_after(dt), w }
+        };
+        let a = pose(0, self.spec, self.body);
+        let none = Pose { x: DVec3::ZERO, r: DMat3::IDENTITY, v: DVec3::ZERO, w: DVec3::ZERO };
+        let b = self.other().map_or(none, |(spec, body)| pose(1, spec, body));
+        Scene { a, b }
+    }
+
+    /// Looks at all pairs of pieces.
+    fn look(&self, scene: &Scene, near: &[u32], (speed, m): (f64, f64), next: &mut Next) {
+        for (own, piece) in self.spec.pieces.iter().enumerate() {
+            match self.target {
+                Target::Ground(Ground::Plane(plane)) => {
+                    let first = piece.placed(&scene.a.r, DVec3::ZERO);
+                    let n = plane.normal;
+                    let gap = plane.distance(scene.a.x) - first.support(-n) - piece.rounding;
+                    if gap <= self.level {
+                        let down = first.axes.transpose() * -n;
+                        for_elements(piece, down, |mark, at| {
+                            let p = first.centre + first.axes * at - n * piece.rounding;
+                            let rate = scene.a.velocity(p).dot(n);
+                            if plane.distance(scene.a.x) + n.dot(p) <= self.level {
+                                next.touches(rate, Spot { own: own as u8, other: 0, mark });
+                            }
+                        });
+                    }
+                    let bound = Bound::new(gap - 0.5 * self.level, n, scene, m);
+                    let p = first.farthest(-n);
+                    let rate = scene.a.velocity(p).dot(n);
+                    next.step = next.step.min(bound.root(rate, next.step, |d| first.support(d), |_| 0.0));
+                }
+                Target::Ground(Ground::Still(still)) => {
+                    let middle = scene.a.x + scene.a.r * piece.at;
+                    for &other in near {
+                        let away = still.distance(other, middle) - piece.reach - self.level;
+                        if !self.is_off(away, (speed, m), next) {
+                            let both = still.both(piece, other, &scene.a);
+                            self.pair(scene, own, other, &both, m, next);
+                        }
+                    }
+                }
+                Target::Body(spec, _) => {
+                    let shift = scene.b.x - scene.a.x;
+                    let first = piece.placed(&scene.a.r, DVec3::ZERO);
+                    for (other, theirs) in spec.pieces.iter().enumerate() {
+                        let both = Both { first, second: theirs.placed(&scene.b.r, shift) };
+                        let away = (first.centre - both.second.centre).length() - both.size() - self.level;
+                        if !self.is_off(away, (speed, m), next) {
+                            self.pair(scene, own, other as u32, &both, m, next);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether pieces whose spheres or boxes are this far apart need no closer look.
+    fn is_off(&self, away: f64, (speed, m): (f64, f64), next: &mut Next) -> bool {
+        if away <= 0.0 {
+            return false;
+        }
+        let safe = earliest(away, -speed, m);
+        if safe >= next.step {
+            return true;
+        }
+        if away > self.spec.size {
+            next.step = safe;
+            return true;
+        }
+        false
+    }
+
+    /// Looks at one pair of pieces.
+    fn pair(&self, scene: &Scene, own: usize, other: u32, both: &Both, m: f64, next: &mut Next) {
+        let shift = scene.b.x - scene.a.x;
+        let still = if let Target::Ground(Ground::Still(still)) = self.target { Some(still) } else { None };
+        match still.and_then(|s| s.over_plane(other, both)) {
+            Some(None) => return,
+            Some(Some(low)) if low > self.level => return self.over_facet(scene, other, both, m, next),
+            _ => {}
+        }
+        let found = nearest(both);
+        let rate = |m: &Meeting| self.rate(scene, m, shift);
+        let spot = |mark: Mark| Spot { own: own as u8, other, mark };
+        if next.nearest.is_none_or(|n| found.gap < n.0) {
+            next.nearest = Some((found.gap, spot(found.mark)));
+        }
+        let mut is_one = true;
+        if found.gap <= self.level {
+            is_one = false;
+            let mut touch = |m: &Meeting| {
+                is_one = true;
+                next.touches(rate(m), spot(m.mark));
+            };
+            match still {
+                Some(still) => still.for_touching(other, both, scene.a.x, self.level, touch),
+                None => both.touching(&found, self.level, |m| touch(&m)),
+            }
+        }
+        if !is_one && self.facet(other).is_some() {
+            // What is beside the triangle is nearer.
+            return self.over_facet(scene, other, both, m, next);
+        }
+        let bound = Bound::new(found.gap - 0.5 * self.level, found.normal, scene, m);
+        let second = |d: DVec3| if self.other().is_some() { both.second.support(d) - shift.dot(d) } else { 0.0 };
+        next.step = next.step.min(bound.root(rate(&found), next.step, |d| both.first.support(d), second));
+    }
+
+    /// The plane of a triangle says when it can be touched.
+    fn over_facet(&self, scene: &Scene, other: u32, both: &Both, m: f64, next: &mut Next) {
+        let Some(facet) = self.facet(other) else { return };
+        let p = both.first.farthest(-facet) - facet * both.first.rounding;
+        let f = facet.dot(p - both.second.centre) - 0.5 * self.level;
+        let rate = scene.a.velocity(p).dot(facet);
+        if f <= 0.0 && rate <= 0.0 {
+            // Below the plane beside the triangle: what is over it comes so near at most until the next look.
+            let speed = scene.a.v.length() + scene.a.w.length() * self.spec.reach;
+            next.step = next.step.min(CREEP * self.spec.size / speed.max(f64::MIN_POSITIVE));
+            return;
+        }
+        let bound = Bound::new(f, facet, scene, m);
+        next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), |_| 0.0));
+    }
+
+    fn rate(&self, scene: &Scene, m: &Meeting, shift: DVec3) -> f64 {
+        let other = if self.other().is_some() { scene.b.velocity(m.points[1] - shift) } else { DVec3::ZERO };
+        (scene.a.velocity(m.points[0]) - other).dot(m.normal)
+    }
+
+    fn facet(&self, other: u32) -> Option<DVec3> {
+        match self.target {
+            Target::Ground(Ground::Still(still)) => still.facet(other),
+            _ => None,
+        }
+    }
+
+    /// Calls `each` for all points within a gap: where they are from the first's centre of gravity and their normal,
+    /// rate and name.
+    fn for_points(&self, scene: &Scene, near: &mut Vec<u32>, within: f64, mut each: impl FnMut([DVec3; 2], f64, Spot)) {
+        let shift = scene.b.x - scene.a.x;
+        for (own, piece) in self.spec.pieces.iter().enumerate() {
+            let mut take = |other: u32, m: &Meeting| {
+                let spot = Spot { own: own as u8, other, mark: m.mark };
+                each([m.points[0], m.normal], self.rate(scene, m, shift), spot);
+            };
+            match self.target {
+                Target::Ground(Ground::Plane(plane)) => {
+                    let (first, n) = (piece.placed(&scene.a.r, DVec3::ZERO), plane.normal);
+                    for_elements(piece, first.axes.transpose() * -n, |mark, at| {
+                        let p = first.centre + first.axes * at - n * piece.rounding;
+                        let gap = plane.distance(scene.a.x) + n.dot(p);
+                        if gap <= within {
+                            each([p, n], scene.a.velocity(p).dot(n), Spot { own: own as u8, other: 0, mark });
+                        }
+                    });
+                }
+                Target::Ground(Ground::Still(still)) => {
+                    let middle = scene.a.x + scene.a.r * piece.at;
+                    still.near(middle, piece.reach + within, near);
+                    for &other in &*near {
+                        if !still.is_far(other, middle, piece.reach + within) {
+                            let both = still.both(piece, other, &scene.a);
+                            still.for_touching(other, &both, scene.a.x, within, |m| take(other, m));
+                        }
+                    }
+                }
+                Target::Body(spec, _) => {
+                    for (other, theirs) in spec.pieces.iter().enumerate() {
+                        let first = piece.placed(&scene.a.r, DVec3::ZERO);
+                        let both = Both { first, second: theirs.placed(&scene.b.r, shift) };
+                        if (first.centre - both.second.centre).length() - both.size() <= within {
+                            both.touching(&nearest(&both), within, |m| take(other as u32, &m));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Bodies in lasting contact: looks within the step for a point that is no part of it.
+    fn looked(&self, tumbles: &mut [Option<Tumble>; 2]) -> Option<(f64, Spot)> {
+        let (mut near, mut held) = (Vec::new(), Vec::new());
+        let scene = self.scene(tumbles, self.from);
+        self.for_points(&scene, &mut near, step::TOUCHING * self.level, |at, _, _| held.push(at));
+        let reach = PART_OF_IT * self.spec.size;
+        let mut newest = |time: f64| {
+            let scene = self.scene(tumbles, time);
+            let mut new: Option<(f64, Spot)> = None;
+            self.for_points(&scene, &mut near, 0.5 * self.level, |[p, n], rate, spot| {
+                let is_new = || {
+                    held.iter().all(|[h, m]: &[DVec3; 2]| (*h - p).length_squared() > reach * reach || m.dot(n) < ALIKE)
+                };
+                if rate < 0.0 && new.is_none_or(|n| rate < n.0) && is_new() {
+                    new = Some((rate, spot));
+                }
+            });
+            new
+        };
+        let mut low = self.from;
+        for k in 1..=LOOKS {
+            let mut high = self.from + (self.until - self.from) * (f64::from(k) / f64::from(LOOKS));
+            let Some(mut found) = newest(high) else {
+                low = high;
+                continue;
+            };
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                match newest(middle) {
+                    Some(f) => (high, found) = (middle, f),
+                    None => low = middle,
+                }
+            }
+            return Some((high, found.1));
+        }
+        None
+    }
+}
+
+impl Next {
+    fn touches(&mut self, rate: f64, spot: Spot) {
+        if rate < 0.0 && self.struck.is_none_or(|s| rate < s.0) {
+            self.struck = Some((rate, spot));
+        }
+    }
+}
+
+fn velocity(b: &Turning, time: f64) -> DVec3 {
+    b.path.velocity_after(time - b.path.t)
+}
+
+/// Largest angular speed of a body within its current motion.
+fn fastest(spec: &Spec, body: &Turning) -> f64 {
+    let now = body.spin.length();
+    if spec.wobble == 0.0 || !body.turns_freely() {
+        return now;
+    }
+    spec.inertia.momentum(body.turn, body.spin).length() / spec.inertia.moments.min_element()
+}
+
+impl Rigid {
+    /// First time in `[from, until]` at which pieces of two bodies touch while approaching. Of bodies in lasting
+    /// contact (`linked`) only at points that are not part of it yet.
+    pub(super) fn first_of_pieces(
+        &self,
+        [i, j]: [usize; 2],
+        bodies: [&Turning; 2],
+        [from, until]: [f64; 2],
+        linked: bool,
+    ) -> Option<f64> {
+        let target = Target::Body(&self.specs[j], bodies[1]);
+        let level = self.pair_gap([i, j]);
+        let hunt = Hunt { spec: &self.specs[i], body: bodies[0], target, level, from, until, linked };
+        hunt.first().map(|found| found.0)
+    }
+}
+
+impl Search<'_> {
+    /// First contact of a body's pieces with a part.
+    pub(super) fn pieces(&mut self, part: u16, ground: Ground) {
+        let (spec, body) = (self.spec, self.body);
+        let of_part = |s: &Surface| matches!(s, Surface::Spot { part: p, .. } if *p == part);
+        let linked = matches!(body.phase, Phase::Step | Phase::Glide) && body.touching().iter().any(of_part);
+        let start = body.path.t;
+        let (from, until) = (start, start + self.until);
+        let hunt = Hunt { spec, body, target: Target::Ground(ground), level: spec.gap, from, until, linked };
+        if let Some((time, spot)) = hunt.first() {
+            self.strikes(time - start, spot.surface(part));
+        }
+    }
+}

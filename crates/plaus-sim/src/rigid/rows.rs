@@ -1,0 +1,136 @@
+//! The table of pairs: which row serves two bodies. A row knows their distance, when they first touch, and all points
+//! at which they do.
+//!
+//! What is new in a row: a line here, and its answer in each of the functions below. The compiler asks for both.
+
+use super::body::{Pose, Turning};
+use super::pair::{Feature, PairTouch, balls, cuboid_and_balls, swapped};
+use super::revolved::{revolved_and_ball, two_revolved};
+use super::{Rigid, Skin};
+use glam::DVec3;
+
+/// A row of the table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Row {
+    /// Two balls.
+    Balls,
+    /// Balls and rings of a body of revolution against a ball.
+    RevolvedAndBall,
+    /// Balls and rings of two bodies of revolution.
+    Revolved,
+    /// Two cuboids, exactly.
+    Cuboids,
+    /// A cuboid against the balls of another body.
+    CuboidAndBalls,
+    /// Two polyhedra, exactly; a ball is one of a single corner.
+    Hulls,
+    /// Convex pieces of any kind, exactly: all that has no row of its own.
+    Pieces,
+}
+
+impl Row {
+    pub(super) fn of(a: &Skin, b: &Skin) -> Self {
+        use Skin::{Ball, Compound, Cuboid, Hull, Revolved};
+        match (a, b) {
+            (Ball, Ball) => Self::Balls,
+            (Ball, Revolved) | (Revolved, Ball) => Self::RevolvedAndBall,
+            (Revolved, Revolved) => Self::Revolved,
+            (Cuboid { .. }, Cuboid { .. }) => Self::Cuboids,
+            (Cuboid { .. }, Ball | Revolved) | (Ball | Revolved, Cuboid { .. }) => Self::CuboidAndBalls,
+            (Hull, Ball | Cuboid { .. } | Hull) | (Ball | Cuboid { .. }, Hull) => Self::Hulls,
+            (Hull, Revolved) | (Revolved, Hull) => Self::Pieces,
+            (Compound, Ball | Cuboid { .. } | Revolved | Hull | Compound) => Self::Pieces,
+            (Ball | Cuboid { .. } | Revolved | Hull, Compound) => Self::Pieces,
+        }
+    }
+}
+
+impl Rigid {
+    #[inline]
+    pub(super) fn row(&self, [i, j]: [usize; 2]) -> Row {
+        Row::of(&self.specs[i].skin, &self.specs[j].skin)
+    }
+
+    /// The nearest points of two bodies.
+    pub(super) fn pair_touch(&self, pair: [usize; 2], poses: [&Pose; 2]) -> PairTouch {
+        let [i, j] = pair;
+        let [a, b] = poses;
+        let (s, t) = (&self.specs[i], &self.specs[j]);
+        let offset = a.x - b.x;
+        let middles = || balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]);
+        match self.row(pair) {
+            Row::Balls => middles(),
+            Row::RevolvedAndBall if s.is_ball => swapped(revolved_and_ball(t, b, -offset, s.reach)),
+            Row::RevolvedAndBall => revolved_and_ball(s, a, offset, t.reach),
+            Row::Revolved => two_revolved([s, t], poses, offset),
+            Row::Cuboids => self.cuboids(pair, poses).map_or_else(middles, |c| c.nearest().into()),
+            Row::CuboidAndBalls if matches!(s.skin, Skin::Cuboid { .. }) => cuboid_and_balls(s, a, t, b, offset),
+            Row::CuboidAndBalls => swapped(cuboid_and_balls(t, b, s, a, -offset)),
+            Row::Hulls => self.hulls(pair, poses).map_or_else(middles, |h| h.nearest(None).into()),
+            Row::Pieces => self.nearest_pieces(pair, poses),
+        }
+    }
+
+    /// First time in `[from, until]` at which two bodies touch while approaching.
+    pub(super) fn first_pair(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
+        match self.row(pair) {
+            Row::Cuboids => self.first_of_cuboids(pair, bodies, [from, until], false),
+            Row::Hulls => self.first_of_hulls(pair, bodies, [from, until], false),
+            Row::Pieces => self.first_of_pieces(pair, bodies, [from, until], false),
+            Row::Balls | Row::RevolvedAndBall | Row::Revolved | Row::CuboidAndBalls => {
+                self.first_of_feelers(pair, bodies, from, until)
+            }
+        }
+    }
+
+    /// The same of bodies in lasting contact, at points that are not part of it. Of round bodies there is one point
+    /// only.
+    pub(super) fn first_new(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
+        match self.row(pair) {
+            Row::Cuboids => self.first_of_cuboids(pair, bodies, [from, until], true),
+            Row::Hulls => self.first_of_hulls(pair, bodies, [from, until], true),
+            Row::Pieces => self.first_of_pieces(pair, bodies, [from, until], true),
+            Row::Balls | Row::RevolvedAndBall | Row::Revolved | Row::CuboidAndBalls => None,
+        }
+    }
+
+    /// Calls `each` for the points at which two bodies touch: all that have faces, the nearest of others.
+    pub(super) fn for_pair_touches(
+        &self,
+        pair: [usize; 2],
+        poses: [&Pose; 2],
+        within: f64,
+        mut each: impl FnMut(PairTouch),
+    ) {
+        match self.row(pair) {
+            Row::Cuboids => {
+                if let Some(cuboids) = self.cuboids(pair, poses) {
+                    cuboids.touching(&cuboids.nearest(), within, |m| each(m.into()));
+                }
+            }
+            Row::Hulls => {
+                if let Some(hulls) = self.hulls(pair, poses) {
+                    hulls.touching(&hulls.nearest(None), within, |m| each(m.into()));
+                }
+            }
+            Row::Pieces => self.for_touching_pieces(pair, poses, within, each),
+            Row::Balls | Row::RevolvedAndBall | Row::Revolved | Row::CuboidAndBalls => {
+                let touch = self.pair_touch(pair, poses);
+                if touch.gap <= within {
+                    each(touch);
+                }
+            }
+        }
+    }
+
+    /// The same point of contact at other poses.
+    pub(super) fn pair_again(&self, pair: [usize; 2], poses: [&Pose; 2], touch: &PairTouch) -> PairTouch {
+        let again = match touch.feature {
+            Some(Feature::Cuboids(f)) => self.cuboids(pair, poses).map(|c| c.again(f, touch.normal).into()),
+            Some(Feature::Hulls(f)) => self.hulls(pair, poses).map(|h| h.again(f, touch.normal).into()),
+            Some(Feature::Pieces(spot)) => Some(self.pieces_again(pair, poses, spot, touch.normal)),
+            None => None,
+        };
+        again.unwrap_or_else(|| self.pair_touch(pair, poses))
+    }
+}

@@ -1,0 +1,264 @@
+//! Where convex pieces touch: of two bodies, or of a body and what stands still.
+
+use super::body::Pose;
+use super::contact::Touch;
+use super::pair::{Feature, PairTouch, balls};
+use super::still::{Ground, Still};
+use super::{Rigid, Spec};
+use crate::scenery::Surface;
+use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
+use crate::shape::piece::{Core, Piece};
+use glam::{DMat3, DVec3};
+
+/// The name of a point of contact: a piece of each, and what of them meets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Spot {
+    pub(super) own: u8,
+    pub(super) other: u32,
+    pub(super) mark: Mark,
+}
+
+/// Bits of the own piece's index in a packed name.
+const OWN: u32 = 32 - crate::shape::convex_pair::BITS;
+
+impl Spot {
+    /// The name of a point of a body on a part.
+    pub(super) fn surface(self, part: u16) -> Surface {
+        let point = u32::from(self.own) | self.mark.number() << OWN;
+        Surface::Spot { part, piece: self.other, point }
+    }
+
+    /// What such a name says.
+    pub(super) fn of_surface(piece: u32, point: u32) -> Self {
+        Self { own: (point & ((1 << OWN) - 1)) as u8, other: piece, mark: Mark::of_number(point >> OWN) }
+    }
+}
+
+/// Distance over a body's size within which points of contact on several pieces of a part count as one. Default 1e-6: a
+/// corner over the edge between two triangles.
+const SAME: f64 = 1e-6;
+
+impl Rigid {
+    /// Pieces of two bodies where they are, about the first's centre of gravity.
+    fn both<'w>(&'w self, [i, j]: [usize; 2], [a, b]: [&Pose; 2], own: usize, other: usize) -> Both<'w> {
+        let [first, second] = [(i, own), (j, other)].map(|(body, k)| &self.specs[body].pieces[k]);
+        Both { first: first.placed(&a.r, DVec3::ZERO), second: second.placed(&b.r, b.x - a.x) }
+    }
+
+    /// Calls `each` for all pairs of pieces of two bodies that are within `within` of each other, and for others too.
+    fn for_near_pieces(
+        &self,
+        pair: [usize; 2],
+        poses: [&Pose; 2],
+        within: impl Fn() -> f64,
+        mut each: impl FnMut(usize, usize, &Both),
+    ) {
+        let [s, t] = pair.map(|k| &self.specs[k]);
+        for own in 0..s.pieces.len() {
+            for other in 0..t.pieces.len() {
+                let both = self.both(pair, poses, own, other);
+                if (both.first.centre - both.second.centre).length() - both.size() <= within() {
+                    each(own, other, &both);
+                }
+            }
+        }
+    }
+
+    /// The nearest points of two bodies by their pieces.
+    pub(super) fn nearest_pieces(&self, pair: [usize; 2], poses: [&Pose; 2]) -> PairTouch {
+        let shift = poses[1].x - poses[0].x;
+        let least = std::cell::Cell::new(f64::INFINITY);
+        let mut best = None;
+        self.for_near_pieces(
+            pair,
+            poses,
+            || least.get(),
+            |own, other, both| {
+                let m = nearest(both);
+                if m.gap < least.get() {
+                    least.set(m.gap);
+                    best = Some(pair_touch(&m, own, other, shift));
+                }
+            },
+        );
+        let [s, t] = pair.map(|k| &self.specs[k]);
+        best.unwrap_or_else(|| balls(-shift, [DVec3::ZERO; 2], [s.reach, t.reach]))
+    }
+
+    /// Calls `each` for the points at which pieces of two bodies touch.
+    pub(super) fn for_touching_pieces(
+        &self,
+        pair: [usize; 2],
+        poses: [&Pose; 2],
+        within: f64,
+        mut each: impl FnMut(PairTouch),
+    ) {
+        let shift = poses[1].x - poses[0].x;
+        self.for_near_pieces(
+            pair,
+            poses,
+            || within,
+            |own, other, both| {
+                both.touching(&nearest(both), within, |m| each(pair_touch(&m, own, other, shift)));
+            },
+        );
+    }
+
+    /// The same point of contact at other poses.
+    pub(super) fn pieces_again(&self, pair: [usize; 2], poses: [&Pose; 2], spot: Spot, towards: DVec3) -> PairTouch {
+        let (own, other) = (usize::from(spot.own), spot.other as usize);
+        let m = self.both(pair, poses, own, other).again(spot.mark, towards);
+        pair_touch(&Meeting { mark: spot.mark, ..m }, own, other, poses[1].x - poses[0].x)
+    }
+
+    /// The axis, in the body's axes, of the rim that a point belongs to whose lowest point runs around as the body
+    /// turns.
+    #[inline]
+    pub(super) fn rim_axis(&self, body: usize, t: &Touch) -> Option<DVec3> {
+        let spec = &self.specs[body];
+        match t.surface {
+            Surface::Spot { piece, point, .. } => {
+                let spot = Spot::of_surface(piece, point);
+                let lowest = matches!(spot.mark, Mark::Rim { of: 0, slot: 0, .. });
+                lowest.then(|| spec.pieces[usize::from(spot.own)].turn.z_axis)
+            }
+            _ => spec.ring_of(t.point()?).map(|_| DVec3::Z),
+        }
+    }
+
+    /// What a part is to the pieces of a body, if they meet it as pieces.
+    #[inline]
+    pub(super) fn ground(&self, spec: &Spec, part: usize) -> Option<Ground<'_>> {
+        if self.stills.is_empty() { None } else { self.stills[part].ground(spec, &self.parts[part]) }
+    }
+
+    /// A point of a body on a part, wherever it is.
+    pub(super) fn spot_touch(&self, index: usize, pose: &Pose, part: u16, spot: Spot) -> Touch {
+        let spec = &self.specs[index];
+        let piece = &spec.pieces[usize::from(spot.own)];
+        let meeting = match self.ground(spec, usize::from(part)) {
+            Some(Ground::Plane(plane)) => {
+                let first = piece.placed(&pose.r, DVec3::ZERO);
+                let height = plane.distance(pose.x);
+                let down = first.axes.transpose() * -plane.normal;
+                let at = element(piece, spot.mark, down).unwrap_or_else(|| piece.core.farthest(down));
+                on_plane(first.centre + first.axes * at, piece.rounding, plane.normal, height, spot.mark)
+            }
+            Some(Ground::Still(still)) => {
+                let both = still.both(piece, spot.other, pose);
+                both.again(spot.mark, still.towards(&both, spot.other))
+            }
+            None => Meeting { normal: DVec3::Z, points: [DVec3::ZERO; 2], gap: f64::INFINITY, mark: spot.mark },
+        };
+        touch(part, spot, &meeting)
+    }
+
+    /// Calls `each` for the points of a body's pieces that are within `within` of a part.
+    pub(super) fn for_spots(&self, index: usize, pose: &Pose, part: usize, within: f64, mut each: impl FnMut(Touch)) {
+        let spec = &self.specs[index];
+        match self.ground(spec, part) {
+            Some(Ground::Plane(plane)) => {
+                let height = plane.distance(pose.x);
+                if height > spec.reach + within {
+                    return;
+                }
+                for (own, piece) in spec.pieces.iter().enumerate() {
+                    let first = piece.placed(&pose.r, DVec3::ZERO);
+                    let down = first.axes.transpose() * -plane.normal;
+                    for_elements(piece, down, |mark, at| {
+                        let m = on_plane(first.centre + first.axes * at, piece.rounding, plane.normal, height, mark);
+                        if m.gap <= within {
+                            each(touch(part as u16, Spot { own: own as u8, other: 0, mark }, &m));
+                        }
+                    });
+                }
+            }
+            Some(Ground::Still(still)) => {
+                let (mut found, mut near) = (Vec::<Touch>::new(), Vec::new());
+                still.near(pose.x, spec.reach + within, &mut near);
+                let same = SAME * spec.size;
+                for &other in &near {
+                    for (own, piece) in spec.pieces.iter().enumerate() {
+                        if still.is_far(other, pose.x + pose.r * piece.at, piece.reach + within) {
+                            continue;
+                        }
+                        let both = still.both(piece, other, pose);
+                        still.for_touching(other, &both, pose.x, within, |m| {
+                            let is_new = || {
+                                found.iter().all(|t| {
+                                    (t.arm - m.points[0]).length() > same || t.normal.dot(m.normal) < 1.0 - SAME
+                                })
+                            };
+                            if is_new() {
+                                found.push(touch(part as u16, Spot { own: own as u8, other, mark: m.mark }, m));
+                            }
+                        });
+                    }
+                }
+                found.into_iter().for_each(each);
+            }
+            None => {}
+        }
+    }
+}
+
+impl Still {
+    /// A piece of a body and one of what stands still, about the body's centre of gravity.
+    pub(super) fn both<'p>(&'p self, piece: &'p Piece, other: u32, pose: &Pose) -> Both<'p> {
+        let second = self.pieces[other as usize].placed(&DMat3::IDENTITY, -pose.x);
+        Both { first: piece.placed(&pose.r, DVec3::ZERO), second }
+    }
+
+    /// A direction towards the body for names that need one.
+    fn towards(&self, both: &Both, other: u32) -> DVec3 {
+        self.facet(other).unwrap_or_else(|| both.second.foot(both.first.centre).0)
+    }
+}
+
+/// A point of contact of a body's skin.
+fn touch(part: u16, spot: Spot, m: &Meeting) -> Touch {
+    Touch { surface: spot.surface(part), part, arm: m.points[0], normal: m.normal, gap: m.gap }
+}
+
+fn pair_touch(m: &Meeting, own: usize, other: usize, shift: DVec3) -> PairTouch {
+    let spot = Spot { own: own as u8, other: other as u32, mark: m.mark };
+    let arms = [m.points[0], m.points[1] - shift];
+    PairTouch { normal: m.normal, arms, gap: m.gap, feature: Some(Feature::Pieces(spot)) }
+}
+
+/// Calls `each` for the corners and points of rims of a piece, in its own axes.
+pub(super) fn for_elements(piece: &Piece, down: DVec3, mut each: impl FnMut(Mark, DVec3)) {
+    match &piece.core {
+        Core::Polyhedron(core) => {
+            for (k, &c) in core.corners.iter().enumerate() {
+                each(Mark::Corner { of: 0, corner: k as u8 }, c);
+            }
+        }
+        Core::Discs(discs) => {
+            for (ring, slot) in (0..2_u8).flat_map(|ring| (0..crate::shape::SLOTS).map(move |slot| (ring, slot))) {
+                if let Some(p) = discs.rim(usize::from(ring), slot, down) {
+                    each(Mark::Rim { of: 0, ring, slot }, p);
+                }
+            }
+        }
+    }
+}
+
+/// The corner or point of a rim of that name, in the piece's axes.
+fn element(piece: &Piece, mark: Mark, down: DVec3) -> Option<DVec3> {
+    match (mark, &piece.core) {
+        (Mark::Corner { corner, .. }, Core::Polyhedron(core)) => Some(core.corner(corner)),
+        // A rim that lies flat has no lowest point: any is.
+        (Mark::Rim { ring, slot, .. }, Core::Discs(discs)) => {
+            discs.rim(usize::from(ring), slot, down).or_else(|| discs.rim(usize::from(ring), 1, down))
+        }
+        _ => None,
+    }
+}
+
+/// The meeting of a core point with a plane over which the origin is `height`.
+fn on_plane(p: DVec3, rounding: f64, normal: DVec3, height: f64, mark: Mark) -> Meeting {
+    let distance = height + normal.dot(p);
+    let arm = p - normal * rounding;
+    Meeting { normal, points: [arm, p - normal * distance], gap: distance - rounding, mark }
+}

@@ -1,0 +1,229 @@
+//! What stands still as the pieces of bodies see it: planes, and pieces under a tree, those of a mesh with what is
+//! solid beside them.
+
+use super::part::Part;
+use super::{RigidWorld, Spec};
+use crate::broad::BoxTree;
+use crate::error::WorldError;
+use crate::scenery::{Aabb, Face, Mesh, Plane};
+use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
+use crate::shape::hull_pair::Feature;
+use crate::shape::piece::{Core, Piece, THICK};
+use crate::shape::{Convex, Cuboid, On, Polyhedron, Shape};
+use glam::{DMat3, DVec3};
+use std::sync::Arc;
+
+/// Pieces that stand still.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Still {
+    pub(super) pieces: Vec<Piece>,
+    boxes: Vec<Aabb>,
+    tree: BoxTree,
+    mesh: Option<Arc<Mesh>>,
+}
+
+/// What a part is to the pieces of a body.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Ground<'w> {
+    Plane(&'w Plane),
+    Still(&'w Still),
+}
+
+/// Sine by which a normal may lean into what is beside an edge, and the distance over a triangle's longest side within
+/// which a point counts as on its edge. Default 1e-6: rounding of nearest points that are a thousandth of a gap away.
+const LEAN: f64 = 1e-6;
+
+impl Still {
+    /// The parts of a world, where bodies may meet any of them by their pieces.
+    pub(super) fn all(world: &RigidWorld) -> Result<Vec<Self>, WorldError> {
+        let compounds = world.bodies.iter().any(|b| matches!(b.shape, Shape::Compound(_)));
+        let needed = |part: &Part| match part {
+            Part::Plane(_) | Part::Block { .. } => compounds,
+            Part::Solid(_) | Part::Mesh(_) => true,
+            Part::Table(_) => false,
+        };
+        if !world.parts.iter().any(needed) {
+            return Ok(Vec::new());
+        }
+        let still = |(k, part): (usize, &Part)| if needed(part) { Self::new(k, part) } else { Ok(Self::default()) };
+        world.parts.iter().enumerate().map(still).collect()
+    }
+
+    /// The pieces of a part, where bodies may meet it by theirs.
+    fn new(index: usize, part: &Part) -> Result<Self, WorldError> {
+        let pieces = match part {
+            Part::Plane(_) | Part::Table(_) => return Ok(Self::default()),
+            Part::Block { bounds, .. } => {
+                let edges = bounds.max - bounds.min;
+                if !edges.is_finite() {
+                    return Err(WorldError::BadSurface {
+                        surface: format!("part {index}"),
+                        field: "extent along an axis",
+                        value: f64::INFINITY,
+                        expected: "a finite length in a world with convex polyhedra or compounds",
+                    });
+                }
+                let middle = (bounds.min + bounds.max) * 0.5;
+                vec![Convex::Cuboid(Cuboid::new(edges, 0.0)?).piece(middle, DMat3::IDENTITY)]
+            }
+            Part::Solid(solid) => {
+                let r = DMat3::from_quat(solid.turn.normalize());
+                let placed = |p: Piece| Piece { at: solid.at + r * p.at, turn: r * p.turn, ..p };
+                solid.shape.pieces().into_iter().map(placed).collect()
+            }
+            Part::Mesh(mesh) => (0..mesh.len()).filter_map(|k| mesh.triangle(k)).map(triangle).collect(),
+        };
+        let boxes: Vec<Aabb> = pieces.iter().map(bounds).collect();
+        let mesh = if let Part::Mesh(mesh) = part { Some(mesh.clone()) } else { None };
+        Ok(Self { tree: BoxTree::new(&boxes), pieces, boxes, mesh })
+    }
+
+    /// How the pieces of a body meet the part, if they do: bodies with ways of their own to meet planes, blocks and
+    /// tables keep to those.
+    #[inline]
+    pub(super) fn ground<'w>(&'w self, spec: &Spec, part: &'w Part) -> Option<Ground<'w>> {
+        match part {
+            Part::Plane(plane) => spec.is_compound().then_some(Ground::Plane(plane)),
+            Part::Block { .. } => spec.is_compound().then_some(Ground::Still(self)),
+            Part::Table(_) => None,
+            Part::Solid(_) | Part::Mesh(_) => Some(Ground::Still(self)),
+        }
+    }
+
+    /// The pieces whose boxes are within `reach` of a point.
+    pub(super) fn near(&self, x: DVec3, reach: f64, found: &mut Vec<u32>) {
+        self.tree.find(&Aabb { min: x - reach, max: x + reach }, found);
+    }
+
+    /// The pieces whose boxes meet a box.
+    pub(super) fn meeting(&self, around: &Aabb, found: &mut Vec<u32>) {
+        self.tree.find(around, found);
+    }
+
+    /// Whether a piece's box is farther from a point than `reach`.
+    pub(super) fn is_far(&self, piece: u32, x: DVec3, reach: f64) -> bool {
+        self.distance(piece, x) > reach
+    }
+
+    /// Distance of a point from a piece's box.
+    pub(super) fn distance(&self, piece: u32, x: DVec3) -> f64 {
+        let b = &self.boxes[piece as usize];
+        (x - x.clamp(b.min, b.max)).length()
+    }
+
+    /// The normal of a triangle out of what it is the skin of.
+    pub(super) fn facet(&self, piece: u32) -> Option<DVec3> {
+        self.mesh.as_ref().map(|mesh| mesh.faces[piece as usize].normal)
+    }
+
+    /// How far apart the plane of a triangle keeps a piece of a body from it, if the part is a mesh; nothing for a
+    /// piece whose middle is behind it, which it does not touch.
+    pub(super) fn over_plane(&self, piece: u32, both: &Both) -> Option<Option<f64>> {
+        let n = self.facet(piece)?;
+        let base = n.dot(both.second.centre);
+        let low = -both.first.support(-n) - both.first.rounding - base;
+        Some((n.dot(both.first.centre) > base).then_some(low))
+    }
+
+    /// How deep behind a triangle a point still counts as in the mesh.
+    fn thickness(&self, piece: u32) -> f64 {
+        THICK * self.pieces[piece as usize].reach
+    }
+
+    /// Calls `each` for the points at which a piece of a body, whose centre of gravity is at `x`, touches one of the
+    /// part. Corners over a triangle, and a little below it, touch its plane.
+    pub(super) fn for_touching(&self, other: u32, both: &Both, x: DVec3, within: f64, mut each: impl FnMut(&Meeting)) {
+        match self.over_plane(other, both) {
+            Some(None) => return,
+            Some(Some(low)) if low > within => return,
+            _ => {}
+        }
+        if let (Some(n), Core::Polyhedron(body), Core::Polyhedron(triangle)) =
+            (self.facet(other), both.first.core, both.second.core)
+        {
+            for (k, &c) in body.corners.iter().enumerate() {
+                let p = both.first.centre + both.first.axes * c;
+                let seen = p - both.second.centre;
+                let distance = n.dot(seen);
+                if distance - both.first.rounding <= within
+                    && distance > -self.thickness(other)
+                    && triangle.is_over(0, seen, 0.0)
+                {
+                    let mark = Mark::Polyhedra(Feature::Corner { of: 0, corner: k as u8, on: On::Face(0) });
+                    let arm = p - n * both.first.rounding;
+                    let points = [arm, p - n * distance];
+                    each(&Meeting { normal: n, points, gap: distance - both.first.rounding, mark });
+                }
+            }
+        }
+        both.touching(&nearest(both), within, |m| {
+            if self.has(other, &m, x) {
+                each(&m);
+            }
+        });
+    }
+
+    /// Whether a meeting is one with the mesh: from outside, and at an edge or a corner not leaning into a triangle
+    /// beside it, which then has the true one. So edges between triangles in one plane, and hollow ones, are not felt.
+    /// `x` is the body's centre of gravity.
+    pub(super) fn has(&self, piece: u32, m: &Meeting, x: DVec3) -> bool {
+        let Some(mesh) = &self.mesh else { return true };
+        let face = &mesh.faces[piece as usize];
+        let (n, q) = (m.normal, m.points[1] + x);
+        let up = n.dot(face.normal);
+        if up < LEAN {
+            return false;
+        }
+        let is_upright = up > 1.0 - LEAN * LEAN;
+        let mut at_edge = false;
+        for (side, &(inward, offset)) in face.sides.iter().enumerate() {
+            let (from, to) = (face.corners[side], face.corners[(side + 1) % 3]);
+            let length = (mesh.vertices()[to as usize] - mesh.vertices()[from as usize]).length();
+            if inward.dot(q) - offset > LEAN * length {
+                continue;
+            }
+            at_edge = true;
+            if is_upright {
+                continue;
+            }
+            let leans_in = |f: &Face| {
+                let own = (0..3).find(|&s| f.corners[s] == from && f.corners[(s + 1) % 3] == to);
+                let other = (0..3).find(|&s| f.corners[s] == to && f.corners[(s + 1) % 3] == from);
+                own.or(other).is_some_and(|s| n.dot(f.sides[s].0) > LEAN)
+            };
+            let beside = face.neighbours[side].map(|k| &mesh.faces[k as usize]);
+            if leans_in(face) || beside.is_some_and(leans_in) {
+                return false;
+            }
+        }
+        if is_upright {
+            return true;
+        }
+        // At a corner no edge may go on into the body.
+        let near = |c: &&u32| (mesh.vertices()[**c as usize] - q).length() <= LEAN * self.pieces[piece as usize].reach;
+        if let Some(&corner) = face.corners.iter().find(near) {
+            let at = mesh.vertices()[corner as usize];
+            return mesh.edges_at_vertex(corner).iter().all(|&e| {
+                let ends = mesh.edges[e as usize].ends;
+                let far = if ends[0] == corner { ends[1] } else { ends[0] };
+                n.dot((mesh.vertices()[far as usize] - at).normalize()) <= LEAN
+            });
+        }
+        at_edge
+    }
+}
+
+/// A triangle as a polyhedron of two faces.
+fn triangle(corners: [DVec3; 3]) -> Piece {
+    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let core = Polyhedron::new(corners.map(|c| c - middle).to_vec(), &[vec![0, 1, 2], vec![0, 2, 1]]);
+    Piece::new(Core::Polyhedron(Arc::new(core)), 0.0, middle, DMat3::IDENTITY)
+}
+
+/// The box around a piece.
+fn bounds(piece: &Piece) -> Aabb {
+    let placed = piece.placed(&DMat3::IDENTITY, DVec3::ZERO);
+    let reach = |axis: usize| placed.support(DVec3::AXES[axis]) + piece.rounding;
+    let low = |axis: usize| -placed.support(-DVec3::AXES[axis]) - piece.rounding;
+    Aabb { min: DVec3::new(low(0), low(1), low(2)), max: DVec3::new(reach(0), reach(1), reach(2)) }
+}

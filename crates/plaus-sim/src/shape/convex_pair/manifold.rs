@@ -1,0 +1,251 @@
+//! All points at which two pieces touch, each named so that it is found again at other poses.
+
+use super::edge::{on_edge, on_rim};
+use super::nearest::{ends, in_common, nearest, polyhedra};
+use super::{Both, Mark, Meeting};
+use crate::shape::frustum::{Discs, SLOTS};
+use crate::shape::hull::Polyhedron;
+use crate::shape::piece::{Core, Placed};
+use glam::DVec3;
+
+/// Cosine of the angle to the nearest points' normal within which a point's own normal must lie. Default ½; others
+/// belong to sides that do not face each other.
+const FACING: f64 = 0.5;
+
+/// Cosine of the lean up to which a disc counts as lying flat on what it touches, so that edges across its rim are
+/// looked at. Default 0.99; a disc that leans more touches at its lowest point.
+const FLAT: f64 = 0.99;
+
+/// Distance over the size within which two points of contact count as one. Default 1e-4.
+const SAME: f64 = 1e-4;
+
+/// Of two such points the nearer counts, if it is by this part of that distance. Default 1e-6: rounding decides nothing.
+const CLOSER: f64 = 1e-6;
+
+impl Both<'_> {
+    /// Calls `each` for the points with a gap of at most `within`, given the nearest points.
+    pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
+        if nearest.gap > within {
+            return;
+        }
+        if let Some(pair) = polyhedra(self) {
+            let arms = [nearest.points[0] - self.first.centre, nearest.points[1] - self.second.centre];
+            let Mark::Polyhedra(feature) = nearest.mark else { return each(*nearest) };
+            let known = crate::shape::hull_pair::Meeting { normal: nearest.normal, arms, gap: nearest.gap, feature };
+            return pair.touching(&known, within, |m| each(in_common(self, m)));
+        }
+        let mut found: Vec<Meeting> = Vec::new();
+        let same = SAME * self.first.reach.min(self.second.reach).max(f64::MIN_POSITIVE);
+        let mut take = |m: Meeting| {
+            if m.gap > within || m.normal.dot(nearest.normal) <= FACING {
+                return;
+            }
+            let known = found.iter_mut().find(|f| (f.points[0] - m.points[0]).length_squared() <= same * same);
+            match known {
+                None => found.push(m),
+                Some(known) if m.gap < known.gap - CLOSER * same => *known = m,
+                Some(_) => {}
+            }
+        };
+        for of in 0..2 {
+            match self.piece(of).core {
+                Core::Polyhedron(hull) => self.of_polyhedron(of, hull, nearest, within, &mut take),
+                Core::Discs(discs) => self.of_rims(of, discs, nearest, within, &mut take),
+            }
+        }
+        self.crossing_rims(nearest.normal, &mut take);
+        take(*nearest);
+        found.into_iter().for_each(each);
+    }
+
+    /// The point of that name at this pose. `towards` is its normal at a pose nearby.
+    pub(crate) fn again(&self, mark: Mark, towards: DVec3) -> Meeting {
+        let again = match mark {
+            Mark::Nearest => None,
+            Mark::Polyhedra(feature) => polyhedra(self).map(|pair| in_common(self, pair.again(feature, towards))),
+            Mark::Corner { of, corner } => {
+                self.corner(usize::from(of), corner).map(|p| self.at_point(usize::from(of), p, mark))
+            }
+            Mark::Rim { of, ring, slot } => self.rim(usize::from(of), ring, slot, towards),
+            Mark::Edge { of, edge, at } => self.edge(usize::from(of), edge, at),
+            Mark::Rims { rings, side } => self.rims(rings, side, towards),
+        };
+        again.unwrap_or_else(|| nearest(self))
+    }
+
+    /// A piece's polyhedron.
+    fn hull(&self, of: usize) -> Option<&Polyhedron> {
+        match self.piece(of).core {
+            Core::Polyhedron(hull) => Some(hull),
+            Core::Discs(_) => None,
+        }
+    }
+
+    fn discs(&self, of: usize) -> Option<&Discs> {
+        match self.piece(of).core {
+            Core::Discs(discs) => Some(discs),
+            Core::Polyhedron(_) => None,
+        }
+    }
+
+    fn corner(&self, of: usize, corner: u8) -> Option<DVec3> {
+        let piece = self.piece(of);
+        Some(piece.centre + piece.axes * self.hull(of)?.corner(corner))
+    }
+
+    /// A point of a rim. The lowest is that nearest to the other's core.
+    fn rim(&self, of: usize, ring: u8, slot: u8, towards: DVec3) -> Option<Meeting> {
+        let (piece, discs) = (self.piece(of), self.discs(of)?);
+        let mark = Mark::Rim { of: of as u8, ring, slot };
+        let down = piece.axes.transpose() * if of == 0 { -towards } else { towards };
+        let lowest = discs.rim(usize::from(ring), slot, down);
+        if slot > 0 || discs.radii[usize::from(ring)] == 0.0 || lowest.is_none() {
+            // Of a rim that lies flat any point is as low as any other.
+            let p = lowest.or_else(|| discs.rim(usize::from(ring), 1, down))?;
+            return Some(self.at_point(of, piece.centre + piece.axes * p, mark));
+        }
+        let other = self.piece(1 - of);
+        let turned = other.axes.transpose();
+        let (into, centre) = (turned * piece.axes, turned * (piece.centre - other.centre));
+        let mut best: Option<Meeting> = None;
+        on_rim(
+            other.core,
+            discs,
+            usize::from(ring),
+            |p| centre + into * p,
+            |d| into * d,
+            |p| {
+                let m = self.at_point(of, other.centre + other.axes * p, mark);
+                if best.is_none_or(|b| m.gap < b.gap) {
+                    best = Some(m);
+                }
+            },
+        );
+        best
+    }
+
+    fn of_rims(&self, of: usize, discs: &Discs, nearest: &Meeting, within: f64, take: &mut impl FnMut(Meeting)) {
+        let is_disc = discs.heights[0] == discs.heights[1] && discs.radii[0] == discs.radii[1];
+        let piece = self.piece(of);
+        let down = piece.axes.transpose() * if of == 0 { -nearest.normal } else { nearest.normal };
+        let (own, other) = (nearest.normal * if of == 0 { 1.0 } else { -1.0 }, self.piece(1 - of));
+        let level = other.support(own) + within + self.roundings() - own.dot(piece.centre);
+        for ring in 0..if is_disc { 1 } else { 2_u8 } {
+            // The plane across the normal that holds the other: what is beyond it is farther.
+            let k = usize::from(ring);
+            if -discs.radii[k] * down.truncate().length() - discs.heights[k] * down.z > level {
+                continue;
+            }
+            for slot in 0..SLOTS {
+                if discs.rim(usize::from(ring), slot, down).is_some()
+                    && let Some(m) = self.rim(of, ring, slot, nearest.normal)
+                {
+                    take(m);
+                }
+            }
+        }
+    }
+
+    fn of_polyhedron(
+        &self,
+        of: usize,
+        hull: &Polyhedron,
+        nearest: &Meeting,
+        within: f64,
+        take: &mut impl FnMut(Meeting),
+    ) {
+        let (piece, other) = (self.piece(of), self.piece(1 - of));
+        let Core::Discs(discs) = other.core else { return };
+        let seen = ends(other, piece, hull);
+        let reach = within + self.roundings();
+        for (k, end) in seen[..hull.corners.len()].iter().enumerate() {
+            if end.distance <= reach {
+                let mark = Mark::Corner { of: of as u8, corner: k as u8 };
+                take(self.at_point(of, other.centre + other.axes * end.at, mark));
+            }
+        }
+        let into = other.axes.transpose() * piece.axes;
+        let is_flat = other.axes.z_axis.dot(nearest.normal).abs() > FLAT;
+        let up = other.axes.z_axis.dot(if of == 0 { nearest.normal } else { -nearest.normal }) > 0.0;
+        for (k, e) in hull.edges.iter().enumerate() {
+            let mark = |at: u8| Mark::Edge { of: of as u8, edge: k as u8, at };
+            let both_ends = e.ends.map(|c| &seen[usize::from(c)]);
+            if let Some(p) = on_edge(other.core, both_ends, into * e.along, e.length, reach) {
+                take(self.at_point(of, other.centre + other.axes * p, mark(0)));
+            }
+            if is_flat && both_ends.iter().any(|end| end.distance > 0.0) {
+                // The upper disc faces what is above it.
+                let ring = if up { 1 } else { 0 };
+                for side in 0..2 {
+                    if let Some(p) = across_rim(discs, ring, side, both_ends[0].at, into * e.along, e.length) {
+                        take(self.at_point(of, other.centre + other.axes * p, mark(1 + 2 * ring as u8 + side)));
+                    }
+                }
+            }
+        }
+    }
+
+    /// A point of an edge over a core of discs.
+    fn edge(&self, of: usize, edge: u8, at: u8) -> Option<Meeting> {
+        let (piece, other, hull) = (self.piece(of), self.piece(1 - of), self.hull(of)?);
+        let discs = self.discs(1 - of)?;
+        let seen = ends(other, piece, hull);
+        let e = hull.edge(edge);
+        let both_ends = e.ends.map(|c| &seen[usize::from(c)]);
+        let along = other.axes.transpose() * (piece.axes * e.along);
+        let p = if at == 0 {
+            let ends = || if both_ends[0].distance < both_ends[1].distance { both_ends[0].at } else { both_ends[1].at };
+            on_edge(other.core, both_ends, along, e.length, f64::INFINITY).unwrap_or_else(ends)
+        } else {
+            across_rim(discs, usize::from((at - 1) / 2), (at - 1) % 2, both_ends[0].at, along, e.length)?
+        };
+        Some(self.at_point(of, other.centre + other.axes * p, Mark::Edge { of: of as u8, edge, at }))
+    }
+
+    /// Where rims that face each other cross.
+    fn crossing_rims(&self, normal: DVec3, take: &mut impl FnMut(Meeting)) {
+        let lean = |p: &Placed| p.axes.z_axis.dot(normal);
+        let (a, b) = (lean(&self.first), lean(&self.second));
+        if a.abs() > FLAT && b.abs() > FLAT {
+            let rings = [u8::from(a < 0.0), u8::from(b > 0.0)];
+            for side in 0..2 {
+                if let Some(m) = self.rims(rings, side, normal) {
+                    take(m);
+                }
+            }
+        }
+    }
+
+    fn rims(&self, rings: [u8; 2], side: u8, normal: DVec3) -> Option<Meeting> {
+        let (a, b) = (self.discs(0)?, self.discs(1)?);
+        let middle = |p: &Placed, d: &Discs, ring: u8| p.centre + p.axes.z_axis * d.heights[usize::from(ring)];
+        let (r, s) = (a.radii[usize::from(rings[0])], b.radii[usize::from(rings[1])]);
+        // The first's own axis: the same points whatever the normal is.
+        let axis = self.first.axes.z_axis;
+        let normal = if axis.dot(normal) < 0.0 { -axis } else { axis };
+        let (from, to) = (middle(&self.first, a, rings[0]), middle(&self.second, b, rings[1]));
+        let between = (to - from) - normal * normal.dot(to - from);
+        let distance = between.length();
+        if r == 0.0 || s == 0.0 || distance >= r + s || distance <= (r - s).abs() {
+            return None;
+        }
+        let along = (distance * distance + r * r - s * s) / (2.0 * distance);
+        let off = (r * r - along * along).max(0.0).sqrt() * if side == 0 { 1.0 } else { -1.0 };
+        let towards = between / distance;
+        let turned = self.first.axes.transpose() * (towards * along + normal.cross(towards) * off);
+        let p = a.rim(usize::from(rings[0]), 0, turned)?;
+        Some(self.at_point(0, self.first.centre + self.first.axes * p, Mark::Rims { rings, side }))
+    }
+}
+
+/// Where an edge crosses the cylinder over a rim, in the discs' axes.
+fn across_rim(discs: &Discs, ring: usize, side: u8, from: DVec3, along: DVec3, length: f64) -> Option<DVec3> {
+    let (p, d) = (from.truncate(), along.truncate());
+    let (a, b, c) = (d.length_squared(), p.dot(d), p.length_squared() - discs.radii[ring] * discs.radii[ring]);
+    let root = b * b - a * c;
+    if root <= 0.0 || a == 0.0 {
+        return None;
+    }
+    let t = if side == 0 { (-b - root.sqrt()) / a } else { (-b + root.sqrt()) / a };
+    (t > 0.0 && t < length).then(|| from + along * t)
+}

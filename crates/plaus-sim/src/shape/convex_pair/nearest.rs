@@ -1,0 +1,346 @@
+//! The nearest points of two pieces.
+
+use super::edge::{End, on_edge, on_rim};
+use super::{Both, Mark, Meeting};
+use crate::shape::frustum::Discs;
+use crate::shape::hull::{MOST_CORNERS, Polyhedron};
+use crate::shape::hull_pair::{self, HullPair};
+use crate::shape::piece::{Core, Placed};
+use glam::DVec3;
+
+/// Distance over the size below which cores count as touching, so that the direction between their nearest points says
+/// nothing. Default 1e-11.
+const TOUCHING: f64 = 1e-11;
+
+/// Slack over the size within which points count as equally low. Default 1e-12.
+const SLACK: f64 = 1e-12;
+
+/// Distance over the size by which nearest points may be farther apart than what separates the cores. Default 1e-10,
+/// above rounding.
+const PROVED: f64 = 1e-10;
+
+/// Most rounds of turning the way out of an overlap.
+const ROUNDS: usize = 40;
+
+/// Least distance over the size to which cores that overlap are moved apart. Default 1e-5: what is nearest then is known
+/// to 1e-10 of it.
+const ASIDE: f64 = 1e-5;
+
+/// Change of a direction within which it counts as found.
+const FOUND: f64 = 1e-10;
+
+/// The nearest points of two pieces; of cores that overlap, those along the way out that is shortest among those found
+/// from several directions.
+pub(crate) fn nearest(both: &Both) -> Meeting {
+    match (both.first.core, both.second.core) {
+        (Core::Polyhedron(_), Core::Polyhedron(_)) => {
+            let pair = polyhedra(both);
+            pair.map_or_else(
+                || both.at_point(0, both.first.centre, Mark::Nearest),
+                |p| in_common(both, p.nearest(None)),
+            )
+        }
+        _ => match searched(both) {
+            Searched::Nearest(m) => m,
+            Searched::Overlap(search) => search.deepest(),
+        },
+    }
+}
+
+/// What came of a search.
+enum Searched<'b, 'p> {
+    Nearest(Meeting),
+    /// The cores overlap; this was looked at.
+    Overlap(Search<'b, 'p>),
+}
+
+/// The nearest points of cores that are not both polyhedra, or else what a search has seen.
+fn searched<'b, 'p>(both: &'b Both<'p>) -> Searched<'b, 'p> {
+    match (both.first.core, both.second.core) {
+        (Core::Discs(_), Core::Discs(_)) => two_of_discs(both),
+        (Core::Discs(_), _) => with_polyhedron(both, 0),
+        _ => with_polyhedron(both, 1),
+    }
+}
+
+/// Both as polyhedra, if they are.
+pub(super) fn polyhedra<'p>(both: &Both<'p>) -> Option<HullPair<'p>> {
+    let placed = |p: &Placed<'p>| match p.core {
+        Core::Polyhedron(core) => Some(hull_pair::Placed { axes: p.axes, core, rounding: p.rounding }),
+        Core::Discs(_) => None,
+    };
+    Some(HullPair::new(both.first.centre - both.second.centre, placed(&both.first)?, placed(&both.second)?))
+}
+
+/// A meeting of polyhedra, whose arms are about their own centres, about the common origin.
+pub(super) fn in_common(both: &Both, m: hull_pair::Meeting) -> Meeting {
+    let points = [both.first.centre + m.arms[0], both.second.centre + m.arms[1]];
+    Meeting { normal: m.normal, points, gap: m.gap, mark: Mark::Polyhedra(m.feature) }
+}
+
+/// What was looked at: the nearest points of cores so far, and the direction that keeps the cores farthest apart.
+struct Search<'b, 'p> {
+    both: &'b Both<'p>,
+    near: Option<Meeting>,
+    far: (f64, DVec3),
+}
+
+impl Search<'_, '_> {
+    fn distance(&self) -> f64 {
+        self.near.map_or(f64::INFINITY, |m| m.gap + self.both.roundings())
+    }
+
+    /// A point of the core `of` and its foot on the other.
+    fn consider(&mut self, of: usize, p: DVec3, mark: Mark) {
+        let m = self.both.at_point(of, p, mark);
+        if self.near.is_none_or(|n| m.gap < n.gap) {
+            self.near = Some(m);
+        }
+    }
+
+    /// Whether the plane across the line between two points keeps the cores as far apart as they are.
+    fn is_proved(&self, m: &Meeting) -> bool {
+        m.gap + self.both.roundings() <= self.both.apart(m.normal) + PROVED * self.both.size()
+    }
+
+    /// A direction towards the first.
+    fn along(&mut self, normal: DVec3) {
+        let apart = self.both.apart(normal);
+        if apart > self.far.0 {
+            self.far = (apart, normal);
+        }
+    }
+
+    /// The answer where cores overlap: the best of the ways out that lead from the best directions looked at and from
+    /// that between the centres.
+    fn deepest(mut self) -> Meeting {
+        if let Some(m) = self.near {
+            self.along(m.normal);
+            if m.gap + self.both.roundings() <= self.far.0 + SLACK * self.both.size() {
+                return m;
+            }
+        }
+        let (apart, normal) = self.far;
+        let mut best = self.at(normal, apart, Mark::Nearest);
+        let centres = (self.both.first.centre - self.both.second.centre).try_normalize();
+        let starts = [Some(normal), self.near.map(|m| m.normal), centres];
+        for start in starts.into_iter().flatten() {
+            if let Some(m) = self.way_out(start)
+                && m.gap > best.gap
+            {
+                best = m;
+            }
+        }
+        best
+    }
+
+    /// The shortest way out near a direction. Moved apart along a direction by more than they overlap, cores have nearest
+    /// points, and along the line between these they overlap less, or as much if it is the same direction: the
+    /// proximal-point method, for what keeps cores apart is the largest of `apart(n) + shift n·direction`.
+    fn way_out(&self, start: DVec3) -> Option<Meeting> {
+        let (mut n, mut found) = (start, None);
+        for _ in 0..ROUNDS {
+            let shift = n * (-2.0 * self.both.apart(n)).max(ASIDE * self.both.size());
+            let moved = Placed { centre: self.both.first.centre + shift, ..self.both.first };
+            let moved = Both { first: moved, second: self.both.second };
+            let Searched::Nearest(m) = searched(&moved) else { break };
+            let (along, turned) = (m.normal.dot(shift), (m.normal - n).length());
+            found = Some(Meeting { points: [m.points[0] - shift, m.points[1]], gap: m.gap - along, ..m });
+            n = m.normal;
+            if turned < FOUND {
+                break;
+            }
+        }
+        found.map(|m| Meeting { mark: Mark::Nearest, ..m })
+    }
+
+    /// Points that a direction is the normal of: of those of the first equally low one over the second, if that is
+    /// seen.
+    fn at(&self, normal: DVec3, apart: f64, mark: Mark) -> Meeting {
+        let (p, q) = (self.both.first.farthest(-normal), self.both.second.farthest(normal));
+        // Of a flat piece over a point or the other way round the point tells where.
+        let (on_p, on_q) = (p - normal * apart, q + normal * apart);
+        let off = |of: usize, x: DVec3| self.both.piece(of).foot(x).1.abs();
+        if off(1, on_p) <= off(0, on_q) {
+            self.both.meeting([p, on_p], normal, apart, mark)
+        } else {
+            self.both.meeting([on_q, q], normal, apart, mark)
+        }
+    }
+}
+
+/// A core of discs, the first (0) or the second (1), and a polyhedron.
+fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Searched<'b, 'p> {
+    let (own, other) = (both.piece(discs), both.piece(1 - discs));
+    let (Core::Discs(core), Core::Polyhedron(hull)) = (own.core, other.core) else {
+        return Searched::Nearest(both.at_point(0, both.first.centre, Mark::Nearest));
+    };
+    let mut search = Search { both, near: None, far: (f64::NEG_INFINITY, DVec3::Z) };
+    let ends = ends(own, other, hull);
+    let mut best = 0;
+    for (k, end) in ends[..hull.corners.len()].iter().enumerate() {
+        if end.distance < ends[best].distance {
+            best = k;
+        }
+    }
+    let world = |p: DVec3| own.centre + own.axes * p;
+    search.consider(1 - discs, world(ends[best].at), Mark::Corner { of: (1 - discs) as u8, corner: best as u8 });
+    let into = own.axes.transpose() * other.axes;
+    for (k, e) in hull.edges.iter().enumerate() {
+        let both_ends = e.ends.map(|c| &ends[usize::from(c)]);
+        if let Some(p) = on_edge(own.core, both_ends, into * e.along, e.length, search.distance()) {
+            search.consider(1 - discs, world(p), Mark::Edge { of: (1 - discs) as u8, edge: k as u8, at: 0 });
+        }
+    }
+    let sign = if discs == 0 { 1.0 } else { -1.0 };
+    for face in &hull.faces {
+        search.along(other.axes * face.normal * sign);
+    }
+    let distance = search.distance();
+    let size = both.size();
+    if distance > TOUCHING * size {
+        // Apart: over a face, or else what was found of corners and edges is nearest.
+        let (apart, normal) = search.far;
+        if apart > TOUCHING * size
+            && let Some(m) = over_face(both, discs, core, normal, apart)
+        {
+            return Searched::Nearest(m);
+        }
+        if let Some(m) = search.near
+            && search.is_proved(&m)
+        {
+            return Searched::Nearest(m);
+        }
+        // No corner and no edge is in the other, but it goes through a face.
+    }
+    for cap in [own.axes.z_axis, -own.axes.z_axis] {
+        if core.radii[usize::from(cap == own.axes.z_axis)] > 0.0 {
+            search.along(cap * -sign);
+        }
+    }
+    Searched::Overlap(search)
+}
+
+/// Corners of a polyhedron as a core of discs sees them.
+pub(super) fn ends(own: &Placed, other: &Placed, hull: &Polyhedron) -> [End; MOST_CORNERS] {
+    let turned = own.axes.transpose();
+    let (into, centre) = (turned * other.axes, turned * (other.centre - own.centre));
+    let mut ends = [End { at: DVec3::ZERO, out: DVec3::Z, distance: f64::INFINITY }; MOST_CORNERS];
+    for (end, corner) in ends.iter_mut().zip(&hull.corners) {
+        let at = centre + into * *corner;
+        let (out, distance) = own.core.foot(at);
+        *end = End { at, out, distance };
+    }
+    ends
+}
+
+/// The meeting of a core of discs with the face of a polyhedron whose normal, towards the first, this is: if one of its
+/// lowest points is over it.
+fn over_face(both: &Both, discs: usize, core: &Discs, normal: DVec3, apart: f64) -> Option<Meeting> {
+    let own = both.piece(discs);
+    let down = if discs == 0 { -normal } else { normal };
+    let own_down = own.axes.transpose() * down;
+    let level = core.support(own_down) - SLACK * both.size();
+    let rims = (0..2).flat_map(|ring| (0..super::super::frustum::SLOTS).map(move |slot| (ring, slot)));
+    for (ring, slot) in rims {
+        let Some(p) = core.rim(ring, slot, own_down) else { continue };
+        if p.dot(own_down) < level {
+            continue;
+        }
+        let m = both.at_point(discs, own.centre + own.axes * p, Mark::Rim { of: discs as u8, ring: ring as u8, slot });
+        if m.gap + both.roundings() <= apart + SLACK * both.size() {
+            return Some(m);
+        }
+    }
+    None
+}
+
+/// Two cores of discs.
+fn two_of_discs<'b, 'p>(both: &'b Both<'p>) -> Searched<'b, 'p> {
+    let mut search = Search { both, near: None, far: (f64::NEG_INFINITY, DVec3::Z) };
+    for of in 0..2 {
+        let (own, other) = (both.piece(of), both.piece(1 - of));
+        let Core::Discs(core) = own.core else { continue };
+        let turned = other.axes.transpose();
+        let (into, centre) = (turned * own.axes, turned * (own.centre - other.centre));
+        for ring in 0..2 {
+            if ring == 1 && core.heights[0] == core.heights[1] && core.radii[0] == core.radii[1] {
+                continue;
+            }
+            on_rim(
+                other.core,
+                core,
+                ring,
+                |p| centre + into * p,
+                |d| into * d,
+                |p| {
+                    search.consider(of, other.centre + other.axes * p, Mark::Nearest);
+                },
+            );
+        }
+        let sign = if of == 0 { -1.0 } else { 1.0 };
+        for (ring, axis) in [(1, own.axes.z_axis), (0, -own.axes.z_axis)] {
+            if core.radii[ring] > 0.0 {
+                search.along(axis * sign);
+            }
+        }
+    }
+    for normal in side_normals(both).into_iter().flatten() {
+        search.along(normal);
+    }
+    let size = both.size();
+    let distance = search.distance();
+    if distance <= TOUCHING * size {
+        return Searched::Overlap(search);
+    }
+    let (apart, normal) = search.far;
+    match search.near {
+        Some(m) if search.is_proved(&m) => Searched::Nearest(m),
+        // Sides that cross, whose points are on no rim.
+        _ if apart > TOUCHING * size => Searched::Nearest(crossing_sides(both, normal, apart)),
+        _ => Searched::Overlap(search),
+    }
+}
+
+/// The directions that are normals of the sides of both at once, towards the first.
+fn side_normals(both: &Both) -> [Option<DVec3>; 2] {
+    let (Core::Discs(a), Core::Discs(b)) = (both.first.core, both.second.core) else { return [None; 2] };
+    let (e, g) = (both.first.axes.z_axis, both.second.axes.z_axis);
+    // Segments have sides too: of radius 0.
+    let slope = |d: &Discs| d.slope().or((d.heights[0] < d.heights[1]).then_some(0.0));
+    let (Some(u), Some(v)) = (slope(a), slope(b)) else { return [None; 2] };
+    // The normal n is −(side's normal of the first), and the side's normal of the second.
+    let (u, cosine) = (-u, e.dot(g));
+    let across = e.cross(g);
+    let sine = across.length_squared();
+    if sine < 1e-14 {
+        return [None; 2];
+    }
+    let (x, y) = ((u - cosine * v) / sine, (v - cosine * u) / sine);
+    let flat = e * x + g * y;
+    let rest = 1.0 - flat.length_squared();
+    if rest < 0.0 {
+        return [None; 2];
+    }
+    let out = across * (rest / sine).sqrt();
+    [Some(flat + out), Some(flat - out)]
+}
+
+/// Points of two sides along their common normal: where the lines on them that it belongs to cross.
+fn crossing_sides(both: &Both, normal: DVec3, apart: f64) -> Meeting {
+    let line = |piece: &Placed, out: DVec3| {
+        let Core::Discs(core) = piece.core else { return [piece.centre; 2] };
+        let down = piece.axes.transpose() * out;
+        [0, 1].map(|ring| {
+            let p = core.rim(ring, 0, down).unwrap_or(DVec3::new(0.0, 0.0, core.heights[ring]));
+            piece.centre + piece.axes * p
+        })
+    };
+    let ([p, q], [r, s]) = (line(&both.first, -normal), line(&both.second, normal));
+    let (e, g, between) = (q - p, s - r, p - r);
+    let (ee, gg, eg) = (e.length_squared(), g.length_squared(), e.dot(g));
+    let determinant = ee * gg - eg * eg;
+    let t = if determinant > 0.0 { (eg * between.dot(g) - gg * between.dot(e)) / determinant } else { 0.0 };
+    let on = p + e * t.clamp(0.0, 1.0);
+    both.meeting([on, on - normal * apart], normal, apart, Mark::Nearest)
+}

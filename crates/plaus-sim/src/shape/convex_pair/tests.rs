@@ -1,0 +1,162 @@
+//! Pairs of pieces at random poses, against proofs of their own and a search over directions.
+
+use super::{Both, Mark, nearest};
+use crate::shape::frustum::Discs;
+use crate::shape::piece::{Core, Piece, Placed};
+use crate::shape::{ConvexHull, Polyhedron, Solid};
+use glam::{DMat3, DQuat, DVec3};
+use std::sync::Arc;
+
+/// Numbers that fill [0, 1) evenly.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0
+    }
+
+    fn turn(&mut self) -> DQuat {
+        let v = self.vector();
+        DQuat::from_xyzw(v.x, v.y, v.z, 2.0 * self.next() - 1.0).normalize()
+    }
+}
+
+fn kinds() -> Vec<(&'static str, Piece)> {
+    let discs = |heights, radii, rounding| {
+        Piece::new(Core::Discs(Discs::new(heights, radii)), rounding, DVec3::ZERO, DMat3::IDENTITY)
+    };
+    let hull = |core: Polyhedron, rounding| {
+        Piece::new(Core::Polyhedron(Arc::new(core)), rounding, DVec3::ZERO, DMat3::IDENTITY)
+    };
+    let rock = ConvexHull::new(&Solid::Icosahedron.corners(0.5), 0.0).unwrap();
+    let triangle = vec![DVec3::new(0.6, 0.0, 0.0), DVec3::new(-0.3, 0.4, 0.0), DVec3::new(-0.3, -0.4, 0.0)];
+    vec![
+        ("cylinder", discs([-0.4, 0.4], [0.3, 0.3], 0.0)),
+        ("coin", discs([-0.02, 0.02], [0.5, 0.5], 0.0)),
+        ("cone", discs([-0.3, 0.5], [0.4, 0.0], 0.0)),
+        ("capsule", discs([-0.4, 0.4], [0.0, 0.0], 0.2)),
+        ("disc", discs([0.0, 0.0], [0.4, 0.4], 0.05)),
+        ("rounded frustum", discs([-0.2, 0.3], [0.5, 0.2], 0.05)),
+        ("ball", Piece::ball(0.3, DVec3::ZERO)),
+        ("box", hull(Polyhedron::cuboid(DVec3::new(0.5, 0.3, 0.2)), 0.0)),
+        ("hull", hull(rock.core.clone(), 0.03)),
+        ("triangle", hull(Polyhedron::new(triangle, &[vec![0, 1, 2], vec![0, 2, 1]]), 0.0)),
+    ]
+}
+
+/// The direction in which two pieces are farthest apart, by climbing from a start: a bound from below on their
+/// distance.
+fn climbed(both: &Both, start: DVec3) -> f64 {
+    let (mut n, mut best, mut step) = (start, both.apart(start), 0.3);
+    while step > 1e-7 {
+        let (u, v) = n.any_orthonormal_pair();
+        let mut better = false;
+        for (x, y) in
+            [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.7, 0.7), (-0.7, 0.7), (0.7, -0.7), (-0.7, -0.7)]
+        {
+            let m = (n + (u * x + v * y) * step).normalize();
+            let apart = both.apart(m);
+            if apart > best {
+                (n, best, better) = (m, apart, true);
+            }
+        }
+        if !better {
+            step *= 0.5;
+        }
+    }
+    best
+}
+
+/// What is called nearest is proved so, where pieces are apart: the planes across the normal keep the cores as far
+/// apart as the points are, to 1e-9 of their size. The points are on the skins.
+#[test]
+fn nearest_points_are_proved() {
+    let kinds = kinds();
+    let mut numbers = Numbers(5);
+    let (mut apart, mut within) = (0, 0);
+    for (i, (one, a)) in kinds.iter().enumerate() {
+        for (j, (other, b)) in kinds.iter().enumerate() {
+            for _ in 0..30 {
+                let turns = [DMat3::from_quat(numbers.turn()), DMat3::from_quat(numbers.turn())];
+                let centre = numbers.vector() * (0.4 + 1.2 * numbers.next());
+                let both = Both { first: a.placed(&turns[0], centre), second: b.placed(&turns[1], DVec3::ZERO) };
+                let m = nearest(&both);
+                let (size, distance) = (both.size(), m.gap + both.roundings());
+                let kept = both.apart(m.normal);
+                assert!((m.normal.length() - 1.0).abs() < 1e-12);
+                if distance > 1e-6 {
+                    apart += 1;
+                    assert!((distance - kept).abs() < 1e-9 * size, "{one} and {other}: {distance} for {kept}");
+                    for of in 0..2 {
+                        let on = both.piece(of).foot(m.points[of]).1 - both.piece(of).rounding;
+                        assert!(on.abs() < 1e-9 * size, "{one} and {other}: {on} off the skin");
+                    }
+                } else if i != 6 && j != 6 && i < 9 && j < 9 {
+                    // In each other: no direction climbed to from it, or from some others, keeps them less deep by
+                    // much.
+                    within += 1;
+                    let starts = [m.normal, numbers.vector().normalize(), centre.normalize()];
+                    let best = starts.into_iter().map(|n| climbed(&both, n)).fold(f64::NEG_INFINITY, f64::max);
+                    assert!(distance <= kept + 1e-9 * size, "{one} in {other}: {distance} for {kept}");
+                    assert!((distance - kept).abs() <= 1e-9 * size, "{one} in {other}: {distance} for {kept}");
+                    // Where pieces are deep in each other another direction may be better; what touches is never so
+                    // deep. Climbing ends 1e-8 from a kink.
+                    let allowed = 1e-7 * size + if best > -0.02 * size { 0.0 } else { 0.3 * -best };
+                    assert!(distance >= best - allowed, "{one} in {other}: {distance} but {best}");
+                }
+            }
+        }
+    }
+    assert!(apart > 1000 && within > 250, "{apart} {within}");
+}
+
+/// A point of contact found again where it was found is the same; all have at most the gap asked for, one of them the
+/// least.
+#[test]
+fn points_of_contact_are_found_again() {
+    let kinds = kinds();
+    let mut numbers = Numbers(11);
+    let mut most = 0;
+    // A triangle is one of a mesh, which is always the second and is seen from outside.
+    for (one, a) in &kinds[..9] {
+        for (other, b) in &kinds {
+            for flat in [true, false] {
+                for _ in 0..20 {
+                    // Many lie flat on each other.
+                    let turn = if flat { DMat3::IDENTITY } else { DMat3::from_quat(numbers.turn()) };
+                    let turns = [turn, DMat3::from_quat(DQuat::from_rotation_z(6.0 * numbers.next()))];
+                    let side = numbers.vector() * 0.3;
+                    let mut both = Both {
+                        first: a.placed(&turns[0], DVec3::new(side.x, side.y, 1.5)),
+                        second: b.placed(&turns[1], DVec3::ZERO),
+                    };
+                    let above = nearest(&both);
+                    both.first = Placed { centre: both.first.centre - above.normal * (above.gap - 1e-4), ..both.first };
+                    let m = nearest(&both);
+                    let (mut least, mut count) = (f64::INFINITY, 0);
+                    both.touching(&m, 2e-4, |t| {
+                        count += 1;
+                        least = least.min(t.gap);
+                        let again = both.again(t.mark, t.normal);
+                        assert!(
+                            t.gap <= 2e-4 && (again.gap - t.gap).abs() < 1e-12,
+                            "{one} on {other}: {t:?} {again:?}"
+                        );
+                        assert!((again.points[0] - t.points[0]).length() < 1e-9, "{one} on {other}: {t:?} {again:?}");
+                    });
+                    most = most.max(count);
+                    // Of two polyhedra a corner that is less than what is asked for beside a face counts as over it, and
+                    // edges that cross so near to a corner are left to that.
+                    let off = if matches!(m.mark, Mark::Polyhedra(_)) { 2e-4 } else { 1e-8 };
+                    assert!(count > 0 && (least - m.gap).abs() < off, "{one} on {other}: {least} for {m:?}");
+                }
+            }
+        }
+    }
+    assert!(most >= 4, "{most}");
+}

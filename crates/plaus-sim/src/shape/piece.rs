@@ -1,0 +1,206 @@
+//! Convex pieces: what every body, and what stands still, is made of for the row of pairs that serves all shapes.
+
+use super::Feeler;
+use super::frustum::Discs;
+use super::hull::Polyhedron;
+use glam::{DMat3, DVec3};
+use plaus_dist::math;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Depth behind a triangle, over its reach, down to which points count as in its mesh. Default 0.1.
+pub(crate) const THICK: f64 = 0.1;
+
+/// Points of a rim that are felt over a table with bumps. Default 32.
+const RIM: usize = 32;
+
+/// The core of a piece about its own origin; what is within the piece's rounding of it is the piece.
+#[derive(Debug, Clone)]
+pub(crate) enum Core {
+    Polyhedron(Arc<Polyhedron>),
+    Discs(Discs),
+}
+
+/// A convex piece fixed in a body.
+#[derive(Debug, Clone)]
+pub(crate) struct Piece {
+    pub(crate) core: Core,
+    pub(crate) rounding: f64,
+    /// Its origin in the body's axes, which is inside its core or on it, and its own axes as columns.
+    pub(crate) at: DVec3,
+    pub(crate) turn: DMat3,
+    /// Largest distance of a point of it, its rounding included, from its origin.
+    pub(crate) reach: f64,
+}
+
+/// A piece where it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Placed<'p> {
+    pub(crate) core: &'p Core,
+    pub(crate) rounding: f64,
+    pub(crate) centre: DVec3,
+    pub(crate) axes: DMat3,
+    pub(crate) reach: f64,
+}
+
+impl Core {
+    fn reach(&self) -> f64 {
+        match self {
+            Self::Polyhedron(p) => p.reach,
+            Self::Discs(d) => d.reach(),
+        }
+    }
+
+    /// How far it reaches in a direction.
+    #[inline]
+    pub(crate) fn support(&self, d: DVec3) -> f64 {
+        match self {
+            Self::Polyhedron(p) => p.support(d),
+            Self::Discs(discs) => discs.support(d),
+        }
+    }
+
+    /// A point of it farthest in a direction.
+    pub(crate) fn farthest(&self, d: DVec3) -> DVec3 {
+        match self {
+            Self::Polyhedron(p) => p.corner(p.farthest(d).0),
+            Self::Discs(discs) => discs.farthest(d),
+        }
+    }
+
+    /// Unit normal out of it at its point nearest to `p`, and how far `p` is from there; negative inside.
+    #[inline]
+    pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
+        match self {
+            Self::Polyhedron(core) => core.foot(p),
+            Self::Discs(discs) => discs.foot(p),
+        }
+    }
+}
+
+impl Polyhedron {
+    /// As [`Core::foot`].
+    pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
+        if let [front, _] = &self.faces[..] {
+            // A triangle of a mesh: over it, and a little below, its plane counts, from outside.
+            let height = front.normal.dot(p) - front.offset;
+            if height > -THICK * self.reach && self.is_over(0, p, 0.0) {
+                return (front.normal, height);
+            }
+        }
+        match self.farthest_face(p) {
+            Some((face, beyond)) if beyond <= 0.0 => (self.face(face).normal, beyond),
+            _ => {
+                let on = self.nearest(p);
+                let (normal, distance, _) = super::hull_pair::foot(self, p, on);
+                (normal, distance)
+            }
+        }
+    }
+}
+
+impl Piece {
+    pub(crate) fn new(core: Core, rounding: f64, at: DVec3, turn: DMat3) -> Self {
+        let reach = core.reach() + rounding;
+        Self { core, rounding, at, turn, reach }
+    }
+
+    /// A ball.
+    pub(crate) fn ball(radius: f64, at: DVec3) -> Self {
+        Self::new(Core::Polyhedron(Arc::new(Polyhedron::point())), radius, at, DMat3::IDENTITY)
+    }
+
+    /// Largest distance of a point of it from the body's centre of gravity.
+    pub(crate) fn reach_from_body(&self) -> f64 {
+        self.rounding
+            + match &self.core {
+                Core::Polyhedron(p) => {
+                    p.corners.iter().map(|&c| (self.at + self.turn * c).length()).fold(0.0, f64::max)
+                }
+                Core::Discs(discs) => {
+                    let seen = self.turn.transpose() * self.at;
+                    let rim = |k: usize| {
+                        let (out, up) = (seen.truncate().length() + discs.radii[k], seen.z + discs.heights[k]);
+                        (out * out + up * up).sqrt()
+                    };
+                    rim(0).max(rim(1))
+                }
+            }
+    }
+
+    /// Balls of its skin: corners, and points of its rims.
+    pub(crate) fn feelers(&self) -> Vec<Feeler> {
+        let ball = |p: DVec3| Feeler { centre: self.at + self.turn * p, radius: self.rounding };
+        match &self.core {
+            Core::Polyhedron(core) => core.corners.iter().map(|&c| ball(c)).collect(),
+            Core::Discs(discs) => {
+                let turned = |k: usize| math::sin_cos(TAU * (k as f64 / RIM as f64));
+                let rim = |ring: usize| {
+                    (0..RIM).filter_map(move |k| {
+                        let (s, c) = turned(k);
+                        discs.rim(ring, 0, DVec3::new(c, s, 0.0)).filter(|_| discs.radii[ring] > 0.0 || k == 0)
+                    })
+                };
+                rim(0).chain(rim(1)).map(ball).collect()
+            }
+        }
+    }
+
+    /// More balls between those, on edges, faces, caps and sides, so that no point of the skin is farther than about
+    /// `spacing` from one; at most 16 along a line.
+    pub(crate) fn feelers_between(&self, spacing: f64) -> Vec<Feeler> {
+        let ball = |p: DVec3| Feeler { centre: self.at + self.turn * p, radius: self.rounding };
+        let parts = |length: f64| (length / spacing).ceil().clamp(1.0, 16.0) as usize;
+        match &self.core {
+            Core::Polyhedron(core) => core.between(spacing).into_iter().map(ball).collect(),
+            Core::Discs(discs) => {
+                let ([low, high], [r0, r1]) = (discs.heights, discs.radii);
+                let mut points = Vec::new();
+                for k in 0..RIM {
+                    let (s, c) = math::sin_cos(TAU * (k as f64 / RIM as f64));
+                    let at = |r: f64, z: f64| DVec3::new(r * c, r * s, z);
+                    for (r, z) in [(r0, low), (r1, high)] {
+                        let n = if r > 0.0 { parts(r) } else { 1 };
+                        points.extend((1..n).map(|i| at(r * (i as f64 / n as f64), z)));
+                    }
+                    let n = parts(high - low);
+                    let along = |i: usize| i as f64 / n as f64;
+                    points.extend((1..n).map(|i| at(r0 + (r1 - r0) * along(i), low + (high - low) * along(i))));
+                }
+                points.into_iter().map(ball).collect()
+            }
+        }
+    }
+
+    /// Where it is in a body with these axes and this centre.
+    #[inline]
+    pub(crate) fn placed(&self, axes: &DMat3, centre: DVec3) -> Placed<'_> {
+        Placed {
+            core: &self.core,
+            rounding: self.rounding,
+            centre: centre + *axes * self.at,
+            axes: *axes * self.turn,
+            reach: self.reach,
+        }
+    }
+}
+
+impl Placed<'_> {
+    /// How far its core reaches in a direction, from the common origin.
+    #[inline]
+    pub(crate) fn support(&self, d: DVec3) -> f64 {
+        self.centre.dot(d) + self.core.support(self.axes.transpose() * d)
+    }
+
+    /// A point of its core farthest in a direction.
+    pub(crate) fn farthest(&self, d: DVec3) -> DVec3 {
+        self.centre + self.axes * self.core.farthest(self.axes.transpose() * d)
+    }
+
+    /// Unit normal out of its core at the point nearest to `p`, and how far `p` is from there.
+    #[inline]
+    pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
+        let (normal, distance) = self.core.foot(self.axes.transpose() * (p - self.centre));
+        (self.axes * normal, distance)
+    }
+}
