@@ -49,7 +49,7 @@ fn a_chance_is_asked_in_pieces_on_this_machine() {
     let place = Place::new();
     job(&place, "local");
     let before = plaus(&place, &["status", JOB]);
-    assert!(before.out.contains("3 pieces: 3 waiting  0 % of the batches"), "{}", before.out);
+    assert!(before.out.contains("3 pieces: 3 waiting  0.0% of the batches"), "{}", before.out);
     let ran = plaus(&place, &["submit", "--again", JOB, "--go"]);
     assert_eq!(ran.code, Some(0), "{}", ran.err);
     ran.says(&["done: plaus chance"]);
