@@ -1,4 +1,5 @@
-//! Jobs that ask for a chance in pieces: merged they are the file of one machine, whatever files and folders are called.
+//! Jobs that ask for a chance in pieces: merged they are the file of one machine, whatever files and folders are
+//! called.
 
 use crate::common::{Ended, Place, SCENARIO};
 use std::path::PathBuf;

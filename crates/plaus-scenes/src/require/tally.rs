@@ -42,8 +42,8 @@ impl Tally {
         Self { states: 0, all: 0, clauses, both: vec![0; pairs] }
     }
 
-    /// What draws from a scene's prior come to: so many of those that the prior allows, by streams of `seed`. `go_on` is
-    /// told how many are done, and says whether there are to be more.
+    /// What draws from a scene's prior come to: so many of those that the prior allows, by streams of `seed`. `go_on`
+    /// is told how many are done, and says whether there are to be more.
     ///
     /// # Errors
     /// [`ModelError`] where a simulation fails.

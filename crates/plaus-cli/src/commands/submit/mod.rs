@@ -36,8 +36,8 @@ pub(crate) struct Args {
     /// Submit those pieces of a job that are not finished and not at work: they go on from their checkpoints
     #[arg(long, value_name = "JOB", conflicts_with_all = ["scenario", "to", "shards", "out", "program"])]
     again: Option<PathBuf>,
-    /// Estimate how likely what is demanded is, as `plaus chance` does, instead of sampling; `--iterations` are those of
-    /// a rung then
+    /// Estimate how likely what is demanded is, as `plaus chance` does, instead of sampling; `--iterations` are those
+    /// of a rung then
     #[arg(long, conflicts_with = "again")]
     chance: bool,
     /// Submit the job. Without this, it is only written and shown
