@@ -94,8 +94,8 @@ def _estimate(made: dict[str, Any]) -> Estimate:
 class Chance(Answer):
     """How likely all that a scenario demands is under its prior, and each part of it in `parts`.
 
-    `plaus.chance` gives one; `Chance.open` reads one from a file that it, or the command, kept it in. As text it is what
-    the command prints.
+    `plaus.chance` gives one; `Chance.open` reads one from a file that it, or the command, kept it in. As text it is
+    what the command prints.
     """
 
     def __init__(
@@ -212,8 +212,8 @@ def chance(
       again goes on after an interruption, and gives the same bytes as one that was never interrupted.
     - `seed`, `set`: as for `sample`. A requirement of your own plays no part: only what the scenario demands does.
     - `batches` of each method (16): four times as many halve the error; `draws` of the prior that a batch counts (500);
-      `particles` of a batch of splitting (100), `steps` that a copied one makes (20); `rungs` of a batch of stones (10),
-      `iterations` of each (1600), after a quarter as many of warm-up.
+      `particles` of a batch of splitting (100), `steps` that a copied one makes (20); `rungs` of a batch of stones
+      (10), `iterations` of each (1600), after a quarter as many of warm-up.
     - `max_time`: stop after so many seconds with the batches that are made; `threads`: 0 is one a core, and no result
       depends on it.
     - `callback`, called a few times a second with a `ChanceProgress`, and `progress`: as for `sample`.
