@@ -158,7 +158,7 @@ def test_solutions_replays_and_events_agree(run):
 def test_a_missing_solution_or_draw_is_named(run):
     with pytest.raises(IndexError, match="there is no solution 100000"):
         run.replay(100_000)
-    with pytest.raises(plaus.RunError, match="there is no draw 99999"):
+    with pytest.raises(plaus.RunError, match="there is no draw 0:99999"):
         run.replay((0, 99_999))
     with pytest.raises(ValueError, match="CHAIN:DRAW"):
         run.replay("seventeen")
