@@ -25,8 +25,8 @@
 //!
 //! Convex pieces in lasting contact are looked at eight times within a step for points that are not part of it, and beside
 //! a triangle that a body hangs below by each hundredth of its size: so deep a new point may be seen. Turning bodies on
-//! meshes are young: of 624 throws of all shapes into all sceneries one ended outside, a cone that left a box of triangles
-//! (`PLAUS_THROWS=8 cargo test -p plaus-sim --test all rigid_pieces`).
+//! meshes and in corners are young: in the example `shapes` a cone left a box of triangles in 1 of 6 throws, and a coin was
+//! seen to lie 3.7 of its half thicknesses deep in planes where three of them meet.
 //!
 //! Rolling and spinning resistance act in the steps of lasting contact on fixed parts, with the distance of the point from the centre of gravity as the radius; not between bodies, nor on
 //! a ball that glides: that goes on until it meets something or the run ends.
