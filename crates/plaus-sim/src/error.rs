@@ -188,6 +188,22 @@ pub enum WorldError {
         /// What it should be.
         expected: &'static str,
     },
+    /// A key of a body that goes its own way.
+    #[error("body {body}: key {key} of its {track}: {field} is {value}, expected {expected}")]
+    BadKey {
+        /// Index of the body.
+        body: usize,
+        /// Which track.
+        track: &'static str,
+        /// Index of the key.
+        key: usize,
+        /// Which number.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
     /// A state that was made for another world.
     #[error("the state has {state} bodies, the world {world}")]
     WrongState {

@@ -45,6 +45,8 @@ pub enum Phase {
     Rest,
     /// Fallen below the world's sink: it takes no further part.
     Gone,
+    /// Goes its own way, by keyframes.
+    Driven,
 }
 
 /// Velocities of a body.
@@ -87,6 +89,8 @@ pub struct Turning {
     /// What is added to the angular momentum between the ends of a step, times 4 in its middle: the impulses between two bodies that pass each other count at where both are then, so that what
     /// they have together is kept.
     pub(crate) passing: DVec3,
+    /// Whether it is to sleep from its release on.
+    pub(super) sleeps: bool,
     /// Events since `hurried_from`, all within `accuracy.rattle`.
     hurried: u32,
     hurried_from: f64,
@@ -124,6 +128,7 @@ impl Turning {
             line: None,
             ends: [Momentum::default(); 2],
             passing: DVec3::ZERO,
+            sleeps: false,
             hurried: 0,
             hurried_from: -NEVER,
             touching: [NOWHERE; MOST_TOUCHES],
@@ -171,7 +176,9 @@ impl Turning {
                 let turn = if dt == 0.0 { self.turn } else { drift(&spec.inertia, self.turn, self.spin, dt).0 };
                 Motion { v: now.v, w: spec.inertia.spin(turn, now.l) }
             }
-            Phase::Flight | Phase::Glide => Motion { v: self.path.velocity_after(dt), w: self.drift_spin(spec, dt) },
+            Phase::Flight | Phase::Glide | Phase::Driven => {
+                Motion { v: self.path.velocity_after(dt), w: self.drift_spin(spec, dt) }
+            }
             Phase::Waiting | Phase::Rest | Phase::Gone => Motion { v: self.path.v, w: self.spin },
         }
     }
@@ -212,7 +219,10 @@ impl Turning {
         }
     }
 
-    pub(super) fn advance(&mut self, spec: &Spec, gravity: DVec3, time: f64) {
+    pub(super) fn advance(&mut self, spec: &Spec, time: f64) {
+        if let Some(drive) = &spec.drive {
+            return drive.follow(self, time);
+        }
         let dt = time - self.path.t;
         self.hurried += 1;
         if time - self.hurried_from > spec.rattle {
@@ -240,12 +250,12 @@ impl Turning {
                         .normalize();
                     (self.path.v, self.spin) = (motion.v, motion.w);
                 }
-                Phase::Waiting | Phase::Rest | Phase::Gone => {}
+                Phase::Waiting | Phase::Driven | Phase::Rest | Phase::Gone => {}
             }
             self.path.x = x;
             self.path.t = time;
             if self.phase == Phase::Glide && time >= self.expiry {
-                super::glide::end(spec, gravity, self);
+                super::glide::end(spec, self);
             }
         } else if self.phase == Phase::Step {
             let now = self.ends[0];
@@ -269,6 +279,13 @@ impl Turning {
         self.phase = phase;
         self.path.a = a;
         self.expiry = NEVER;
+    }
+
+    /// Sleeps where it is.
+    pub(super) fn lie_still(&mut self) {
+        (self.path.v, self.spin) = (DVec3::ZERO, DVec3::ZERO);
+        self.ends = [Momentum::default(); 2];
+        self.begin(Phase::Rest, DVec3::ZERO);
     }
 
     pub(super) fn pose(&self) -> Pose {
@@ -298,7 +315,7 @@ impl Rigid {
     #[must_use]
     pub fn at(&self, index: usize, body: &Turning, time: f64) -> Turning {
         let mut moved = body.clone();
-        moved.advance(&self.specs[index], self.gravity, time);
+        moved.advance(&self.specs[index], time);
         moved
     }
 

@@ -14,12 +14,15 @@ impl RigidScratch {
     /// Whether a step was so long that keeping its points out of the ground lifted bodies higher than their energy can: a pin that rocks over its foot's rim, say. Then
     /// a shorter one must see where it touches.
     pub(super) fn climbs(&self, world: &Rigid) -> Option<f64> {
-        (self.energy_to_keep(world) < 0.0).then_some(0.5)
+        (!self.has_driven(world) && self.energy_to_keep(world) < 0.0).then_some(0.5)
     }
 
     /// Takes back what a step's error has brought: along the first kick's impulses, whose part `α` is moved to the second kick, where the contacts bring back what they need. No other momentum is
     /// touched, impulses stay in their cones. `firsts` are the contacts with the impulses of the first kick, of which what is left stays. What cannot be had in this way is left; whether all was.
     pub(super) fn keep_energy(&mut self, world: &Rigid, firsts: &mut [Contact], enough: Enough) -> bool {
+        if self.has_driven(world) {
+            return true;
+        }
         let allowed = self.energy_to_keep(world) + TINY * self.weight_times_gap(world);
         let mut over = self.kinetic(world) - allowed;
         if over <= 0.0 || firsts.iter().all(|c| c.impulse == DVec3::ZERO) {
@@ -72,7 +75,7 @@ impl RigidScratch {
     fn energy_to_keep(&self, world: &Rigid) -> f64 {
         let left = |p: &Place| {
             let spec = &world.specs[p.body];
-            kinetic(spec, p.turn, p.start.v, p.start.w) + spec.mass * world.gravity.dot(p.end.x - p.start.x)
+            kinetic(spec, p.turn, p.start.v, p.start.w) + spec.mass * spec.pull.dot(p.end.x - p.start.x)
         };
         self.places.iter().map(left).sum()
     }

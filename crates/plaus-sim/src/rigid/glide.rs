@@ -24,7 +24,7 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     let spec = &world.specs[index];
     let part = &world.parts[usize::from(touch.part)];
     let n = touch.normal;
-    let level = n.cross(world.gravity).length() <= LEVEL * world.strength && n.dot(world.gravity) < 0.0;
+    let level = n.cross(spec.pull).length() <= LEVEL * spec.strength && n.dot(spec.pull) < 0.0;
     if !spec.is_ball
         || !level
         || matches!(part, Part::Table(_) | Part::Solid(_) | Part::Mesh(_))
@@ -50,7 +50,7 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
         (DVec3::ZERO, DVec3::ZERO, f64::INFINITY)
     } else {
         let u = slip / speed;
-        let force = friction * world.strength;
+        let force = friction * spec.strength;
         let until = if force > 0.0 { speed / (force * stiff) } else { f64::INFINITY };
         (u * -force, n.cross(u) * (force * (stiff - 1.0) / radius), until)
     };
@@ -73,7 +73,7 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     }
     if body.expiry <= body.path.t {
         // So short a stretch that the clock does not show it.
-        end(spec, world.gravity, body);
+        end(spec, body);
         body.expiry = body.path.t + f64::EPSILON * body.path.t.max(spec.rattle);
     }
     body.list(std::iter::once(touch.surface));
@@ -81,9 +81,9 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
 }
 
 /// Ends a stretch at its time: what rounding has left of the slip is taken away, and the ball is exactly on the line that it reached.
-pub(super) fn end(spec: &Spec, gravity: DVec3, body: &mut Turning) {
+pub(super) fn end(spec: &Spec, body: &mut Turning) {
     if body.rolls_after {
-        let n = -gravity / gravity.length();
+        let n = -spec.pull / spec.strength;
         body.spin = n * body.spin.dot(n) + n.cross(body.path.v) / spec.reach;
         body.rolls_after = false;
     }

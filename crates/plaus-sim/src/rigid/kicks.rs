@@ -14,7 +14,7 @@ use glam::DVec3;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
     enough: Enough,
-    half_kick: DVec3,
+    h: f64,
 }
 
 impl RigidScratch {
@@ -23,8 +23,11 @@ impl RigidScratch {
     pub(super) fn drift(&mut self, world: &Rigid, h: f64) -> Step {
         let (push, fine) = (world.strength * h, self.fine(world) / h);
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
-        let step = Step { enough, half_kick: world.gravity * (0.5 * h) };
-        self.prepare(world, |_, p| (p.start.v + step.half_kick, p.start.w));
+        let step = Step { enough, h };
+        self.prepare(world, |spec, p| {
+            let half_kick = if spec.is_driven() { p.drive } else { spec.pull } * (0.5 * h);
+            (p.start.v + half_kick, p.start.w)
+        });
         self.aim(world, h);
         // The last step's forces are a good guess.
         for (c, &load) in self.contacts.iter_mut().zip(&self.loads) {
@@ -104,7 +107,9 @@ impl RigidScratch {
     pub(super) fn second_kick(&mut self, world: &Rigid, step: &Step) -> bool {
         for (m, p) in self.members.iter_mut().zip(&self.places) {
             let spec = &world.specs[p.body];
-            *m = Self::member(spec, &p.end.r, p.end.v + step.half_kick, p.end.w);
+            // What goes its own way has had half of its velocity's change by then.
+            let half_kick = if spec.is_driven() { p.end.v - p.start.v } else { spec.pull * (0.5 * step.h) };
+            *m = Self::member(spec, &p.end.r, p.end.v + half_kick, p.end.w);
         }
         resist(world, &self.places, &self.touches, &self.contacts, &mut self.members);
         self.firsts.clone_from(&self.contacts);

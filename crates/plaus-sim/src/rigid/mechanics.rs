@@ -56,7 +56,7 @@ impl Mechanics for Rigid {
 
     #[inline]
     fn advance(&self, index: usize, body: &mut Turning, time: f64) {
-        body.advance(&self.specs[index], self.gravity, time);
+        body.advance(&self.specs[index], time);
     }
 
     #[inline]
@@ -72,14 +72,14 @@ impl Mechanics for Rigid {
     }
 
     fn first_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
-        if bodies.iter().all(|b| b.phase == Phase::Rest) {
+        if self.ignores(pair, bodies) {
             return None;
         }
         self.first_pair(pair, bodies, from, until)
     }
 
     fn first_new_meeting(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
-        if bodies.iter().all(|b| b.phase == Phase::Rest) { None } else { self.first_new(pair, bodies, from, until) }
+        if self.ignores(pair, bodies) { None } else { self.first_new(pair, bodies, from, until) }
     }
 
     fn hit_surface(&self, index: usize, body: &mut Turning, surface: Surface, report: &mut dyn FnMut(&Impact)) -> bool {
@@ -106,5 +106,12 @@ impl Mechanics for Rigid {
 
     fn settle(&self, members: &[u32], bodies: &mut [Turning], links: &mut Links, scratch: &mut RigidScratch) {
         step::settle(self, members, bodies, links, scratch);
+    }
+}
+
+impl Rigid {
+    /// Whether two bodies cannot meet now: both are at rest, or go their own ways.
+    fn ignores(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> bool {
+        bodies.iter().all(|b| b.phase == Phase::Rest) || pair.iter().all(|&k| self.specs[k].is_driven())
     }
 }

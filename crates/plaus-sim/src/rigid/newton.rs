@@ -66,6 +66,8 @@ pub(crate) struct Newton {
     projected: Vec<Projected>,
     /// What is added to each contact's normal velocity where cones stand for Coulomb's law.
     shifts: Vec<f64>,
+    /// What counts as the mass of members that nothing moves.
+    immovable: f64,
     /// Compliance of the convex problem.
     compliance: f64,
     /// Velocities at the contacts, and their changes in a round.
@@ -113,7 +115,16 @@ impl Newton {
         let (enough, coarse) = (enough.max(NOISE * fastest), coarse.max(LAWLESS * fastest));
         self.blocks.order(contacts, members.len());
         self.inertia.clear();
-        self.inertia.extend(members.iter().map(|m| m.inverse_inertia.inverse()));
+        let heaviest = members.iter().map(mass).filter(|m| m.is_finite()).fold(0.0, f64::max);
+        self.immovable = IMMOVABLE * heaviest;
+        let immovable = self.immovable;
+        self.inertia.extend(members.iter().map(|m| {
+            if is_immovable(m) {
+                DMat3::from_diagonal(DVec3::splat(immovable * m.reach * m.reach))
+            } else {
+                m.inverse_inertia.inverse()
+            }
+        }));
         if self.rounds(contacts, members, enough) {
             return true;
         }
@@ -222,7 +233,7 @@ impl Newton {
     fn line_search(&mut self, contacts: &[Contact], members: &[Member]) -> f64 {
         // Energy along the change, of the members: its slope is `first + second · part`.
         let (mut first, mut second) = (0.0, 0.0);
-        for (k, (m, inertia)) in members.iter().zip(&self.inertia).enumerate() {
+        for (k, (m, inertia)) in members.iter().zip(&self.inertia).enumerate().filter(|(_, (m, _))| !is_immovable(m)) {
             let ([v, w], [v0, w0]) = (self.blocks.solution(k), self.starts[k]);
             first += v.dot(m.v - v0) / m.inverse_mass + w.dot(*inertia * (m.w - w0));
             second += v.length_squared() / m.inverse_mass + w.dot(*inertia * w);
@@ -271,7 +282,7 @@ impl Newton {
     }
 
     fn go(&self, members: &mut [Member], part: f64) {
-        for (k, m) in members.iter_mut().enumerate() {
+        for (k, m) in members.iter_mut().enumerate().filter(|(_, m)| !is_immovable(m)) {
             let [v, w] = self.blocks.solution(k);
             m.v += v * part;
             m.w += w * part;
@@ -305,7 +316,7 @@ impl Newton {
     fn assemble(&mut self, contacts: &[Contact], members: &[Member]) {
         self.blocks.clear();
         for (k, ((m, inertia), [v, w])) in members.iter().zip(&self.inertia).zip(&self.starts).enumerate() {
-            let mass = 1.0 / m.inverse_mass;
+            let mass = if is_immovable(m) { self.immovable } else { mass(m) };
             // What the change so far takes of the momentum that the impulses bring.
             self.blocks.add_body(k, mass, inertia, [(*v - m.v) * mass, *inertia * (*w - m.w)]);
         }
@@ -313,6 +324,18 @@ impl Newton {
             self.blocks.add_contact(c, p.impulse - c.impulse, &p.stiffness);
         }
     }
+}
+
+/// Mass over that of the heaviest other member that what goes its own way has where bodies' masses are needed. Default
+/// 1e30: beyond all stiffness, so that it counts as moving not at all; no difference of large numbers is taken.
+const IMMOVABLE: f64 = 1e30;
+
+fn is_immovable(m: &Member) -> bool {
+    m.inverse_mass == 0.0
+}
+
+fn mass(m: &Member) -> f64 {
+    1.0 / m.inverse_mass
 }
 
 /// By how much a member has other velocities.

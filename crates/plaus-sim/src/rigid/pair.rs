@@ -230,8 +230,11 @@ impl Rigid {
             return stuck.then_some(true);
         }
         strike(&mut points, &mut members, self.accuracy.slip_turn);
-        a.set_motion(s, Motion { v: members[0].v, w: members[0].w });
-        b.set_motion(t, Motion { v: members[1].v, w: members[1].w });
+        for ((body, spec), m) in [(&mut *a, s), (&mut *b, t)].into_iter().zip(&members) {
+            if !spec.is_driven() {
+                body.set_motion(spec, Motion { v: m.v, w: m.w });
+            }
+        }
         self.touch_again(pair, [a, b]);
         for point in &points {
             point.report(time, pair[0], p.x, report);
@@ -241,7 +244,7 @@ impl Rigid {
 
     /// Has both bodies look anew at what they touch.
     fn touch_again(&self, pair: [usize; 2], bodies: [&mut Turning; 2]) {
-        for (index, body) in pair.into_iter().zip(bodies) {
+        for (index, body) in pair.into_iter().zip(bodies).filter(|(k, _)| !self.specs[*k].is_driven()) {
             if body.phase != Phase::Flight {
                 body.phase = Phase::Step;
             }

@@ -1,15 +1,18 @@
 //! Rest: slow bodies that their contacts can hold.
 
-use super::Rigid;
 use super::contact::Touch;
 use super::solve::{Enough, solve};
 use super::step::{Place, RigidScratch};
+use super::{Rigid, Spec};
 use glam::{DMat3, DVec3};
 
 /// Whether all bodies of a group are slow enough to be looked at.
 pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
     group.places.iter().all(|p| {
         let spec = &world.specs[p.body];
+        if spec.is_driven() {
+            return [p.start.v, p.start.w, p.drive].iter().all(|&v| v == DVec3::ZERO);
+        }
         let limit = world.accuracy.rest_speed * spec.speed;
         p.start.v.length() <= limit && p.start.w.length() * spec.reach <= limit
     })
@@ -33,8 +36,13 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if let [place] = &group.places[..] {
         let spec = &world.specs[place.body];
         if spec.is_ball {
+            if let [(_, only)] = &group.touches[..]
+                && only.point().is_none()
+            {
+                return rests_on_its_point(world, place, only, h);
+            }
             if let [(_, only)] = &group.touches[..] {
-                return only.normal.cross(world.gravity).length() <= 1e-9 * world.strength
+                return only.normal.cross(spec.pull).length() <= 1e-9 * spec.strength
                     && place.start.v == DVec3::ZERO
                     && place.start.w == DVec3::ZERO;
             }
@@ -49,18 +57,19 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
             // Flat ground: the centre of gravity above the points, and not steeper than friction allows.
             let first = &group.touches[0].1;
             let law = world.law_at(place.body, first, place.start.x + first.arm);
-            let press = -world.gravity.dot(normal);
-            let slide = (world.gravity + normal * press).length();
+            let press = -spec.pull.dot(normal);
+            let slide = (spec.pull + normal * press).length();
             // What is left of its motion is to be stopped by friction within a step: on ice it slides on.
             let (v, w) = (place.start.v, place.start.w);
             let moves = (v - normal * v.dot(normal)).length() + w.dot(normal).abs() * spec.reach;
             return moves <= (law.friction * press - slide + NO_MOTION * press) * h
                 && slide <= law.friction * press
-                && is_above(&group.touches, world.gravity / world.strength);
+                && is_above(&group.touches, spec.pull / spec.strength);
         }
     }
     // What contacts cannot stop within a step is not at rest.
-    group.prepare(world, |_, p| (p.start.v + world.gravity * h, p.start.w));
+    let pull = |spec: &Spec| if spec.is_driven() { DVec3::ZERO } else { spec.pull * h };
+    group.prepare(world, |spec, p| (p.start.v + pull(spec), p.start.w));
     let limit = world.accuracy.rest_residual * world.strength * h;
     let fastest = |p: &Place| p.start.v.length().max(p.start.w.length() * world.specs[p.body].reach);
     let fastest = group.places.iter().map(fastest).fold(0.0, f64::max);
@@ -77,6 +86,22 @@ const STOPPED: f64 = 0.1;
 
 /// Velocity over `g · step` that counts as none where contacts are tried. Default 1e-6, above what the solver leaves.
 const NO_MOTION: f64 = 1e-6;
+
+/// Whether a ball that touches at one point of a mesh or a solid stays: where the ground leans less than what its
+/// resistance to rolling holds, and it moves no faster than its weight along the ground makes it within a step.
+fn rests_on_its_point(world: &Rigid, place: &Place, touch: &Touch, h: f64) -> bool {
+    let spec = &world.specs[place.body];
+    let slope = touch.normal.cross(spec.pull).length() / spec.strength;
+    let press = -touch.normal.dot(spec.pull) / spec.strength;
+    let rolling = world.law_at(place.body, touch, place.start.x + touch.arm).rolling;
+    let limit = (slope + NO_MOTION) * spec.strength * h;
+    press > 0.0
+        && (slope <= LEVEL || slope <= rolling * press)
+        && place.start.v.length().max(place.start.w.length() * spec.reach) <= limit
+}
+
+/// Sine of the slope up to which ground counts as level under a ball. Default 1e-9, rounding of a triangle's normal.
+const LEVEL: f64 = 1e-9;
 
 /// Whether a body of revolution lies on two points of its side, on which it can only roll.
 fn lies(touches: &[(usize, Touch)], axis: DVec3, size: f64) -> bool {

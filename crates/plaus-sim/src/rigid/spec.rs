@@ -1,7 +1,9 @@
 //! What follows from a body's shape and mass.
 
+use super::drive::Drive;
 use super::tumble::Inertia;
 use super::{BodySpec, Part, RigidWorld, hulls, step};
+use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::Material;
 use crate::shape::piece::Piece;
@@ -23,6 +25,9 @@ pub(crate) struct Spec {
     pub(super) ring_arms: Vec<f64>,
     pub(crate) reach: f64,
     pub(crate) size: f64,
+    /// Acceleration where nothing is touched, in m/s², and how large it is.
+    pub(crate) pull: DVec3,
+    pub(crate) strength: f64,
     /// `√(g · size)`.
     pub(crate) speed: f64,
     /// Time in s within which many events make its contacts last: `accuracy.rattle · √(size/g)`.
@@ -43,6 +48,8 @@ pub(crate) struct Spec {
     pub(super) pieces: Vec<Piece>,
     /// A capsule along the body's z axis that holds it: heights of its ends, and its radius.
     pub(crate) capsule: [f64; 3],
+    /// The way it goes, whatever it meets.
+    pub(super) drive: Option<Drive>,
 }
 
 /// How a body is looked at by others.
@@ -129,6 +136,8 @@ impl Spec {
             ring_arms,
             reach,
             size,
+            pull: world.gravity,
+            strength,
             speed,
             rattle,
             gap,
@@ -141,7 +150,20 @@ impl Spec {
             core,
             pieces,
             capsule,
+            drive: None,
         })
+    }
+
+    /// Sets its scales of speed and time for pulls of this strength.
+    pub(super) fn scale_by(&mut self, strength: f64, accuracy: &Accuracy) {
+        self.speed = (strength * self.size).sqrt();
+        self.rattle = if strength > 0.0 { accuracy.rattle * (self.size / strength).sqrt() } else { 0.0 };
+    }
+
+    /// Whether it goes its own way.
+    #[inline]
+    pub(crate) fn is_driven(&self) -> bool {
+        self.drive.is_some()
     }
 
     /// Whether it is one of several solids, or of one without a way of its own to meet others.

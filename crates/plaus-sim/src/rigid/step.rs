@@ -54,12 +54,24 @@ pub(super) struct Place {
     /// With the velocities at the end of the drift.
     pub(super) end: Pose,
     pub(super) end_turn: DQuat,
+    /// Acceleration of one that goes its own way.
+    pub(super) drive: DVec3,
 }
 
 impl Place {
+    fn of(body: &Turning, index: usize) -> Self {
+        let (pose, turn) = (body.pose(), body.turn);
+        let drive = if body.phase == Phase::Driven { body.path.a } else { DVec3::ZERO };
+        Self { body: index, start: pose, turn, spin: pose.w, end: pose, end_turn: turn, drive }
+    }
+
     /// Pose and orientation after a drift from these velocities: straight, with free rotation.
     pub(super) fn drifted(&self, spec: &Spec, v: DVec3, w: DVec3, h: f64) -> (Pose, DQuat) {
-        let (turn, w) = drift(&spec.inertia, self.turn, w, h);
+        let (turn, w) = if spec.is_driven() {
+            ((rotation(w * h) * self.turn).normalize(), w)
+        } else {
+            drift(&spec.inertia, self.turn, w, h)
+        };
         (Pose { x: self.start.x + v * h, r: DMat3::from_quat(turn), v, w }, turn)
     }
 
@@ -110,7 +122,7 @@ pub(super) fn settle(
     let mut is_over = true;
     for &k in group {
         let body = &mut bodies[k as usize];
-        if body.path.x.z < world.sink && body.phase != Phase::Waiting {
+        if body.path.x.z < world.sink && body.phase != Phase::Waiting && !world.specs[k as usize].is_driven() {
             (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);
             body.begin(Phase::Gone, DVec3::ZERO);
             links.retain(|l| !l.contains(&k));
@@ -131,6 +143,7 @@ pub(super) fn settle(
     }
     let mut h = scratch.step_length(world);
     h *= scratch.straightness(world, h);
+    h = scratch.until_driven_turn(world, bodies, h);
     if rest::is_slow(world, scratch) && rest::is_supported(world, scratch, h) {
         scratch.lie_down(world, bodies);
         return;
@@ -200,6 +213,16 @@ impl RigidScratch {
                 continue;
             }
             let (spec, pose, hurried) = (&world.specs[index], bodies[index].pose(), bodies[index].is_hurried());
+            if spec.is_driven() {
+                if self.pairs.iter().any(|p| p.0.contains(&index)) {
+                    self.places.push(Place::of(&bodies[index], index));
+                }
+                continue;
+            }
+            if std::mem::take(&mut bodies[index].sleeps) {
+                bodies[index].lie_still();
+                continue;
+            }
             let (at, before) = (self.places.len(), self.touches.len());
             world.for_known_touches(index, &bodies[index], &pose, |t| {
                 let law = world.law_at(index, &t, pose.x + t.arm);
@@ -218,22 +241,26 @@ impl RigidScratch {
             if self.touches.len() == before && !linked {
                 self.leaving.retain(|l| l.0 != at);
                 body.list(std::iter::empty());
-                body.begin(Phase::Flight, world.gravity);
+                body.begin(Phase::Flight, spec.pull);
                 continue;
             }
-            self.places.push(Place {
-                body: index,
-                start: pose,
-                turn: body.turn,
-                spin: pose.w,
-                end: pose,
-                end_turn: body.turn,
-            });
+            self.places.push(Place::of(body, index));
         }
         self.parting.retain(|p| p.0.iter().all(|&k| self.places.iter().any(|q| q.body == k)));
         for p in self.pairs.iter_mut().chain(&mut self.parting) {
             p.0 = p.0.map(|k| self.places.iter().position(|q| q.body == k).unwrap_or(0));
         }
+    }
+
+    /// A step within the present stretch of those that go their own way.
+    fn until_driven_turn(&self, world: &Rigid, bodies: &[Turning], h: f64) -> f64 {
+        let driven = self.places.iter().filter(|p| world.specs[p.body].is_driven());
+        driven.map(|p| bodies[p.body].expiry - bodies[p.body].path.t).fold(h, f64::min)
+    }
+
+    /// Whether some member goes its own way, so that energy may come and go.
+    pub(super) fn has_driven(&self, world: &Rigid) -> bool {
+        self.places.iter().any(|p| world.specs[p.body].is_driven())
     }
 
     fn step_length(&self, world: &Rigid) -> f64 {
@@ -298,8 +325,9 @@ impl RigidScratch {
     }
 
     pub(super) fn member(spec: &Spec, r: &DMat3, v: DVec3, w: DVec3) -> Member {
-        let inverse_inertia = spec.inertia.inverse(r);
-        Member { inverse_mass: 1.0 / spec.mass, inverse_inertia, v, w, reach: spec.reach, last: [DVec3::ZERO; 2] }
+        let (inverse_mass, inverse_inertia) =
+            if spec.is_driven() { (0.0, DMat3::ZERO) } else { (1.0 / spec.mass, spec.inertia.inverse(r)) };
+        Member { inverse_mass, inverse_inertia, v, w, reach: spec.reach, last: [DVec3::ZERO; 2] }
     }
 
     /// Members at their starts with the velocities that `free` gives, and contacts without impulses.
@@ -329,7 +357,7 @@ impl RigidScratch {
 
     /// Rest: without velocity, flat where the ground is, and lifted out of what overlap steps have left.
     fn lie_down(&self, world: &Rigid, bodies: &mut [Turning]) {
-        for (k, p) in self.places.iter().enumerate() {
+        for (k, p) in self.places.iter().enumerate().filter(|(_, p)| !world.specs[p.body].is_driven()) {
             let body = &mut bodies[p.body];
             body.set_motion(&world.specs[p.body], Motion::default());
             body.begin(Phase::Rest, DVec3::ZERO);
@@ -346,7 +374,8 @@ impl RigidScratch {
                 body.turn = (rotation(turn) * body.turn).normalize();
             }
             // Straight up, where that helps: it brings no other point of uneven ground nearer.
-            let up = if world.strength > 0.0 { -world.gravity / world.strength } else { DVec3::ZERO };
+            let spec = &world.specs[p.body];
+            let up = if spec.strength > 0.0 { -spec.pull / spec.strength } else { DVec3::ZERO };
             for _ in 0..LIFTS {
                 let pose = body.pose();
                 let again = touches().map(|t| world.touch(p.body, &pose, t.surface)).filter(|t| t.gap < 0.0);
@@ -359,6 +388,9 @@ impl RigidScratch {
 
     fn write(&self, world: &Rigid, bodies: &mut [Turning], h: f64) {
         for (k, (p, m)) in self.places.iter().zip(&self.members).enumerate() {
+            if world.specs[p.body].is_driven() {
+                continue;
+            }
             let body = &mut bodies[p.body];
             let forces = self.contacts.iter().zip(&self.touches).filter(|(_, t)| t.0 == k);
             body.set_loads(forces.map(|(c, _)| c.impulse * (2.0 / h)));

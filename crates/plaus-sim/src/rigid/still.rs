@@ -9,7 +9,7 @@ use crate::scenery::{Aabb, Face, Mesh, Plane};
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::hull_pair::Feature;
 use crate::shape::piece::{Core, Piece, THICK};
-use crate::shape::{Convex, Cuboid, On, Polyhedron, Shape};
+use crate::shape::{Convex, Cuboid, On, Polyhedron, SLOTS, Shape};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
@@ -131,17 +131,15 @@ impl Still {
     }
 
     /// Calls `each` for the points at which a piece of a body, whose centre of gravity is at `x`, touches one of the
-    /// part. Corners over a triangle, and a little below it, touch its plane.
+    /// part. Corners and points of rims over a triangle, and a little below it, touch its plane.
     pub(super) fn for_touching(&self, other: u32, both: &Both, x: DVec3, within: f64, mut each: impl FnMut(&Meeting)) {
         match self.over_plane(other, both) {
             Some(None) => return,
             Some(Some(low)) if low > within => return,
             _ => {}
         }
-        if let (Some(n), Core::Polyhedron(body), Core::Polyhedron(triangle)) =
-            (self.facet(other), both.first.core, both.second.core)
-        {
-            for (k, &c) in body.corners.iter().enumerate() {
+        if let (Some(n), Core::Polyhedron(triangle)) = (self.facet(other), both.second.core) {
+            let mut over = |c: DVec3, mark: Mark| {
                 let p = both.first.centre + both.first.axes * c;
                 let seen = p - both.second.centre;
                 let distance = n.dot(seen);
@@ -149,10 +147,25 @@ impl Still {
                     && distance > -self.thickness(other)
                     && triangle.is_over(0, seen, 0.0)
                 {
-                    let mark = Mark::Polyhedra(Feature::Corner { of: 0, corner: k as u8, on: On::Face(0) });
                     let arm = p - n * both.first.rounding;
                     let points = [arm, p - n * distance];
                     each(&Meeting { normal: n, points, gap: distance - both.first.rounding, mark });
+                }
+            };
+            match both.first.core {
+                Core::Polyhedron(body) => {
+                    for (k, &c) in body.corners.iter().enumerate() {
+                        over(c, Mark::Polyhedra(Feature::Corner { of: 0, corner: k as u8, on: On::Face(0) }));
+                    }
+                }
+                Core::Discs(discs) => {
+                    // The shortest way out of a triangle may be over its edge, where the next one is.
+                    let down = both.first.axes.transpose() * -n;
+                    for (ring, slot) in (0..2_u8).flat_map(|ring| (0..SLOTS).map(move |slot| (ring, slot))) {
+                        if let Some(p) = discs.rim(usize::from(ring), slot, down) {
+                            over(p, Mark::Rim { of: 0, ring, slot });
+                        }
+                    }
                 }
             }
         }

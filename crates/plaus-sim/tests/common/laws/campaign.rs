@@ -73,9 +73,18 @@ pub struct Verdict {
     pub events: u64,
 }
 
+/// From this world on the bodies are of convex pieces: cylinders, cones, capsules, compounds.
+pub const OF_PIECES: u64 = 1 << 32;
+
 /// The bodies of the throw-th world of a case.
 pub fn kinds(case: Case, throw: u64) -> [Kind; 2] {
     let k = throw as usize;
+    if throw >= OF_PIECES {
+        let (k, own) = ((throw - OF_PIECES) as usize, Kind::OF_PIECES);
+        // Every second meets a body of another kind.
+        let other = if k % 2 == 0 { own[k / 2 % 5] } else { Kind::MEET[k / 2 % 5] };
+        return [own[k % 5], other];
+    }
     match case {
         Case::Meeting | Case::MeetingEnergy | Case::Riding => [Kind::MEET[k % 5], Kind::MEET[k / 5 % 5]],
         _ => [Kind::ALL[k % 8]; 2],

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, Stream, math, open_unit};
 use plaus_sim::rigid::{BodySpec, Part, RigidWorld, Start};
 use plaus_sim::scenery::Plane;
-use plaus_sim::shape::{ConvexHull, Cuboid, Profile, Revolution, Shape, Solid};
+use plaus_sim::shape::{Compound, Convex, ConvexHull, Cuboid, Frustum, Member, Profile, Revolution, Shape, Solid};
 use plaus_sim::{Accuracy, Law, Laws, Material, Preset};
 use std::sync::Arc;
 
@@ -22,13 +22,21 @@ pub enum Kind {
     D4,
     D20,
     Rock,
+    Cylinder,
+    Cone,
+    Capsule,
+    Hammer,
+    Weighted,
 }
 
 impl Kind {
     pub const ALL: [Self; 8] =
         [Self::Ball, Self::Cube, Self::Cuboid, Self::Rounded, Self::Pin, Self::D4, Self::D20, Self::Rock];
 
-    /// Those that can meet each other.
+    /// Those of convex pieces.
+    pub const OF_PIECES: [Self; 5] = [Self::Cylinder, Self::Cone, Self::Capsule, Self::Hammer, Self::Weighted];
+
+    /// Those that meet each other as what they are.
     pub const MEET: [Self; 5] = [Self::Ball, Self::Cube, Self::Cuboid, Self::D4, Self::Rock];
 
     /// A body of this kind, a few centimetres large, its proportions random where it has any.
@@ -45,9 +53,27 @@ impl Kind {
             Self::D4 => hull(&Solid::Tetrahedron.corners(edge)),
             Self::D20 => hull(&Solid::Icosahedron.corners(0.4 * edge)),
             Self::Rock => hull(&(0..16).map(|_| dice.in_cube() * sides).collect::<Vec<_>>()),
+            Self::Cylinder => Frustum::cylinder(0.5 * sides.x, sides.y).expect("a cylinder").into(),
+            Self::Cone => Frustum::cone(0.5 * sides.x, sides.y).expect("a cone").into(),
+            Self::Capsule => Frustum::capsule(0.5 * sides.x, sides.y).expect("a capsule").into(),
+            Self::Hammer => hammer(sides).into(),
+            Self::Weighted => {
+                Compound::weighted_ball(0.5 * edge, dice.between(0.0, 0.2) * edge).expect("a ball").into()
+            }
         };
         BodySpec::solid(shape, 1200.0, M)
     }
+}
+
+/// A cylinder for a head, a box for a handle.
+fn hammer(sides: DVec3) -> Compound {
+    let head = Frustum::cylinder(0.3 * sides.x, sides.y).expect("a head");
+    let handle = Cuboid::new(DVec3::new(1.5 * sides.z, 0.2 * sides.x, 0.2 * sides.x), 0.0).expect("a handle");
+    Compound::new(&[
+        Member { density: 3.0, ..Member::new(Convex::Frustum(head), DVec3::ZERO) },
+        Member::new(Convex::Cuboid(handle), DVec3::X * (0.8 * sides.z)),
+    ])
+    .expect("a hammer")
 }
 
 fn hull(points: &[DVec3]) -> Shape {

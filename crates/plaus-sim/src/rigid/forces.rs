@@ -1,0 +1,70 @@
+//! What acts on one body besides contact.
+
+use super::Rigid;
+use super::body::{Phase, Turning};
+use crate::error::WorldError;
+use crate::state::State;
+use glam::DVec3;
+
+/// What acts on a body besides contact. Its flight stays a parabola.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Forces {
+    /// How much of the world's gravity it feels. Default 1; 0 for what floats, negative for what rises.
+    pub gravity: f64,
+    /// A constant force at the centre of gravity, in N. Default none.
+    pub force: DVec3,
+}
+
+impl Default for Forces {
+    fn default() -> Self {
+        Self { gravity: 1.0, force: DVec3::ZERO }
+    }
+}
+
+impl Rigid {
+    /// Sets what acts on a body.
+    ///
+    /// # Errors
+    /// [`WorldError::BadBody`] for numbers that are none.
+    pub fn act_on(&mut self, body: usize, forces: Forces) -> Result<(), WorldError> {
+        let numbers = [forces.gravity].into_iter().chain(forces.force.to_array());
+        if let Some(value) = numbers.into_iter().find(|x| !x.is_finite()) {
+            return Err(WorldError::BadBody { body, field: "force", value, expected: "finite numbers" });
+        }
+        let Some(spec) = self.specs.get_mut(body) else {
+            return Err(WorldError::WrongState { state: body + 1, world: self.specs.len() });
+        };
+        spec.pull = self.gravity * forces.gravity + forces.force / spec.mass;
+        spec.strength = spec.pull.length();
+        // Time scales are those of the strongest pull.
+        let strength = self.specs.iter().map(|s| s.strength).fold(self.gravity.length(), f64::max);
+        if strength != self.strength {
+            self.strength = strength;
+            for spec in &mut self.specs {
+                spec.scale_by(strength, &self.accuracy);
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts a body to sleep that has not been released yet: from its release on it stays where it is, in the air too,
+    /// until another body hits it.
+    ///
+    /// # Errors
+    /// [`WorldError::BadBody`] for a body that is not there, has been released, or goes its own way.
+    pub fn put_to_sleep(&self, state: &mut State<Turning>, body: usize) -> Result<(), WorldError> {
+        let known = self.specs.get(body).is_some_and(|s| !s.is_driven());
+        match state.bodies.get_mut(body).filter(|b| known && b.phase == Phase::Waiting) {
+            Some(sleeper) => {
+                sleeper.sleeps = true;
+                Ok(())
+            }
+            None => Err(WorldError::BadBody {
+                body,
+                field: "index of a sleeper",
+                value: body as f64,
+                expected: "a body that waits for its release and has no keyframes",
+            }),
+        }
+    }
+}
