@@ -1,11 +1,12 @@
 //! Scalars as variables: those of several members of a kind are one, with a dimension of its own.
 
 use plaus_scenes::{Member, Role, Scene};
+use std::borrow::Cow;
 
 /// One or several scalars of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Variable {
-    pub(super) name: &'static str,
+    pub(super) name: Cow<'static, str>,
     pub(super) unit: &'static str,
     pub(super) role: Role,
     /// Whether its values are whole numbers.
@@ -61,7 +62,7 @@ mod tests {
     fn scalars_of_one_kind_are_one_variable() {
         struct Count;
         impl plaus_scenes::Visitor for Count {
-            type Output = Vec<(&'static str, usize, bool, Option<&'static str>)>;
+            type Output = Vec<(Cow<'static, str>, usize, bool, Option<&'static str>)>;
             fn visit<S: Scene>(self, scene: S) -> Self::Output {
                 let kind = |variable: &Variable| variable.first.map(|member| member.kind);
                 let one = |variable: Variable| (variable.name, variable.columns.len(), variable.whole, kind(&variable));

@@ -33,6 +33,9 @@ impl Check {
             (Kind::OneOf(keys), Data::Table(entries)) => self.one_of(keys, entries, tree, key),
             (Kind::List(item, length), Data::List(items)) => self.list(item, length, items, tree, key),
             (Kind::Again(reference), _) => self.again(reference, tree, key),
+            (Kind::Any(_), data) if shape.alternative(data).is_some() => {
+                self.value(shape.alternative(data)?, tree, key)
+            }
             (_, data) => match value::read(shape, data) {
                 Ok(value) => Some(value),
                 Err(wrong) => {
