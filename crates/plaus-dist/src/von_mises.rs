@@ -147,7 +147,7 @@ mod tests {
     fn draws_have_the_law_and_not_that_of_another_concentration() {
         for concentration in [0.0, 1e-7, 0.3, 2.0, 50.0, 1e4] {
             let law = VonMises::new(10.0, concentration, 360.0).unwrap();
-            let density = |x: f64| law.log_density(&x).unwrap().value().exp();
+            let density = |x: f64| math::exp(law.log_density(&x).unwrap().value());
             let reach = (8.0 * law.width()).min(180.0);
             let mass = integrate(10.0 - reach, 10.0 + reach, density);
             assert!((mass - 1.0).abs() < 1e-9, "{concentration}: {mass}");
@@ -177,10 +177,10 @@ mod tests {
     #[test]
     fn the_normalisation_is_the_table_s() {
         for (x, value) in [(0.0, 1.0_f64), (1.0, 0.465_759_607_6), (10.0, 0.127_833_337_2)] {
-            assert!((log_scaled_bessel(x) - value.ln()).abs() < 1e-9, "{x}");
+            assert!((log_scaled_bessel(x) - math::ln(value)).abs() < 1e-9, "{x}");
         }
         // Far out: 1/√(2πκ) (1 + 1/(8κ) + 9/(128κ²)).
-        let large = |k: f64| (1.0 + 1.0 / (8.0 * k) + 9.0 / (128.0 * k * k)).ln() - 0.5 * (TAU * k).ln();
+        let large = |k: f64| math::ln(1.0 + 1.0 / (8.0 * k) + 9.0 / (128.0 * k * k)) - 0.5 * math::ln(TAU * k);
         for k in [1e3, 1e6] {
             assert!((log_scaled_bessel(k) - large(k)).abs() < 1e-9, "{k}");
         }
@@ -199,6 +199,9 @@ mod tests {
 
     #[test]
     fn values_are_pinned() {
-        assert_eq!(draws(&VonMises::new(0.0, 4.0, 360.0).unwrap(), 2, 1), [-20.421_082_211_310_125, -31.669_905_634_073_98]);
+        assert_eq!(
+            draws(&VonMises::new(0.0, 4.0, 360.0).unwrap(), 2, 1),
+            [-20.421_082_211_310_125, -31.669_905_634_073_98]
+        );
     }
 }
