@@ -50,7 +50,6 @@ const CASES: &[Case] = &[
     ("dice-one-spilt", "dice-one.toml", &["spilt.radius_mm=60", "edge_x_mm=10", "rounding_mm=0", "accuracy=fine"], 40),
     ("dice-six", "dice-six.toml", &[], 60),
     ("dice-six-together", "dice-six-together.toml", &[], 12),
-    ("worlds-trick-shot", "worlds/trick-shot.toml", &[], 100),
 ];
 
 /// What one iteration left.

@@ -4,6 +4,7 @@
 //!     cargo run --release -p plaus-scenes --example worlds -- scenarios/worlds/*.toml
 
 #![allow(clippy::disallowed_methods, reason = "a measurement needs a clock")]
+#![allow(clippy::print_stdout, reason = "it is run to be read")]
 
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Mixture};

@@ -24,9 +24,9 @@ const CASES: &[(&str, &str, &[&str])] = &[
         &["no quantity \"pusch\"", "did you mean \"push\"?"],
     ),
     ("velocity = [0, 0, 0]", "velocity", &["unknown key `velocity`", "did you mean `velocity_m_s`?"]),
-    ("release_s = { normal = [1, 0.1] }", "{ normal", &["-inf to inf", "at least 0", "`truncated`"]),
+    ("release_s = { normal = [1, 0.1] }", "release_s", &["-inf to inf", "at least 0", "`truncated`"]),
     ("material = 'rubber'\n[[world.custom.materials]]\nname = 'ruber'", "'rubber'", &["did you mean \"ruber\"?"]),
-    ("[[world.custom.materials]]\nname = 'a'\nrestitution = { uniform = [0, 2] }", "{ uniform", &["from 0 to 1"]),
+    ("[[world.custom.materials]]\nname = 'a'\nrestitution = { uniform = [0, 2] }", "restitution", &["from 0 to 1"]),
     ("[[world.custom.materials]]\nname = 'a'\n[[world.custom.materials]]\nname = 'a'", "'a'", &["a second material"]),
     ("[[world.custom.pairs]]\nbetween = ['a', '']", "'a'", &["no material \"a\"", "there are none"]),
     ("[[world.custom.bodies]]\nname = 'ball'\nshape = { ball = { radius_mm = 3 } }", "'ball'", &["already"]),
@@ -35,12 +35,12 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ("[[world.custom.bodies]]\nname = 'b'\nshape = { boll = { radius_mm = 3 } }", "boll", &["ball"]),
     (
         "[[world.custom.bodies]]\nname = 'b'\nshape = { hull = { points_mm = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]] } }",
-        "{ hull",
+        "shape",
         &["bodies[1].shape", "one plane"],
     ),
     (
         "[[world.custom.bodies]]\nname = 'b'\nshape = { box = { size_mm = [9, 9, 9], rounding_mm = 5 } }",
-        "{ box",
+        "shape",
         &["bodies[1].shape", "rounding is 0.005"],
     ),
     (

@@ -112,7 +112,9 @@ fn weighed<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
 fn sampled<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
     let moves = scene.moves(&Rules::default()).unwrap();
     let mut chain = Chain::start(scene, &moves, Seed(4).chain(0)).unwrap();
-    (0..500).for_each(|_| drop(chain.step().unwrap()));
+    for _ in 0..500 {
+        chain.step().unwrap();
+    }
     let each = ITERATIONS / STRETCHES as u64;
     let stretch = |_| {
         let mut sums: Vec<f64> = Vec::new();
@@ -172,6 +174,60 @@ fn chains_sample_what_is_described_and_required() {
         let z = apart(&truth, &free.visit(Sampled).unwrap());
         assert!(z > LIMIT, "{case:?}: a chain that forgets what is required is only {z} standard errors off");
     }
+}
+
+/// A number of what a chain of the trick shot goes through, bit for bit, over so many iterations.
+fn trace(iterations: u32) -> u64 {
+    struct Trace(u32);
+    impl Visitor for Trace {
+        type Output = u64;
+        fn visit<S: Scene>(self, scene: S) -> u64 {
+            let moves = scene.moves(&Rules::default()).unwrap();
+            let mut chain = Chain::start(&scene, &moves, Seed(1).chain(0)).unwrap();
+            let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+            for _ in 0..self.0 {
+                chain.step().unwrap();
+                let mut values = vec![0.0; scene.scalars().len()];
+                scene.write_scalars(chain.state(), &mut values);
+                // What is no number has many bits.
+                let bits = values.iter().map(|value| if value.is_nan() { 0 } else { value.to_bits() });
+                hash = bits.fold(hash, |hash, bits| (hash ^ bits).wrapping_mul(0x0100_0000_01b3));
+            }
+            hash
+        }
+    }
+    let text = include_str!("../../../scenarios/worlds/trick-shot.toml");
+    Scenario::read("trick-shot.toml", text, &[]).unwrap().visit(Trace(iterations)).unwrap()
+}
+
+/// The same scenario, seed and version give the same bits. Where another number is meant, CHANGELOG says so.
+#[test]
+fn a_chain_is_pinned() {
+    assert_eq!(trace(100), 9_887_126_213_176_030_806);
+}
+
+/// Every world that comes with the project is read, and its first draws are simulated.
+#[test]
+fn the_worlds_in_the_folder_are_worlds() {
+    struct Draw;
+    impl Visitor for Draw {
+        type Output = bool;
+        fn visit<S: Scene>(self, scene: S) -> bool {
+            let draw = |nth| scene.start(&mut Seed(1).chain(0).at(nth, Purpose::START));
+            let state = |nth| State::evaluate(&scene, draw(nth), &mut S::Scratch::default()).unwrap();
+            (0..5).map(state).any(|state| !state.log_constraint.is_zero() && scene.animate(&state.draw).is_ok())
+        }
+    }
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/worlds");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let scenario = Scenario::read(&path.to_string_lossy(), &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        assert!(scenario.visit(Draw).unwrap(), "{}", path.display());
+        count += 1;
+    }
+    assert!(count >= 8);
 }
 
 /// One variable of every law.

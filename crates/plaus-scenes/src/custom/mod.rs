@@ -248,17 +248,17 @@ impl Scene for Custom {
     }
 
     fn asked(&self) -> Vec<String> {
-        vec!["nothing begins inside another".into()]
+        vec!["nothing begins inside another".into(), "the simulation comes to its end".into()]
     }
 
     /// Of an overlap the margin is its depth in millimetres.
     fn answers(&self, state: &StateOf<Self>) -> Vec<Mark> {
-        let lacks = match &state.outcome {
-            Ending::Done(_) => 0.0,
-            Ending::Overlap(overlap) => (-1e3 * overlap.depth).min(-f64::MIN_POSITIVE),
-            Ending::Unfinished => -crate::require::FAR,
+        let [depth, rest] = match &state.outcome {
+            Ending::Done(_) => [0.0, 0.0],
+            Ending::Overlap(overlap) => [(-1e3 * overlap.depth).min(-f64::MIN_POSITIVE), 0.0],
+            Ending::Unfinished => [0.0, -crate::require::FAR],
         };
-        vec![Mark::of(lacks)]
+        vec![Mark::of(depth), Mark::of(rest)]
     }
 
     /// Of values in the middle of their laws.
