@@ -89,6 +89,9 @@ fn overrides_reach_into_lists_and_laws() {
     let text = scenario.to_toml();
     assert!(text.contains("radius_mm = 25.0") && text.contains("#102030") && text.contains("[300.0, 20.0]"), "{text}");
     assert_eq!(read(&text, &[]), scenario, "what is written is read as it was");
+    let pair = format!("[[world.custom.pairs]]\nbetween = ['', '']\nrestitution = {{ uniform = [0.1, 0.2] }}\n{BALL}");
+    let scenario = read(&pair, &[]);
+    assert_eq!(read(&scenario.to_toml(), &[]), scenario, "what a pair leaves open stays open");
 }
 
 #[test]

@@ -178,16 +178,16 @@ pub struct Pair {
     /// Names of the two materials; the same twice for one material on itself.
     pub between: [String; 2],
     /// Coulomb's coefficient of friction. Unset: the geometric mean of theirs.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub friction: Option<Amount<amount::Friction>>,
     /// How much of the speed an impact gives back. Unset: the geometric mean of theirs.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub restitution: Option<Amount<amount::Restitution>>,
     /// Resistance to rolling. Unset: the mean of theirs.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub rolling: Option<Amount<amount::Friction>>,
     /// Resistance to spinning on one spot. Unset: the mean of theirs.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub spinning: Option<Amount<amount::Friction>>,
 }
 
