@@ -66,7 +66,7 @@ const CASES: &[[&str; 3]] = &[
     [
         "duration_s = 0.4\n[[world.custom.bodies]]\nname = 'other'\nshape = { ball = { radius_mm = 40 } }\n\
          at_mm = [{ uniform = [-100, 100] }, 0, 100]",
-        "at_mm = [0, { normal = [0, 80] }, 100]\nvelocity_m_s = [0, { normal = [0, 0.3] }, 0]",
+        "at_mm = [60, { normal = [0, 80] }, 100]\nvelocity_m_s = [0, { normal = [0, 0.3] }, 0]",
         "touches = { body = 'ball', with = 'other' }",
     ],
 ];
@@ -238,7 +238,11 @@ duration_s = 0.001
 name = 'ball'
 shape = { ball = { radius_mm = { log_normal = { median = 30, spread = 0.4 } } } }
 at_mm = [{ normal = [0, 20] }, { uniform = [-1, 2] }, { triangular = [500, 510, 600] }]
-velocity_m_s = [{ truncated = { mean = 0, sd = 1, from = 0.5, to = 3 } }, { choice = { of = [1, 5, 3], weights = [3, 2, 1] } }, 0]
+velocity_m_s = [
+    { truncated = { mean = 0, sd = 1, from = 0.5, to = 3 } },
+    { choice = { of = [1, 5, 3], weights = [3, 2, 1] } },
+    0,
+]
 turn_deg = [0, 0, { von_mises = { mean = 170, concentration = 2 } }]
 [[world.custom.bodies]]
 name = 'brick'

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 /// A world of your own: bodies and scenery, what they are made of, and what is uncertain about them. What must happen
 /// in it is said by `[[require]]`.
 ///
-/// Places are in millimetres, x and y level, z up. Any number that a body, a material or a piece of scenery has may be a
-/// law instead, as in `{ normal = [0, 20] }`, or the name of one of the `quantities`, which then is the same wherever
+/// Places are in millimetres, x and y level, z up. Any number that a body, a material or a piece of scenery has may be
+/// a law instead, as in `{ normal = [0, 20] }`, or the name of one of the `quantities`, which then is the same wherever
 /// it is named. A law that is written out is drawn for this number alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]

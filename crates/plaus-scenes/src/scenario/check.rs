@@ -66,7 +66,7 @@ impl Check {
             let key = join(path, name);
             match entries.get(name) {
                 Some(inner) => table.extend(self.value(shape, inner, &key).map(|value| (name.clone(), value))),
-                None if shape.default.is_none() => self.problems.push(tree.place.blame_key(missing(shape, &key))),
+                None if shape.default.is_none() => self.problems.push(tree.place.blame(missing(shape, &key))),
                 None => {}
             }
         }
