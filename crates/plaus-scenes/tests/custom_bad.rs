@@ -45,8 +45,8 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ),
     (
         "[[world.custom.bodies]]\nname = 'b'\nshape = { ball = { radius_mm = 30 } }\nat_mm = [0, 50, 100]",
-        "[0, 50, 100]",
-        &["bodies[1].at_mm", "begin inside each other", "\"ball\" begins 10.000 mm inside \"b\""],
+        "[0, 0, 100]",
+        &["bodies[0].at_mm", "begin inside each other", "\"ball\" begins 10.000 mm inside \"b\""],
     ),
     ("colour = 'red'", "'red'", &["no colour", "#c04030"]),
     ("any_turn = true\nturn_deg = [0, 0, 1]", "true", &["leave `turn_deg` out"]),
