@@ -6,15 +6,18 @@ Exit codes: 0 agreed, 1 disagreed, 77 the packages could not be installed.
 """
 
 import argparse
+import contextlib
 import csv
 import json
 import math
 import os
+import re
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
-from environment import environment
+from environment import environment, pythons
 
 # The newest that go together on Python 3.11.
 REQUIREMENTS = [
@@ -26,6 +29,11 @@ REQUIREMENTS = [
     "scipy==1.17.1",
     "matplotlib==3.11.2",
 ]
+
+# ArviZ 1.x is for these.
+NEWER = ["python3.12", "python3.13"]
+REQUIREMENTS_1 = ["arviz==1.3.0", "zarr==3.1.6"]
+
 
 class Comparison:
     """Counts what was compared, and remembers what disagreed."""
@@ -118,18 +126,49 @@ def check(arguments) -> int:
     return 1 if comparison.wrong else 0
 
 
+def snippet(new: bool) -> str:
+    """What the README shows: for ArviZ 0.23, or as its comment says for 1.x."""
+    text = (Path(__file__).parents[2] / "README.md").read_text()
+    (code,) = re.findall(r"```python\n(import arviz.*?)```", text, re.DOTALL)
+    (instead,) = re.findall(r"with 1\.x: (.*)", code)
+    return re.sub(r"(?m)^draws = .*$", lambda _: instead, code) if new else code
+
+
+def run_snippet(zarr: Path) -> int:
+    """Runs what the README shows with the ArviZ that is here, and looks at what it makes."""
+    import arviz
+
+    names = {}
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        os.symlink(zarr, Path(folder) / "draws.zarr")
+        exec(compile(snippet(not arviz.__version__.startswith("0.")), "README.md", "exec"), names)
+        first = names["first"]
+        right = first.dims == ("chain", "draw") and first.attrs["unit"] == "degree" and bool(first.notnull().all())
+    print(f"README's snippet with ArviZ {arviz.__version__}: {'right' if right else 'WRONG'}", flush=True)
+    return 0 if right else 1
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--venv", type=Path, help="folder of the virtual environment, made where it is missing")
     parser.add_argument("--zarr", type=Path, required=True)
-    parser.add_argument("--csv", type=Path, required=True)
-    parser.add_argument("--diagnose", type=Path, required=True, help="output of `plaus diagnose --json`")
+    parser.add_argument("--csv", type=Path)
+    parser.add_argument("--diagnose", type=Path, help="output of `plaus diagnose --json`")
     arguments = parser.parse_args()
+    arguments.zarr = arguments.zarr.resolve()
     if arguments.venv is None:
-        return check(arguments)
+        return run_snippet(arguments.zarr) or (check(arguments) if arguments.csv else 0)
     python = environment(arguments.venv, REQUIREMENTS)
-    rest = ["--zarr", arguments.zarr, "--csv", arguments.csv, "--diagnose", arguments.diagnose]
-    return subprocess.run([python, __file__, *map(os.fspath, rest)]).returncode
+    zarr = ["--zarr", os.fspath(arguments.zarr)]
+    rest = ["--csv", arguments.csv, "--diagnose", arguments.diagnose]
+    done = subprocess.run([python, __file__, *zarr, *map(os.fspath, rest)]).returncode
+    newer = pythons(NEWER)
+    if done == 0 and newer:
+        python = environment(arguments.venv.with_name(arguments.venv.name + "-1"), REQUIREMENTS_1, newer[0])
+        done = subprocess.run([python, __file__, *zarr]).returncode
+    elif not newer:
+        print("ArviZ 1.x needs Python 3.12, which is not here: the README's line for it was not tried", flush=True)
+    return done
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@ Exit codes: 0 sound, 1 not, 77 the packages could not be installed.
 """
 
 import argparse
-import csv
 import math
 import os
 import random
@@ -16,6 +15,7 @@ import sys
 from pathlib import Path
 
 from environment import NO_REGISTRY, environment
+from truth import Truth, angle
 
 # Blender 5.0 is built for Python 3.11, and bpy with it.
 REQUIREMENTS = ["bpy==5.0.1"]
@@ -23,46 +23,8 @@ PYTHON = (3, 11)
 
 # Farthest that a body may be from where it is, in m and degrees.
 FAR, TURNED = 5e-4, 0.1
-# A hundredth of a frame, and a little, in s.
-CROWDED = 4.5e-4
 # Random times at which all bodies are looked at.
 TIMES = 200
-
-
-class Truth:
-    """Poses at many times, between which they are found by parabolas and even turning: the table has 960 rows a second,
-    so what that is off by is a hundred times less than what is allowed."""
-
-    def __init__(self, path):
-        self.bodies, self.impacts = {}, {}
-        with open(path, newline="") as table:
-            for row in csv.DictReader(table):
-                numbers = [float(row[name]) for name in ("t", "x", "y", "z", "qw", "qx", "qy", "qz")]
-                self.bodies.setdefault(row["body"], []).append(numbers)
-                if row["impact"] == "true":
-                    self.impacts.setdefault(row["body"], []).append(numbers[0])
-        self.end = max(rows[-1][0] for rows in self.bodies.values())
-
-    def is_crowded(self, body, time):
-        """Whether impacts follow each other here within what Blender takes for one key, a hundredth of a frame."""
-        near = [impact for impact in self.impacts.get(body, []) if abs(impact - time) < 2 * CROWDED]
-        return len(near) > 1
-
-    def at(self, body, time):
-        rows = self.bodies[body]
-        low, high = 0, len(rows) - 1
-        while high - low > 1:
-            middle = (low + high) // 2
-            if rows[middle][0] <= time:
-                low = middle
-            else:
-                high = middle
-        a, b = rows[low], rows[high]
-        share = (time - a[0]) / (b[0] - a[0]) if b[0] > a[0] else 0.0
-        place = [p + share * (q - p) for p, q in zip(a[1:4], b[1:4])]
-        sign = 1.0 if sum(p * q for p, q in zip(a[4:], b[4:])) >= 0.0 else -1.0
-        turn = [p + share * (sign * q - p) for p, q in zip(a[4:], b[4:])]
-        return place, turn
 
 
 def check(path, poses):
@@ -114,12 +76,6 @@ def check(path, poses):
         flush=True,
     )
     return wrong
-
-
-def angle(a, b):
-    """Degrees between two orientations, given as (w, x, y, z) of any length."""
-    size = math.hypot(*a) * math.hypot(*b)
-    return 2.0 * math.degrees(math.acos(min(1.0, abs(sum(p * q for p, q in zip(a, b))) / size)))
 
 
 def of_gltf(turn):

@@ -1,5 +1,7 @@
 """A virtual environment of a check's own, with the packages it needs."""
 
+import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -10,15 +12,29 @@ NO_REGISTRY = 77
 PATIENCE = ["--retries", "2", "--timeout", "10"]
 
 
-def environment(folder: Path, requirements: list[str]) -> Path:
-    """The environment's Python, with everything installed."""
+def pythons(names: list[str]) -> list[str]:
+    """Pythons of those names that can be run here, on the PATH or among pyenv's: one of each."""
+    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
+    found = []
+    for name in names:
+        on_path = shutil.which(name)
+        places = [on_path] if on_path else []
+        places += sorted(str(path) for path in root.glob(f"versions/*/bin/{name}"))
+        # A shim may be there without a Python behind it.
+        runs = (path for path in places if subprocess.run([path, "-c", ""], capture_output=True).returncode == 0)
+        found += [path for path in [next(runs, None)] if path]
+    return found
+
+
+def environment(folder: Path, requirements: list[str], base: str = sys.executable) -> Path:
+    """The environment's Python, made by `base`, with everything installed."""
     python = folder / "bin" / "python"
     stamp = folder / "installed.txt"
     wanted = "\n".join(requirements)
     if stamp.exists() and stamp.read_text() == wanted and python.exists():
         return python
     print(f"installing {', '.join(requirements)} into {folder}", flush=True)
-    made = subprocess.run([sys.executable, "-m", "venv", "--clear", str(folder)])
+    made = subprocess.run([base, "-m", "venv", "--clear", str(folder)])
     if made.returncode != 0:
         print("python3 -m venv failed", flush=True)
         sys.exit(NO_REGISTRY)

@@ -13,7 +13,7 @@ import zipfile
 from pathlib import Path
 
 import third_party
-from environment import NO_REGISTRY, PATIENCE, environment
+from environment import NO_REGISTRY, PATIENCE, environment, pythons
 
 ROOT = third_party.ROOT
 PACKAGE = third_party.PACKAGE
@@ -109,20 +109,6 @@ def notebooks(python: Path, target: Path) -> int:
     )
 
 
-def other_pythons() -> list[str]:
-    """Further Pythons that can be run here, on the PATH or among pyenv's: one of each version."""
-    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
-    found = []
-    for name in PYTHONS:
-        on_path = shutil.which(name)
-        places = [on_path] if on_path else []
-        places += sorted(str(path) for path in root.glob(f"versions/*/bin/{name}"))
-        # A shim may be there without a Python behind it.
-        runs = (path for path in places if subprocess.run([path, "-c", ""], capture_output=True).returncode == 0)
-        found += [path for path in [next(runs, None)] if path]
-    return found
-
-
 def check(target: Path, profile: str, with_notebooks: bool, all_of_them: bool) -> int:
     """Tests and notebooks on the Python that runs this, and tests on all others that are there."""
     [wheel] = dist_of(target, profile).glob("*.whl")
@@ -136,7 +122,7 @@ def check(target: Path, profile: str, with_notebooks: bool, all_of_them: bool) -
     ):
         if step() != 0:
             return 1
-    for other in other_pythons() if all_of_them else []:
+    for other in pythons(PYTHONS) if all_of_them else []:
         fresh = target / "wheel" / Path(other).name
         print(f"{other}: an environment made for this", flush=True)
         shutil.rmtree(fresh, ignore_errors=True)

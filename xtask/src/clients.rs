@@ -1,5 +1,5 @@
-//! What other programs make of exports and galleries: the Khronos validator, three.js, Pixar's USD, Blender, ffmpeg,
-//! Chromium.
+//! What other programs make of exports and galleries: the Khronos validator, three.js, Babylon.js, Pixar's USD,
+//! Blender, Godot, ffmpeg, Chromium.
 
 use crate::command::{Command, Failure, built, plaus, root, target};
 use crate::registry;
@@ -42,6 +42,7 @@ pub(crate) fn steps() -> Vec<Step> {
         Step::new("glTF validator and three.js read them", gltf),
         Step::new("USD reads them", usd),
         Step::new("Blender plays them", blender),
+        Step::new("Godot plays them", godot),
         Step::new("videos and loops show them", pictures),
         Step::new("galleries in a browser", gallery),
         Step::new("the committed three.js is what its script makes", bundle),
@@ -135,20 +136,35 @@ fn usd() -> Result<Done, Failure> {
     registry::outcome(script.status()?, "USD does not read what plaus wrote")
 }
 
-/// Blender imports one GLB and one USDA of each scene, and plays them.
-pub(crate) fn blender() -> Result<Done, Failure> {
+/// One export of each scene in each format, each with a table of poses that says where bodies are at any time.
+fn densely(endings: &[&str]) -> Result<Vec<PathBuf>, Failure> {
     let exports = folder().join("exports");
     let mut files = Vec::new();
     for scenario in GALLERIES {
         let [run, poses] = ["run", "dense.csv"].map(|end| exports.join(format!("{scenario}.{end}")));
         let export = plaus(&["export"]).args([&run]).args(["--format", "poses", "--sample", SAMPLES[0], "--force"]);
         export.args(["--fps", DENSE, "--out"]).args([&poses]).shown_and_run()?;
-        for end in ["glb", "usda"] {
+        for end in endings {
             files.extend([exports.join(format!("{scenario}-0-0.{end}")), poses.clone()]);
         }
     }
+    Ok(files)
+}
+
+/// Godot imports one GLB of each scene, and plays them; where it is: it comes from no registry that has all versions.
+pub(crate) fn godot() -> Result<Done, Failure> {
+    const PROGRAM: &str = "godot";
+    if !matches!(Command::new(PROGRAM).args(["--version"]).status(), Ok(0)) {
+        return Ok(Done::Skipped(format!("there is no `{PROGRAM}` on the path")));
+    }
+    let script = Command::new("python3").args(["xtask/python/check_godot.py", "--godot", PROGRAM, "--project"]);
+    script.args([folder().join("godot")]).args(densely(&["glb"])?).run().map(|()| Done::Passed)
+}
+
+/// Blender imports one GLB and one USDA of each scene, and plays them.
+pub(crate) fn blender() -> Result<Done, Failure> {
     let script = Command::new("python3").args(["xtask/python/check_blender.py", "--venv"]);
-    let script = script.args([target().join("blender-venv")]).args(files);
+    let script = script.args([target().join("blender-venv")]).args(densely(&["glb", "usda"])?);
     registry::outcome(script.status()?, "Blender does not play what plaus wrote")
 }
 
@@ -182,7 +198,8 @@ fn bundle() -> Result<Done, Failure> {
 
 /// A folder with our scripts and the packages they need; `None` where those cannot be installed.
 fn node() -> Result<Option<PathBuf>, Failure> {
-    packages("xtask/node", "node", &["check_glb.mjs", "check_gallery.mjs", "check_motion.mjs", "motion.mjs"])
+    let scripts = ["check_glb.mjs", "three.mjs", "babylon.mjs", "check_gallery.mjs", "check_motion.mjs", "motion.mjs"];
+    packages("xtask/node", "node", &scripts)
 }
 
 /// Copies scripts to a folder under target/ and installs the packages they need there.

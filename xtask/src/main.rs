@@ -25,6 +25,7 @@ usage: cargo xtask CHORE
   clients              figures, and what other programs make of runs, exports and galleries
   blender              whether Blender plays exports as they are (installs bpy, on Python 3.11 only)
   ci                   both: what CI runs
+  godot                whether Godot 4 plays exports as they are, where it is on the path
   shown                every command that README, docs and scenario files show
   engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost
   wheel                the Python package, into target/wheel/dist
@@ -52,6 +53,7 @@ fn main() -> ExitCode {
         Some((&"clients", [])) => test::clients(),
         Some((&"shown", [])) => test::shown(),
         Some((&"blender", [])) => test::blender(),
+        Some((&"godot", [])) => test::godot(),
         Some((&"engines", [])) => engines::run(),
         Some((&"wheel", rest)) => wheel::run(rest),
         Some((&"reproduce-figures", rest)) => figures(rest),

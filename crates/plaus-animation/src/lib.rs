@@ -71,6 +71,15 @@ impl Animation {
         body.or_else(|| self.scenery.iter().find(|prop| prop.name == name).map(|prop| prop.look))
     }
 
+    /// One body alone, with its impacts and contacts; `None` where no body has that name.
+    #[must_use]
+    pub fn only(&self, body: &str) -> Option<Self> {
+        let track = self.tracks.iter().find(|track| track.name == body)?;
+        let impacts = self.impacts.iter().filter(|hit| hit.involves(body)).cloned().collect();
+        let contacts = self.contacts.iter().filter(|contact| contact.involves(body)).cloned();
+        Some(Self::new(self.duration, vec![track.clone()], impacts).with_contacts(contacts.collect()))
+    }
+
     /// The same until `end` s: bodies stay as they are then where it ends earlier, and what comes later is left out.
     #[must_use]
     pub fn until(mut self, end: f64) -> Self {

@@ -30,7 +30,7 @@ fn every_format_is_written_and_nothing_is_overwritten_unasked() {
         place.ends(&format!("{export} --force"), 2).says(&["was not made by such an export"]);
     }
     let sidecar = std::fs::read_to_string(place.path("a.glb.import")).unwrap();
-    assert!(sidecar.contains("animation/fps=60") && sidecar.contains("\"optimizer/enabled\": false"), "{sidecar}");
+    assert!(sidecar.contains("animation/fps=3840") && sidecar.contains("\"optimizer/enabled\": false"), "{sidecar}");
     place.ok("gallery run --out g.html --count 9").says(&["9 of ", "distinct solutions"]);
     place.ends("gallery run --out g.html", 2).says(&["--force"]);
     place.ok("gallery run --out g.html --force --count 3");
@@ -103,6 +103,39 @@ fn all_distinct_solutions_go_into_one_file() {
     assert_eq!(usda.matches("over \"ball_0\"").count(), samples.len());
 }
 
+/// Played by hand: where the body is at the end of its keys, as its table of poses says, z up and in centimetres.
+#[test]
+fn one_body_carries_its_motion_itself() {
+    let place = sampled();
+    place.ok("export run --format glb --sample 0:3 --root-motion ball_0 --up z --scale 100 --out a.glb");
+    let bytes = std::fs::read(place.path("a.glb")).unwrap();
+    let glb = gltf_json(&bytes);
+    let number = |value: &serde_json::Value| value.as_u64().unwrap() as usize;
+    let root = number(&glb["scenes"][0]["nodes"][0]);
+    assert_eq!(glb["nodes"].as_array().unwrap().len(), 1);
+    assert_eq!(glb["nodes"][root]["name"], "ball_0");
+    let scale: Vec<f64> = serde_json::from_value(glb["nodes"][root]["scale"].clone()).unwrap();
+    assert_eq!(scale, [100.0; 3]);
+    let channels = glb["animations"][0]["channels"].as_array().unwrap();
+    let places = channels.iter().find(|channel| channel["target"]["path"] == "translation").unwrap();
+    assert_eq!(number(&places["target"]["node"]), root);
+    let sampler = &glb["animations"][0]["samplers"][number(&places["sampler"])];
+    let accessor = &glb["accessors"][number(&sampler["output"])];
+    let view = &glb["bufferViews"][number(&accessor["bufferView"])];
+    let start = 20 + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize + 8;
+    let offset = |value: &serde_json::Value| value["byteOffset"].as_u64().unwrap_or(0) as usize;
+    let last = start + offset(view) + offset(accessor) + 12 * (number(&accessor["count"]) - 1);
+    let float = |k: usize| f32::from_le_bytes(bytes[last + 4 * k..][..4].try_into().unwrap());
+    let rows = place.ok("export run --format poses --sample 0:3 --out -").out;
+    let names: Vec<&str> = rows.lines().next().unwrap().split(',').collect();
+    let row: Vec<&str> = rows.lines().last().unwrap().split(',').collect();
+    let cell = |name: &str| -> f64 { row[names.iter().position(|n| *n == name).unwrap()].parse().unwrap() };
+    // y up becomes z up by a quarter turn about x.
+    for (found, metres) in [(float(0), cell("x")), (float(1), -cell("z")), (float(2), cell("y"))] {
+        assert!((f64::from(found) - 100.0 * metres).abs() < 1e-4, "{found} cm, {metres} m"); // single precision
+    }
+}
+
 /// The description in a GLB.
 fn gltf_json(bytes: &[u8]) -> serde_json::Value {
     let length = u32::from_le_bytes([bytes[12], bytes[13], bytes[14], bytes[15]]) as usize;
@@ -154,11 +187,15 @@ fn wrong_requests_are_refused() {
         ("export run --format usda --sample 0:0 --out a.usda --keys exact", "--keys goes with glb, not with usda"),
         ("export run --format glb --sample 0:0 --out a.glb --until soon", "rest, decided, or a time"),
         ("export run --format glb --sample 0:0 --out a.glb --scale 0", "--scale 0"),
+        ("export run --format glb --sample 0:0 --out a.glb --root-motion bal_0", "did you mean ball_0?"),
+        ("export run --format usda --sample 0:0 --out a.usda --root-motion ball_0", "--root-motion goes with glb"),
         ("export run --format csv --into a.csv", "csv and zarr hold all draws"),
         ("gallery nowhere --out g.html", "no such run"),
     ] {
         place.ends(arguments, 2).says(&[says]);
     }
+    let many = format!("export run --format glb --into a.glb{}", " --sample 0:0".repeat(2001));
+    place.ends(&many, 2).says(&["2001 samples: one glb holds 2000 at most"]);
     assert_eq!(place.names(), ["ball.toml", "run"], "nothing is left behind");
     place.ends("sample ball.toml --out hopeless -q --set target=1e5 --set sigma_d=1e6", 1);
     for arguments in ["gallery hopeless --out g.html", "export hopeless --format glb --all-distinct --out all"] {

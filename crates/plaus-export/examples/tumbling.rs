@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Ok(Clip::new(&animation, &label, Cut::new(fps, None, &animation)?))
     };
     fs::write(folder.join("tumbling.glb"), glb::to_vec(&clip(60.0)?)?)?;
-    fs::write(folder.join("tumbling.glb.import"), glb::godot_import("tumbling.glb", 60.0))?;
+    fs::write(folder.join("tumbling.glb.import"), glb::godot_import("tumbling.glb"))?;
     fs::write(folder.join("tumbling.usda"), usda::to_string(&clip(60.0)?))?;
     for (file, fps) in [("tumbling.poses.csv", 60.0), ("tumbling.between.csv", 240.0)] {
         let mut rows = format!("{}\n", table::POSES).into_bytes();

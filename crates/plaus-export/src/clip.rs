@@ -53,13 +53,16 @@ pub struct Style {
     pub up: Up,
     /// Units a metre: 100 for programs that count in centimetres.
     pub scale: f64,
+    /// Whether the clip's one body is the node above all others and carries the motion itself, as game engines want it
+    /// that move an actor by its animation. [`Style::up`] and [`Style::scale`] then go into the keys.
+    pub root_motion: bool,
     /// Pixels across and down, of pictures and videos; `None` is what the format has usually.
     pub size: Option<(u32, u32)>,
 }
 
 impl Default for Style {
     fn default() -> Self {
-        Self { keys: Between::Linear, time_codes: 24.0, up: Up::Y, scale: 1.0, size: None }
+        Self { keys: Between::Linear, time_codes: 24.0, up: Up::Y, scale: 1.0, root_motion: false, size: None }
     }
 }
 

@@ -43,13 +43,13 @@ pub trait Exporter: Sync {
         60.0
     }
 
-    /// Whether it is made of pixels, and takes [`crate::Style::size`].
-    fn is_picture(&self) -> bool {
-        false
+    /// The most clips of one file: that of a format which must hold them all in memory has an end.
+    fn most(&self) -> usize {
+        usize::MAX
     }
 
     /// What goes beside a file: the end of its name, and its text.
-    fn beside(&self, _file: &str, _fps: f64) -> Option<(&'static str, String)> {
+    fn beside(&self, _file: &str) -> Option<(&'static str, String)> {
         None
     }
 }

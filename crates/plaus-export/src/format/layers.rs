@@ -6,6 +6,9 @@ use crate::{glb, ours, usda};
 use std::io::Write;
 use std::path::Path;
 
+/// Clips of one file, which take up to 0.3 MB (GLB) or 0.5 MB (USD) of memory each.
+const MOST: usize = 2000;
+
 pub(super) struct Gltf;
 pub(super) struct Usd;
 
@@ -17,7 +20,7 @@ impl Exporter for Gltf {
             about: "animated glTF 2.0: Blender, Godot, Unity, Unreal, browsers",
             help: "Straight lines between keys, right to 0.2 mm and 0.03 degrees in every program; with --keys exact \
                 cubic splines, which programs that follow glTF play exactly, and Blender does not. A key at every impact. \
-                Beside it PATH.import, which keeps Godot from resampling. With --into, one clip a sample.",
+                Beside it PATH.import, which has Godot sample it densely enough. With --into, one clip a sample.",
         }
     }
 
@@ -25,12 +28,16 @@ impl Exporter for Gltf {
         Box::new(Binary(glb::Writer::default()))
     }
 
+    fn most(&self) -> usize {
+        MOST
+    }
+
     fn is_ours(&self, path: &Path) -> bool {
         ours::is_glb(path)
     }
 
-    fn beside(&self, file: &str, fps: f64) -> Option<(&'static str, String)> {
-        Some(("import", glb::godot_import(file, fps)))
+    fn beside(&self, file: &str) -> Option<(&'static str, String)> {
+        Some(("import", glb::godot_import(file)))
     }
 }
 
@@ -61,6 +68,10 @@ impl Exporter for Usd {
 
     fn begin(&self, _path: &Path) -> Box<dyn Collection> {
         Box::new(Layer(usda::Writer::default()))
+    }
+
+    fn most(&self) -> usize {
+        MOST
     }
 
     fn is_ours(&self, path: &Path) -> bool {

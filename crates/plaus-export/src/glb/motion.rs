@@ -1,7 +1,7 @@
 //! Keys of bodies as channels of animations.
 
 use super::file::Document;
-use crate::clip::{Between, Clip};
+use crate::clip::{Between, Clip, Style, Up};
 use crate::keys::{Key, of_track, orientations};
 use crate::thin;
 use glam::{DQuat, DVec3};
@@ -11,6 +11,7 @@ use gltf_json::scene::UnitQuaternion;
 use gltf_json::validation::Checked::Valid;
 use gltf_json::{Index, Mesh, Node, accessor::Accessor};
 use plaus_animation::Track;
+use std::f64::consts::FRAC_PI_2;
 
 /// The animation of one clip in the making.
 pub(super) struct Channels(Animation);
@@ -60,14 +61,43 @@ impl Channels {
     }
 }
 
-/// The node of a body, where the body is at `time`.
-pub(super) fn node_at(track: &Track, time: f64, mesh: Option<Index<Mesh>>) -> Node {
-    Node {
-        mesh,
-        translation: Some(vector(track.position(time))),
-        rotation: track.turns().then(|| UnitQuaternion(quaternion(track.orientation(time)))),
-        ..Node::default()
+/// What the keys of bodies are written in: the animation's own axes and metres, or, where a body is above all other
+/// nodes, those that the style asks for.
+#[derive(Clone, Copy)]
+pub(super) struct Frame {
+    turn: DQuat,
+    pub(super) scale: f64,
+}
+
+impl Frame {
+    pub(super) fn of(style: Style) -> Self {
+        let own = Self { turn: DQuat::IDENTITY, scale: 1.0 };
+        if style.root_motion { Self { turn: turn(style.up), scale: style.scale } } else { own }
     }
+
+    fn vector(self, v: DVec3) -> [f32; 3] {
+        (self.scale * (self.turn * v)).as_vec3().to_array()
+    }
+
+    fn quaternion(self, q: DQuat) -> [f32; 4] {
+        (self.turn * q).as_quat().normalize().to_array()
+    }
+
+    /// The node of a body, where the body is at `time`.
+    pub(super) fn node_at(self, track: &Track, time: f64, mesh: Option<Index<Mesh>>) -> Node {
+        let turns = track.turns() || self.turn != DQuat::IDENTITY;
+        Node {
+            mesh,
+            translation: Some(self.vector(track.position(time))),
+            rotation: turns.then(|| UnitQuaternion(self.quaternion(track.orientation(time)))),
+            ..Node::default()
+        }
+    }
+}
+
+/// The rotation that makes the animation's y axis the one that points up.
+pub(super) fn turn(up: Up) -> DQuat {
+    if up == Up::Z { DQuat::from_rotation_x(FRAC_PI_2) } else { DQuat::IDENTITY }
 }
 
 /// Adds the motion of a body to a clip's animation.
@@ -79,13 +109,14 @@ pub(super) fn animate(
     node: Index<Node>,
 ) {
     let (begin, keys) = (clip.cut.from(), of_track(clip.animation, track, &clip.cut));
+    let frame = Frame::of(clip.style);
     let (times, values, interpolation) = match clip.style.keys {
         Between::Exact => {
-            let (times, splines) = splines(&keys, begin);
+            let (times, splines) = splines(&keys, begin, frame);
             (times, splines, Interpolation::CubicSpline)
         }
         Between::Linear => {
-            let (times, places) = each(&thin::places(track, &keys, thin::APART), begin, vector);
+            let (times, places) = each(&thin::places(track, &keys, thin::APART), begin, |v| frame.vector(v));
             (times, places, Interpolation::Linear)
         }
     };
@@ -96,7 +127,7 @@ pub(super) fn animate(
             Between::Exact => orientations(track, &keys),
             Between::Linear => thin::turns(track, &keys, thin::APART),
         };
-        let (times, values) = each(&turns, begin, quaternion);
+        let (times, values) = each(&turns, begin, |q| frame.quaternion(q));
         let io = document.keys(&times, &values);
         channels.push(node, Property::Rotation, io, Interpolation::Linear);
     }
@@ -118,8 +149,9 @@ impl Document {
     }
 }
 
-/// Times, and per key the tangent on arrival, the value, and the tangent on leaving. Keys that single precision cannot tell apart become one.
-fn splines(keys: &[Key], begin: f64) -> (Vec<f32>, Vec<[f32; 3]>) {
+/// Times, and per key the tangent on arrival, the value, and the tangent on leaving. Keys that single precision cannot
+/// tell apart become one.
+fn splines(keys: &[Key], begin: f64, frame: Frame) -> (Vec<f32>, Vec<[f32; 3]>) {
     let (mut times, mut splines) = (Vec::<f32>::new(), Vec::<[f32; 3]>::new());
     for key in keys {
         let time = (key.time - begin) as f32;
@@ -128,9 +160,9 @@ fn splines(keys: &[Key], begin: f64) -> (Vec<f32>, Vec<[f32; 3]>) {
             splines.truncate(splines.len() - 2);
         } else {
             times.push(time);
-            splines.push(vector(key.arriving));
+            splines.push(frame.vector(key.arriving));
         }
-        splines.extend([vector(key.position), vector(key.leaving)]);
+        splines.extend([frame.vector(key.position), frame.vector(key.leaving)]);
     }
     (times, splines)
 }
@@ -152,12 +184,4 @@ fn each<T: Copy, const N: usize>(
         values.push(value(what));
     }
     (times, values)
-}
-
-fn vector(v: DVec3) -> [f32; 3] {
-    v.as_vec3().to_array()
-}
-
-fn quaternion(q: DQuat) -> [f32; 4] {
-    q.as_quat().normalize().to_array()
 }

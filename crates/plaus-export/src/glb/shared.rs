@@ -7,7 +7,7 @@
 
 use super::file::{Document, extras};
 use super::materials::unique;
-use super::motion::{self, Channels};
+use super::motion::{self, Channels, Frame};
 use crate::clip::{Clip, ExportError, Label, Style, Up};
 use crate::mesh;
 use gltf_json::animation::Property;
@@ -91,6 +91,12 @@ impl Writer {
     pub fn add(&mut self, clip: &Clip<'_>) -> Result<(), ExportError> {
         let number = self.clips.len();
         self.style = clip.style;
+        let (bodies, scenery) = (clip.animation.tracks.len(), clip.animation.scenery.len());
+        if clip.style.root_motion && (bodies, scenery) != (1, 0) {
+            let message = format!("root motion is that of one body alone: here are {bodies}, and {scenery} that stand");
+            return Err(ExportError::Impossible(message));
+        }
+        let unit = Frame::of(clip.style).scale;
         for prop in &clip.animation.scenery {
             let known = self.props.iter().position(|thing| thing.what == *prop);
             let place = known.unwrap_or_else(|| self.new_prop(prop, &clip.label.name));
@@ -104,7 +110,7 @@ impl Writer {
             });
             let (place, scale) = known.unwrap_or_else(|| (self.new_body(track, clip), 1.0));
             let body = &mut self.bodies[place];
-            body.shown(number, scale as f32);
+            body.shown(number, (scale * unit) as f32);
             body.what.turns |= track.turns();
             motion::animate(&mut self.document, &mut channels, clip, track, body.node);
         }
@@ -131,7 +137,7 @@ impl Writer {
                 mesh
             }
         };
-        let mut node = motion::node_at(track, clip.cut.from(), mesh);
+        let mut node = Frame::of(clip.style).node_at(track, clip.cut.from(), mesh);
         node.name = Some(self.node_name(&track.name, &clip.label.name));
         let node = self.document.root.push(node);
         let what = Body { name: track.name.clone(), shape: track.shape.clone(), look: track.look, turns: false };
@@ -153,11 +159,15 @@ impl Writer {
     pub fn finish(mut self) -> Result<Vec<u8>, ExportError> {
         self.show();
         let things = self.props.iter().map(|thing| thing.node).chain(self.bodies.iter().map(|thing| thing.node));
-        let (children, style) = (things.collect(), self.style);
+        let (things, style): (Vec<_>, Style) = (things.collect(), self.style);
         let label = self.common();
         let facts = extras(&label.facts)?;
-        let root = self.document.root.push(root_node(&label.name, children, &facts, style));
-        let scene = Scene { name: Some(label.name), nodes: vec![root], extensions: None, extras: facts };
+        let nodes = if style.root_motion {
+            things
+        } else {
+            vec![self.document.root.push(root_node(&label.name, things, &facts, style))]
+        };
+        let scene = Scene { name: Some(label.name), nodes, extensions: None, extras: facts };
         self.document.root.scene = Some(self.document.root.push(scene));
         for clip in self.clips {
             clip.finish(&mut self.document);
@@ -214,12 +224,11 @@ impl Writer {
 
 /// The node above all others, which turns and scales what is below it as the style says.
 fn root_node(name: &str, children: Vec<Index<Node>>, extras: &Extras, style: Style) -> Node {
-    let half = std::f32::consts::FRAC_1_SQRT_2;
     Node {
         name: Some(name.to_owned()),
         children: (!children.is_empty()).then_some(children),
         extras: extras.clone(),
-        rotation: (style.up == Up::Z).then_some(UnitQuaternion([half, 0.0, 0.0, half])),
+        rotation: (style.up == Up::Z).then(|| UnitQuaternion(motion::turn(style.up).as_quat().to_array())),
         scale: (style.scale != 1.0).then_some([style.scale as f32; 3]),
         ..Node::default()
     }

@@ -9,9 +9,9 @@
 //! - **Rings**: modes of free spheres, bars and panels, with the frequencies that size and stiffness give and the loss
 //!   of what they are made of, radiate as small pistons (van den Doel & Pai, *Presence* 7, 1998, for modal synthesis;
 //!   Rayleigh for the piston).
-//! - **Rolling and slipping**: roughness that is run over lifts the body: a random force whose pitch goes with the
-//!   speed, and whose strength goes with the force between the two and with the roughness of both (after Thompson,
-//!   *Railway Noise and Vibration*, 2009, chapter 2, without its wheels).
+//! - **Rolling and slipping**: roughness that is run over presses the contact in and out: a random force whose pitch goes
+//!   with the speed, and whose strength is the roughness of both times the stiffness of their contact (after Thompson,
+//!   *Railway Noise and Vibration*, 2009, chapter 2, above the contact's resonance).
 //!
 //! The pressure is that at a metre. A file is turned up or down so that its loudest moment is at −1 dB: nothing clips.
 //! Noise comes from a counter, sines from [`plaus_dist::math`]: the same bytes everywhere.
@@ -20,7 +20,7 @@ mod substance;
 
 use crate::clip::{Clip, ExportError};
 use plaus_animation::Animation;
-use plaus_dist::math::{cos, exp, ln, square};
+use plaus_dist::math::{cbrt, cos, exp, ln, square};
 use std::f64::consts::{PI, TAU};
 use substance::{Mode, Sounding, of_body, of_prop, unknown};
 
@@ -36,6 +36,8 @@ const AIR: [f64; 2] = [1.2, 343.0];
 const DISTANCE: f64 = 1.0;
 /// Size of what roughness consists of, m: its pitch is the speed over that.
 const GRAIN: f64 = 1e-3;
+/// Samples in which rolling and slipping come and go: a millisecond.
+const EDGE: f64 = 48.0;
 /// Force of slipping over that of rolling at the same speed: grains are torn over each other.
 const SLIPPING: f64 = 3.0;
 /// Loudest moment of a file, as a share of what a sample can hold: −1 dB.
@@ -114,10 +116,8 @@ pub fn score(animation: &Animation) -> Score {
     }
     for contact in &animation.contacts {
         let pair = [score.place(animation, &contact.body), score.place(animation, &contact.other)];
-        let rough = pair.map(|thing| score.things[thing].1.sounding.substance.rough);
-        // What lifts the body as it runs over a grain: the share of the weight that the grain's slope is.
-        let slope = (square(rough[0]) + square(rough[1])).sqrt() / GRAIN;
-        let (speeds, force) = ([contact.roll, contact.slip], slope * contact.force);
+        let [a, b] = pair.map(|thing| &score.things[thing].1.sounding);
+        let (speeds, force) = ([contact.roll, contact.slip], roughly(a, b, contact.force));
         let (start, end) = (contact.start, contact.end);
         score.rubs.push(Rub { start, end, speeds, forces: [force, SLIPPING * force], pair });
     }
@@ -182,13 +182,15 @@ impl Forces {
         }
     }
 
-    /// A random force that follows grains of a surface, smooth at its ends.
+    /// A random force that follows grains of a surface. It comes and goes within a millisecond around its ends, so that
+    /// contacts that follow each other make one sound.
     fn rub(&mut self, thing: usize, [start, end]: [f64; 2], speed: f64, strength: f64, noise: u64) {
         if speed <= 0.0 || strength <= 0.0 {
             return;
         }
         let rate = f64::from(RATE);
-        let [first, last] = [start, end].map(|time| (time * rate).max(0.0) as usize);
+        let half = 0.5 * EDGE / rate;
+        let [first, last] = [start - half, end + half].map(|time| (time * rate).max(0.0) as usize);
         // One number a grain, and a cosine between them.
         let step = (speed / GRAIN / rate).min(1.0);
         let force = &mut self.0[thing];
@@ -197,7 +199,7 @@ impl Forces {
             let (grain, share) = (along.floor(), along.fract());
             let [a, b] = [0, 1].map(|next| uneven(noise, grain as u64 + next));
             let smooth = 0.5 * (1.0 - cos(PI * share));
-            let edge = ((sample - first).min(last - 1 - sample) as f64 / 48.0).min(1.0);
+            let edge = ((sample - first).min(last - 1 - sample) as f64 / EDGE).min(1.0);
             *force += strength * edge * (a + (b - a) * smooth);
         }
     }
@@ -212,11 +214,24 @@ fn uneven(noise: u64, place: u64) -> f64 {
     (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
+/// Reduced modulus, Pa, and radius, m, of two things that touch.
+fn reduced(a: &Sounding, b: &Sounding) -> [f64; 2] {
+    let soft = |thing: &Sounding| (1.0 - square(thing.substance.poisson)) / thing.substance.young;
+    [1.0 / (soft(a) + soft(b)), 1.0 / (1.0 / a.radius + 1.0 / b.radius)]
+}
+
+/// The force of roughness on two things that a force presses together, N: what grains of both push the contact in, times
+/// how stiff it is (Hertz, `(6 E² R F)^(1/3)`). Not more than the force itself, or they would part.
+fn roughly(a: &Sounding, b: &Sounding, force: f64) -> f64 {
+    let [modulus, radius] = reduced(a, b);
+    let stiffness = cbrt(6.0 * square(modulus) * radius * force);
+    let grains = (square(a.substance.rough) + square(b.substance.rough)).sqrt();
+    (stiffness * grains).min(force)
+}
+
 /// How long two things touch that meet at a speed, s: Hertz. Shorter than a hundredth of a second in any case.
 fn contact_time(a: &Sounding, b: &Sounding, speed: f64) -> f64 {
-    let soft = |thing: &Sounding| (1.0 - square(thing.substance.poisson)) / thing.substance.young;
-    let stiff = 1.0 / (soft(a) + soft(b));
-    let radius = 1.0 / (1.0 / a.radius + 1.0 / b.radius);
+    let [stiff, radius] = reduced(a, b);
     let mass = 1.0 / (1.0 / a.mass + 1.0 / b.mass);
     let fifth = |x: f64| exp(0.2 * ln(x));
     (2.87 * fifth(square(mass) / (radius * square(stiff) * speed.max(1e-3)))).min(0.01)

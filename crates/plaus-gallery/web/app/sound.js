@@ -3,6 +3,8 @@
 
 // Samples a second; silence after the last moment, in s; size of what roughness consists of, in m; the loudest moment.
 const RATE = 48000, TAIL = 0.6, GRAIN = 1e-3, LOUDEST = 0.891;
+// Samples in which rolling and slipping come and go.
+const EDGE = 48;
 // The sound is begun anew where it is farther than this from the picture, in s of listening.
 const APART = 0.12;
 
@@ -82,14 +84,14 @@ function strike(force, start, length, impulse) {
   }
 }
 
-// A random force that follows grains of a surface, smooth at its ends.
+// A random force that follows grains of a surface. It comes and goes within a millisecond around its ends.
 function rub(force, start, end, speed, strength, noise) {
   if (!(speed > 0 && strength > 0)) return;
-  const first = Math.max(Math.floor(start * RATE), 0), last = Math.min(Math.floor(end * RATE), force.length);
+  const first = Math.max(Math.floor(start * RATE - EDGE / 2), 0), last = Math.min(Math.floor(end * RATE + EDGE / 2), force.length);
   const step = Math.min(speed / GRAIN / RATE, 1);
   for (let k = first; k < last; k++) {
     const along = (k - first) * step, grain = Math.floor(along), smooth = 0.5 * (1 - Math.cos(Math.PI * (along - grain)));
-    const a = uneven(noise, grain), b = uneven(noise, grain + 1), edge = Math.min(Math.min(k - first, last - 1 - k) / 48, 1);
+    const a = uneven(noise, grain), b = uneven(noise, grain + 1), edge = Math.min(Math.min(k - first, last - 1 - k) / EDGE, 1);
     force[k] += strength * edge * (a + (b - a) * smooth);
   }
 }

@@ -1,7 +1,7 @@
 //! Videos, made by the program `ffmpeg`.
 
 use super::is_ours;
-use super::sheet::Sheet;
+use super::sheet::{MOST, Sheet};
 use plaus_export::format::{Collection, Row};
 use plaus_export::{Clip, ExportError, Exporter, Label, glb, sound};
 use std::fs::{self, File};
@@ -43,8 +43,8 @@ impl Exporter for Mp4 {
         30.0
     }
 
-    fn is_picture(&self) -> bool {
-        true
+    fn most(&self) -> usize {
+        MOST
     }
 }
 

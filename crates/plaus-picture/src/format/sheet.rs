@@ -5,7 +5,7 @@ use plaus_animation::Animation;
 use plaus_export::{Clip, Cut, ExportError};
 
 /// Clips on one sheet at most.
-const MOST: usize = 64;
+pub(super) const MOST: usize = 64;
 /// Pixels between clips.
 const GAP: u32 = 4;
 /// Sizes, in pixels, that a picture may have: what is larger than the largest screens takes hours.

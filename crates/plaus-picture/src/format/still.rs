@@ -1,7 +1,7 @@
 //! Pictures and short loops, which need no other program.
 
 use super::is_ours;
-use super::sheet::Sheet;
+use super::sheet::{MOST, Sheet};
 use plaus_export::format::{Collection, Row};
 use plaus_export::{Clip, ExportError, Exporter, glb};
 use std::io::Write;
@@ -37,8 +37,8 @@ impl Exporter for Png {
         is_ours(path, b"\x89PNG")
     }
 
-    fn is_picture(&self) -> bool {
-        true
+    fn most(&self) -> usize {
+        MOST
     }
 }
 
@@ -89,8 +89,8 @@ impl Exporter for Gif {
         20.0
     }
 
-    fn is_picture(&self) -> bool {
-        true
+    fn most(&self) -> usize {
+        MOST
     }
 }
 

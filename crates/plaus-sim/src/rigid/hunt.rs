@@ -11,6 +11,7 @@
 //! of: the steps deal with these.
 
 use super::body::{Phase, Pose, Turning};
+use super::bound::Bound;
 use super::detect::{Search, earliest};
 use super::spots::{Spot, for_elements};
 use super::still::Ground;
@@ -46,9 +47,6 @@ const AHEAD: f64 = 2.0;
 /// 0.01.
 const CREEP: f64 = 0.01;
 
-/// Rounds of closing in on the root of a bound.
-const ROUNDS: usize = 4;
-
 /// What a body may touch.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Target<'w> {
@@ -70,9 +68,9 @@ pub(super) struct Hunt<'w> {
 }
 
 /// Where both are.
-struct Scene {
-    a: Pose,
-    b: Pose,
+pub(super) struct Scene {
+    pub(super) a: Pose,
+    pub(super) b: Pose,
 }
 
 /// What pieces that are looked at do next.
@@ -408,55 +406,6 @@ fn fastest(spec: &Spec, body: &Turning) -> f64 {
         return now;
     }
     spec.inertia.momentum(body.turn, body.spin).length() / spec.inertia.moments.min_element()
-}
-
-/// The lower bound on a gap along a direction.
-struct Bound {
-    f: f64,
-    normal: DVec3,
-    /// How the direction turns as each body sees it.
-    turns: [DVec3; 2],
-    rate: f64,
-    m: f64,
-}
-
-impl Bound {
-    fn new(f: f64, normal: DVec3, scene: &Scene, m: f64) -> Self {
-        let turns = [normal.cross(scene.a.w), normal.cross(scene.b.w)];
-        Self { f, normal, turns, rate: normal.dot(scene.a.v - scene.b.v), m }
-    }
-
-    /// A time before which the bound is positive; not more than `limit` needs to be known. `rate` is that of the
-    /// nearest points, whose own bound is above; the supports are about the centres of gravity.
-    fn root(&self, rate: f64, limit: f64, first: impl Fn(DVec3) -> f64, second: impl Fn(DVec3) -> f64) -> f64 {
-        let mut high = earliest(self.f, rate, self.m).min(limit);
-        if self.f <= 0.0 {
-            return high;
-        }
-        let n = self.normal;
-        let start = first(-n) + second(n);
-        let at = |t: f64| {
-            let low = first(-(n + self.turns[0] * t)) + second(n + self.turns[1] * t) - start;
-            self.f - low + (self.rate - 0.5 * self.m * t) * t
-        };
-        let mut at_high = at(high);
-        if at_high >= 0.0 {
-            return high;
-        }
-        // The chord of a concave function lies below it.
-        let (mut low, mut at_low) = (0.0, self.f);
-        for _ in 0..ROUNDS {
-            let chord = low + (high - low) * (at_low / (at_low - at_high));
-            (low, at_low) = (chord, at(chord));
-            if at_low <= 0.0 || high - low <= 0.01 * low {
-                break;
-            }
-            let middle = 0.5 * (low + high);
-            let at_middle = at(middle);
-            if at_middle > 0.0 { (low, at_low) = (middle, at_middle) } else { (high, at_high) = (middle, at_middle) }
-        }
-        low
-    }
 }
 
 impl Rigid {

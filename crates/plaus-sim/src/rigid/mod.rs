@@ -45,6 +45,7 @@
 
 mod blocks;
 mod body;
+mod bound;
 mod boxes;
 mod capsule;
 mod contact;

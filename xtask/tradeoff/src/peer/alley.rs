@@ -69,7 +69,7 @@ impl AlleyParts {
                     peer::ColliderBuilder::cuboid(half.x, half.y, half.z)
                         .translation(vector(0.5 * (bounds.max + bounds.min)))
                 }
-                Part::Table(_) => return Err("an alley has no spline table".into()),
+                Part::Table(_) | Part::Solid(_) | Part::Mesh(_) => return Err("an alley has planes and boxes".into()),
             };
             fixed.push(marked(collider, WOOD));
         }

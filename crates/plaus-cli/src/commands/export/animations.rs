@@ -7,8 +7,11 @@ use plaus_run::export::output;
 use plaus_run::replay::{Replay, replay_each_until};
 use plaus_run::{Confirmation, Error, RunOf, SampleId, solutions};
 use plaus_scenes::Scene;
+use plaus_scenes::animation::Animation;
+use plaus_scenes::scenario::nearest;
 use serde_json::{Value, json};
-use std::fs::{self, File};
+use std::borrow::Cow;
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -57,6 +60,14 @@ impl<'a, S: Scene> Animations<'a, S> {
             return out.flush().map_err(Error::Output);
         }
         if one || self.args.into.is_some() || self.format.is_table() {
+            let (count, most) = (self.samples.len(), self.format.most());
+            if count > most {
+                let message = format!(
+                    "{count} samples: one {} holds {most} at most; choose some by --sample, or make a folder by --out",
+                    self.format.row().name
+                );
+                return Err(Error::Request(message));
+            }
             output::file(out, force, |path| self.format.is_ours(path), |file| self.all(out, file))?;
             return self.beside(out);
         }
@@ -89,12 +100,24 @@ impl<'a, S: Scene> Animations<'a, S> {
         replay
     }
 
+    /// The animation of a sample, or what it has of the one body that is to be written.
+    fn shown<'r>(&self, replay: &'r Replay) -> Result<Cow<'r, Animation>, Error> {
+        let whole = &replay.animation;
+        let Some(name) = &self.args.motion.root_motion else { return Ok(Cow::Borrowed(whole)) };
+        whole.only(name).map(Cow::Owned).ok_or_else(|| {
+            let names: Vec<&str> = whole.tracks.iter().map(|track| track.name.as_str()).collect();
+            let near = nearest(name, names.iter().copied());
+            let hint = near.map_or_else(|| "choose of".to_owned(), |near| format!("did you mean {near}? There are"));
+            Error::Request(format!("--root-motion {name}: there is no such body; {hint} {}", names.join(", ")))
+        })
+    }
+
     /// Hands a sample to `make` as it is to be written.
     fn clip<T>(&self, replay: &Replay, make: impl FnOnce(&Clip<'_>) -> Result<T, ExportError>) -> Result<T, Error> {
-        let motion = &self.args.motion;
+        let (motion, animation) = (&self.args.motion, self.shown(replay)?);
         let cut = Cut::new(self.fps(), motion.time_range, &replay.animation).map_err(refused)?;
         let label = self.label(replay, &cut);
-        make(&Clip::new(&replay.animation, &label, cut).styled(motion.style()).watched(show)).map_err(refused)
+        make(&Clip::new(&animation, &label, cut).styled(motion.style()).watched(show)).map_err(refused)
     }
 
     fn fps(&self) -> f64 {
@@ -113,7 +136,7 @@ impl<'a, S: Scene> Animations<'a, S> {
     /// What goes beside a file, where there is none: programs write their own notes into it.
     fn beside(&self, path: &Path) -> Result<(), Error> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let Some((end, text)) = self.format.beside(&name, self.fps()) else { return Ok(()) };
+        let Some((end, text)) = self.format.beside(&name) else { return Ok(()) };
         match File::create_new(path.with_file_name(format!("{name}.{end}"))) {
             Ok(mut file) => file.write_all(text.as_bytes()).map_err(Error::Output),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
@@ -123,13 +146,16 @@ impl<'a, S: Scene> Animations<'a, S> {
 
     /// A folder of animations, one a sample, and a list of them.
     fn fill(&self, folder: &Path) -> Result<(), Error> {
-        let mut list = Vec::with_capacity(self.samples.len());
+        let mut list = BufWriter::new(File::create_new(folder.join(INDEX)).map_err(Error::Output)?);
+        write!(list, "{{\"plaus\": {}, \"animations\": [", json!(glb::GENERATOR)).map_err(Error::Output)?;
+        let mut between = "\n";
         for samples in self.samples.chunks(AT_A_TIME) {
-            let made = replay_each_until(self.run, samples, self.until(), |replay| self.file(folder, &replay))?;
-            list.extend(made.into_iter().collect::<Result<Vec<_>, _>>()?);
+            for made in replay_each_until(self.run, samples, self.until(), |replay| self.file(folder, &replay))? {
+                write!(list, "{between}{}", made?).map_err(Error::Output)?;
+                between = ",\n";
+            }
         }
-        let index = json!({"plaus": glb::GENERATOR, "animations": list});
-        fs::write(folder.join(INDEX), format!("{index:#}\n")).map_err(Error::Output)
+        list.write_all(b"\n]}\n").and_then(|()| list.flush()).map_err(Error::Output)
     }
 
     /// One animation of a folder; what the list says of it.

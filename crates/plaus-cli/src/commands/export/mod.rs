@@ -74,6 +74,9 @@ struct Motion {
     /// glb and usda: units per metre, e.g. 100 for centimetres [default: 1]
     #[arg(long, value_name = "UNITS")]
     scale: Option<f64>,
+    /// glb: write this body alone, as the node above all others, for game engines that move an actor by its animation
+    #[arg(long, value_name = "BODY")]
+    root_motion: Option<String>,
     /// png, gif and mp4: pixels across and down, e.g. 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
@@ -145,6 +148,7 @@ impl Motion {
             time_codes: self.time_codes.unwrap_or(usual.time_codes),
             up: if self.up == Some(UpAxis::Z) { Up::Z } else { Up::Y },
             scale: self.scale.unwrap_or(usual.scale),
+            root_motion: self.root_motion.is_some(),
             size: self.size,
         }
     }
@@ -160,6 +164,7 @@ impl Motion {
             (self.time_codes.is_some(), "--time-codes", &["usda"]),
             (self.up.is_some(), "--up", layers),
             (self.scale.is_some(), "--scale", layers),
+            (self.root_motion.is_some(), "--root-motion", &["glb"]),
             (self.size.is_some(), "--size", &["png", "gif", "mp4"]),
             (self.min_impulse.is_some(), "--min-impulse", &["events", "wav"]),
             (self.merge.is_some(), "--merge", &["events", "wav"]),

@@ -19,6 +19,9 @@ const FLAT: f64 = 0.99;
 /// Distance over the size within which two points of contact count as one. Default 1e-4.
 const SAME: f64 = 1e-4;
 
+/// Of two such points the nearer counts, if it is by this part of that distance. Default 1e-6: rounding decides nothing.
+const CLOSER: f64 = 1e-6;
+
 impl Both<'_> {
     /// Calls `each` for the points with a gap of at most `within`, given the nearest points.
     pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
@@ -34,9 +37,14 @@ impl Both<'_> {
         let mut found: Vec<Meeting> = Vec::new();
         let same = SAME * self.first.reach.min(self.second.reach).max(f64::MIN_POSITIVE);
         let mut take = |m: Meeting| {
-            let is_new = || found.iter().all(|f| (f.points[0] - m.points[0]).length_squared() > same * same);
-            if m.gap <= within && m.normal.dot(nearest.normal) > FACING && is_new() {
-                found.push(m);
+            if m.gap > within || m.normal.dot(nearest.normal) <= FACING {
+                return;
+            }
+            let known = found.iter_mut().find(|f| (f.points[0] - m.points[0]).length_squared() <= same * same);
+            match known {
+                None => found.push(m),
+                Some(known) if m.gap < known.gap - CLOSER * same => *known = m,
+                Some(_) => {}
             }
         };
         for of in 0..2 {

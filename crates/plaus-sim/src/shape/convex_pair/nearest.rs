@@ -19,12 +19,18 @@ const SLACK: f64 = 1e-12;
 /// above rounding.
 const PROVED: f64 = 1e-10;
 
-/// Angles in radians of the first and the last look around a direction where cores overlap.
-const WIDEST: f64 = 0.3;
-const FINEST: f64 = 1e-8;
+/// Most rounds of turning the way out of an overlap.
+const ROUNDS: usize = 40;
 
-/// The nearest points of two pieces; of cores that overlap, those along the way out that is shortest among the
-/// directions looked at.
+/// Least distance over the size to which cores that overlap are moved apart. Default 1e-5: what is nearest then is known
+/// to 1e-10 of it.
+const ASIDE: f64 = 1e-5;
+
+/// Change of a direction within which it counts as found.
+const FOUND: f64 = 1e-10;
+
+/// The nearest points of two pieces; of cores that overlap, those along the way out that is shortest among those found
+/// from several directions.
 pub(crate) fn nearest(both: &Both) -> Meeting {
     match (both.first.core, both.second.core) {
         (Core::Polyhedron(_), Core::Polyhedron(_)) => {
@@ -34,9 +40,26 @@ pub(crate) fn nearest(both: &Both) -> Meeting {
                 |p| in_common(both, p.nearest(None)),
             )
         }
-        (Core::Discs(_), Core::Polyhedron(_)) => with_polyhedron(both, 0),
-        (Core::Polyhedron(_), Core::Discs(_)) => with_polyhedron(both, 1),
+        _ => match searched(both) {
+            Searched::Nearest(m) => m,
+            Searched::Overlap(search) => search.deepest(),
+        },
+    }
+}
+
+/// What came of a search.
+enum Searched<'b, 'p> {
+    Nearest(Meeting),
+    /// The cores overlap; this was looked at.
+    Overlap(Search<'b, 'p>),
+}
+
+/// The nearest points of cores that are not both polyhedra, or else what a search has seen.
+fn searched<'b, 'p>(both: &'b Both<'p>) -> Searched<'b, 'p> {
+    match (both.first.core, both.second.core) {
         (Core::Discs(_), Core::Discs(_)) => two_of_discs(both),
+        (Core::Discs(_), _) => with_polyhedron(both, 0),
+        _ => with_polyhedron(both, 1),
     }
 }
 
@@ -88,48 +111,47 @@ impl Search<'_, '_> {
         }
     }
 
-    /// The answer where cores overlap: the direction that keeps them least in each other, climbed to from the best of
-    /// those looked at and from that between the centres.
+    /// The answer where cores overlap: the best of the ways out that lead from the best directions looked at and from
+    /// that between the centres.
     fn deepest(mut self) -> Meeting {
-        let slack = SLACK * self.both.size();
         if let Some(m) = self.near {
             self.along(m.normal);
-            if m.gap + self.both.roundings() <= self.far.0 + slack {
+            if m.gap + self.both.roundings() <= self.far.0 + SLACK * self.both.size() {
                 return m;
             }
-            self.climb(m.normal);
-        }
-        self.climb(self.far.1);
-        if let Some(centres) = (self.both.first.centre - self.both.second.centre).try_normalize() {
-            self.climb(centres);
         }
         let (apart, normal) = self.far;
-        self.at(normal, apart, Mark::Nearest)
+        let mut best = self.at(normal, apart, Mark::Nearest);
+        let centres = (self.both.first.centre - self.both.second.centre).try_normalize();
+        let starts = [Some(normal), self.near.map(|m| m.normal), centres];
+        for start in starts.into_iter().flatten() {
+            if let Some(m) = self.way_out(start)
+                && m.gap > best.gap
+            {
+                best = m;
+            }
+        }
+        best
     }
 
-    /// From direction to direction as long as the cores get farther apart: a search by pattern, to [`FINEST`].
-    fn climb(&mut self, from: DVec3) {
-        let (mut n, mut best, mut step) = (from, self.both.apart(from), WIDEST);
-        while step > FINEST {
-            let (u, v) = n.any_orthonormal_pair();
-            let before = best;
-            for (x, y) in
-                [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.7, 0.7), (-0.7, 0.7), (0.7, -0.7), (-0.7, -0.7)]
-            {
-                let m = (n + (u * x + v * y) * step).normalize();
-                let apart = self.both.apart(m);
-                if apart > best {
-                    (n, best) = (m, apart);
-                    break;
-                }
-            }
-            if best == before {
-                step *= 0.5;
+    /// The shortest way out near a direction. Moved apart along a direction by more than they overlap, cores have nearest
+    /// points, and along the line between these they overlap less, or as much if it is the same direction: the
+    /// proximal-point method, for what keeps cores apart is the largest of `apart(n) + shift n·direction`.
+    fn way_out(&self, start: DVec3) -> Option<Meeting> {
+        let (mut n, mut found) = (start, None);
+        for _ in 0..ROUNDS {
+            let shift = n * (-2.0 * self.both.apart(n)).max(ASIDE * self.both.size());
+            let moved = Placed { centre: self.both.first.centre + shift, ..self.both.first };
+            let moved = Both { first: moved, second: self.both.second };
+            let Searched::Nearest(m) = searched(&moved) else { break };
+            let (along, turned) = (m.normal.dot(shift), (m.normal - n).length());
+            found = Some(Meeting { points: [m.points[0] - shift, m.points[1]], gap: m.gap - along, ..m });
+            n = m.normal;
+            if turned < FOUND {
+                break;
             }
         }
-        if best > self.far.0 {
-            self.far = (best, n);
-        }
+        found.map(|m| Meeting { mark: Mark::Nearest, ..m })
     }
 
     /// Points that a direction is the normal of: of those of the first equally low one over the second, if that is
@@ -148,10 +170,10 @@ impl Search<'_, '_> {
 }
 
 /// A core of discs, the first (0) or the second (1), and a polyhedron.
-fn with_polyhedron(both: &Both, discs: usize) -> Meeting {
+fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Searched<'b, 'p> {
     let (own, other) = (both.piece(discs), both.piece(1 - discs));
     let (Core::Discs(core), Core::Polyhedron(hull)) = (own.core, other.core) else {
-        return both.at_point(0, both.first.centre, Mark::Nearest);
+        return Searched::Nearest(both.at_point(0, both.first.centre, Mark::Nearest));
     };
     let mut search = Search { both, near: None, far: (f64::NEG_INFINITY, DVec3::Z) };
     let ends = ends(own, other, hull);
@@ -182,12 +204,12 @@ fn with_polyhedron(both: &Both, discs: usize) -> Meeting {
         if apart > TOUCHING * size
             && let Some(m) = over_face(both, discs, core, normal, apart)
         {
-            return m;
+            return Searched::Nearest(m);
         }
         if let Some(m) = search.near
             && search.is_proved(&m)
         {
-            return m;
+            return Searched::Nearest(m);
         }
         // No corner and no edge is in the other, but it goes through a face.
     }
@@ -196,7 +218,7 @@ fn with_polyhedron(both: &Both, discs: usize) -> Meeting {
             search.along(cap * -sign);
         }
     }
-    search.deepest()
+    Searched::Overlap(search)
 }
 
 /// Corners of a polyhedron as a core of discs sees them.
@@ -234,7 +256,7 @@ fn over_face(both: &Both, discs: usize, core: &Discs, normal: DVec3, apart: f64)
 }
 
 /// Two cores of discs.
-fn two_of_discs(both: &Both) -> Meeting {
+fn two_of_discs<'b, 'p>(both: &'b Both<'p>) -> Searched<'b, 'p> {
     let mut search = Search { both, near: None, far: (f64::NEG_INFINITY, DVec3::Z) };
     for of in 0..2 {
         let (own, other) = (both.piece(of), both.piece(1 - of));
@@ -269,14 +291,14 @@ fn two_of_discs(both: &Both) -> Meeting {
     let size = both.size();
     let distance = search.distance();
     if distance <= TOUCHING * size {
-        return search.deepest();
+        return Searched::Overlap(search);
     }
     let (apart, normal) = search.far;
     match search.near {
-        Some(m) if search.is_proved(&m) => m,
+        Some(m) if search.is_proved(&m) => Searched::Nearest(m),
         // Sides that cross, whose points are on no rim.
-        _ if apart > TOUCHING * size => crossing_sides(both, normal, apart),
-        _ => search.deepest(),
+        _ if apart > TOUCHING * size => Searched::Nearest(crossing_sides(both, normal, apart)),
+        _ => Searched::Overlap(search),
     }
 }
 

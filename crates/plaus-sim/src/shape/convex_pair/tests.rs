@@ -1,6 +1,6 @@
 //! Pairs of pieces at random poses, against proofs of their own and a search over directions.
 
-use super::{Both, nearest};
+use super::{Both, Mark, nearest};
 use crate::shape::frustum::Discs;
 use crate::shape::piece::{Core, Piece, Placed};
 use crate::shape::{ConvexHull, Polyhedron, Solid};
@@ -81,7 +81,7 @@ fn nearest_points_are_proved() {
     let (mut apart, mut within) = (0, 0);
     for (i, (one, a)) in kinds.iter().enumerate() {
         for (j, (other, b)) in kinds.iter().enumerate() {
-            for _ in 0..60 {
+            for _ in 0..30 {
                 let turns = [DMat3::from_quat(numbers.turn()), DMat3::from_quat(numbers.turn())];
                 let centre = numbers.vector() * (0.4 + 1.2 * numbers.next());
                 let both = Both { first: a.placed(&turns[0], centre), second: b.placed(&turns[1], DVec3::ZERO) };
@@ -112,7 +112,7 @@ fn nearest_points_are_proved() {
             }
         }
     }
-    assert!(apart > 2000 && within > 500, "{apart} {within}");
+    assert!(apart > 1000 && within > 250, "{apart} {within}");
 }
 
 /// A point of contact found again where it was found is the same; all have at most the gap asked for, one of them the
@@ -122,7 +122,8 @@ fn points_of_contact_are_found_again() {
     let kinds = kinds();
     let mut numbers = Numbers(11);
     let mut most = 0;
-    for (one, a) in &kinds {
+    // A triangle is one of a mesh, which is always the second and is seen from outside.
+    for (one, a) in &kinds[..9] {
         for (other, b) in &kinds {
             for flat in [true, false] {
                 for _ in 0..20 {
@@ -149,7 +150,10 @@ fn points_of_contact_are_found_again() {
                         assert!((again.points[0] - t.points[0]).length() < 1e-9, "{one} on {other}: {t:?} {again:?}");
                     });
                     most = most.max(count);
-                    assert!(count > 0 && (least - m.gap).abs() < 1e-8, "{one} on {other}: {least} for {m:?}");
+                    // Of two polyhedra a corner that is less than what is asked for beside a face counts as over it, and
+                    // edges that cross so near to a corner are left to that.
+                    let off = if matches!(m.mark, Mark::Polyhedra(_)) { 2e-4 } else { 1e-8 };
+                    assert!(count > 0 && (least - m.gap).abs() < off, "{one} on {other}: {least} for {m:?}");
                 }
             }
         }

@@ -55,6 +55,7 @@ impl HullPair<'_> {
         for (normal, face) in normals.iter_mut().zip(&b.faces) {
             *normal = *into * face.normal;
         }
+        let flat = [a, b].map(|h| h.faces.len() == 2);
         let mut best = None;
         let mut most = least;
         let mut slants = [0.0; MOST_FACES];
@@ -70,7 +71,8 @@ impl HullPair<'_> {
                     continue;
                 }
                 let (u, v) = (n.dot(along[j]), m.dot(along[j]));
-                if u * v >= 0.0 || x * v >= 0.0 {
+                let is_flat = flat[0] || flat[1];
+                if u * v >= 0.0 || (!is_flat && x * v >= 0.0) {
                     continue;
                 }
                 let cross = e.along.cross(along[j]);
@@ -78,7 +80,15 @@ impl HullPair<'_> {
                 if sine < PARALLEL * PARALLEL {
                     continue;
                 }
-                let out = if cross.dot(n + m) < 0.0 { -cross } else { cross };
+                // The normals at an edge of a triangle are half a circle, about the direction out of it in its plane.
+                let outward = if flat[0] { e.along.cross(n) } else { n + m };
+                let out = if cross.dot(outward) < 0.0 { -cross } else { cross };
+                if is_flat {
+                    let [n, m] = g.faces.map(|k| normals[usize::from(k)]);
+                    if out.dot(if flat[1] { along[j].cross(n) } else { n + m }) >= 0.0 {
+                        continue;
+                    }
+                }
                 let apart = (from[j] - start).dot(out);
                 // Without the root where it cannot win.
                 if most > 0.0 && (apart <= 0.0 || apart * apart <= most * most * sine) {

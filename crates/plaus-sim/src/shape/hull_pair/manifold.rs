@@ -55,6 +55,10 @@ impl HullPair<'_> {
             // The core of a ball.
             None => On::Corner(0),
             Some((_, top)) if top > within + self.roundings() => return None,
+            // Beside a triangle, which has no faces there.
+            Some((face, _)) if other.faces.len() == 2 && !other.is_over(face, seen, within) => {
+                other.nearest_edge(seen).0
+            }
             Some((_, top)) => {
                 let beyond = |k: usize| other.faces[k].normal.dot(seen) - other.faces[k].offset;
                 let mut sides = (0..other.faces.len()).filter(|&k| beyond(k) > within);

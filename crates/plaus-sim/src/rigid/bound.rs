@@ -1,0 +1,64 @@
+//! A lower bound on the gap of two pieces along a direction, while their bodies move: what conservative advancement
+//! goes by (see `hunt.rs`).
+
+use super::detect::earliest;
+use super::hunt::Scene;
+use glam::DVec3;
+
+/// Rounds of closing in on the root of a bound.
+const ROUNDS: usize = 4;
+
+/// The lower bound on a gap along a direction.
+pub(super) struct Bound {
+    f: f64,
+    normal: DVec3,
+    /// How the direction turns as each body sees it.
+    turns: [DVec3; 2],
+    rate: f64,
+    m: f64,
+}
+
+impl Bound {
+    pub(super) fn new(f: f64, normal: DVec3, scene: &Scene, m: f64) -> Self {
+        let turns = [normal.cross(scene.a.w), normal.cross(scene.b.w)];
+        Self { f, normal, turns, rate: normal.dot(scene.a.v - scene.b.v), m }
+    }
+
+    /// A time before which the bound is positive; not more than `limit` needs to be known. `rate` is that of the
+    /// nearest points, whose own bound is above; the supports are about the centres of gravity.
+    pub(super) fn root(
+        &self,
+        rate: f64,
+        limit: f64,
+        first: impl Fn(DVec3) -> f64,
+        second: impl Fn(DVec3) -> f64,
+    ) -> f64 {
+        let mut high = earliest(self.f, rate, self.m).min(limit);
+        if self.f <= 0.0 {
+            return high;
+        }
+        let n = self.normal;
+        let start = first(-n) + second(n);
+        let at = |t: f64| {
+            let low = first(-(n + self.turns[0] * t)) + second(n + self.turns[1] * t) - start;
+            self.f - low + (self.rate - 0.5 * self.m * t) * t
+        };
+        let mut at_high = at(high);
+        if at_high >= 0.0 {
+            return high;
+        }
+        // The chord of a concave function lies below it.
+        let (mut low, mut at_low) = (0.0, self.f);
+        for _ in 0..ROUNDS {
+            let chord = low + (high - low) * (at_low / (at_low - at_high));
+            (low, at_low) = (chord, at(chord));
+            if at_low <= 0.0 || high - low <= 0.01 * low {
+                break;
+            }
+            let middle = 0.5 * (low + high);
+            let at_middle = at(middle);
+            if at_middle > 0.0 { (low, at_low) = (middle, at_middle) } else { (high, at_high) = (middle, at_middle) }
+        }
+        low
+    }
+}
