@@ -37,6 +37,13 @@ pub enum Shape {
         /// Painted rings.
         stripes: Vec<Stripe>,
     },
+    /// A convex polyhedron.
+    Solid {
+        /// Corners.
+        vertices: Vec<DVec3>,
+        /// Three corners each, counter-clockwise as seen from outside.
+        triangles: Vec<[u32; 3]>,
+    },
 }
 
 /// A painted ring of a body of revolution.
@@ -75,6 +82,10 @@ impl Shape {
                 let points = profile.iter().map(|&[r, h]| across * r + DVec3::Z * h);
                 points.max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction))).unwrap_or_default()
             }
+            Self::Solid { vertices, .. } => {
+                let points = vertices.iter().copied();
+                points.max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction))).unwrap_or_default()
+            }
         }
     }
 
@@ -88,6 +99,7 @@ impl Shape {
             Self::Revolution { profile, .. } => {
                 profile.iter().map(|&[r, h]| DVec3::new(r, h, 0.0).length()).fold(0.0, f64::max)
             }
+            Self::Solid { vertices, .. } => vertices.iter().map(|vertex| vertex.length()).fold(0.0, f64::max),
         }
     }
 }

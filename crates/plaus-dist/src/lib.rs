@@ -24,8 +24,14 @@
 //! | [`Radial`] | the same, by a recipe as printed | reproducing published figures only |
 //! | [`Uniform`], [`UniformBox`] | a number, a point | symmetric steps, drop positions |
 //! | [`WrappedUniform`] | a point of a ring | moves that wrap around |
+//! | [`Triangular`] | a number in an interval | a guess: the least, the likely, the most |
+//! | [`LogNormal`] | a positive number | sizes, densities: what is uncertain by a factor |
+//! | [`VonMises`] | an angle | headings, on a ring whose ends are joined |
+//! | [`Choice`] | one of some numbers | gears, slots |
 //! | [`Bernoulli`] | yes or no | balls that may be absent |
 //! | [`Gibbs`] | a count of wishes met | goals; unnormalised, has no sampler |
+//!
+//! Those of one number are a [`NumberLaw`] each, for whoever needs not know which.
 //!
 //! Around them: [`log`] keeps normalised densities, unnormalised weights and ratios apart, [`stream`] gives every
 //! random number its key, [`math`] computes the same bits on every platform, [`param`] says what a constructor refuses.
@@ -42,36 +48,46 @@
 //!   pinned by tests.
 
 mod bernoulli;
+mod choice;
 mod gaussian;
 mod gibbs;
 mod isotropic;
 pub mod log;
+mod log_normal;
 pub mod math;
 mod normal;
 mod normal_quantile;
+mod number;
 pub mod param;
 mod radial;
 pub mod stream;
 #[cfg(test)]
 mod testing;
+mod triangular;
 mod truncated;
 mod uniform;
 mod uniform_box;
+mod von_mises;
 mod wrapped;
 
 pub use bernoulli::Bernoulli;
+pub use choice::Choice;
 pub use gaussian::Gaussian;
 pub use gibbs::Gibbs;
 pub use isotropic::IsotropicGaussian;
 pub use log::{LogDensity, LogPotential, LogRatio, NotANumber};
+pub use log_normal::LogNormal;
 pub use normal::standard_normal;
 pub use normal_quantile::normal_quantile;
+pub use number::NumberLaw;
 pub use param::ParamError;
 pub use radial::Radial;
 pub use stream::{ChainStreams, Purpose, Seed, Stream, open_unit};
+pub use triangular::Triangular;
 pub use truncated::TruncatedGaussian;
 pub use uniform::Uniform;
 pub use uniform_box::UniformBox;
+pub use von_mises::VonMises;
 pub use wrapped::WrappedUniform;
 
 /// A normalised density (or probability mass) over values `X`.

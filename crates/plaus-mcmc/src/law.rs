@@ -1,9 +1,10 @@
 //! The law of one variable of a draw, for moves that serve variables of any law.
 
 use plaus_dist::{
-    Density, Gaussian, IsotropicGaussian, LogDensity, NotANumber, ParamError, Radial, Sample, Stream,
+    Density, Gaussian, IsotropicGaussian, LogDensity, NotANumber, NumberLaw, ParamError, Radial, Sample, Stream,
     TruncatedGaussian, Uniform, UniformBox, WrappedUniform, math,
 };
+use std::sync::Arc;
 
 /// The law of a variable: of one number, or of an offset's or a place's coordinates together.
 #[derive(Debug, Clone)]
@@ -19,6 +20,8 @@ pub enum Law {
     Above(f64, f64, usize),
     /// A number uniform on an interval whose ends are joined: what leaves on one side enters on the other.
     Uniform(WrappedUniform),
+    /// A number of any other law.
+    Number(Arc<dyn NumberLaw>),
     /// A place uniform on a rectangle, opposite sides joined.
     Rectangle(Rectangle),
     /// An offset in the plane.
@@ -67,6 +70,7 @@ impl Law {
                 values.fill(above(*mean, *sd, other).map_or(*mean, |law| law.sample(stream)));
             }
             Self::Uniform(law) => values.fill(law.sample(stream)),
+            Self::Number(law) => values.fill(law.draw(stream)),
             Self::Rectangle(law) => values.copy_from_slice(&law.sample(stream)),
             Self::Plane(law) => values.copy_from_slice(&law.sample(recipe, stream)),
             Self::Space(law) => values.copy_from_slice(&law.sample(recipe, stream)),
@@ -89,6 +93,7 @@ impl Law {
                 above(*mean, *sd, other).map_or(Ok(LogDensity::ZERO), |law| law.log_density(&x))
             }
             Self::Uniform(law) => law.log_density(&x),
+            Self::Number(law) => law.log_density_at(x),
             Self::Rectangle(law) => law.log_density(&array(values)),
             Self::Plane(law) => law.log_density(&array(values)),
             Self::Space(law) => law.log_density(&array(values)),
@@ -110,6 +115,7 @@ impl Law {
         match self {
             Self::Fixed(_) | Self::Own => {}
             Self::Uniform(law) => values.iter_mut().zip(step).for_each(|(x, by)| *x = law.wrap(*x + by)),
+            Self::Number(law) => values.iter_mut().zip(step).for_each(|(x, by)| *x = law.step(*x, *by)),
             Self::Rectangle(law) => {
                 let sides = values.iter_mut().zip(step).zip(&law.sides);
                 sides.for_each(|((x, by), side)| *x = side.wrap(*x + by));
@@ -124,6 +130,7 @@ impl Law {
     pub fn width(&self) -> f64 {
         match self {
             Self::Uniform(law) => law.high() - law.low(),
+            Self::Number(law) => law.width(),
             Self::Rectangle(law) => {
                 (law.sides[0].high() - law.sides[0].low()).min(law.sides[1].high() - law.sides[1].low())
             }

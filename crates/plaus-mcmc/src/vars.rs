@@ -8,6 +8,7 @@ use crate::law::{Law, Recipe};
 use crate::target::Target;
 use plaus_dist::{Density, LogDensity, NotANumber, Stream, open_unit};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Which of several bodies or parts something belongs to: ball 3, pin 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -22,7 +23,7 @@ pub struct Member {
 #[derive(Debug, Clone)]
 pub struct Var {
     /// Its name, the same for all members of a kind.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// The unit of its column; empty for pure numbers.
     pub unit: &'static str,
     /// Its law, in the draw's own unit.
@@ -38,8 +39,8 @@ pub struct Var {
 impl Var {
     /// One that is not shown as a column.
     #[must_use]
-    pub fn new(name: &'static str, unit: &'static str, law: Law) -> Self {
-        Self { name, unit, law, member: None, optional: false, column: None }
+    pub fn new(name: impl Into<Cow<'static, str>>, unit: &'static str, law: Law) -> Self {
+        Self { name: name.into(), unit, law, member: None, optional: false, column: None }
     }
 
     /// The same, of a body or part.
@@ -83,6 +84,12 @@ impl Vars {
         Self { groups: members.into_iter().map(of).collect(), presence, all }
     }
 
+    /// The same in other groups than the members': lists of indices, each of variables that belong together.
+    #[must_use]
+    pub fn in_groups(self, groups: Vec<Vec<usize>>) -> Self {
+        Self { groups, ..self }
+    }
+
     /// How many there are.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -115,10 +122,10 @@ impl Vars {
     /// The indices of those of these names that are uncertain, in order.
     #[must_use]
     pub fn named(&self, names: &[&str]) -> Vec<usize> {
-        self.which(|var| names.contains(&var.name))
+        self.which(|var| names.contains(&var.name.as_ref()))
     }
 
-    /// The indices of each member's variables, members in order of kind and number.
+    /// The indices of each member's variables, members in order of kind and number; or the groups that were given.
     #[must_use]
     pub fn groups(&self) -> &[Vec<usize>] {
         &self.groups

@@ -27,6 +27,7 @@
 pub mod accuracy;
 pub mod ball2d;
 pub mod bowling;
+pub mod custom;
 pub mod dice;
 pub mod model;
 pub mod registry;
@@ -36,6 +37,7 @@ pub mod scenario;
 pub mod scene;
 pub mod spelling;
 mod touch;
+mod turns;
 mod way;
 pub mod world;
 

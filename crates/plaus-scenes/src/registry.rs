@@ -64,4 +64,6 @@ scenes! {
     /// Dice are thrown onto a table of random height, restitution and friction, and should come to rest where and as
     /// demanded.
     "dice" Dice => dice,
+    /// A world of your own: bodies and scenery, what they are made of, and what is uncertain about them.
+    "custom" Custom => custom,
 }

@@ -65,6 +65,15 @@ pub trait Scene:
         self.animate(draw)
     }
 
+    /// [`Scene::motion`] of a draw that was simulated last with this memory: a scene that keeps what it simulated need
+    /// not do so again, and overrides this.
+    ///
+    /// # Errors
+    /// As [`Scene::animate`].
+    fn motion_simulated(&self, draw: &Self::Draw, _scratch: &Self::Scratch) -> Result<Animation, ModelError> {
+        self.motion(draw)
+    }
+
     /// The same world simulated at another accuracy: draws mean the same, what becomes of them may differ. `None` where
     /// motion has a closed form, exact at any accuracy, so that there is nothing to choose. A scene with a simulator
     /// overrides this.

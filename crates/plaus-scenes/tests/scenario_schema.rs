@@ -194,7 +194,9 @@ fn defaults_of_schema_template_and_code_agree() {
 fn templates_say_all_about_every_key() {
     for name in NAMES {
         let text = template(name).unwrap();
-        assert!(text.lines().all(|line| line.chars().count() <= 101), "{text}");
+        // Tables of a list cannot be broken.
+        let wide = |line: &str| line.chars().count() > if line.starts_with('#') { 101 } else { 200 };
+        assert!(!text.lines().any(wide), "{text}");
         let flat = text.replace("\n#", "");
         for doc in keys().iter().filter(|doc| !doc.key.starts_with("world.") || doc.key.contains(&format!(".{name}.")))
         {
@@ -236,7 +238,7 @@ fn keys_are_explained_by_full_name_or_unique_end() {
     assert_eq!(explain("weights.perturb").unwrap().key, "world.ball2d.weights.perturb");
     assert_eq!(explain("sigma_teta_deg"), Err(NoKey::Unknown(Some("world.ball2d.sigma_theta_deg".into()))));
     assert_eq!(explain("sampler.sede"), Err(NoKey::Unknown(Some("sampler.seed".into()))));
-    assert_eq!(explain("gravity"), Err(NoKey::Unknown(None)));
+    assert_eq!(explain("brightness"), Err(NoKey::Unknown(None)));
     assert_eq!(explain(""), Err(NoKey::Unknown(None)));
     assert!(keys().iter().all(|doc| !doc.description.is_empty()));
 }

@@ -106,5 +106,9 @@ fn form(shape: &Shape) -> Value {
         Shape::Disc { radius, thickness } => json!({"disc": [radius, thickness]}),
         Shape::Cuboid { half, pips } => json!({"box": (2.0 * *half).to_array(), "pips": pips}),
         Shape::Revolution { profile, .. } => json!({"lathe": profile}),
+        Shape::Solid { vertices, triangles } => {
+            let corners: Vec<[f64; 3]> = vertices.iter().map(|vertex| vertex.to_array()).collect();
+            json!({"solid": {"corners": corners, "triangles": triangles}})
+        }
     }
 }

@@ -56,6 +56,7 @@ pub fn of_shape(shape: &Shape, look: Look) -> Vec<Part> {
             parts
         }
         Shape::Revolution { profile, stripes } => lathe::striped(profile, stripes, look),
+        Shape::Solid { vertices, triangles } => vec![Part { look, mesh: scenery::flat(vertices, triangles) }],
     }
 }
 
@@ -144,12 +145,17 @@ mod tests {
     fn solids_are_closed_face_outwards_and_have_about_their_volume() {
         let cylinder = vec![[0.0, 0.0], [0.5, 0.0], [0.5, 2.0], [0.0, 2.0]];
         let stripe = Stripe { from: 0.5, to: 1.0, look: HOLE };
+        let corner = Shape::Solid {
+            vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
+            triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+        };
         let cases = [
             (Shape::ball(1.0), TAU * 2.0 / 3.0, 0.03),
             (Shape::Disc { radius: 1.0, thickness: 0.5 }, TAU * 0.25, 0.1),
             (Shape::Cuboid { half: DVec3::new(0.5, 1.0, 1.5), pips: None }, 6.0, 0.05),
             (Shape::Revolution { profile: cylinder.clone(), stripes: vec![] }, TAU * 0.25, 0.02),
             (Shape::Revolution { profile: cylinder, stripes: vec![stripe] }, TAU * 0.25, 0.02),
+            (corner, 1.0 / 6.0, 1e-6),
         ];
         for (shape, expected, tolerance) in cases {
             let parts = of_shape(&shape, Look::IVORY);

@@ -19,7 +19,7 @@ pub(super) fn mesh(form: &Form) -> Mesh {
 }
 
 /// Corners with a normal of their own for each triangle: edges stay sharp.
-fn flat(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Mesh {
+pub(super) fn flat(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Mesh {
     let mut mesh = Mesh::default();
     for triangle in triangles {
         let [Some(a), Some(b), Some(c)] = triangle.map(|index| vertices.get(index as usize).copied()) else { continue };

@@ -103,6 +103,18 @@ pub(super) fn of_body(track: &Track) -> Sounding {
             // Corners and edges are rounded by about an eighth of the side.
             (made, 0.125 * side, mass, vec![mode])
         }
+        Shape::Solid { vertices, triangles } => {
+            let made = if material == Material::Wood { MAPLE } else { ACRYLIC };
+            let corner = |k: &u32| vertices.get(*k as usize).copied().unwrap_or_default();
+            let six = |[a, b, c]: &[u32; 3]| corner(a).dot(corner(b).cross(corner(c)));
+            let volume = (triangles.iter().map(six).sum::<f64>() / 6.0).max(1e-12);
+            // As a cube of the same volume.
+            let shear = (made.young / (2.0 * (1.0 + made.poisson) * made.density)).sqrt();
+            let side = plaus_dist::math::cbrt(volume);
+            let mass = made.density * volume;
+            let mode = Mode { frequency: shear / (2.0 * side), loss: made.loss, mass: 0.5 * mass, area: square(side) };
+            (made, 0.125 * side, mass, vec![mode])
+        }
         Shape::Revolution { profile, .. } => {
             let (low, high) = profile.iter().fold((f64::MAX, f64::MIN), |(a, b), p| (a.min(p[1]), b.max(p[1])));
             let (length, mut volume, mut widest) = ((high - low).max(1e-3), 0.0, 0.0_f64);

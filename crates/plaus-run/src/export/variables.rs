@@ -1,11 +1,12 @@
 //! Scalars as variables: those of several members of a kind are one, with a dimension of its own.
 
 use plaus_scenes::{Member, Role, Scene};
+use std::borrow::Cow;
 
 /// One or several scalars of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Variable {
-    pub(super) name: &'static str,
+    pub(super) name: Cow<'static, str>,
     pub(super) unit: &'static str,
     pub(super) role: Role,
     /// Whether its values are whole numbers.
@@ -57,24 +58,33 @@ pub(super) fn of<S: Scene>(scene: &S) -> Vec<Variable> {
 mod tests {
     use super::*;
 
+    type Row = (Cow<'static, str>, usize, bool, Option<&'static str>);
+
+    fn row(name: &'static str, count: usize, whole: bool, kind: Option<&'static str>) -> Row {
+        (name.into(), count, whole, kind)
+    }
+
     #[test]
     fn scalars_of_one_kind_are_one_variable() {
         struct Count;
         impl plaus_scenes::Visitor for Count {
-            type Output = Vec<(&'static str, usize, bool, Option<&'static str>)>;
+            type Output = Vec<Row>;
             fn visit<S: Scene>(self, scene: S) -> Self::Output {
                 let kind = |variable: &Variable| variable.first.map(|member| member.kind);
-                let one = |variable: Variable| (variable.name, variable.columns.len(), variable.whole, kind(&variable));
+                let one = |variable: Variable| {
+                    let (count, whole, kind) = (variable.columns.len(), variable.whole, kind(&variable));
+                    (variable.name, count, whole, kind)
+                };
                 of(&scene).into_iter().map(one).collect()
             }
         }
         let of = |name: &str| plaus_scenes::World::default_of(name).unwrap().visit(Count).unwrap();
-        assert_eq!(of("ball2d"), [("rest_x", 1, false, None), ("theta", 5, false, Some("bounce"))]);
+        assert_eq!(of("ball2d"), [row("rest_x", 1, false, None), row("theta", 5, false, Some("bounce"))]);
         let dice = of("dice");
         assert_eq!(dice.len(), 13, "{dice:?}");
-        assert!(dice.contains(&("face", 1, true, Some("die"))) && dice.contains(&("vx", 1, false, Some("die"))));
+        assert!(dice.contains(&row("face", 1, true, Some("die"))) && dice.contains(&row("vx", 1, false, Some("die"))));
         let bowling = of("bowling");
-        assert!(bowling.contains(&("pinfall", 1, true, None)) && bowling.contains(&("speed", 1, false, None)));
-        assert!(of("spelling").contains(&("bin", 10, true, Some("ball"))));
+        assert!(bowling.contains(&row("pinfall", 1, true, None)) && bowling.contains(&row("speed", 1, false, None)));
+        assert!(of("spelling").contains(&row("bin", 10, true, Some("ball"))));
     }
 }

@@ -116,7 +116,7 @@ fn of_variable(variable: &Variable, shape: &[u64]) -> Array {
     // Not `units`: xarray would turn seconds into time differences.
     let attributes = json!({ "unit": variable.unit, "role": variable.role });
     let (data_type, fill) = if variable.whole { ("int64", json!(0)) } else { ("float64", json!("NaN")) };
-    let mut array = Array::new(variable.name, data_type, fill, shape, attributes);
+    let mut array = Array::new(variable.name.as_ref(), data_type, fill, shape, attributes);
     if let Some((dimension, _, count)) = variable.coordinate() {
         array.dimensions.push(dimension);
         array.shape.push(count);

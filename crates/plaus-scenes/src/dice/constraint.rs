@@ -3,6 +3,7 @@
 use super::Rotation;
 use super::flight::Trip;
 use crate::require::{self, FacesUp, Impact, Require, RestsAt, When};
+use crate::turns::turned;
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
 use schemars::JsonSchema;
@@ -324,17 +325,6 @@ impl PoseAt {
         let log = gauss(off, self.sigma_mm) + gauss(angle, self.angle_sd_deg) + gauss(slip, self.velocity_sd);
         Mark { log, met: near && like && quick }
     }
-}
-
-/// The rotation by a vector.
-pub(super) fn turned(vector: DVec3) -> DQuat {
-    let angle = vector.length();
-    if angle == 0.0 {
-        return DQuat::IDENTITY;
-    }
-    let (sin, cos) = math::sin_cos(0.5 * angle);
-    let axis = vector * (sin / angle);
-    DQuat::from_xyzw(axis.x, axis.y, axis.z, cos)
 }
 
 /// `−½ (x/sd)²`; 0 where `sd` is.

@@ -43,6 +43,7 @@ use crate::model::{Column, Member, Scalar, columns};
 use crate::require::{self as required, Cast, FAR, Require};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
+use crate::turns::{any_orientation, turned_a_little};
 use crate::world::PlainWorld;
 use plan::{Demand, Plan};
 use plaus_dist::stream::below;
@@ -253,7 +254,7 @@ impl Variables for Dice {
 
     fn renew_own(&self, draw: &mut Draw, var: usize, stream: &mut Stream) {
         match (var % EACH, draw.throws.get_mut(var / EACH)) {
-            (ORIENTATION, Some(throw)) => throw.orientation = prior::any_orientation(stream),
+            (ORIENTATION, Some(throw)) => throw.orientation = any_orientation(stream),
             (_, Some(throw)) => throw.turn = below(stream, self.plan.rotations.len()) as u8,
             _ => draw.tables[var - EACH * draw.throws.len()].renew(stream),
         }
@@ -262,7 +263,7 @@ impl Variables for Dice {
     fn step_own(&self, draw: &mut Draw, var: usize, size: f64, stream: &mut Stream) {
         match (var % EACH, draw.throws.get_mut(var / EACH)) {
             (ORIENTATION, Some(throw)) => {
-                throw.orientation = prior::turned_a_little(throw.orientation, size, stream);
+                throw.orientation = turned_a_little(throw.orientation, size, stream);
             }
             _ => self.renew_own(draw, var, stream),
         }

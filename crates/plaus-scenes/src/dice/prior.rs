@@ -1,13 +1,11 @@
 //! The law of a throw without the constraints.
 
 use super::config::Config;
-use super::constraint::turned;
 use super::draw::{Draw, Realisation, Throw};
-use glam::{DQuat, DVec3};
+use crate::turns::any_orientation;
+use glam::DVec3;
 use plaus_dist::stream::below;
-use plaus_dist::{
-    Density, Gaussian, LogDensity, NotANumber, ParamError, Sample, Stream, TruncatedGaussian, standard_normal,
-};
+use plaus_dist::{Density, Gaussian, LogDensity, NotANumber, ParamError, Sample, Stream, TruncatedGaussian};
 use plaus_mcmc::{Law, Var, Vars};
 
 /// How many numbers the initial conditions of a die have besides its orientation: place, velocity and angular velocity
@@ -164,19 +162,6 @@ impl Prior {
         }
         Ok(sum)
     }
-}
-
-/// A uniform orientation: a direction in four dimensions, uniform as that of four standard normal numbers.
-pub(super) fn any_orientation(stream: &mut Stream) -> DQuat {
-    let [x, y, z, w] = std::array::from_fn(|_| standard_normal(stream));
-    DQuat::from_xyzw(x, y, z, w).normalize()
-}
-
-/// An orientation turned about a random axis, by a Gaussian angle, `size` times half a turn a component: as likely as
-/// turning it back.
-pub(super) fn turned_a_little(orientation: DQuat, size: f64, stream: &mut Stream) -> DQuat {
-    let vector = DVec3::from_array(std::array::from_fn(|_| standard_normal(stream)));
-    (turned(vector * (size * std::f64::consts::PI)) * orientation).normalize()
 }
 
 /// One number of a throw: place, velocity, angular velocity, each along x, y, z; without its table's shift.

@@ -3,6 +3,7 @@
 pub use plaus_mcmc::Member;
 use plaus_mcmc::{Variables, Vars};
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Where a scalar comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -17,7 +18,8 @@ pub enum Role {
 /// A number that every state of a scene has: a column of a table, a variable of the diagnostics.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Scalar {
-    /// Column name, `snake_case`: with the member's number, where it belongs to one.
+    /// Column name, `snake_case`: with the member's number, where it belongs to one; behind a body's own name and a dot
+    /// where a scenario names bodies.
     pub name: String,
     /// Unit, for readers; empty for pure numbers.
     pub unit: &'static str,
@@ -25,7 +27,7 @@ pub struct Scalar {
     pub role: Role,
     /// Its name without a number.
     #[serde(skip)]
-    pub base: &'static str,
+    pub base: Cow<'static, str>,
     /// Whose it is: the `die` 2 of `x_2`; `None` where there is one only.
     #[serde(skip)]
     pub member: Option<Member>,
@@ -65,9 +67,18 @@ impl Column {
     /// The scalar of a member, or of all.
     #[must_use]
     pub fn of(self, member: Option<Member>) -> Scalar {
-        let Self { name: base, unit, role, whole } = self;
-        let name = member.map_or_else(|| base.to_owned(), |Member { number, .. }| format!("{base}_{number}"));
-        Scalar { name, unit, role, base, member, whole }
+        let Self { name, unit, role, whole } = self;
+        Scalar { whole, ..Scalar::new(name, unit, role, member) }
+    }
+}
+
+impl Scalar {
+    /// A number, of a member or of all.
+    #[must_use]
+    pub fn new(base: impl Into<Cow<'static, str>>, unit: &'static str, role: Role, member: Option<Member>) -> Self {
+        let base = base.into();
+        let name = member.map_or_else(|| base.to_string(), |Member { number, .. }| format!("{base}_{number}"));
+        Self { name, unit, role, base, member, whole: false }
     }
 }
 
@@ -75,7 +86,7 @@ impl Column {
 #[must_use]
 pub fn scalars(results: Vec<Scalar>, vars: &Vars) -> Vec<Scalar> {
     let shown = vars.iter().filter(|var| var.column.is_some());
-    let variable = shown.map(|var| Column::result(var.name, var.unit).of_the_draw().of(var.member));
+    let variable = shown.map(|var| Scalar::new(var.name.clone(), var.unit, Role::Draw, var.member));
     let mut all: Vec<Scalar> = results.into_iter().chain(variable).collect();
     all.sort_by_key(|scalar| scalar.member);
     all

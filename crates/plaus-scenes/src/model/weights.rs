@@ -71,11 +71,17 @@ pub trait Menu {
     const SCENE: &'static str;
     /// One row a move of its own.
     const ROWS: &'static [Row];
+    /// Weights of moves that every scene offers, where they are not 0.
+    const OFFERED: &'static [(&'static str, f64)] = &[];
 }
 
 /// The rows of a scene: its own, and those that every scene offers.
-fn rows<M: Menu>() -> impl Iterator<Item = &'static Row> {
-    M::ROWS.iter().chain(<M::Scene as Offered>::ROWS.iter().map(|(row, _)| row))
+fn rows<M: Menu>() -> impl Iterator<Item = Row> {
+    let offered = <M::Scene as Offered>::ROWS.iter().map(|&(row, _)| {
+        let weight = M::OFFERED.iter().find(|(name, _)| *name == row.name);
+        Row { weight: weight.map_or(row.weight, |&(_, weight)| weight), ..row }
+    });
+    M::ROWS.iter().copied().chain(offered)
 }
 
 /// Relative weights of the moves of a scene.
@@ -97,7 +103,7 @@ impl<M: Menu> Weights<M> {
 
     /// What is left of them where only the paper's moves are made.
     fn printed(&self) -> Self {
-        let one = |(row, &set): (&Row, &f64)| match row.printed {
+        let one = |(row, &set): (Row, &f64)| match row.printed {
             Printed::Not => 0.0,
             Printed::Weight(weight) => weight,
             Printed::Free => set,
@@ -228,7 +234,7 @@ impl<M: Menu> JsonSchema for Weights<M> {
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        let row = |row: &Row| {
+        let row = |row: Row| {
             let schema = serde_json::json!({
                 "description": row.meaning,
                 "type": "number",

@@ -126,12 +126,12 @@ impl<S: Scene> Asked<S> {
     }
 
     /// The marks of a draw that the scene itself does not forbid.
-    fn marks(&self, draw: &S::Draw, own: LogPotential) -> Result<Vec<Mark>, ModelError> {
+    fn marks(&self, draw: &S::Draw, own: LogPotential, scratch: &S::Scratch) -> Result<Vec<Mark>, ModelError> {
         if own.is_zero() {
             // What the scene forbids may have no motion; nothing that is asked of it counts.
             return Ok(vec![Mark { margin: -FAR, log: -FAR }; self.asks.requirements.len()]);
         }
-        Ok(self.judge(&self.scene.motion(draw)?))
+        Ok(self.judge(&self.scene.motion_simulated(draw, scratch)?))
     }
 
     /// The state of the scene alone.
@@ -178,7 +178,7 @@ impl<S: Scene> Target for Asked<S> {
         if own <= own_floor && !floor.is_zero() {
             return Ok(Simulated::CannotExceedFloor);
         }
-        let marks = self.marks(draw, own)?;
+        let marks = self.marks(draw, own, scratch)?;
         Ok(Simulated::Complete(Answer { outcome, own, marks }))
     }
 
@@ -284,6 +284,10 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn motion(&self, draw: &S::Draw) -> Result<Animation, ModelError> {
         self.scene.motion(draw)
+    }
+
+    fn motion_simulated(&self, draw: &S::Draw, scratch: &S::Scratch) -> Result<Animation, ModelError> {
+        self.scene.motion_simulated(draw, scratch)
     }
 
     fn motion_to(&self, draw: &S::Draw, time: f64) -> Result<Option<Animation>, ModelError> {

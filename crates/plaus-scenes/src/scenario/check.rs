@@ -33,6 +33,9 @@ impl Check {
             (Kind::OneOf(keys), Data::Table(entries)) => self.one_of(keys, entries, tree, key),
             (Kind::List(item, length), Data::List(items)) => self.list(item, length, items, tree, key),
             (Kind::Again(reference), _) => self.again(reference, tree, key),
+            (Kind::Any(_), data) if shape.alternative(data).is_some() => {
+                self.value(shape.alternative(data)?, tree, key)
+            }
             (_, data) => match value::read(shape, data) {
                 Ok(value) => Some(value),
                 Err(wrong) => {
@@ -63,7 +66,7 @@ impl Check {
             let key = join(path, name);
             match entries.get(name) {
                 Some(inner) => table.extend(self.value(shape, inner, &key).map(|value| (name.clone(), value))),
-                None if shape.default.is_none() => self.problems.push(tree.place.blame_key(missing(shape, &key))),
+                None if shape.default.is_none() => self.problems.push(tree.place.blame(missing(shape, &key))),
                 None => {}
             }
         }

@@ -68,6 +68,9 @@ fn meanings(shape: &Shape) -> Vec<String> {
             let with_meaning = words.iter().filter(|(_, meaning)| !meaning.is_empty());
             with_meaning.map(|(word, meaning)| format!("\"{word}\": {meaning}")).collect()
         }
+        Kind::List(item, _) if matches!(item.kind, Kind::Any(_)) => meanings(item),
+        // What each alternative is.
+        Kind::Any(all) => all.iter().flat_map(|one| if one.is_table() { choices(one) } else { Vec::new() }).collect(),
         Kind::List(item, _) => {
             let key = |(name, shape): &(String, Shape)| match default(shape) {
                 Some(default) => {
@@ -88,11 +91,17 @@ fn meanings(shape: &Shape) -> Vec<String> {
     }
 }
 
+/// What each key of a choice means.
+fn choices(shape: &Shape) -> Vec<String> {
+    shape.keys().iter().map(|(name, shape)| format!("{name}: {}", shape.description)).collect()
+}
+
 /// The default as TOML, where there is one.
 fn default(shape: &Shape) -> Option<String> {
     let default = shape.default.as_ref().filter(|value| !value.is_null())?;
     let number = default.as_f64().filter(|_| matches!(shape.kind, Kind::Number(_))).map(toml::Value::Float);
-    Some(match number.or_else(|| toml::Value::try_from(default).ok())? {
+    let given = number.or_else(|| toml::Value::try_from(without_defaults(shape, default)).ok());
+    Some(match given? {
         // A table a line.
         toml::Value::Array(items) if items.iter().any(toml::Value::is_table) => {
             let lines: Vec<String> = items.iter().map(|item| format!("    {item},\n")).collect();
@@ -100,6 +109,18 @@ fn default(shape: &Shape) -> Option<String> {
         }
         value => value.to_string(),
     })
+}
+
+/// A list of tables of known keys without those that are at their defaults.
+fn without_defaults(shape: &Shape, value: &serde_json::Value) -> serde_json::Value {
+    let item = shape.item().filter(|item| matches!(item.kind, Kind::Table(_)));
+    let (Some(item), Some(items)) = (item, value.as_array()) else { return value.clone() };
+    let said = |entry: &serde_json::Value| {
+        let keys = entry.as_object().into_iter().flatten();
+        let said = keys.filter(|(name, value)| item.get(name).and_then(|key| key.default.as_ref()) != Some(*value));
+        said.map(|(name, value)| (name.clone(), value.clone())).collect::<serde_json::Map<_, _>>().into()
+    };
+    items.iter().map(said).collect::<Vec<serde_json::Value>>().into()
 }
 
 /// A commented scenario file: every key with its default, its meaning, unit and range. Reading it gives the scene's
@@ -137,8 +158,10 @@ fn entry(text: &mut String, shape: &Shape, name: &str) {
     }
     let meanings = meanings(shape);
     if meanings.len() > MOST_MEANINGS {
-        let names = shape.item().map(Shape::keys).unwrap_or_default().iter().map(|(name, _)| name.as_str());
-        comment(text, &format!("One of {}: `plaus explain {name}`.", names.collect::<Vec<_>>().join(", ")));
+        let item = shape.item();
+        let names = item.map(Shape::keys).unwrap_or_default().iter().map(|(name, _)| name.as_str());
+        let word = if item.is_some_and(|item| matches!(item.kind, Kind::Table(_))) { "Each has" } else { "One of" };
+        comment(text, &format!("{word} {}: `plaus explain {name}`.", names.collect::<Vec<_>>().join(", ")));
     } else {
         meanings.iter().for_each(|meaning| comment(text, meaning));
     }

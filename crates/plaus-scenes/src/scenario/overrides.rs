@@ -2,7 +2,7 @@
 
 use super::nearest::{any_of, nearest, shown};
 use super::problem::{Problem, Source};
-use super::shape::{Shape, join};
+use super::shape::{Kind, Shape, join};
 use super::tree::{Data, Place, Tree};
 use std::collections::BTreeMap;
 use toml::de::DeValue;
@@ -214,7 +214,9 @@ fn insert(tree: &mut Tree, shape: &Shape, key: &str, path: &str, value: Tree, sa
     };
     if place.is_some() {
         let wanted = rest.split('.').next().unwrap_or_default();
-        let other = inner.first_key().filter(|_| inner.get(wanted).is_none());
+        let item = shape.at(&without_places(&here).0);
+        let is_choice = item.is_some_and(|item| matches!(item.kind, Kind::OneOf(_)));
+        let other = inner.first_key().filter(|_| is_choice && inner.get(wanted).is_none());
         if let Some(other) = other {
             let message = format!("`{here}` is `{other}`, not `{wanted}`");
             let help = "`plaus check` shows what stands where in the scenario".to_owned();

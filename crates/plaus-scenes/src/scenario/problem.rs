@@ -158,7 +158,12 @@ pub(super) fn located(tree: &Tree, error: &ConfigError) -> Problem {
     let (found, value) = tree.nearest(&error.key);
     let problem = Problem::new(error.key.clone(), error.message.clone());
     let is_value = found == error.key && !matches!(value.data, Data::Table(_));
-    if is_value { value.place.blame_value(problem) } else { value.place.blame_key(problem) }
+    // What stands in a list has no key of its own.
+    if is_value || value.place.key.is_none() {
+        value.place.blame_value(problem)
+    } else {
+        value.place.blame_key(problem)
+    }
 }
 
 /// The part of `span` that lies in `text`, on character boundaries.

@@ -39,6 +39,8 @@ pub(super) enum Kind {
     Text,
     /// Values of one shape, so many from first to last.
     List(Box<Shape>, Bounds<i128>),
+    /// Any of these, told apart by the kind of value.
+    Any(Vec<Shape>),
     /// The same as what stands around it: what the reference names, in which it stands itself.
     Again(String),
     /// The schema says it in words this module does not know; left to serde.
@@ -121,6 +123,19 @@ impl Shape {
         self.keys().iter().find(|(name, _)| name == key).map(|(_, shape)| shape)
     }
 
+    /// Of several alternatives that which is for this kind of value.
+    pub(super) fn alternative(&self, data: &Data) -> Option<&Self> {
+        let Kind::Any(all) = &self.kind else { return None };
+        all.iter().find(|one| match data {
+            Data::Table(_) => one.is_table(),
+            Data::List(_) => matches!(one.kind, Kind::List(..)),
+            Data::Integer(..) | Data::Float(_) => matches!(one.kind, Kind::Number(_) | Kind::Integer(_)),
+            Data::Text(_) => matches!(one.kind, Kind::Text | Kind::Words(_)),
+            Data::Boolean(_) => matches!(one.kind, Kind::Boolean),
+            Data::Datetime(_) => false,
+        })
+    }
+
     /// What stands in a list.
     pub(super) fn item(&self) -> Option<&Self> {
         match &self.kind {
@@ -141,11 +156,21 @@ impl Shape {
     /// what it chose.
     pub(super) fn paths_in_lists(&self, tree: Option<&Tree>) -> Vec<String> {
         let lists = self.paths(tree).into_iter().filter_map(|key| Some((self.at(&key)?.item()?, key)));
-        let inside = |(item, key): (&Self, String)| {
-            let keys = item.paths(None).into_iter().map(|inner| format!("{key}[].{inner}")).collect::<Vec<_>>();
-            std::iter::once(format!("{key}[]")).chain(keys)
-        };
-        lists.flat_map(inside).collect()
+        lists.flat_map(|(item, key)| item.paths_of_item(&key)).collect()
+    }
+
+    /// The same of what stands in the list `key`, and in lists of numbers in it.
+    fn paths_of_item(&self, key: &str) -> Vec<String> {
+        let mut paths = vec![format!("{key}[]")];
+        for inner in self.paths(None) {
+            let path = format!("{key}[].{inner}");
+            if self.at(&inner).and_then(Self::item).is_some_and(|item| !item.is_table()) {
+                paths.extend([path.clone(), format!("{path}[]")]);
+            } else {
+                paths.push(path);
+            }
+        }
+        paths
     }
 
     /// All dotted keys, tables before what they hold, in order. Of a choice that `tree` has made, only what it chose.
@@ -175,6 +200,7 @@ impl Shape {
             Kind::Words(words) => nearest::any_of(words.iter().map(|(word, _)| format!("\"{word}\""))),
             Kind::Boolean => "true or false".into(),
             Kind::List(item, _) => item.range(),
+            Kind::Any(all) => all.iter().map(Self::range).find(|range| !range.is_empty()).unwrap_or_default(),
             Kind::Table(_) | Kind::OneOf(_) | Kind::Text | Kind::Again(_) | Kind::Unknown => String::new(),
         }
     }
@@ -202,6 +228,7 @@ impl Shape {
             Kind::Boolean => "a boolean".into(),
             Kind::Text => "a string".into(),
             Kind::List(item, _) => format!("a list, each {}", item.kind_in_words()),
+            Kind::Any(all) => nearest::any_of(all.iter().map(Self::kind_in_words)),
             Kind::Again(reference) => again(reference).map_or("a value".into(), Self::kind_in_words),
             Kind::Unknown => "a value".into(),
         }
@@ -244,8 +271,22 @@ impl Kind {
                 }
                 None => Self::Unknown,
             },
+            None if part.contains_key("anyOf") => Self::any(part, root, open),
             _ => words(part).map_or(if named == Some("string") { Self::Text } else { Self::Unknown }, Self::Words),
         }
+    }
+
+    /// The alternatives of an `anyOf`, but null.
+    fn any(part: &Map<String, Value>, root: &Value, open: &[&str]) -> Self {
+        let all = part.get("anyOf").and_then(Value::as_array).into_iter().flatten();
+        let all = all.filter(|one| one.get("type").and_then(Value::as_str) != Some("null"));
+        let unit = part.get("x-unit").and_then(Value::as_str);
+        let one = |one: &Value| {
+            let shape = Shape::of_schema(one, root, open);
+            let takes_unit = matches!(shape.kind, Self::Number(_) | Self::Integer(_));
+            Shape { unit: shape.unit.clone().or(unit.filter(|_| takes_unit).map(String::from)), ..shape }
+        };
+        Self::Any(all.map(one).collect())
     }
 }
 

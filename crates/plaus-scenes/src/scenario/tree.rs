@@ -50,6 +50,11 @@ impl Place {
         problem.at(&self.source, self.key.clone())
     }
 
+    /// `problem`, blamed on the key, or on all of it where it stands in a list.
+    pub(super) fn blame(&self, problem: Problem) -> Problem {
+        problem.at(&self.source, self.key.clone().or_else(|| self.value.clone()))
+    }
+
     /// `problem`, blamed on the value.
     pub(super) fn blame_value(&self, problem: Problem) -> Problem {
         problem.at(&self.source, self.value.clone().or_else(|| self.key.clone()))

@@ -1,0 +1,64 @@
+//! What every law of one number can do, for whoever needs not know which it is.
+
+use crate::{Density, LogDensity, NotANumber, Sample, Stream};
+use std::fmt::Debug;
+
+/// A law of one number with all that moves of a chain ask of it.
+///
+/// [`step`](Self::step) is symmetric: where `by` is as likely as `−by`, a step from `x` to `y` is as likely as one from
+/// `y` to `x`, per unit of the variable. It may leave the support, where the density is 0.
+///
+/// ```
+/// use plaus_dist::{NumberLaw, Triangular};
+/// let law: Box<dyn NumberLaw> = Box::new(Triangular::new(0.0, 1.0, 4.0)?);
+/// assert_eq!(law.support(), [0.0, 4.0]);
+/// assert_eq!(law.step(3.0, 0.5), 3.5);
+/// # Ok::<(), plaus_dist::ParamError>(())
+/// ```
+pub trait NumberLaw: Debug + Send + Sync {
+    /// A draw.
+    fn draw(&self, stream: &mut Stream) -> f64;
+
+    /// Log density at a value.
+    ///
+    /// # Errors
+    /// [`NotANumber`] where it is NaN.
+    fn log_density_at(&self, x: f64) -> Result<LogDensity, NotANumber>;
+
+    /// Between which values all draws lie; infinite where there is no end.
+    fn support(&self) -> [f64; 2];
+
+    /// What a step of usual size is measured by, above 0.
+    fn width(&self) -> f64;
+
+    /// The value that is `by` from `x`.
+    fn step(&self, x: f64, by: f64) -> f64 {
+        x + by
+    }
+}
+
+/// Writes what follows from density and sampler.
+macro_rules! as_number_law {
+    ($law:ty { $($rest:item)* }) => {
+        impl crate::NumberLaw for $law {
+            fn draw(&self, stream: &mut crate::Stream) -> f64 {
+                crate::number::drawn(self, stream)
+            }
+
+            fn log_density_at(&self, x: f64) -> Result<crate::LogDensity, crate::NotANumber> {
+                crate::number::density(self, x)
+            }
+
+            $($rest)*
+        }
+    };
+}
+pub(crate) use as_number_law;
+
+pub(crate) fn drawn(law: &impl Sample<Value = f64>, stream: &mut Stream) -> f64 {
+    law.sample(stream)
+}
+
+pub(crate) fn density(law: &impl Density<f64>, x: f64) -> Result<LogDensity, NotANumber> {
+    law.log_density(&x)
+}

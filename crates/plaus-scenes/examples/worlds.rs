@@ -1,0 +1,84 @@
+//! How soon chains find what is required in the worlds of scenario files: for each file the share of draws of the
+//! prior in which it happens, then iterations and processor time to the first solution and to ten distinct ones.
+//!
+//!     cargo run --release -p plaus-scenes --example worlds -- scenarios/worlds/*.toml
+
+#![allow(clippy::disallowed_methods, reason = "a measurement needs a clock")]
+#![allow(clippy::print_stdout, reason = "it is run to be read")]
+
+use plaus_dist::Seed;
+use plaus_mcmc::{Chain, Mixture};
+use plaus_scenes::require::Tally;
+use plaus_scenes::{Scenario, Scene, Visitor};
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+/// Draws of the prior that are looked at.
+const DRAWS: u64 = 200;
+/// Solutions that are waited for.
+const WANTED: usize = 10;
+/// Seconds after which a file is given up.
+const PATIENCE: f64 = 60.0;
+
+struct Look {
+    seed: u64,
+    chains: u64,
+}
+
+impl Visitor for Look {
+    type Output = String;
+
+    fn visit<S: Scene>(self, scene: S) -> String {
+        let begin = Instant::now();
+        let tally = match Tally::of_prior(&scene, self.seed, DRAWS, |_| {}) {
+            Ok(tally) => tally,
+            Err(error) => return error.to_string(),
+        };
+        let each = begin.elapsed().as_secs_f64() / DRAWS as f64;
+        let free = tally.clauses.first().map_or(0, |clause| clause.met);
+        let prior = format!("{:.2} ms a draw, {free} of {DRAWS} free, {} meet all", each * 1e3, tally.all);
+        let rules = plaus_scenes::Rules::default();
+        let moves: Mixture<S> = match scene.moves(&rules) {
+            Ok(moves) => moves,
+            Err(error) => return error.to_string(),
+        };
+        let start = |chain| Chain::start(&scene, &moves, Seed(self.seed).chain(chain));
+        let mut chains = match (0..self.chains).map(start).collect::<Result<Vec<_>, _>>() {
+            Ok(chains) => chains,
+            Err(error) => return format!("{prior}; {error}"),
+        };
+        let (begin, mut found, mut first) = (Instant::now(), BTreeSet::new(), None);
+        for iteration in 1.. {
+            for chain in &mut chains {
+                if let Err(error) = chain.step() {
+                    return format!("{prior}; {error}");
+                }
+                let Some(class) = scene.class(chain.state()) else { continue };
+                first.get_or_insert((iteration, begin.elapsed().as_secs_f64()));
+                found.insert(class);
+            }
+            if found.len() >= WANTED || begin.elapsed().as_secs_f64() > PATIENCE {
+                let seconds = begin.elapsed().as_secs_f64();
+                let first = first.map_or("no solution".into(), |(at, s)| format!("first after {at} ({s:.1} s)"));
+                return format!("{prior}; {first}; {} distinct after {iteration} ({seconds:.1} s)", found.len());
+            }
+        }
+        prior
+    }
+}
+
+fn main() {
+    for path in std::env::args().skip(1) {
+        let said = match std::fs::read_to_string(&path).map_err(|error| error.to_string()) {
+            Ok(text) => match Scenario::read(&path, &text, &[]) {
+                Ok(scenario) => {
+                    let look = Look { seed: scenario.sampler.seed, chains: scenario.sampler.chains.into() };
+                    scenario.visit(look).unwrap_or_else(|error| error.to_string())
+                }
+                Err(error) => error.to_string(),
+            },
+            Err(error) => error,
+        };
+        println!("{path}: {said}");
+    }
+}

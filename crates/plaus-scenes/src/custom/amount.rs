@@ -1,0 +1,196 @@
+//! A number of a scenario that may be uncertain: fixed, of a law, or that of a quantity with a name.
+
+use super::laws::LawOf;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
+use std::marker::PhantomData;
+
+/// What a number measures: its unit, the ends of what may be written, and what it may come to by a law.
+pub trait Measure: 'static {
+    /// Its unit; empty for pure numbers.
+    const UNIT: &'static str;
+    /// The least number that may be written.
+    const LEAST: f64;
+    /// The largest.
+    const MOST: f64;
+    /// What it may be at all.
+    const DOMAIN: Domain;
+}
+
+/// What a number may be, whatever its law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Domain {
+    /// Any number.
+    Any,
+    /// An angle: any number, and all that differ by whole turns are the same.
+    Turn,
+    /// From 0 on.
+    NotNegative,
+    /// From 0 to 1.
+    Share,
+}
+
+impl Domain {
+    /// Whether all values between these are allowed.
+    pub(super) fn holds(self, [low, high]: [f64; 2]) -> bool {
+        match self {
+            Self::Any | Self::Turn => true,
+            Self::NotNegative => low >= 0.0,
+            Self::Share => low >= 0.0 && high <= 1.0,
+        }
+    }
+
+    /// What is allowed, in words.
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Any | Self::Turn => "any number",
+            Self::NotNegative => "at least 0",
+            Self::Share => "from 0 to 1",
+        }
+    }
+}
+
+macro_rules! measures {
+    ($($(#[$doc:meta])* $name:ident: $unit:literal, $least:literal to $most:literal, $domain:ident;)+) => {
+        $($(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub enum $name {}
+
+        impl Measure for $name {
+            const UNIT: &'static str = $unit;
+            const LEAST: f64 = $least;
+            const MOST: f64 = $most;
+            const DOMAIN: Domain = Domain::$domain;
+        })+
+    };
+}
+
+measures! {
+    /// A coordinate.
+    Place: "mm", -1e6 to 1e6, Any;
+    /// A length of a body.
+    Length: "mm", 1e-3 to 1e6, NotNegative;
+    /// A length that may be none.
+    Rounding: "mm", 0.0 to 1e6, NotNegative;
+    /// An angle.
+    Angle: "degree", -36000.0 to 36000.0, Turn;
+    /// A component of a velocity.
+    Velocity: "m/s", -1e4 to 1e4, Any;
+    /// A component of an angular velocity.
+    Turning: "degree/s", -1e6 to 1e6, Any;
+    /// A time.
+    Moment: "s", 0.0 to 1e4, NotNegative;
+    /// Mass over volume.
+    Density: "kg/m³", 1e-3 to 1e6, NotNegative;
+    /// A coefficient of friction or of resistance.
+    Friction: "", 0.0 to 1e3, NotNegative;
+    /// A coefficient of restitution.
+    Restitution: "", 0.0 to 1.0, Share;
+    /// Of no unit known here.
+    Plain: "", -1e9 to 1e9, Any;
+}
+
+/// A number: fixed, uncertain, or named elsewhere.
+#[derive(Debug)]
+pub enum Amount<M> {
+    /// Always this.
+    Fixed(f64),
+    /// The quantity of this name.
+    Named(String),
+    /// Of a law of its own.
+    Law(Box<LawOf>, PhantomData<fn() -> M>),
+}
+
+impl<M> Amount<M> {
+    /// Of a law.
+    #[must_use]
+    pub fn of(law: LawOf) -> Self {
+        Self::Law(Box::new(law), PhantomData)
+    }
+}
+
+impl<M> Default for Amount<M> {
+    fn default() -> Self {
+        Self::Fixed(0.0)
+    }
+}
+
+impl<M> From<f64> for Amount<M> {
+    fn from(value: f64) -> Self {
+        Self::Fixed(value)
+    }
+}
+
+impl<M> Clone for Amount<M> {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Fixed(value) => Self::Fixed(*value),
+            Self::Named(name) => Self::Named(name.clone()),
+            Self::Law(law, _) => Self::Law(law.clone(), PhantomData),
+        }
+    }
+}
+
+impl<M> PartialEq for Amount<M> {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Fixed(a), Self::Fixed(b)) => a == b,
+            (Self::Named(a), Self::Named(b)) => a == b,
+            (Self::Law(a, _), Self::Law(b, _)) => a == b,
+            _ => false,
+        }
+    }
+}
+
+impl<M> Serialize for Amount<M> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Fixed(value) => serializer.serialize_f64(*value),
+            Self::Named(name) => serializer.serialize_str(name),
+            Self::Law(law, _) => law.serialize(serializer),
+        }
+    }
+}
+
+impl<'de, M> Deserialize<'de> for Amount<M> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        /// The same without the measure.
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Written {
+            Fixed(f64),
+            Named(String),
+            Law(LawOf),
+        }
+        Ok(match Written::deserialize(deserializer)? {
+            Written::Fixed(value) => Self::Fixed(value),
+            Written::Named(name) => Self::Named(name),
+            Written::Law(law) => Self::of(law),
+        })
+    }
+}
+
+impl<M: Measure> JsonSchema for Amount<M> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Amount".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut schema = json_schema!({
+            "anyOf": [
+                { "type": "number", "minimum": M::LEAST, "maximum": M::MOST },
+                { "type": "string", "description": "The name of one of the `quantities`." },
+                generator.subschema_for::<LawOf>(),
+            ],
+        });
+        if !M::UNIT.is_empty() {
+            schema.insert("x-unit".into(), M::UNIT.into());
+        }
+        schema
+    }
+}

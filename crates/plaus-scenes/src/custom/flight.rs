@@ -1,0 +1,201 @@
+//! One simulation: from a draw to where everything ends, and what met on the way.
+
+use super::plan::{Built, Plan};
+use super::values::Drawn;
+use glam::{DQuat, DVec3};
+use plaus_mcmc::{ModelError, SolutionClass};
+use plaus_sim::mechanics::Other;
+use plaus_sim::rigid::{Phase, RigidScratch, Turning};
+use plaus_sim::scenery::Surface;
+use plaus_sim::trace::Trace;
+use plaus_sim::{Outcome, Scratch, WorldError};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+
+/// What became of a draw.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Ending {
+    /// It came to its end.
+    Done(Done),
+    /// Two bodies, or a body and a piece of scenery, would begin inside each other: the draw has probability 0.
+    Overlap(Overlap),
+    /// The simulator's budget of events was spent: the draw has probability 0.
+    Unfinished,
+}
+
+/// Where everything ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Done {
+    /// One a body.
+    pub bodies: Vec<Last>,
+    /// What met, each pair once, in the order in which it met first: bodies by their places, pieces of scenery by
+    /// theirs, counted on.
+    pub met: Vec<[u32; 2]>,
+}
+
+/// Where a body ended.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Last {
+    /// Its centre of gravity, in m.
+    pub place: DVec3,
+    /// How it is turned, as a scenario says it.
+    pub turn: DQuat,
+    /// When it came to rest, in s; `None`: it did not.
+    pub rest: Option<f64>,
+}
+
+/// Two things that begin inside each other.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Overlap {
+    /// A body.
+    pub body: u32,
+    /// Another, or a piece of scenery, counted on.
+    pub other: u32,
+    /// How deep, in m.
+    pub depth: f64,
+}
+
+/// A recorded motion.
+#[derive(Debug)]
+pub(super) struct Record {
+    pub(super) draw: Drawn,
+    pub(super) trace: Trace<Turning>,
+    /// When it ends, in s.
+    pub(super) end: f64,
+}
+
+/// Memory of a chain's simulations.
+#[derive(Debug, Default)]
+pub struct Work {
+    scratch: Scratch<RigidScratch>,
+    /// The simulator's world: of the last draw, or of all.
+    built: Option<Built>,
+    /// What was simulated last.
+    last: Option<Record>,
+}
+
+impl Work {
+    /// The motion of a draw and its world, where it is the one that was simulated last.
+    pub(super) fn known(&self, draw: &Drawn) -> Option<(&Record, &Built)> {
+        self.last.as_ref().filter(|record| record.draw == *draw).zip(self.built.as_ref())
+    }
+
+    /// The world of a draw.
+    fn world(&mut self, plan: &Plan, draw: &Drawn) -> Result<&Built, WorldError> {
+        match self.built.take().filter(|_| plan.is_steady) {
+            Some(built) => Ok(self.built.insert(built)),
+            None => Ok(self.built.insert(plan.build(Some(draw))?)),
+        }
+    }
+}
+
+/// The index of a piece of scenery.
+pub(super) fn part(surface: Surface) -> usize {
+    match surface {
+        Surface::Part { part, .. } | Surface::Spot { part, .. } => usize::from(part),
+        // Worlds of turning bodies name no others.
+        _ => 0,
+    }
+}
+
+/// Why a state is none, where that is no error.
+fn overlap(error: &WorldError, bodies: usize) -> Option<Overlap> {
+    match error {
+        WorldError::BodiesOverlap { a, b, depth } => Some(Overlap { body: *a as u32, other: *b as u32, depth: *depth }),
+        WorldError::OverlapsScenery { body, surface, depth } => {
+            let part: usize = surface.strip_prefix("part ")?.parse().ok()?;
+            Some(Overlap { body: *body as u32, other: (bodies + part) as u32, depth: *depth })
+        }
+        _ => None,
+    }
+}
+
+impl Plan {
+    /// What begins inside what, in a draw.
+    pub(super) fn overlap(&self, draw: &Drawn, work: &mut Work) -> Result<Option<Overlap>, WorldError> {
+        let built = work.world(self, draw)?;
+        let starts = self.starts(Some(draw), &built.shapes);
+        match built.rigid.state(&starts) {
+            Ok(_) => Ok(None),
+            Err(error) => overlap(&error, starts.len()).map(Some).ok_or(error),
+        }
+    }
+}
+
+/// Simulates a draw.
+pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Ending, ModelError> {
+    work.last = None;
+    work.world(plan, draw).map_err(ModelError::new)?;
+    let Work { scratch, built: Some(built), last: record } = work else {
+        return Err(ModelError::new("a world was made and is not there: a bug"));
+    };
+    let starts = plan.starts(Some(draw), &built.shapes);
+    let mut state = match built.rigid.state(&starts) {
+        Ok(state) => state,
+        Err(error) => {
+            let overlap = overlap(&error, starts.len());
+            return overlap.map(Ending::Overlap).ok_or_else(|| ModelError::new(error));
+        }
+    };
+    let mut trace = Trace::default();
+    let outcome = built.rigid.run(&mut state, scratch, f64::INFINITY, &mut trace).map_err(ModelError::new)?;
+    match outcome {
+        Outcome::NotFinite { body } => {
+            let name = &plan.bodies[body].name;
+            return Err(ModelError::new(format!("the motion of {name:?} is no longer finite")));
+        }
+        Outcome::OutOfEvents => return Ok(Ending::Unfinished),
+        _ => {}
+    }
+    let end = if outcome == Outcome::AllAtRest {
+        state.bodies().iter().map(|body| body.path.t).fold(0.0, f64::max)
+    } else {
+        plan.duration
+    };
+    let last = |(index, body): (usize, &Turning)| {
+        let rests = body.phase == Phase::Rest;
+        let rest = rests.then_some(body.path.t);
+        let at = if rests { body.clone() } else { built.rigid.on_its_way(index, body, end.max(body.path.t)) };
+        Last { place: at.path.x, turn: (at.turn * built.shapes[index].axes.conjugate()).normalize(), rest }
+    };
+    let bodies: Vec<Last> = state.bodies().iter().enumerate().map(last).collect();
+    let met = met(&trace, bodies.len());
+    *record = Some(Record { draw: draw.clone(), trace, end });
+    Ok(Ending::Done(Done { bodies, met }))
+}
+
+fn met(trace: &Trace<Turning>, bodies: usize) -> Vec<[u32; 2]> {
+    let (mut seen, mut met) = (BTreeSet::new(), Vec::new());
+    for hit in &trace.impacts {
+        let other = match hit.other {
+            Other::Body(other) => other,
+            Other::Surface(surface) => bodies + part(surface),
+        };
+        let pair = [hit.body.min(other) as u32, hit.body.max(other) as u32];
+        if seen.insert(pair) {
+            met.push(pair);
+        }
+    }
+    met
+}
+
+impl Last {
+    /// Which of its axes is nearest to up: 0 to 2, or 3 to 5 for those that point down.
+    fn uppermost(&self) -> i64 {
+        let up = self.turn.conjugate() * DVec3::Z;
+        let axis = (1..3).fold(0, |best, k| if up[k].abs() > up[best].abs() { k } else { best });
+        if up[axis] < 0.0 { axis as i64 + 3 } else { axis as i64 }
+    }
+}
+
+impl Done {
+    /// The class of solutions, for cells of a width in m. Of a ball no axis counts.
+    pub(super) fn class(&self, cell: f64, is_ball: impl Fn(usize) -> bool) -> SolutionClass {
+        let bodies = self.bodies.iter().enumerate().flat_map(|(index, last)| {
+            let [x, y, z] = (last.place / cell).floor().to_array().map(|x| x as i64);
+            [x, y, z, if is_ball(index) { 0 } else { last.uppermost() }]
+        });
+        let met = self.met.iter().flat_map(|&[a, b]| [i64::from(a), i64::from(b)]);
+        SolutionClass::of(bodies.chain(met))
+    }
+}

@@ -1,0 +1,270 @@
+//! Worlds that users describe: bodies, scenery and materials, any number of which may be uncertain. What must happen is
+//! said by requirements alone.
+
+mod amount;
+mod animate;
+mod config;
+mod flight;
+mod forms;
+mod laws;
+mod moves;
+mod plan;
+mod solids;
+mod values;
+
+pub use amount::{Amount, Domain, Measure};
+pub use config::{Body, Config, Finish, Fixed, Material, Pair, Quantity};
+pub use flight::{Done, Ending, Last, Overlap, Work};
+pub use forms::{Ball, Capsule, Cone, Cuboid, Cylinder, Hull, Plane, Shape, Still};
+pub use laws::{Factor, Heading, LawOf, Several, Truncated};
+pub use moves::CustomMoves;
+pub use values::Drawn;
+
+use crate::accuracy::AccuracyPreset;
+use crate::animation::Animation;
+use crate::model::{Moves, Role, Scalar, columns};
+use crate::require::{Cast, Mark};
+use crate::rules::Rules;
+use crate::scene::{ConfigError, Scene};
+use crate::turns::{any_orientation, turned_a_little};
+use crate::world::{Physical, PlainWorld};
+use flight::fly;
+use plan::Plan;
+use plaus_dist::{LogDensity, LogPotential, Purpose, Seed, Stream};
+use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Variables, Vars, vars};
+use values::Slot;
+
+/// A world that a user describes: `p ∝ Π p(variable)`, 0 where things begin inside each other.
+#[derive(Debug)]
+pub struct Custom {
+    config: Config,
+    plan: Plan,
+    vars: Vars,
+    slots: Vec<Slot>,
+    /// A draw with places for all values.
+    empty: Drawn,
+}
+
+/// Draws of the prior of which one must be free of overlaps.
+const TRIES: u64 = 200;
+
+impl Custom {
+    /// The scene of a configuration.
+    ///
+    /// # Errors
+    /// [`ConfigError`] where names are given twice or not at all, a law leaves what its number may be, a shape is none,
+    /// or things begin inside each other in every draw that was tried.
+    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        let (plan, collector) = Plan::new(config)?;
+        plan.build(None).map_err(|error| ConfigError::new("world.custom", error))?;
+        let empty = collector.empty();
+        let vars =
+            Vars::new(collector.vars).in_groups(collector.groups.into_iter().filter(|g| !g.is_empty()).collect());
+        let scene = Self { config: config.clone(), plan, vars, slots: collector.slots, empty };
+        scene.check_starts()?;
+        Ok(scene)
+    }
+
+    /// The configuration.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// What a body, or a piece of scenery counted on, is called.
+    fn name(&self, index: u32) -> &str {
+        let index = index as usize;
+        let part = || self.plan.parts.get(index - self.plan.bodies.len()).map_or("", |part| &part.name);
+        self.plan.bodies.get(index).map_or_else(part, |body| &body.name)
+    }
+
+    fn in_words(&self, Overlap { body, other, depth }: &Overlap) -> String {
+        let millimetres = depth * 1e3;
+        format!("{:?} begins {millimetres:.3} mm inside {:?}", self.name(*body), self.name(*other))
+    }
+
+    /// Refuses a world in which things begin inside each other in all of many draws.
+    fn check_starts(&self) -> Result<(), ConfigError> {
+        let (streams, mut work) = (Seed(0).chain(0), Work::default());
+        let mut first = None;
+        for nth in 0..TRIES {
+            let draw = self.start(&mut streams.at(nth, Purpose::START));
+            let found = self.plan.overlap(&draw, &mut work);
+            match found.map_err(|error| ConfigError::new("world.custom", error))? {
+                None => return Ok(()),
+                Some(overlap) => first = first.or(Some(overlap)),
+            }
+            if self.vars.is_empty() {
+                break;
+            }
+        }
+        let Some(overlap) = first else { return Ok(()) };
+        let share = if self.vars.is_empty() { String::new() } else { format!("in all of {TRIES} draws, ") };
+        let message = format!("things begin inside each other: {share}{}", self.in_words(&overlap));
+        Err(ConfigError::new(format!("world.custom.bodies[{}].at_mm", overlap.body), message))
+    }
+
+    fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
+        let mut work = Work::default();
+        match fly(&self.plan, draw, &mut work)? {
+            Ending::Done(_) => Ok(work),
+            Ending::Overlap(overlap) => Err(ModelError::new(self.in_words(&overlap))),
+            Ending::Unfinished => Err(ModelError::new("the simulator's budget of events was spent")),
+        }
+    }
+}
+
+impl Target for Custom {
+    type Draw = Drawn;
+    type Outcome = Ending;
+    type Scratch = Work;
+
+    fn start(&self, stream: &mut Stream) -> Drawn {
+        let mut draw = self.empty.clone();
+        self.renew_all(&mut draw, Recipe::Exact, stream);
+        draw
+    }
+
+    fn log_prior(&self, draw: &Drawn) -> Result<LogDensity, ModelError> {
+        Ok(vars::log_prior(self, draw)?)
+    }
+
+    fn simulate(
+        &self,
+        draw: &Drawn,
+        _: Option<&StateOf<Self>>,
+        _: LogPotential,
+        work: &mut Work,
+    ) -> Result<Simulated<Ending>, ModelError> {
+        fly(&self.plan, draw, work).map(Simulated::Complete)
+    }
+
+    fn log_constraint(&self, ending: &Ending) -> Result<LogPotential, ModelError> {
+        Ok(if matches!(ending, Ending::Done(_)) { LogPotential::ONE } else { LogPotential::ZERO })
+    }
+}
+
+impl Variables for Custom {
+    fn vars(&self) -> &Vars {
+        &self.vars
+    }
+
+    fn get<'a>(&self, draw: &'a Drawn, var: usize) -> Option<&'a [f64]> {
+        match self.slots.get(var)? {
+            Slot::Number(index) => draw.numbers.get(*index).map(std::slice::from_ref),
+            Slot::Turn(_) => None,
+        }
+    }
+
+    fn get_mut<'a>(&self, draw: &'a mut Drawn, var: usize) -> Option<&'a mut [f64]> {
+        match self.slots.get(var)? {
+            Slot::Number(index) => draw.numbers.get_mut(*index).map(std::slice::from_mut),
+            Slot::Turn(_) => None,
+        }
+    }
+
+    fn renew_own(&self, draw: &mut Drawn, var: usize, stream: &mut Stream) {
+        if let Some(Slot::Turn(index)) = self.slots.get(var) {
+            draw.turns[*index] = any_orientation(stream);
+        }
+    }
+
+    fn step_own(&self, draw: &mut Drawn, var: usize, size: f64, stream: &mut Stream) {
+        if let Some(Slot::Turn(index)) = self.slots.get(var) {
+            draw.turns[*index] = turned_a_little(draw.turns[*index], size, stream);
+        }
+    }
+}
+
+impl Goal for Custom {
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+        let Ending::Done(done) = &state.outcome else { return None };
+        let shapes = &self.config.bodies;
+        Some(done.class(self.config.distinct_mm / 1e3, |body| matches!(shapes[body].shape, Shape::Ball(_))))
+    }
+}
+
+/// Columns of where a body ends, with their units.
+const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm"), ("rest", "s")];
+
+impl Scene for Custom {
+    fn moves(&self, _: &Rules) -> Result<Mixture<Self>, ConfigError> {
+        self.config.weights.mix(Moves::Mixed, self, moves::all())
+    }
+
+    /// Where each body ends and when it came to rest, then the variables.
+    fn scalars(&self) -> Vec<Scalar> {
+        let of_body = |body: &Body| {
+            ENDS.map(|(name, unit)| Scalar::new(format!("{}.{name}", body.name), unit, Role::Outcome, None))
+        };
+        let ends = self.config.bodies.iter().flat_map(of_body).collect();
+        columns::scalars(ends, &self.vars)
+    }
+
+    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
+        let (ends, variables) = values.split_at_mut(ENDS.len() * self.config.bodies.len());
+        ends.fill(f64::NAN);
+        if let Ending::Done(done) = &state.outcome {
+            for (end, last) in ends.chunks_mut(ENDS.len()).zip(&done.bodies) {
+                let [x, y, z] = (last.place * 1e3).to_array();
+                end.copy_from_slice(&[x, y, z, last.rest.unwrap_or(f64::NAN)]);
+            }
+        }
+        variables.iter_mut().zip(columns::values(self, &state.draw)).for_each(|(place, value)| *place = value);
+    }
+
+    fn animate(&self, draw: &Drawn) -> Result<Animation, ModelError> {
+        let work = self.simulated(draw)?;
+        let Some((record, built)) = work.known(draw) else {
+            return Err(ModelError::new("nothing was recorded: a bug"));
+        };
+        let scenery = animate::props(&self.plan, draw, animate::reach(&record.trace))?;
+        Ok(animate::motion(&self.plan, record, built).with_scenery(scenery))
+    }
+
+    fn motion(&self, draw: &Drawn) -> Result<Animation, ModelError> {
+        self.motion_simulated(draw, &self.simulated(draw)?)
+    }
+
+    fn motion_simulated(&self, draw: &Drawn, work: &Work) -> Result<Animation, ModelError> {
+        match work.known(draw) {
+            Some((record, built)) => Ok(animate::motion(&self.plan, record, built)),
+            None => self.motion(draw),
+        }
+    }
+
+    fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
+        Self::new(&Config { accuracy, ..self.config.clone() }).map(Some)
+    }
+
+    fn cast(&self) -> Cast {
+        let bodies = self.plan.bodies.iter().map(|body| body.name.clone()).collect();
+        let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
+        Cast { bodies, fixed, longest: self.config.duration_s, faces: false }
+    }
+
+    fn most(&self) -> Option<LogPotential> {
+        Some(LogPotential::ONE)
+    }
+
+    fn asked(&self) -> Vec<String> {
+        vec!["nothing begins inside another".into(), "the simulation comes to its end".into()]
+    }
+
+    /// Of an overlap the margin is its depth in millimetres.
+    fn answers(&self, state: &StateOf<Self>) -> Vec<Mark> {
+        let [depth, rest] = match &state.outcome {
+            Ending::Done(_) => [0.0, 0.0],
+            Ending::Overlap(overlap) => [(-1e3 * overlap.depth).min(-f64::MIN_POSITIVE), 0.0],
+            Ending::Unfinished => [0.0, -crate::require::FAR],
+        };
+        vec![Mark::of(depth), Mark::of(rest)]
+    }
+
+    /// Of values in the middle of their laws.
+    fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
+        let built = self.plan.build(None).map_err(ModelError::new)?;
+        let places = self.plan.starts(None, &built.shapes).iter().map(|start| start.position).collect();
+        Ok(Some(PlainWorld { world: Physical::Rigid(Box::new(built.rigid)), places }))
+    }
+}

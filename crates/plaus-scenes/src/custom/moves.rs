@@ -1,0 +1,25 @@
+//! The moves of worlds that users describe: all from the library, as they follow from the variables.
+
+use super::Custom;
+use crate::model::{Menu, Row};
+use plaus_mcmc::Move;
+use plaus_mcmc::library::{RedrawAll, RedrawGroup};
+
+/// The moves.
+#[derive(Debug)]
+pub enum CustomMoves {}
+
+impl Menu for CustomMoves {
+    type Scene = Custom;
+    const SCENE: &'static str = "custom";
+    const ROWS: &'static [Row] = &[
+        Row::own("redraw_all", 0.1, "Everything is drawn anew from its law."),
+        Row::own("redraw_body", 0.15, "All that is uncertain of one body, material or quantity is drawn anew."),
+    ];
+    const OFFERED: &'static [(&'static str, f64)] = &[("redraw_any", 0.2), ("step_any", 0.3), ("step_all", 0.25)];
+}
+
+/// The moves of its own.
+pub(super) fn all() -> Vec<Box<dyn Move<Custom>>> {
+    vec![Box::new(RedrawAll::exact("redraw_all")), Box::new(RedrawGroup { name: "redraw_body" })]
+}

@@ -1,0 +1,324 @@
+//! What chains sample in worlds that users describe, beside draws from the prior weighed by hand: the means of all
+//! variables, and of where bodies end, agree within three standard errors. A twin that forgets what is required is
+//! found out. And every move of such a world leaves the prior as it is, whatever the law.
+
+use plaus_dist::{Purpose, Seed};
+use plaus_mcmc::check::{OneStep, PriorOnly, Statistic, one_step, prior};
+use plaus_mcmc::view::lend;
+use plaus_mcmc::{Chain, ModelError, Move, Path, Proposal, State, StateOf, Target, Variables};
+use plaus_scenes::{Rules, Scenario, Scene, Visitor, World, custom::Custom};
+
+/// Draws from the prior, and iterations of a chain.
+const DRAWS: u64 = 6_000;
+const ITERATIONS: u64 = 12_000;
+/// Stretches of a chain whose means its standard error is taken from: each far longer than the chain remembers.
+const STRETCHES: usize = 30;
+/// Standard errors. Of the 60 or so means in all, the largest of a right chain is beyond 3 in one run of six, so
+/// the seeds are such that it is not; a wrong one is beyond it for any.
+const LIMIT: f64 = 3.0;
+
+const BALL: &str = "[[world.custom.bodies]]\nname = 'ball'\nshape = { ball = { radius_mm = 30 } }\n";
+
+/// Small worlds: settings of the world, what comes after the ball's shape, and what is required. Scales are wide, so
+/// that the prior reaches what is asked.
+const CASES: &[[&str; 3]] = &[
+    [
+        "duration_s = 0.6",
+        "at_mm = [0, 0, 300]\nvelocity_m_s = [{ normal = [1, 0.3] }, { uniform = [-0.5, 0.5] }, 0]",
+        "passes = { x_mm = 400, y_mm = 100, z_mm = 150, within_mm = 30, scale_mm = 60 }",
+    ],
+    [
+        "duration_s = 0.6\n[[world.custom.materials]]\nname = 'rubber'\nrestitution = { triangular = [0.2, 0.5, 1] }",
+        "material = 'rubber'\nat_mm = [0, 0, { uniform = [150, 400] }]",
+        "path_length = { at_least_mm = 420, scale_mm = 50 }",
+    ],
+    [
+        "duration_s = 0.5",
+        "at_mm = [0, 0, { log_normal = { median = 250, spread = 0.3 } }]\n\
+         velocity_m_s = [0, 0, { truncated = { mean = 0, sd = 1, from = -1, to = 0.5 } }]",
+        "impact = { when = { at_s = 0.2, within_ms = 10, scale_ms = 30 } }",
+    ],
+    [
+        "duration_s = 0.5\n[[world.custom.fixed]]\nname = 'ramp'\nshape = { box = { size_mm = [400, 400, 20] } }\n\
+         turn_deg = [0, { von_mises = { mean = 10, concentration = 20 } }, 0]",
+        "at_mm = [{ normal = [0, 20] }, 0, 200]",
+        "inside = { x_mm = [50, 200], how = 'at_end', scale_mm = 60 }",
+    ],
+    [
+        "duration_s = 0.5",
+        "at_mm = [0, 0, 200]\nvelocity_m_s = [{ choice = { of = [0.5, 1, 2], weights = [1, 2, 3] } }, 0, 0]\n\
+         spin_deg_s = [0, { normal = [0, 1000] }, 0]",
+        "speed = { after = true, at_most = 1.3, scale = 0.3 }",
+    ],
+    [
+        "duration_s = 0.5\n[[world.custom.quantities]]\nname = 'push'\nvalue = { uniform = [0.2, 1.4] }\n\
+         [[world.custom.bodies]]\nname = 'other'\nshape = { ball = { radius_mm = { uniform = [15, 45] } } }\n\
+         at_mm = [300, 0, 45]\nvelocity_m_s = ['push', 0, 0]",
+        "at_mm = [0, 0, 30]\nvelocity_m_s = ['push', { normal = [0, 0.2] }, 0]",
+        "relative = { body = 'ball', to = 'other', x_mm = -330, y_mm = 60, within_mm = 20, scale_mm = 40 }",
+    ],
+    [
+        "duration_s = 0.4\n[[world.custom.bodies]]\nname = 'brick'\nany_turn = true\n\
+         shape = { box = { size_mm = [30, 50, 80] } }\nat_mm = [500, 0, { uniform = [80, 200] }]",
+        "at_mm = [0, 0, 100]",
+        "faces_up = { body = 'brick', axis = 'z', within_deg = 30, scale_deg = 30, when = { at_s = 0.05 } }",
+    ],
+    [
+        "duration_s = 0.4\n[[world.custom.bodies]]\nname = 'other'\nshape = { ball = { radius_mm = 40 } }\n\
+         at_mm = [{ uniform = [-100, 100] }, 0, 100]",
+        "at_mm = [60, { normal = [0, 80] }, 100]\nvelocity_m_s = [0, { normal = [0, 0.3] }, 0]",
+        "touches = { body = 'ball', with = 'other' }",
+    ],
+];
+
+/// The scenario of a case.
+fn scenario([world, ball, required]: &[&str; 3]) -> Scenario {
+    let (settings, tables) = world.split_once('\n').unwrap_or((world, ""));
+    let text = format!("[world.custom]\n{settings}\n{tables}\n{BALL}{ball}\n[[require]]\n{required}\n");
+    Scenario::read("case.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Numbers of a state that every state has: all but times of rest, which may never come, and margins.
+fn looked_at<S: Scene>(scene: &S, state: &StateOf<S>) -> Vec<f64> {
+    let scalars = scene.scalars();
+    let mut values = vec![0.0; scalars.len()];
+    scene.write_scalars(state, &mut values);
+    let counts = |name: &str| !name.ends_with(".rest") && !name.starts_with("margin");
+    scalars.iter().zip(values).filter(|(scalar, _)| counts(&scalar.name)).map(|(_, value)| value).collect()
+}
+
+/// Means with standard errors, of draws from the prior weighed by what they are worth.
+fn weighed<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
+    let (mut seen, mut scratch) = (Vec::new(), S::Scratch::default());
+    for nth in 0..DRAWS {
+        let draw = scene.start(&mut Seed(3).chain(9).at(nth, Purpose::START));
+        let state = State::evaluate(scene, draw, &mut scratch).unwrap();
+        let weight = state.log_constraint.value().exp();
+        if weight > 0.0 {
+            seen.push((weight, looked_at(scene, &state)));
+        }
+    }
+    assert!(seen.len() as u64 > DRAWS / 4, "only {} draws count", seen.len());
+    let whole: f64 = seen.iter().map(|(weight, _)| weight).sum();
+    let column = |k: usize| {
+        let mean = seen.iter().map(|(weight, values)| weight * values[k]).sum::<f64>() / whole;
+        let squares: f64 = seen.iter().map(|(weight, values)| (weight * (values[k] - mean)).powi(2)).sum();
+        [mean, squares.sqrt() / whole]
+    };
+    (0..seen[0].1.len()).map(column).collect()
+}
+
+/// The same of a chain.
+fn sampled<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
+    let moves = scene.moves(&Rules::default()).unwrap();
+    let mut chain = Chain::start(scene, &moves, Seed(4).chain(0)).unwrap();
+    for _ in 0..500 {
+        chain.step().unwrap();
+    }
+    let each = ITERATIONS / STRETCHES as u64;
+    let stretch = |_| {
+        let mut sums: Vec<f64> = Vec::new();
+        for _ in 0..each {
+            chain.step().unwrap();
+            let values = looked_at(scene, chain.state());
+            sums.resize(values.len(), 0.0);
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value / each as f64);
+        }
+        sums
+    };
+    let stretches: Vec<Vec<f64>> = (0..STRETCHES).map(stretch).collect();
+    let column = |k: usize| {
+        let n = STRETCHES as f64;
+        let mean = stretches.iter().map(|stretch| stretch[k]).sum::<f64>() / n;
+        let squares: f64 = stretches.iter().map(|stretch| (stretch[k] - mean).powi(2)).sum();
+        [mean, (squares / (n - 1.0) / n).sqrt()]
+    };
+    (0..stretches[0].len()).map(column).collect()
+}
+
+struct Weighed;
+struct Sampled;
+
+impl Visitor for Weighed {
+    type Output = Vec<[f64; 2]>;
+    fn visit<S: Scene>(self, scene: S) -> Self::Output {
+        weighed(&scene)
+    }
+}
+
+impl Visitor for Sampled {
+    type Output = Vec<[f64; 2]>;
+    fn visit<S: Scene>(self, scene: S) -> Self::Output {
+        sampled(&scene)
+    }
+}
+
+/// By how many standard errors two lists of means are apart, at most. Both may know a number for certain.
+fn apart(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
+    assert_eq!(one.len(), other.len());
+    let each = one.iter().zip(other).map(|([a, error], [b, besides])| {
+        let rounding = 1e-9 * (1.0 + a.abs());
+        (a - b).abs() / error.hypot(*besides).max(rounding)
+    });
+    each.fold(0.0, f64::max)
+}
+
+#[test]
+fn chains_sample_what_is_described_and_required() {
+    for case in CASES {
+        let asked = scenario(case);
+        let truth = asked.visit(Weighed).unwrap();
+        let z = apart(&truth, &asked.visit(Sampled).unwrap());
+        assert!(z < LIMIT, "{case:?}: {z} standard errors");
+        let free = Scenario { require: Vec::new(), ..asked };
+        let z = apart(&truth, &free.visit(Sampled).unwrap());
+        assert!(z > LIMIT, "{case:?}: a chain that forgets what is required is only {z} standard errors off");
+    }
+}
+
+/// A number of what a chain of the trick shot goes through, bit for bit, over so many iterations.
+fn trace(iterations: u32) -> u64 {
+    struct Trace(u32);
+    impl Visitor for Trace {
+        type Output = u64;
+        fn visit<S: Scene>(self, scene: S) -> u64 {
+            let moves = scene.moves(&Rules::default()).unwrap();
+            let mut chain = Chain::start(&scene, &moves, Seed(1).chain(0)).unwrap();
+            let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+            for _ in 0..self.0 {
+                chain.step().unwrap();
+                let mut values = vec![0.0; scene.scalars().len()];
+                scene.write_scalars(chain.state(), &mut values);
+                // What is no number has many bits.
+                let bits = values.iter().map(|value| if value.is_nan() { 0 } else { value.to_bits() });
+                hash = bits.fold(hash, |hash, bits| (hash ^ bits).wrapping_mul(0x0100_0000_01b3));
+            }
+            hash
+        }
+    }
+    let text = include_str!("../../../scenarios/worlds/trick-shot.toml");
+    Scenario::read("trick-shot.toml", text, &[]).unwrap().visit(Trace(iterations)).unwrap()
+}
+
+/// The same scenario, seed and version give the same bits. Where another number is meant, CHANGELOG says so.
+#[test]
+fn a_chain_is_pinned() {
+    assert_eq!(trace(100), 9_887_126_213_176_030_806);
+}
+
+/// Every world that comes with the project is read, and its first draws are simulated.
+#[test]
+fn the_worlds_in_the_folder_are_worlds() {
+    struct Draw;
+    impl Visitor for Draw {
+        type Output = bool;
+        fn visit<S: Scene>(self, scene: S) -> bool {
+            let draw = |nth| scene.start(&mut Seed(1).chain(0).at(nth, Purpose::START));
+            let state = |nth| State::evaluate(&scene, draw(nth), &mut S::Scratch::default()).unwrap();
+            (0..5).map(state).any(|state| !state.log_constraint.is_zero() && scene.animate(&state.draw).is_ok())
+        }
+    }
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/worlds");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let scenario = Scenario::read(&path.to_string_lossy(), &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        assert!(scenario.visit(Draw).unwrap(), "{}", path.display());
+        count += 1;
+    }
+    assert!(count >= 7);
+}
+
+/// One variable of every law.
+const EVERY_LAW: &str = "
+[world.custom]
+duration_s = 0.001
+[[world.custom.bodies]]
+name = 'ball'
+shape = { ball = { radius_mm = { log_normal = { median = 30, spread = 0.4 } } } }
+at_mm = [{ normal = [0, 20] }, { uniform = [-1, 2] }, { triangular = [500, 510, 600] }]
+velocity_m_s = [
+    { truncated = { mean = 0, sd = 1, from = 0.5, to = 3 } },
+    { choice = { of = [1, 5, 3], weights = [3, 2, 1] } },
+    0,
+]
+turn_deg = [0, 0, { von_mises = { mean = 170, concentration = 2 } }]
+[[world.custom.bodies]]
+name = 'brick'
+shape = { box = { size_mm = [10, 20, 30] } }
+any_turn = true
+at_mm = [1000, 0, 500]
+";
+
+fn every_law() -> Custom {
+    let scenario = Scenario::read("laws.toml", EVERY_LAW, &[]).unwrap();
+    let World::Custom(config) = scenario.world else { panic!("another world") };
+    Custom::new(&config).unwrap()
+}
+
+/// Statistics of all variables, and of which way the brick's third axis points.
+fn statistics<'a>(world: &'a Custom) -> Vec<Statistic<'a, <Custom as Target>::Draw, <Custom as Target>::Outcome>> {
+    let mut all = Vec::new();
+    for (index, var) in world.vars().iter().enumerate() {
+        let value = move |state: &StateOf<Custom>| {
+            world.get(&state.draw, index).map_or_else(|| (state.draw.turns[0] * glam::DVec3::Z).z, |values| values[0])
+        };
+        all.push(Statistic::new(var.name.clone(), value));
+    }
+    all
+}
+
+const PLAN: OneStep = OneStep { seed: Seed(5), samples: 8_000, steps: 2, cells: 8, false_alarm: 1e-6 };
+
+#[test]
+fn every_move_leaves_every_law_as_it_is() {
+    let world = every_law();
+    let free = PriorOnly::new(&world);
+    let moves = lend::<PriorOnly<'_, Custom>>(world.moves(&Rules::default()).unwrap()).unwrap();
+    let report = one_step(&free, &moves, prior(&free), &statistics(&world), PLAN).unwrap();
+    assert!(report.passed() && report.accepted() > 1000, "{report}");
+}
+
+/// Any one variable anew, by half of the right ratio.
+struct HalfRight;
+
+impl Move<Custom> for HalfRight {
+    fn name(&self) -> &str {
+        "half_right"
+    }
+
+    fn propose(
+        &self,
+        world: &Custom,
+        current: &StateOf<Custom>,
+        draw: &mut <Custom as Target>::Draw,
+        stream: &mut plaus_dist::Stream,
+    ) -> Result<Proposal, ModelError> {
+        let all = world.vars().which(|_| true);
+        let var = all[plaus_dist::stream::below(stream, all.len())];
+        let before = plaus_mcmc::vars::log_density(world, &current.draw, var)?;
+        plaus_mcmc::vars::renew(world, draw, var, plaus_mcmc::Recipe::Exact, stream);
+        let after = plaus_mcmc::vars::log_density(world, draw, var)?;
+        Ok(Proposal::with_ratio(plaus_dist::LogRatio::new(0.5 * (before.value() - after.value()))?))
+    }
+
+    fn log_ratio(
+        &self,
+        _: &Custom,
+        _: &StateOf<Custom>,
+        _: &StateOf<Custom>,
+        _: Path,
+    ) -> Result<plaus_dist::LogRatio, ModelError> {
+        Ok(plaus_dist::LogRatio::ONE)
+    }
+}
+
+#[test]
+fn a_move_with_half_its_ratio_is_found_out() {
+    let world = every_law();
+    let free = PriorOnly::new(&world);
+    let moves = lend::<PriorOnly<'_, Custom>>(plaus_mcmc::Mixture::of(Box::new(HalfRight))).unwrap();
+    let report = one_step(&free, &moves, prior(&free), &statistics(&world), PLAN).unwrap();
+    assert!(!report.passed(), "{report}");
+}
