@@ -132,7 +132,8 @@ mod tests {
 
     #[test]
     fn what_never_moves_or_is_no_number_is_drawn_too() {
-        let scalar = Scalar { name: "x".into(), unit: "m", role: Role::Draw, base: "x", member: None, whole: false };
+        let scalar =
+            Scalar { name: "x".into(), unit: "m", role: Role::Draw, base: "x".into(), member: None, whole: false };
         for chains in [vec![vec![1.0; 50]; 2], vec![vec![f64::NAN; 50]], vec![vec![]], vec![]] {
             let svg = of_scalar(&scalar, &chains);
             assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{svg}");

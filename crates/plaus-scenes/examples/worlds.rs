@@ -30,7 +30,7 @@ impl Visitor for Look {
 
     fn visit<S: Scene>(self, scene: S) -> String {
         let begin = Instant::now();
-        let tally = match Tally::of_prior(&scene, self.seed, DRAWS, |_| {}) {
+        let tally = match Tally::of_prior(&scene, self.seed, DRAWS, |_| true) {
             Ok(tally) => tally,
             Err(error) => return error.to_string(),
         };
