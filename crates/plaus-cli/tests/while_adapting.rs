@@ -10,6 +10,11 @@ fn the_first_solutions_are_kept_and_can_be_looked_at() {
     place.ok("sample ball.toml --out run --solutions 5 --warmup 1000000 -q");
     let list = place.ok("export run --format events --all-distinct --out all.csv");
     assert!(list.err.contains("wrote all.csv"), "{}", list.err);
+    // A table names its sample so that `--sample` takes it.
+    let table = std::fs::read_to_string(place.path("all.csv")).unwrap();
+    let named = table.lines().nth(1).unwrap().splitn(3, ',').take(2).collect::<Vec<_>>().join(":");
+    assert!(named.contains(":w"), "{named}");
+    place.ok(&format!("export run --format events --sample {named} --out one.csv"));
     place.ok("gallery run --out page.html").says(&["distinct solutions"]);
     let page = std::fs::read_to_string(place.path("page.html")).unwrap();
     assert!(page.contains("gallery"), "{}", page.len());

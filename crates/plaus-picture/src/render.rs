@@ -69,7 +69,7 @@ impl<'a> Renderer<'a> {
         let stage = Stage::new(animation);
         let framed = animation.view.and_then(|view| view.frame).map(|[a, b]| a.y.min(b.y) - SUNK);
         // What falls below it on the way does not push it down.
-        let ground = stage.scenery_bounds().map(|[low, _]| low.y).into_iter().chain(framed).reduce(f64::min);
+        let ground = stage.scenery_bounds().map(|[low, _]| low.y - SUNK).into_iter().chain(framed).reduce(f64::min);
         Self { stage, camera, quality, ground }
     }
 

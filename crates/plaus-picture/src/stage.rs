@@ -2,7 +2,7 @@
 
 use crate::bvh::{Bvh, Hit, Ray, Target};
 use glam::{DMat3, DVec3};
-use plaus_animation::{Animation, Look, Material, Shape};
+use plaus_animation::{Animation, Form, Look, Material, Shape};
 use plaus_export::mesh::{self, Part};
 
 /// All that is to be drawn of an animation.
@@ -33,6 +33,9 @@ struct Placed<'a> {
 struct Thing {
     solid: Solid,
     look: Look,
+    /// Whether it is seen only from where its normal points to, and takes no light from anything: planes, which end
+    /// nowhere and behind which there is nothing.
+    one_sided: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -54,7 +57,10 @@ pub(crate) fn clear(look: Look) -> Option<f64> {
 
 impl<'a> Stage<'a> {
     pub(crate) fn new(animation: &'a Animation) -> Self {
-        let scenery = animation.scenery.iter().flat_map(|prop| triangles(&mesh::of_form(&prop.form, prop.look)));
+        let scenery = animation.scenery.iter().flat_map(|prop| {
+            let one_sided = matches!(prop.form, Form::Plane { .. });
+            triangles(&mesh::of_form(&prop.form, prop.look)).into_iter().map(move |thing| Thing { one_sided, ..thing })
+        });
         let bodies = animation.tracks.iter().map(|track| Bvh::new(body(&track.shape, track.look)));
         Self { animation, scenery: Bvh::new(scenery.collect()), bodies: bodies.collect() }
     }
@@ -92,7 +98,7 @@ fn body(shape: &Shape, look: Look) -> Vec<Thing> {
     let parts = mesh::of_shape(shape, look);
     match shape {
         Shape::Sphere { radius, .. } => {
-            let ball = Thing { solid: Solid::Ball { radius: *radius }, look };
+            let ball = Thing { solid: Solid::Ball { radius: *radius }, look, one_sided: false };
             std::iter::once(ball).chain(parts[1..].iter().flat_map(triangles)).collect()
         }
         _ => parts.iter().flat_map(triangles).collect(),
@@ -104,7 +110,11 @@ fn triangles(part: &Part) -> Vec<Thing> {
     let triangle = |ids: &[u32; 3]| {
         let [a, b, c] = ids.map(|id| at(&part.mesh.positions, id));
         let normals = ids.map(|id| at(&part.mesh.normals, id));
-        Thing { solid: Solid::Triangle { corner: a, edges: [b - a, c - a], normals }, look: part.look }
+        Thing {
+            solid: Solid::Triangle { corner: a, edges: [b - a, c - a], normals },
+            look: part.look,
+            one_sided: false,
+        }
     };
     part.mesh.triangles.iter().map(triangle).collect()
 }
@@ -136,10 +146,10 @@ impl Target for Thing {
     }
 
     fn hit(&self, ray: &Ray) -> Option<Hit> {
-        if ray.solid_only && clear(self.look).is_some() {
+        if ray.solid_only && (self.one_sided || clear(self.look).is_some()) {
             return None;
         }
-        let (t, normal) = self.solid.hit(ray)?;
+        let (t, normal) = self.solid.hit(ray).filter(|(_, normal)| !self.one_sided || normal.dot(ray.along) < 0.0)?;
         Some(Hit { t, normal, look: self.look })
     }
 }

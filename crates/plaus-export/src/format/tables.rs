@@ -16,7 +16,7 @@ impl Exporter for Poses {
             name: "poses",
             ending: "csv",
             about: "CSV, one row per sample, body and key",
-            help: "Columns chain, draw, t (s), body, x, y, z (m, y up), a unit quaternion qx, qy, qz, qw, and whether it \
+            help: "Columns chain, draw (w17: of the warm-up), t (s), body, x, y, z (m, y up), a unit quaternion qx, qy, qz, qw, and whether it \
                 is at an impact. Keys at every frame, impact and begin of a piece of motion.",
         }
     }
@@ -73,9 +73,19 @@ fn head(columns: &str) -> String {
     format!("chain,draw,{columns}")
 }
 
-/// Chain and draw, as the label's facts say.
+/// Chain and draw, as the label's facts say; of the warm-up as `--sample` takes it, `w17`.
 fn sample(label: &Label) -> [Value; 2] {
-    ["chain", "draw"].map(|fact| label.facts.get(fact).cloned().unwrap_or(Value::Null))
+    let fact = |name: &str| label.facts.get(name).cloned().unwrap_or(Value::Null);
+    let named = label.facts.get("sample").and_then(Value::as_str).and_then(|name| name.split_once(':'));
+    match named.filter(|_| label.facts.contains_key("phase")) {
+        Some((_, draw)) => [fact("chain"), Value::from(draw)],
+        None => [fact("chain"), fact("draw")],
+    }
+}
+
+/// A value without the quotes of a string.
+fn plain(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
 /// Writes the rows of a clip, each after a prefix.
@@ -100,7 +110,7 @@ impl Collection for Rows {
     fn add(&mut self, clip: &Clip<'_>, out: &mut dyn Write) -> Result<(), ExportError> {
         self.head(out)?;
         let [chain, draw] = sample(clip.label);
-        Ok((self.write)(out, clip, &format!("{chain},{draw},"))?)
+        Ok((self.write)(out, clip, &format!("{},{},", plain(&chain), plain(&draw)))?)
     }
 
     fn finish(mut self: Box<Self>, out: &mut dyn Write) -> Result<(), ExportError> {
