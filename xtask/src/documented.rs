@@ -138,6 +138,7 @@ fn whole(code: &str) -> Option<String> {
         "RUN" if rest.contains("--accuracy") => DIE.to_owned(),
         "RUN" => "runs/ball2d".to_owned(),
         "JOB" => "job".to_owned(),
+        "FILE" => "scenarios/ball2d.toml".to_owned(),
         "FOLDER" => "runs/plots".to_owned(),
         word => word.to_owned(),
     };
