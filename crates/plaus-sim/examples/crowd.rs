@@ -1,5 +1,5 @@
 //! Many bodies: the cost of an event where they are far apart, and balls poured into a box. `cargo run --release -p
-//! plaus-sim --example crowd [balls to pour]`.
+//! plaus-sim --example crowd -- 1000`; 50 balls unless told otherwise.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 #![allow(clippy::disallowed_methods, reason = "it measures time")]
@@ -58,7 +58,7 @@ fn main() -> Result<(), WorldError> {
             1e6 * time / events as f64
         );
     }
-    let n: usize = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(1000);
+    let n: usize = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(50);
     let half = 0.1;
     let mut parts = vec![plane(DVec3::ZERO, DVec3::Z)?];
     for n in [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y] {

@@ -10,7 +10,7 @@ use plaus_sim::{Outcome, Preset};
 use zoo::{Body, Place, throw};
 
 fn main() {
-    let throws: u64 = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(40);
+    let throws: u64 = std::env::args().nth(1).and_then(|n| n.parse().ok()).unwrap_or(1);
     let (mut lost, mut endless, mut total) = (0, 0, 0);
     println!(
         "{:>10} {:>11} {:>6} {:>6} {:>9} {:>9} {:>9} {:>8}",
