@@ -183,6 +183,28 @@ fn every_file_of_tests_is_part_of_the_program() {
     assert!(left_out.is_empty(), "not named in all.rs beside them: {left_out:?}");
 }
 
+/// A file that no module names is compiled nowhere: what a change forgot to remove.
+#[test]
+fn every_source_is_part_of_its_crate() {
+    let mut left_out = Vec::new();
+    for path in files(&root().join("crates"), ".rs") {
+        let (folder, name) = (path.parent().unwrap(), path.file_stem().unwrap().to_string_lossy().into_owned());
+        let in_source = path.components().any(|part| part.as_os_str() == "src");
+        if !in_source || ["lib", "main", "mod"].contains(&name.as_str()) {
+            continue;
+        }
+        let heads = ["mod.rs", "lib.rs", "main.rs"].map(|head| folder.join(head));
+        let texts = heads
+            .into_iter()
+            .chain([folder.with_extension("rs")])
+            .filter_map(|head| std::fs::read_to_string(head).ok());
+        if !texts.collect::<Vec<_>>().iter().any(|text| text.contains(&format!("mod {name};"))) {
+            left_out.push(shown(&path));
+        }
+    }
+    assert!(left_out.is_empty(), "compiled nowhere: {left_out:?}");
+}
+
 /// Rows of tables cannot be broken, nor can what stands in code between quotes: rustfmt leaves it.
 #[test]
 fn lines_are_of_a_width_to_read() {

@@ -111,6 +111,17 @@ impl Piece {
         Self { turn, ..self }
     }
 
+    /// Has each piece that turns end as the next begins. A body's spin may change within a piece, where friction acts or
+    /// its moments of inertia differ, and a piece has one: that which leads to where the next begins.
+    pub fn lead_on(pieces: &mut [Self]) {
+        for index in 1..pieces.len() {
+            let (next, piece) = (pieces[index], &mut pieces[index - 1]);
+            if piece.turn.spin != DVec3::ZERO {
+                piece.turn = piece.turn.reaching(next.turn.orientation, next.start - piece.start);
+            }
+        }
+    }
+
     /// Position at `time`, in s; where the piece begins for times before that.
     #[must_use]
     pub fn position(&self, time: f64) -> DVec3 {

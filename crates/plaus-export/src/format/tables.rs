@@ -16,8 +16,8 @@ impl Exporter for Poses {
             name: "poses",
             ending: "csv",
             about: "CSV, one row per sample, body and key",
-            help: "Columns chain, draw (w17: of the warm-up), t (s), body, x, y, z (m, y up), a unit quaternion qx, qy, qz, qw, and whether it \
-                is at an impact. Keys at every frame, impact and begin of a piece of motion.",
+            help: "Columns chain, draw (w17: of the warm-up), t (s), body, x, y, z (m, y up), a unit quaternion qx, qy, \
+                qz, qw, and whether it is at an impact. Keys at every frame, impact and begin of a piece of motion.",
         }
     }
 

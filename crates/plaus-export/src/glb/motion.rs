@@ -79,7 +79,7 @@ impl Frame {
         (self.scale * (self.turn * v)).as_vec3().to_array()
     }
 
-    fn quaternion(self, q: DQuat) -> [f32; 4] {
+    pub(super) fn quaternion(self, q: DQuat) -> [f32; 4] {
         (self.turn * q).as_quat().normalize().to_array()
     }
 

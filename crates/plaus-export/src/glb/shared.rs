@@ -10,6 +10,7 @@ use super::materials::unique;
 use super::motion::{self, Channels, Frame};
 use crate::clip::{Clip, ExportError, Label, Style, Up};
 use crate::mesh;
+use glam::DQuat;
 use gltf_json::animation::Property;
 use gltf_json::extras::Extras;
 use gltf_json::scene::UnitQuaternion;
@@ -177,7 +178,7 @@ impl Writer {
 
     /// Scales where they differ between clips, and orientations where a body turns in one clip and does not in another.
     fn show(&mut self) {
-        let count = self.clips.len();
+        let (count, upright) = (self.clips.len(), Frame::of(self.style).quaternion(DQuat::IDENTITY));
         let nodes = &mut self.document.root.nodes;
         let (mut shown, mut still) = (Vec::new(), Vec::new());
         let bodies = self.bodies.iter_mut().map(|thing| (thing.node, &mut thing.scales, thing.what.turns));
@@ -201,7 +202,7 @@ impl Writer {
             for &node in &still {
                 let shown = self.bodies.iter().any(|thing| thing.node == node && thing.scales[clip] > 0.0);
                 if shown && !channels.turns(node) {
-                    channels.still(&mut self.document, node, Property::Rotation, &[0.0, 0.0, 0.0, 1.0]);
+                    channels.still(&mut self.document, node, Property::Rotation, &upright);
                 }
             }
         }

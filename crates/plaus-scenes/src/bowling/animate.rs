@@ -118,14 +118,7 @@ fn pieces(world: &Rigid, index: usize, motions: &[Turning], begin: f64, ratio: f
         }
         pieces.push(piece);
     }
-    // Friction changes a body's spin while it touches something, and a piece has one spin: the one that leads to where
-    // the next begins.
-    for index in 1..pieces.len() {
-        let (next, piece) = (pieces[index], &mut pieces[index - 1]);
-        if piece.turn.spin != DVec3::ZERO {
-            piece.turn = piece.turn.reaching(next.turn.orientation, next.start - piece.start);
-        }
-    }
+    Piece::lead_on(&mut pieces);
     pieces
 }
 

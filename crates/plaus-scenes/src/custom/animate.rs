@@ -93,13 +93,7 @@ fn pieces(rigid: &Rigid, index: usize, motions: &[Turning], axes: DQuat, (end, i
             pieces.push(piece);
         }
     }
-    // A body's spin changes within a piece, and a piece has one: that which leads to where the next begins.
-    for index in 1..pieces.len() {
-        let (next, piece) = (pieces[index], &mut pieces[index - 1]);
-        if piece.turn.spin != DVec3::ZERO {
-            piece.turn = piece.turn.reaching(next.turn.orientation, next.start - piece.start);
-        }
-    }
+    Piece::lead_on(&mut pieces);
     pieces
 }
 
