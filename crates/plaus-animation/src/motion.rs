@@ -111,8 +111,8 @@ impl Piece {
         Self { turn, ..self }
     }
 
-    /// Has each piece that turns end as the next begins. A body's spin may change within a piece, where friction acts or
-    /// its moments of inertia differ, and a piece has one: that which leads to where the next begins.
+    /// Has each piece that turns end as the next begins. A body's spin may change within a piece, where friction acts
+    /// or its moments of inertia differ, and a piece has one: that which leads to where the next begins.
     pub fn lead_on(pieces: &mut [Self]) {
         for index in 1..pieces.len() {
             let (next, piece) = (pieces[index], &mut pieces[index - 1]);
