@@ -45,7 +45,7 @@ pub(crate) fn run() -> Result<Done, Failure> {
     }
     let die =
         ["sample", "scenarios/dice-one.toml", "--iterations", "40", "--set", "sampler.thin=1", "--quiet", "--out", DIE];
-    plaus(&[]).args(&die).within(&place).status()?;
+    plaus(&[]).args(die).within(&place).status()?;
     let commands = all()?;
     let mut wrong = Vec::new();
     for (file, shown) in &commands {
