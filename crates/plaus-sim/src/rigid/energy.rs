@@ -6,7 +6,7 @@
 
 use super::contact::Touch;
 use super::solve::{Contact, Enough, Member, solve};
-use super::step::{Place, RigidScratch};
+use super::step::{KEEP, Place, RigidScratch};
 use super::{Rigid, Spec};
 use glam::{DQuat, DVec3};
 
@@ -59,6 +59,16 @@ impl RigidScratch {
         self.members.copy_from_slice(&members);
         self.contacts.copy_from_slice(&contacts);
         false
+    }
+
+    /// Whether what a step brings is no more than lifting its bodies out of what they are in each other and in the
+    /// ground takes.
+    pub(super) fn only_lifts(&self, world: &Rigid) -> bool {
+        let fixed = self.touches.iter().map(|(k, t)| KEEP * world.specs[self.places[*k].body].gap - t.gap);
+        let pairs = self.pairs.iter().map(|(ab, t)| KEEP * world.pair_gap(ab.map(|k| self.places[k].body)) - t.gap);
+        let way = fixed.chain(pairs).fold(0.0, f64::max);
+        let weight: f64 = self.places.iter().map(|p| world.specs[p.body].mass * world.strength).sum();
+        self.kinetic(world) - self.energy_to_keep(world) <= way * weight
     }
 
     fn kinetic(&self, world: &Rigid) -> f64 {
