@@ -40,7 +40,7 @@ fn toss(k: u64, preset: Preset) -> (Rigid, Start) {
 #[test]
 fn tossed_coins_come_to_lie() {
     let mut flat = 0;
-    for (preset, tosses, most) in [(Preset::Draft, 20, 4_000), (Preset::Standard, 20, 5_000), (Preset::Fine, 3, 25_000)]
+    for (preset, tosses, most) in [(Preset::Draft, 20, 4_000), (Preset::Standard, 20, 5_000), (Preset::Fine, 2, 50_000)]
     {
         for k in 0..tosses {
             let (world, start) = toss(k, preset);

@@ -1,8 +1,10 @@
 //! Rest: slow bodies that their contacts can hold.
 
+use super::body::Pose;
 use super::contact::Touch;
 use super::solve::{Enough, solve};
 use super::step::{Place, RigidScratch};
+use super::tumble::rotation;
 use super::{Rigid, Spec};
 use glam::{DMat3, DVec3};
 
@@ -47,7 +49,15 @@ pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(V
         return None;
     }
     let (shift, turn) = flatten(foot.iter())?;
-    (motion - spec.pull.dot(-shift) <= height * spec.strength).then_some((foot, shift, turn))
+    if motion + spec.pull.dot(shift) > height * spec.strength {
+        return None;
+    }
+    // Points in a row, as those of a can on its side, do not tell how it is turned about their line.
+    let turned = (rotation(turn) * place.turn).normalize();
+    let there = Pose { x: place.start.x + shift, r: DMat3::from_quat(turned), ..place.start };
+    let mut is_deep = false;
+    world.for_touches(place.body, &there, -spec.gap, |_| is_deep = true);
+    (!is_deep).then_some((foot, shift, turn))
 }
 
 /// Whether contacts can hold bodies that do not move. `h` is the length of a step.
