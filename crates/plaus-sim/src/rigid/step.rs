@@ -148,6 +148,13 @@ pub(super) fn settle(
         scratch.lie_down(world, bodies);
         return;
     }
+    if let Some((foot, shift, turn)) = rest::lies_nearly_flat(world, scratch) {
+        let body = &mut bodies[scratch.places[0].body];
+        body.path.x += shift;
+        body.turn = (rotation(turn) * body.turn).normalize();
+        body.lie_still();
+        return body.list(foot.iter().map(|t| t.surface));
+    }
     let mut is_forced = true;
     scratch.push = 1.0;
     for _ in 0..SHORTENINGS {
