@@ -4,6 +4,8 @@
 const MANY = 12;
 // Lines that are kept.
 const KEPT = 160;
+// Parts of a straight way: a body that leaves for ever is far away then.
+const MOST_PARTS = 200;
 
 class Trails {
   // `size` is that of what is seen, in metres.
@@ -90,7 +92,7 @@ function trailOf(solution, tolerance, longest) {
     const points = simplified(wayOf(solution, track), tolerance);
     for (let k = 1; k < points.length; k++) {
       const [before, here] = [points[k - 1], points[k]], length = Math.hypot(...here.at.map((x, axis) => x - before.at[axis]));
-      const parts = length > 0 ? Math.ceil(length / longest) || 1 : 0, end = (share) => here.at.map((x, axis) => before.at[axis] + share * (x - before.at[axis]));
+      const parts = length > 0 ? Math.min(Math.ceil(length / longest) || 1, MOST_PARTS) : 0, end = (share) => here.at.map((x, axis) => before.at[axis] + share * (x - before.at[axis]));
       for (let part = 0; part < parts; part++) {
         const time = before.time + ((part + 1) / parts) * (here.time - before.time);
         segments.push({ ends: [...end(part / parts), ...end((part + 1) / parts)], time, model });
