@@ -5,10 +5,14 @@ mod amount;
 mod animate;
 mod config;
 mod flight;
+mod formula;
 mod forms;
 mod laws;
 mod moves;
+mod names;
 mod plan;
+mod quantities;
+mod range;
 mod solids;
 mod values;
 
@@ -29,7 +33,7 @@ use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
 use crate::world::{Physical, PlainWorld};
 use flight::fly;
-use plan::Plan;
+use plan::{Moving, Plan};
 use plaus_dist::{LogDensity, LogPotential, Purpose, Seed, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Variables, Vars, vars};
 use values::Slot;
@@ -56,7 +60,7 @@ impl Custom {
     /// or things begin inside each other in every draw that was tried.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let (plan, collector) = Plan::new(config)?;
-        plan.build(None).map_err(|error| ConfigError::new("world.custom", error))?;
+        plan.build(&plan.works.numbers(None)).map_err(|error| ConfigError::new("world.custom", error))?;
         let empty = collector.empty();
         let vars =
             Vars::new(collector.vars).in_groups(collector.groups.into_iter().filter(|g| !g.is_empty()).collect());
@@ -101,7 +105,8 @@ impl Custom {
         let Some(overlap) = first else { return Ok(()) };
         let share = if self.vars.is_empty() { String::new() } else { format!("in all of {TRIES} draws, ") };
         let message = format!("things begin inside each other: {share}{}", self.in_words(&overlap));
-        Err(ConfigError::new(format!("world.custom.bodies[{}].at_mm", overlap.body), message))
+        let entry = self.plan.bodies[overlap.body as usize].entry;
+        Err(ConfigError::new(format!("world.custom.bodies[{entry}].at_mm"), message))
     }
 
     fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
@@ -179,8 +184,8 @@ impl Variables for Custom {
 impl Goal for Custom {
     fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
         let Ending::Done(done) = &state.outcome else { return None };
-        let shapes = &self.config.bodies;
-        Some(done.class(self.config.distinct_mm / 1e3, |body| matches!(shapes[body].shape, Shape::Ball(_))))
+        let is_ball = |body: usize| matches!(self.config.bodies[self.plan.bodies[body].entry].shape, Shape::Ball(_));
+        Some(done.class(self.config.distinct_mm / 1e3, is_ball))
     }
 }
 
@@ -194,15 +199,15 @@ impl Scene for Custom {
 
     /// Where each body ends and when it came to rest, then the variables.
     fn scalars(&self) -> Vec<Scalar> {
-        let of_body = |body: &Body| {
+        let of_body = |body: &Moving| {
             ENDS.map(|(name, unit)| Scalar::new(format!("{}.{name}", body.name), unit, Role::Outcome, None))
         };
-        let ends = self.config.bodies.iter().flat_map(of_body).collect();
+        let ends = self.plan.bodies.iter().flat_map(of_body).collect();
         columns::scalars(ends, &self.vars)
     }
 
     fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
-        let (ends, variables) = values.split_at_mut(ENDS.len() * self.config.bodies.len());
+        let (ends, variables) = values.split_at_mut(ENDS.len() * self.plan.bodies.len());
         ends.fill(f64::NAN);
         if let Ending::Done(done) = &state.outcome {
             for (end, last) in ends.chunks_mut(ENDS.len()).zip(&done.bodies) {
@@ -263,8 +268,9 @@ impl Scene for Custom {
 
     /// Of values in the middle of their laws.
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
-        let built = self.plan.build(None).map_err(ModelError::new)?;
-        let places = self.plan.starts(None, &built.shapes).iter().map(|start| start.position).collect();
+        let numbers = self.plan.works.numbers(None);
+        let built = self.plan.build(&numbers).map_err(ModelError::new)?;
+        let places = self.plan.starts(&numbers, &built.shapes).iter().map(|start| start.position).collect();
         Ok(Some(PlainWorld { world: Physical::Rigid(Box::new(built.rigid)), places }))
     }
 }
