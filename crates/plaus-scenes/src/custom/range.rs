@@ -115,7 +115,8 @@ impl Range {
     /// To a power; whatever is not certain must be positive.
     pub(super) fn pow(self, power: Self) -> Self {
         if self.is_point() && power.is_point() {
-            return Self::point(math::powf(self.0, power.0));
+            let divides = self.0 == 0.0 && power.0 < 0.0;
+            return if divides { NONE } else { Self::point(math::powf(self.0, power.0)) };
         }
         if !(self.0 > 0.0 && power.is_number()) {
             return NONE;
