@@ -1,7 +1,7 @@
 //! Worlds that users describe, described wrongly: each is refused where it stands, in words that help. And what is
 //! right is read as it is meant.
 
-use plaus_dist::{Purpose, Seed};
+use plaus_dist::{Purpose, Seed, math};
 use plaus_mcmc::{Target, Variables};
 use plaus_scenes::animation::Shape;
 use plaus_scenes::custom::Custom;
@@ -86,6 +86,23 @@ const CASES: &[(&str, &str, &[&str])] = &[
         "[[world.custom.bodies]]\nname = 'b'\ncount = 3\nshape = { ball = { radius_mm = 30 } }\nat_mm = ['50 * i', 0, 500]",
         "['50 * i'",
         &["bodies[1].at_mm", "\"b_2\" begins 10.000 mm inside \"b_1\""],
+    ),
+    (
+        "[[world.custom.driven]]\nname = 'foot'\nshape = { ball = { radius_mm = 3 } }\n\
+         keys = [{ at_s = 'uniform(0, 1)', at_mm = [0, 0, 9] }, { at_s = 0.9, at_mm = [9, 0, 9] }]",
+        "0.9",
+        &["driven[0].keys[1].at_s", "may come at 0.9 s", "before it at 1 s"],
+    ),
+    (
+        "[[world.custom.driven]]\nname = 'foot'\nshape = { ball = { radius_mm = 3 } }\nkeys = []",
+        "[]",
+        &["driven[0].keys", "a list of 0"],
+    ),
+    (
+        "[[world.custom.driven]]\nname = 'ball'\nshape = { ball = { radius_mm = 3 } }\n\
+         keys = [{ at_s = 0, at_mm = [0, 0, 9] }]",
+        "'ball'",
+        &["driven[0].name", "already"],
     ),
     ("colour = 'red'", "'red'", &["no colour", "#c04030"]),
     ("any_turn = true\nturn_deg = [0, 0, 1]", "true", &["leave `turn_deg` out"]),
@@ -180,6 +197,46 @@ fn what_is_worked_out_follows_from_what_is_drawn() {
         let y = -1e3 * track.pieces[0].position(0.0).z;
         assert!((y - 2.0 * narrow - normal * factor).abs() < 1e-9, "{y}");
     }
+}
+
+/// A paddle goes through its keys whatever it hits; what it hits leaves with `1 + e` times its speed.
+#[test]
+fn what_is_driven_goes_its_way_and_moves_what_it_meets() {
+    let world = |between: &str, keys: &str| {
+        format!(
+            "[world.custom]\ngravity = 0\nduration_s = 3\nfixed = []\n\
+             [[world.custom.materials]]\nname = 'm'\nfriction = 0\nrestitution = 0.5\n\
+             [[world.custom.bodies]]\nname = 'ball'\nmaterial = 'm'\nshape = {{ ball = {{ radius_mm = 20 }} }}\n\
+             at_mm = [530, 0, 0]\n\
+             [[world.custom.driven]]\nname = 'paddle'\nmaterial = 'm'\nbetween = '{between}'\n\
+             shape = {{ box = {{ size_mm = [20, 300, 300] }} }}\nkeys = [{keys}]\n"
+        )
+    };
+    let seen = |text: &str| {
+        let World::Custom(config) = read(text, &[]).world else { panic!("another world") };
+        let scene = Custom::new(&config).unwrap();
+        assert!(scene.scalars().iter().all(|scalar| !scalar.name.starts_with("paddle")));
+        scene.animate(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap()
+    };
+    let keys = "{ at_s = 0, at_mm = [0, 0, 0] }, { at_s = 2, at_mm = [2000, 0, 0] }";
+    let straight = seen(&world("linear", keys));
+    let [ball, paddle] = &straight.tracks[..] else { panic!("{:?}", straight.tracks) };
+    // It reaches the ball at 0.5 s with 1 m/s. The gap at which bodies count as touching is far below a millimetre.
+    assert!((straight.impacts[0].time - 0.5).abs() < 1e-3, "{:?}", straight.impacts);
+    assert!((ball.position(1.5).x - 0.53 - 1.5).abs() < 2e-3, "{}", ball.position(1.5));
+    for (time, place) in [(0.25, 0.25), (1.5, 1.5), (2.5, 2.0)] {
+        assert!((paddle.position(time).x - place).abs() < 1e-9, "{}", paddle.position(time));
+    }
+    let turned = "{ at_s = 0, at_mm = [0, 0, 0] }, { at_s = 2, at_mm = [400, 0, 0], turn_deg = [0, 0, 60] }";
+    let smooth = seen(&world("smooth", turned));
+    let paddle = &smooth.tracks[1];
+    // Half of the way at half of the time; of a cubic that begins and ends slowly 5/32 after a quarter.
+    for (time, part) in [(0.5, 5.0 / 32.0), (1.0, 0.5), (2.0, 1.0)] {
+        // Ways are followed to a tenth of the gap at which bodies touch.
+        assert!((paddle.position(time).x - 0.4 * part).abs() < 1e-4, "{time}: {}", paddle.position(time));
+    }
+    let turn = paddle.orientation(1.0) * paddle.orientation(0.0).inverse();
+    assert!((turn.xyz().length() - math::sin(15_f64.to_radians())).abs() < 1e-3, "{turn}");
 }
 
 /// A chain of quantities as long as may be is worked out, each once, in whatever order it stands.

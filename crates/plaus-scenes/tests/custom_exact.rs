@@ -83,6 +83,13 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 0, 31]\nvelocity_m_s = [{ uniform = [0, 2] }, 0, 0]",
         "relative = { body = 'marble_1', to = 'marble_3', y_mm = 15, within_mm = 20, scale_mm = 40 }",
     ],
+    // A paddle whose way is uncertain.
+    [
+        "duration_s = 0.5\n[[world.custom.driven]]\nname = 'paddle'\nshape = { box = { size_mm = [20, 200, 100] } }\n\
+         keys = [{ at_s = 0, at_mm = [-200, 0, 60] }, { at_s = 'uniform(0.2, 0.5)', at_mm = ['normal(100, 30)', 0, 60] }]",
+        "at_mm = [0, { normal = [0, 20] }, 31]",
+        "passes = { body = 'ball', x_mm = 150, y_mm = 0, z_mm = 31, within_mm = 30, scale_mm = 60 }",
+    ],
 ];
 
 /// The scenario of a case.

@@ -1,6 +1,7 @@
 //! Scenario keys of worlds that users describe.
 
 use super::amount::{self, Amount};
+use super::driven::Driven;
 use super::forms::{Ball, Plane, Shape, Still};
 use super::laws::LawOf;
 use super::moves::CustomMoves;
@@ -46,6 +47,9 @@ pub struct Config {
     /// What moves.
     #[schemars(length(min = 1, max = 4096))]
     pub bodies: Vec<Body>,
+    /// What goes its own way by keyframes: a paddle, a tray, a foot.
+    #[schemars(length(max = 4096))]
+    pub driven: Vec<Driven>,
     /// Relative weights of the moves.
     pub weights: Weights<CustomMoves>,
 }
@@ -83,6 +87,7 @@ impl Default for Config {
                 spin_deg_s: Default::default(),
                 release_s: Amount::default(),
             }],
+            driven: Vec::new(),
             weights: Weights::default(),
         }
     }

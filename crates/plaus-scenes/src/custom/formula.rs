@@ -105,7 +105,7 @@ impl Formula {
         for node in nodes {
             let Range(low, high) = node.of(names);
             if low != high {
-                return Err(format!("the numbers of {law}(…) must be certain: they say what is uncertain, and how"));
+                return Err(uncertain(law));
             }
             numbers.push(low);
         }
@@ -163,7 +163,11 @@ impl Formula {
                     Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
                     _ => String::new(),
                 };
+                let laws = self.laws.len();
                 let nodes = call.args.iter().map(|inner| self.node(inner)).collect::<Result<Vec<_>, _>>()?;
+                if self.laws.len() > laws && LAWS.iter().any(|(law, _)| *law == name) {
+                    return Err(uncertain(&name));
+                }
                 self.call(&name, nodes)
             }
             _ => Err(OTHER.into()),
@@ -194,6 +198,10 @@ impl Formula {
             _ => Err(wrong),
         }
     }
+}
+
+fn uncertain(law: &str) -> String {
+    format!("the numbers of {law}(…) must be certain: they say what is uncertain, and how")
 }
 
 fn number(literal: &Lit) -> Result<f64, String> {
@@ -261,6 +269,7 @@ mod tests {
             ("1 +", "cannot be read"),
             ("2 ^ 3", "pow(a, b)"),
             ("20mm", "no unit"),
+            ("normal(0, 1 + uniform(1, 2))", "must be certain"),
             ("sine(3)", "did you mean \"sin\"?"),
             ("min(3)", "takes 2 numbers, and is given 1"),
             ("normal(3)", "takes 2 numbers"),

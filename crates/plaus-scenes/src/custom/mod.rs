@@ -4,6 +4,7 @@
 mod amount;
 mod animate;
 mod config;
+mod driven;
 mod flight;
 mod formula;
 mod forms;
@@ -15,9 +16,11 @@ mod quantities;
 mod range;
 mod solids;
 mod values;
+mod view;
 
 pub use amount::{Amount, Domain, Measure};
 pub use config::{Body, Config, Finish, Fixed, Material, Pair, Quantity};
+pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Last, Overlap, Work};
 pub use forms::{Ball, Capsule, Cone, Cuboid, Cylinder, Hull, Plane, Shape, Still};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
@@ -105,8 +108,7 @@ impl Custom {
         let Some(overlap) = first else { return Ok(()) };
         let share = if self.vars.is_empty() { String::new() } else { format!("in all of {TRIES} draws, ") };
         let message = format!("things begin inside each other: {share}{}", self.in_words(&overlap));
-        let entry = self.plan.bodies[overlap.body as usize].entry;
-        Err(ConfigError::new(format!("world.custom.bodies[{entry}].at_mm"), message))
+        Err(ConfigError::new(format!("{}.at_mm", self.plan.bodies[overlap.body as usize].key), message))
     }
 
     fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
@@ -184,12 +186,11 @@ impl Variables for Custom {
 impl Goal for Custom {
     fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
         let Ending::Done(done) = &state.outcome else { return None };
-        let is_ball = |body: usize| matches!(self.config.bodies[self.plan.bodies[body].entry].shape, Shape::Ball(_));
-        Some(done.class(self.config.distinct_mm / 1e3, is_ball))
+        Some(done.class(self.config.distinct_mm / 1e3, |body| self.plan.bodies[body].is_ball()))
     }
 }
 
-/// Columns of where a body ends, with their units.
+/// Columns of where a body ends that does not go its own way, with their units.
 const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm"), ("rest", "s")];
 
 impl Scene for Custom {
@@ -202,12 +203,12 @@ impl Scene for Custom {
         let of_body = |body: &Moving| {
             ENDS.map(|(name, unit)| Scalar::new(format!("{}.{name}", body.name), unit, Role::Outcome, None))
         };
-        let ends = self.plan.bodies.iter().flat_map(of_body).collect();
+        let ends = self.plan.free().iter().flat_map(of_body).collect();
         columns::scalars(ends, &self.vars)
     }
 
     fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
-        let (ends, variables) = values.split_at_mut(ENDS.len() * self.plan.bodies.len());
+        let (ends, variables) = values.split_at_mut(ENDS.len() * self.plan.free().len());
         ends.fill(f64::NAN);
         if let Ending::Done(done) = &state.outcome {
             for (end, last) in ends.chunks_mut(ENDS.len()).zip(&done.bodies) {
@@ -224,7 +225,9 @@ impl Scene for Custom {
             return Err(ModelError::new("nothing was recorded: a bug"));
         };
         let scenery = animate::props(&self.plan, draw, animate::reach(&record.trace))?;
-        Ok(animate::motion(&self.plan, record, built).with_scenery(scenery))
+        let animation = animate::motion(&self.plan, record, built).with_scenery(scenery);
+        let view = view::view(&animation);
+        Ok(animation.with_view(view))
     }
 
     fn motion(&self, draw: &Drawn) -> Result<Animation, ModelError> {

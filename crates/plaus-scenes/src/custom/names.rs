@@ -16,7 +16,7 @@ pub(super) struct Member {
     /// The place of its table in the file.
     pub(super) entry: usize,
     name: String,
-    key: String,
+    pub(super) key: String,
     nth: Option<[u32; 2]>,
 }
 

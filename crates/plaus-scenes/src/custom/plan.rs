@@ -1,6 +1,7 @@
 //! What a scenario describes, with every number as a value: from it the simulator's world of a draw is made.
 
 use super::config::{Body, Config, Fixed, Material};
+use super::driven::{Driven, Way};
 use super::solids::{Form, MM, Made};
 use super::names::{Member, check_name, colour, members};
 use super::values::{Collector, Numbers, Owner, Value, Values, Works, vector};
@@ -35,8 +36,8 @@ pub(super) struct Plan {
 #[derive(Debug, Clone)]
 pub(super) struct Moving {
     pub(super) name: String,
-    /// The place of its table in the file.
-    pub(super) entry: usize,
+    /// Its table in the file.
+    pub(super) key: String,
     pub(super) look: Look,
     form: Form,
     substance: usize,
@@ -45,6 +46,8 @@ pub(super) struct Moving {
     velocity: Values,
     spin: Values,
     release: Value,
+    /// Its way, if it goes its own. Those that do come last.
+    pub(super) way: Option<Way>,
 }
 
 /// How something is turned.
@@ -59,8 +62,8 @@ enum Turned {
 #[derive(Debug, Clone)]
 pub(super) struct Standing {
     pub(super) name: String,
-    /// The place of its table in the file.
-    pub(super) entry: usize,
+    /// Its table in the file.
+    pub(super) key: String,
     pub(super) look: Look,
     /// `None`: a plane.
     pub(super) form: Option<Form>,
@@ -107,6 +110,12 @@ impl Plan {
             collector.begin();
             let body = (index, &config.bodies[member.entry]);
             bodies.push(Moving::new(&mut collector, member, body, &kinds, &substances)?);
+        }
+        let driven = config.driven.iter().map(|driven| (driven.name.as_str(), driven.count));
+        for member in members("driven", driven, &mut names)? {
+            collector.begin();
+            let body = (bodies.len(), &config.driven[member.entry]);
+            bodies.push(Moving::driven(&mut collector, &member, body, &kinds, &substances)?);
         }
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
         let (works, is_steady) = (collector.works(), false);
@@ -159,14 +168,19 @@ impl Plan {
         Ok((kinds, substances, pairs))
     }
 
+    /// Bodies that do not go their own way: the first.
+    pub(super) fn free(&self) -> &[Moving] {
+        &self.bodies[..self.bodies.partition_point(|body| body.way.is_none())]
+    }
+
     /// Blames shapes that are none on their keys.
     fn check_shapes(&self) -> Result<(), ConfigError> {
         let numbers = self.works.numbers(None);
-        let bodies = self.bodies.iter().map(|body| (format!("bodies[{}]", body.entry), Some(&body.form)));
-        let parts = self.parts.iter().map(|part| (format!("fixed[{}]", part.entry), part.form.as_ref()));
+        let bodies = self.bodies.iter().map(|body| (&body.key, Some(&body.form)));
+        let parts = self.parts.iter().map(|part| (&part.key, part.form.as_ref()));
         for (key, form) in bodies.chain(parts) {
             if let Some(Err(error)) = form.map(|form| form.make(&numbers)) {
-                return Err(ConfigError::new(format!("world.custom.{key}.shape"), error));
+                return Err(ConfigError::new(format!("{key}.shape"), error));
             }
         }
         Ok(())
@@ -177,7 +191,7 @@ impl Plan {
         let substances = self.substances.iter().flat_map(|one| one.contact.iter().chain([&one.density]));
         let places = self.parts.iter().flat_map(|part| part.at.iter().chain(&part.turn));
         said.chain(substances).chain(places).all(|value| value.is_fixed())
-            && self.bodies.iter().all(|body| body.form.is_fixed())
+            && self.bodies.iter().all(|body| body.form.is_fixed() && body.way.as_ref().is_none_or(Way::is_fixed))
             && self.parts.iter().all(|part| part.form.as_ref().is_none_or(Form::is_fixed))
     }
 
@@ -198,7 +212,13 @@ impl Plan {
             sink: f64::NEG_INFINITY,
             duration: self.duration,
         };
-        Ok(Built { rigid: Rigid::new(world)?, shapes })
+        let mut rigid = Rigid::new(world)?;
+        for (index, (body, made)) in self.bodies.iter().zip(&shapes).enumerate() {
+            if let Some(way) = &body.way {
+                rigid.drive(index, &way.keyframes(numbers, made))?;
+            }
+        }
+        Ok(Built { rigid, shapes })
     }
 
     /// The mass of a body, in kg.
@@ -299,7 +319,7 @@ impl Standing {
         let solid = fixed.shape.solid();
         Ok(Self {
             name: owner.name.to_owned(),
-            entry: member.entry,
+            key: member.key.clone(),
             look,
             form: solid.map(|solid| Form::new(collector, &owner, &solid)).transpose()?,
             substance,
@@ -353,7 +373,7 @@ impl Moving {
         };
         Ok(Self {
             name: owner.name.to_owned(),
-            entry: member.entry,
+            key: member.key.clone(),
             look,
             form: Form::new(collector, &owner, &body.shape)?,
             substance,
@@ -362,6 +382,31 @@ impl Moving {
             velocity: collector.three(&owner, "velocity_m_s", ["vx", "vy", "vz"], &body.velocity_m_s)?,
             spin: collector.three(&owner, "spin_deg_s", ["wx", "wy", "wz"], &body.spin_deg_s)?,
             release: collector.number(&owner, "release_s", "release", &body.release_s)?,
+            way: None,
         })
+    }
+
+    fn driven(
+        collector: &mut Collector,
+        member: &Member,
+        (index, body): (usize, &Driven),
+        kinds: &[String],
+        substances: &[Substance],
+    ) -> Result<Self, ConfigError> {
+        let owner = member.owner();
+        let substance = substance(&owner, "material", kinds, &body.material)?;
+        let look = substances[substance].look(colour(&owner, &body.colour)?, Look::nth(index));
+        let form = Form::new(collector, &owner, &body.shape)?;
+        let way = Way::new(collector, &owner, body)?;
+        let (at, turn) = way.first();
+        let [velocity, spin] = [[Value::Fixed(0.0); 3]; 2];
+        let (name, key, turn) = (owner.name.to_owned(), member.key.clone(), Turned::Angles(turn));
+        let release = Value::Fixed(0.0);
+        Ok(Self { name, key, look, form, substance, at, turn, velocity, spin, release, way: Some(way) })
+    }
+
+    /// Whether no axis of it is told from another.
+    pub(super) fn is_ball(&self) -> bool {
+        matches!(self.form, Form::Ball(_))
     }
 }

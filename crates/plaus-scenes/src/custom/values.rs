@@ -225,6 +225,12 @@ impl Collector {
         Err(owner.wrong(key, message))
     }
 
+    /// Between which ends a value is.
+    pub(super) fn ends(&self, value: Value) -> (f64, f64) {
+        let Range(low, high) = self.range(value);
+        (low, high)
+    }
+
     /// What a value may be.
     fn range(&self, value: Value) -> Range {
         match value {
