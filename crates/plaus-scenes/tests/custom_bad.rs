@@ -62,7 +62,8 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ("velocity_m_s = ['normal(0, uniform(1, 2))', 0, 0]", "'normal", &["must be certain"]),
     ("velocity_m_s = ['unifrom(0, 1)', 0, 0]", "'unifrom", &["no function \"unifrom\"", "did you mean \"uniform\"?"]),
     (
-        "[[world.custom.quantities]]\nname = 'a'\nvalue = 'b + 1'\n[[world.custom.quantities]]\nname = 'b'\nvalue = '2 * a'",
+        "[[world.custom.quantities]]\nname = 'a'\nvalue = 'b + 1'\n\
+         [[world.custom.quantities]]\nname = 'b'\nvalue = '2 * a'",
         "'b + 1'",
         &["quantities[0].value", "depends on itself: a → b → a"],
     ),
@@ -72,20 +73,22 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ("count = 0", "0", &["bodies[0].count", "out of range"]),
     ("count = 1_000_000", "1_000_000", &["bodies[0].count", "out of range", "4096"]),
     (
-        "[[world.custom.bodies]]\nname = 'b'\ncount = 4096\nshape = { ball = { radius_mm = 3 } }\nat_mm = ['9 * i', 0, 900]",
+        "[[world.custom.bodies]]\nname = 'b'\ncount = 4096\nshape = { ball = { radius_mm = 3 } }\n\
+         at_mm = ['9 * i', 0, 900]",
         "4096",
         &["bodies[1].count", "these are 4097 bodies: at most 4096"],
     ),
     (
-        "[[world.custom.bodies]]\nname = 'b_2'\nshape = { ball = { radius_mm = 3 } }\n[[world.custom.bodies]]\nname = 'b'\n\
-         count = 2\nshape = { ball = { radius_mm = 3 } }",
+        "[[world.custom.bodies]]\nname = 'b_2'\nshape = { ball = { radius_mm = 3 } }\n\
+         [[world.custom.bodies]]\nname = 'b'\ncount = 2\nshape = { ball = { radius_mm = 3 } }",
         "'b'",
         &["bodies[2].name", "something called \"b_2\" already"],
     ),
     (
-        "[[world.custom.bodies]]\nname = 'b'\ncount = 3\nshape = { ball = { radius_mm = 30 } }\nat_mm = ['50 * i', 0, 500]",
+        "[[world.custom.bodies]]\nname = 'b'\ncount = 3\nshape = { ball = { radius_mm = 30 } }\n\
+         at_mm = ['50 * i', 0, 500]",
         "['50 * i'",
-        &["bodies[1].at_mm", "\"b_2\" begins 10.000 mm inside \"b_1\""],
+        &["bodies[1].at_mm", "\"b_1\" begins 10.000 mm inside \"b_2\""],
     ),
     (
         "[[world.custom.driven]]\nname = 'foot'\nshape = { ball = { radius_mm = 3 } }\n\

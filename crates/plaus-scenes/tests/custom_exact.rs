@@ -72,7 +72,8 @@ const CASES: &[[&str; 3]] = &[
     // Arithmetic: laws within formulas, a shared quantity that two numbers follow from.
     [
         "duration_s = 0.5\n[[world.custom.quantities]]\nname = 'push'\nvalue = 'max(0.2, normal(0.8, 0.4))'",
-        "at_mm = [0, 0, '100 + 50 * push * uniform(0.5, 1.5)']\nvelocity_m_s = ['push', 'normal(0, 0.2) - 0.1 * push', 0]",
+        "at_mm = [0, 0, '100 + 50 * push * uniform(0.5, 1.5)']\n\
+         velocity_m_s = ['push', 'normal(0, 0.2) - 0.1 * push', 0]",
         "passes = { x_mm = 300, y_mm = 0, z_mm = 100, within_mm = 40, scale_mm = 80 }",
     ],
     // An array whose members have a number of their own each.
@@ -86,9 +87,10 @@ const CASES: &[[&str; 3]] = &[
     // A paddle whose way is uncertain.
     [
         "duration_s = 0.5\n[[world.custom.driven]]\nname = 'paddle'\nshape = { box = { size_mm = [20, 200, 100] } }\n\
-         keys = [{ at_s = 0, at_mm = [-200, 0, 60] }, { at_s = 'uniform(0.2, 0.5)', at_mm = ['normal(100, 30)', 0, 60] }]",
+         keys = [\n{ at_s = 0, at_mm = [-200, 0, 60] },\n\
+         { at_s = 'uniform(0.2, 0.5)', at_mm = ['normal(100, 30)', 0, 60] }]",
         "at_mm = [0, { normal = [0, 20] }, 31]",
-        "passes = { body = 'ball', x_mm = 150, y_mm = 0, z_mm = 31, within_mm = 30, scale_mm = 60 }",
+        "passes = { body = 'ball', x_mm = 250, y_mm = 0, z_mm = 31, within_mm = 15, scale_mm = 25 }",
     ],
 ];
 

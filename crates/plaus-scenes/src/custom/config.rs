@@ -241,8 +241,8 @@ pub struct Fixed {
 pub struct Body {
     /// Its name, for requirements, tables and exports.
     pub name: String,
-    /// How many there are of it: an array. They are called `ball_1`, `ball_2` and so on; in the arithmetic of its numbers
-    /// `i` is 0 for the first, 1 for the next, and `n` is how many there are. Unset: one, called `ball`.
+    /// How many there are of it: an array. They are called `ball_1`, `ball_2` and so on; in the arithmetic of its
+    /// numbers `i` is 0 for the first, 1 for the next, and `n` is how many there are. Unset: one, called `ball`.
     #[serde(default)]
     #[schemars(range(min = 1, max = 4096))]
     pub count: Option<u32>,

@@ -2,8 +2,8 @@
 
 use super::config::{Body, Config, Fixed, Material};
 use super::driven::{Driven, Way};
-use super::solids::{Form, MM, Made};
 use super::names::{Member, check_name, colour, members};
+use super::solids::{Form, MM, Made};
 use super::values::{Collector, Numbers, Owner, Value, Values, Works, vector};
 use crate::animation::Look;
 use crate::scenario::nearest;
