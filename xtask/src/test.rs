@@ -117,6 +117,7 @@ fn with_clients() -> Vec<Step> {
         Step::new("pieces on engines, quick", crate::engines::quick),
     ];
     all.extend(clients::steps());
+    all.push(crate::wheel::tried());
     all.push(Step::new("every command that is shown", documented::run));
     all
 }

@@ -18,10 +18,21 @@ pub(crate) fn run(arguments: &[&str]) -> Result<(), Failure> {
     }
 }
 
-/// What of it belongs to everything that must pass. Building the wheel takes many minutes more, and is left to
-/// `cargo xtask wheel --check`.
+/// What of it is code alone.
 pub(crate) fn licences() -> Step {
     Step::new("licences in the wheel", check_licences)
+}
+
+/// A wheel of what the tests have built, tried on the Python that is there, with its notebooks: one to give away takes
+/// many minutes more, and is left to `cargo xtask wheel --check`.
+pub(crate) fn tried() -> Step {
+    let profile = |what| script(what).args(["--profile", "dev"]);
+    Step::new("the Python package and its notebooks", move || {
+        match outcome(profile("build"), "the wheel cannot be built")? {
+            Done::Passed => outcome(profile("check"), WRONG),
+            skipped => Ok(skipped),
+        }
+    })
 }
 
 fn script(what: &str) -> Command {

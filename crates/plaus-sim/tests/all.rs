@@ -22,6 +22,7 @@ mod metamorphic;
 mod oracle;
 mod restart;
 mod rigid_boxes;
+mod rigid_coins;
 mod rigid_die;
 mod rigid_driven;
 mod rigid_extremes;

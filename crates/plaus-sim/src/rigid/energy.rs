@@ -6,7 +6,7 @@
 
 use super::contact::Touch;
 use super::solve::{Contact, Enough, Member, solve};
-use super::step::{Place, RigidScratch};
+use super::step::{KEEP, Place, RigidScratch};
 use super::{Rigid, Spec};
 use glam::{DQuat, DVec3};
 
@@ -59,6 +59,16 @@ impl RigidScratch {
         self.members.copy_from_slice(&members);
         self.contacts.copy_from_slice(&contacts);
         false
+    }
+
+    /// Whether what a step brings is no more than lifting its bodies out of what they are in each other and in the
+    /// ground takes.
+    pub(super) fn only_lifts(&self, world: &Rigid) -> bool {
+        let fixed = self.touches.iter().map(|(k, t)| KEEP * world.specs[self.places[*k].body].gap - t.gap);
+        let pairs = self.pairs.iter().map(|(ab, t)| KEEP * world.pair_gap(ab.map(|k| self.places[k].body)) - t.gap);
+        let way = fixed.chain(pairs).fold(0.0, f64::max);
+        let weight: f64 = self.places.iter().map(|p| world.specs[p.body].mass * world.strength).sum();
+        self.kinetic(world) - self.energy_to_keep(world) <= way * weight
     }
 
     fn kinetic(&self, world: &Rigid) -> f64 {
@@ -114,11 +124,33 @@ pub(super) fn resist(
         let law = world.law_at(place.body, touch, place.start.x + touch.arm);
         let torque = load * touch.arm.length();
         let member = &mut members[*k];
+        if world.specs[place.body].is_ball
+            && stops(&world.specs[place.body], member, touch.normal, law.rolling * torque, law.friction * load)
+        {
+            let n = touch.normal;
+            (member.v, member.w) = (n * member.v.dot(n), n * member.w.dot(n));
+        }
         let about = touch.normal * member.w.dot(touch.normal);
         slow_down(member, member.w - about, law.rolling * torque);
         let about = touch.normal * member.w.dot(touch.normal);
         slow_down(member, about, law.spinning * torque);
     }
+}
+
+/// Slip over the speed up to which a ball counts as rolling. Default 1e-3.
+const ROLLS: f64 = 1e-3;
+
+/// Whether resistance with this angular impulse stops a ball that rolls, its way along the ground too, which friction
+/// with this impulse then does. Else its spin would be stopped alone, and the way turn it again.
+fn stops(spec: &Spec, member: &Member, n: DVec3, impulse: f64, friction: f64) -> bool {
+    let v = member.v - n * member.v.dot(n);
+    let spin = (member.w - n * member.w.dot(n)).length();
+    let slip = v - member.w.cross(n) * spec.reach;
+    let stiff = spec.inertia.moments.x + spec.mass * spec.reach * spec.reach;
+    impulse > 0.0
+        && slip.length() <= ROLLS * v.length()
+        && spin * stiff <= impulse
+        && spec.mass * v.length() <= friction
 }
 
 /// Takes an angular impulse of this size from a part of the angular velocity, or as much as that part has.

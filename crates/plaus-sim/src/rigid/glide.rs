@@ -2,7 +2,11 @@
 //!
 //! While it slides, friction points against the slip `u = v − R ω × n` of its lowest point, whose direction does not change:
 //! `v̇ = −μ g û`, `ω̇ = μ m g R (n × û)/I`, `|u̇| = −μ g (1 + m R²/I)`. So its path is a parabola until the slip is gone, then straight. Where the friction changes (oil, then
-//! dry boards) a new parabola begins: that is a hook. Rolling and spinning resistance are left out.
+//! dry boards) a new parabola begins: that is a hook.
+//!
+//! Resistance to rolling, a torque of ρ m g R, slows a ball that rolls by `ρ g/(1 + I/(m R²))` until it stands; that to
+//! spinning slows its spin about the normal by `σ m g R/I`. While a ball slides there is none to rolling, save that one
+//! which does not turn is not made to where ρ is at least μ: as of marbles.
 //!
 //! Source: textbook, e.g. Hopkins & Patterson, "Bowling frames: Paths of a bowling ball", Am. J. Phys. 45 (1977).
 
@@ -10,6 +14,7 @@ use super::body::{NEVER, Phase, Turning};
 use super::contact::Touch;
 use super::part::Part;
 use super::{Rigid, Spec};
+use crate::material::Law;
 use crate::roots::roots_of_quadratic;
 use glam::DVec3;
 
@@ -18,6 +23,9 @@ const LEVEL: f64 = 1e-12;
 
 /// Slip over `√(g R)` that counts as none. Default 1e-14, rounding of speeds.
 const NO_SLIP: f64 = 1e-14;
+
+/// Times over the clock's that it does not tell apart. Default 1e-15, some of its last digits.
+const UNSEEN: f64 = 1e-15;
 
 /// Starts a closed form, if the body is a ball on one level part.
 pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Touch) -> bool {
@@ -38,30 +46,18 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     }
     // Slow approach is stopped, slow parting too: the contact lasts.
     body.path.v -= n * body.path.v.dot(n);
-    let radius = spec.reach;
-    let slip = body.path.v - body.spin.cross(n) * radius;
-    let speed = slip.length();
-    let at = body.path.x;
-    let friction = friction_ahead(part, law.friction, at, body.path.v);
-    let stiff = 1.0 + spec.mass * radius * radius / spec.inertia.moments.x;
-    let (pull, turn, until) = if speed <= NO_SLIP * spec.speed {
-        // Rolling exactly: the spin across the normal follows from the velocity.
-        body.spin = n * body.spin.dot(n) + n.cross(body.path.v) / radius;
-        (DVec3::ZERO, DVec3::ZERO, f64::INFINITY)
-    } else {
-        let u = slip / speed;
-        let force = friction * spec.strength;
-        let until = if force > 0.0 { speed / (force * stiff) } else { f64::INFINITY };
-        (u * -force, n.cross(u) * (force * (stiff - 1.0) / radius), until)
-    };
-    if body.path.v == DVec3::ZERO && pull == DVec3::ZERO {
+    let friction = friction_ahead(part, law.friction, body.path.x, body.path.v);
+    let Some((pull, turn, until)) = along(spec, body, n, &Law { friction, ..law }) else { return false };
+    let (drill, drills) = drill(spec, body, n, &law);
+    if body.path.v == DVec3::ZERO && pull == DVec3::ZERO && drill == DVec3::ZERO {
         body.begin(Phase::Rest, DVec3::ZERO);
         return true;
     }
     body.begin(Phase::Glide, pull);
-    body.spin_rate = turn;
-    body.rolls_after = until.is_finite();
+    body.spin_rate = if drill == DVec3::ZERO { turn } else { turn + drill };
+    body.rolls_after = until.is_finite() && until <= drills;
     body.line = None;
+    let until = until.min(drills);
     if let Some((stretch, line)) = next_line(part, body)
         && stretch < until
     {
@@ -80,12 +76,59 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     true
 }
 
-/// Ends a stretch at its time: what rounding has left of the slip is taken away, and the ball is exactly on the line that it reached.
+/// Acceleration of a ball on level ground, the rate of its angular velocity, and how long both last; none where it rolls
+/// and would need more friction than there is to be slowed down.
+fn along(spec: &Spec, body: &mut Turning, n: DVec3, law: &Law) -> Option<(DVec3, DVec3, f64)> {
+    let radius = spec.reach;
+    let slip = body.path.v - body.spin.cross(n) * radius;
+    let speed = slip.length();
+    let stiff = 1.0 + spec.mass * radius * radius / spec.inertia.moments.x;
+    if speed > NO_SLIP * spec.speed {
+        let u = slip / speed;
+        let force = law.friction * spec.strength;
+        if law.holds_from_turning() && force > 0.0 && body.spin.cross(n) == DVec3::ZERO {
+            return Some((u * -force, DVec3::ZERO, speed / force));
+        }
+        let until = if force > 0.0 { speed / (force * stiff) } else { f64::INFINITY };
+        return Some((u * -force, n.cross(u) * (force * (stiff - 1.0) / radius), until));
+    }
+    // Rolling exactly: the spin across the normal follows from the velocity.
+    body.spin = n * body.spin.dot(n) + n.cross(body.path.v) / radius;
+    let speed = body.path.v.length();
+    if speed == 0.0 || law.rolling == 0.0 {
+        return Some((DVec3::ZERO, DVec3::ZERO, f64::INFINITY));
+    }
+    // 1 + I/(m R²) is stiff/(stiff − 1).
+    let brake = law.rolling * spec.strength * (stiff - 1.0) / stiff;
+    let pull = body.path.v * (-brake / speed);
+    (brake <= law.friction * spec.strength).then(|| (pull, n.cross(pull) / radius, speed / brake))
+}
+
+/// The rate at which resistance takes the spin about the normal, and how long that lasts.
+fn drill(spec: &Spec, body: &Turning, n: DVec3, law: &Law) -> (DVec3, f64) {
+    let about = body.spin.dot(n);
+    let rate = law.spinning * spec.strength * spec.mass * spec.reach / spec.inertia.moments.x;
+    if about == 0.0 || rate == 0.0 {
+        return (DVec3::ZERO, f64::INFINITY);
+    }
+    (n * (-rate * about.signum()), about.abs() / rate)
+}
+
+/// Ends a stretch at its time: what rounding has left of the slip, of the speed or of the spin about the normal is taken
+/// away, and the ball is exactly on the line that it reached.
 pub(super) fn end(spec: &Spec, body: &mut Turning) {
+    let n = -spec.pull / spec.strength;
     if body.rolls_after {
-        let n = -spec.pull / spec.strength;
+        // Friction turns a ball that slides against the way in which one turns that is slowed down while it rolls.
+        if n.cross(body.path.a).dot(body.spin_rate) >= 0.0 {
+            body.path.v = DVec3::ZERO;
+        }
         body.spin = n * body.spin.dot(n) + n.cross(body.path.v) / spec.reach;
         body.rolls_after = false;
+    }
+    let (about, rate) = (body.spin.dot(n), body.spin_rate.dot(n));
+    if rate != 0.0 && about.abs() <= UNSEEN * body.path.t * rate.abs() {
+        body.spin -= n * about;
     }
     if let Some((axis, at)) = body.line.take() {
         body.path.x[usize::from(axis)] = at;

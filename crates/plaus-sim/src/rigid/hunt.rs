@@ -149,14 +149,41 @@ impl Hunt<'_> {
             }
             last = next.nearest.map(|n| n.1).or(last);
             // Nothing that touches approaches: an overlap may grow to twice what it is until then.
-            let overlap = -next.nearest.map_or(0.0, |n| n.0);
-            let least = (LEAST * self.level).max(overlap.min(CREEP * self.spec.size));
+            let least = self.slack(next.nearest.map_or(0.0, |n| n.0));
             time += next.step.max(least / speed.max(f64::MIN_POSITIVE));
             if time >= self.until || time.is_nan() {
                 return None;
             }
         }
-        last.map(|spot| (time, spot))
+        last.or_else(|| self.lowest(&mut tumbles, time)).map(|spot| (time, spot))
+    }
+
+    /// By how much points with this gap may come nearer between two looks where none of them approaches: an overlap may
+    /// grow to twice what it is.
+    fn slack(&self, gap: f64) -> f64 {
+        (LEAST * self.level).max((-gap).min(CREEP * self.spec.size))
+    }
+
+    /// How much nearer a body may come before it is looked at anew. In an overlap hardly any: while its deepest points
+    /// leave it others may go deeper, and each bounce within it would make it larger.
+    fn room(&self, gap: f64) -> f64 {
+        (gap - 0.5 * self.level).max(LEAST * self.level)
+    }
+
+    /// The lowest point of the body over a plane.
+    fn lowest(&self, tumbles: &mut [Option<Tumble>; 2], time: f64) -> Option<Spot> {
+        let Target::Ground(Ground::Plane(plane)) = self.target else { return None };
+        let (r, mut low, mut lowest) = (self.scene(tumbles, time).a.r, f64::INFINITY, None);
+        for (own, piece) in self.spec.pieces.iter().enumerate() {
+            let first = piece.placed(&r, DVec3::ZERO);
+            for_elements(piece, first.axes.transpose() * -plane.normal, |mark, at| {
+                let height = plane.normal.dot(first.centre + first.axes * at) - piece.rounding;
+                if height < low {
+                    (low, lowest) = (height, Some(Spot { own: own as u8, other: 0, mark }));
+                }
+            });
+        }
+        lowest
     }
 
     fn scene(&self, tumbles: &mut [Option<Tumble>; 2], time: f64) -> Scene {
@@ -195,7 +222,7 @@ impl Hunt<'_> {
                             }
                         });
                     }
-                    let bound = Bound::new(gap - 0.5 * self.level, n, scene, m);
+                    let bound = Bound::new(self.room(gap), n, scene, m);
                     let p = first.farthest(-n);
                     let rate = scene.a.velocity(p).dot(n);
                     next.step = next.step.min(bound.root(rate, next.step, |d| first.support(d), |_| 0.0));
@@ -256,23 +283,25 @@ impl Hunt<'_> {
         if next.nearest.is_none_or(|n| found.gap < n.0) {
             next.nearest = Some((found.gap, spot(found.mark)));
         }
-        let mut is_one = true;
+        let mut is_one = found.gap > self.level;
+        let mut touch = |m: &Meeting| {
+            is_one = true;
+            next.touches(rate(m), spot(m.mark));
+        };
         if found.gap <= self.level {
-            is_one = false;
-            let mut touch = |m: &Meeting| {
-                is_one = true;
-                next.touches(rate(m), spot(m.mark));
-            };
             match still {
                 Some(still) => still.for_touching(other, both, scene.a.x, self.level, touch),
                 None => both.touching(&found, self.level, |m| touch(&m)),
             }
+        } else if let Some(still) = still {
+            // Beyond a hollow edge of a triangle, farther from it than from its plane.
+            still.for_over(other, both, scene.a.x, self.level, &mut touch);
         }
         if !is_one && self.facet(other).is_some() {
             // What is beside the triangle is nearer.
             return self.over_facet(scene, other, both, m, next);
         }
-        let bound = Bound::new(found.gap - 0.5 * self.level, found.normal, scene, m);
+        let bound = Bound::new(self.room(found.gap), found.normal, scene, m);
         let second = |d: DVec3| if self.other().is_some() { both.second.support(d) - shift.dot(d) } else { 0.0 };
         next.step = next.step.min(bound.root(rate(&found), next.step, |d| both.first.support(d), second));
     }
@@ -281,15 +310,15 @@ impl Hunt<'_> {
     fn over_facet(&self, scene: &Scene, other: u32, both: &Both, m: f64, next: &mut Next) {
         let Some(facet) = self.facet(other) else { return };
         let p = both.first.farthest(-facet) - facet * both.first.rounding;
-        let f = facet.dot(p - both.second.centre) - 0.5 * self.level;
+        let gap = facet.dot(p - both.second.centre);
         let rate = scene.a.velocity(p).dot(facet);
-        if f <= 0.0 && rate <= 0.0 {
+        if gap <= 0.5 * self.level && rate <= 0.0 {
             // Below the plane beside the triangle: what is over it comes so near at most until the next look.
             let speed = scene.a.v.length() + scene.a.w.length() * self.spec.reach;
             next.step = next.step.min(CREEP * self.spec.size / speed.max(f64::MIN_POSITIVE));
             return;
         }
-        let bound = Bound::new(f, facet, scene, m);
+        let bound = Bound::new(self.room(gap), facet, scene, m);
         next.step = next.step.min(bound.root(rate, next.step, |d| both.first.support(d), |_| 0.0));
     }
 

@@ -71,9 +71,9 @@ impl RigidScratch {
             c.target = (world.pair_goal(both, t.gap, h) - t.gap) / h;
             c.bias = t.mean_velocity(&after, &begin, &end, h) - c.velocity(&self.members);
         }
-        if self.holds {
-            for c in &mut self.contacts {
-                c.target = c.target.min(0.0);
+        if self.push < 1.0 {
+            for c in self.contacts.iter_mut().filter(|c| c.target > 0.0) {
+                c.target *= self.push;
             }
         }
     }
@@ -101,6 +101,21 @@ impl RigidScratch {
             c.bias = mean - c.velocity(&self.members);
         }
         off
+    }
+
+    /// A step whose impulses all come at its start, plastic, wherever the drift leads then: what is left where bodies are
+    /// so deep in an edge that no drift goes the way that its start says. Contacts only take energy.
+    pub(super) fn give_in(&mut self, world: &Rigid, h: f64) {
+        self.prepare(world, |spec, p| (p.start.v + if spec.is_driven() { p.drive } else { spec.pull } * h, p.start.w));
+        let push = world.strength * h;
+        let enough = Enough::new(world.accuracy.sweep_tolerance * push, push);
+        solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, world.accuracy.sweeps);
+        for (p, m) in self.places.iter_mut().zip(&mut self.members) {
+            p.spin = m.w;
+            (p.end, p.end_turn) = p.drifted(&world.specs[p.body], m.v, m.w, h);
+            m.w = p.end.w;
+        }
+        self.firsts.clone_from(&self.contacts);
     }
 
     /// The second kick, over the points that still touch at the ends. Whether energy is kept.

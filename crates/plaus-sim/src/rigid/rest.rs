@@ -1,8 +1,10 @@
 //! Rest: slow bodies that their contacts can hold.
 
+use super::body::Pose;
 use super::contact::Touch;
 use super::solve::{Enough, solve};
 use super::step::{Place, RigidScratch};
+use super::tumble::rotation;
 use super::{Rigid, Spec};
 use glam::{DMat3, DVec3};
 
@@ -16,6 +18,46 @@ pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
         let limit = world.accuracy.rest_speed * spec.speed;
         p.start.v.length() <= limit && p.start.w.length() * spec.reach <= limit
     })
+}
+
+/// A body that wobbles on the rim of its foot, or of whose foot only a part touches yet, and that has less energy over
+/// lying flat there than the preset's rest speed gives a body's height: the points of its foot, and the shift and small
+/// turn that lay it flat. A disk that wobbles does so faster and faster, and of smaller and smaller steps there is no end.
+pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(Vec<Touch>, DVec3, DVec3)> {
+    let ([place], [(_, first), ..], []) = (&group.places[..], &group.touches[..], &group.leaving[..]) else {
+        return None;
+    };
+    let spec = &world.specs[place.body];
+    if !spec.is_compound() || !group.pairs.is_empty() || !group.parting.is_empty() || spec.is_driven() {
+        return None;
+    }
+    // Heights over lying flat are up to two thirds of this where half of the energy is that of motion.
+    let height = 0.5 * world.accuracy.rest_speed * world.accuracy.rest_speed * spec.size;
+    let inertia = spec.inertia.momentum(place.turn, place.start.w).dot(place.start.w) / spec.mass;
+    let motion = 0.5 * (place.start.v.length_squared() + inertia);
+    let n = first.normal;
+    let press = -n.dot(spec.pull);
+    let slide = (spec.pull + n * press).length();
+    let law = world.law_at(place.body, first, place.start.x + first.arm);
+    // On ice it slides on, and on a slope that friction cannot hold.
+    if motion > height * spec.strength.min(law.friction * press - slide) || press <= 0.0 {
+        return None;
+    }
+    let mut foot = Vec::new();
+    world.for_touches(place.body, &place.start, 2.0 * height, |t| foot.push(t));
+    if foot.len() < 3 || !is_above(foot.iter().map(|t| t.arm), spec.pull / spec.strength) {
+        return None;
+    }
+    let (shift, turn) = flatten(foot.iter())?;
+    if motion + spec.pull.dot(shift) > height * spec.strength {
+        return None;
+    }
+    // Points in a row, as those of a can on its side, do not tell how it is turned about their line.
+    let turned = (rotation(turn) * place.turn).normalize();
+    let there = Pose { x: place.start.x + shift, r: DMat3::from_quat(turned), ..place.start };
+    let mut is_deep = false;
+    world.for_touches(place.body, &there, -spec.gap, |_| is_deep = true);
+    (!is_deep).then_some((foot, shift, turn))
 }
 
 /// Whether contacts can hold bodies that do not move. `h` is the length of a step.
@@ -64,7 +106,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
             let moves = (v - normal * v.dot(normal)).length() + w.dot(normal).abs() * spec.reach;
             return moves <= (law.friction * press - slide + NO_MOTION * press) * h
                 && slide <= law.friction * press
-                && is_above(&group.touches, spec.pull / spec.strength);
+                && is_above(group.touches.iter().map(|t| t.1.arm), spec.pull / spec.strength);
         }
     }
     // What contacts cannot stop within a step is not at rest.
@@ -110,13 +152,13 @@ fn lies(touches: &[(usize, Touch)], axis: DVec3, size: f64) -> bool {
 }
 
 /// Whether the line of gravity through the centre of gravity meets the hull of the points: no half plane holds them all.
-fn is_above(touches: &[(usize, Touch)], down: DVec3) -> bool {
-    let flat = |t: &(usize, Touch)| t.1.arm - down * t.1.arm.dot(down);
-    touches.iter().all(|a| {
+fn is_above(arms: impl Iterator<Item = DVec3> + Clone, down: DVec3) -> bool {
+    let flat = |arm: DVec3| arm - down * arm.dot(down);
+    arms.clone().all(|a| {
         let p = flat(a);
         let margin = MARGIN * p.length_squared();
         let (mut left, mut right, mut opposite) = (false, false, false);
-        for b in touches {
+        for b in arms.clone() {
             let q = flat(b);
             let side = p.cross(q).dot(down);
             left |= side > margin;

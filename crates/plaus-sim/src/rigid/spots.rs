@@ -146,7 +146,8 @@ impl Rigid {
             }
             Some(Ground::Still(still)) => {
                 let both = still.both(piece, spot.other, pose);
-                both.again(spot.mark, still.towards(&both, spot.other))
+                let on_plane = still.rim_again(spot.other, &both, pose.x, spot.mark);
+                on_plane.unwrap_or_else(|| both.again(spot.mark, still.towards(&both, spot.other)))
             }
             None => Meeting { normal: DVec3::Z, points: [DVec3::ZERO; 2], gap: f64::INFINITY, mark: spot.mark },
         };

@@ -37,8 +37,8 @@ pub struct RigidScratch {
     pub(super) contacts: Vec<Contact>,
     /// The same with the impulses of a step's first kick.
     pub(super) firsts: Vec<Contact>,
-    /// Whether overlaps are left as they are.
-    pub(super) holds: bool,
+    /// Part of the push out of overlaps that is made.
+    pub(super) push: f64,
     pub(super) newton: Newton,
 }
 
@@ -148,8 +148,15 @@ pub(super) fn settle(
         scratch.lie_down(world, bodies);
         return;
     }
+    if let Some((foot, shift, turn)) = rest::lies_nearly_flat(world, scratch) {
+        let body = &mut bodies[scratch.places[0].body];
+        body.path.x += shift;
+        body.turn = (rotation(turn) * body.turn).normalize();
+        body.lie_still();
+        return body.list(foot.iter().map(|t| t.surface));
+    }
     let mut is_forced = true;
-    scratch.holds = false;
+    scratch.push = 1.0;
     for _ in 0..SHORTENINGS {
         let step = scratch.drift(world, h);
         match scratch.returns().or_else(|| scratch.misses(world, h)).or_else(|| scratch.climbs(world)) {
@@ -167,22 +174,29 @@ pub(super) fn settle(
             }
         }
     }
-    if !is_forced {
-        // What bodies are in each other is left as it is: pushing them apart brought the energy.
-        scratch.holds = true;
-        let step = scratch.drift(world, h);
-        scratch.second_kick(world, &step);
-        return scratch.write(world, bodies, h);
+    // What bodies are in each other is left as it is: pushing them apart brought the energy.
+    let mut pushes: &[f64] = &[0.0];
+    if is_forced {
+        // Bounces too fast for any step, which count as lasting; or a jam, in which the push lifts bodies too high.
+        scratch.loads.clear();
+        scratch.touches.append(&mut scratch.leaving);
+        scratch.pairs.append(&mut scratch.parting);
+        scratch.touches.sort_by_key(|t| t.0);
+        pushes = &[1.0, GENTLE, 0.0];
     }
-    // Bounces too fast for any step: they count as lasting.
-    scratch.loads.clear();
-    scratch.touches.append(&mut scratch.leaving);
-    scratch.pairs.append(&mut scratch.parting);
-    scratch.touches.sort_by_key(|t| t.0);
-    let step = scratch.drift(world, h);
-    scratch.second_kick(world, &step);
+    for &push in pushes {
+        scratch.push = push;
+        let step = scratch.drift(world, h);
+        if scratch.second_kick(world, &step) || scratch.only_lifts(world) {
+            return scratch.write(world, bodies, h);
+        }
+    }
+    scratch.give_in(world, h);
     scratch.write(world, bodies, h);
 }
+
+/// Part of the push out of overlaps that a jam is given where the whole brings too much energy. Default 1/16.
+const GENTLE: f64 = 0.0625;
 
 impl RigidScratch {
     /// Finds the lasting contacts of a group. Bodies without any fly.

@@ -20,6 +20,19 @@ pub(super) struct Still {
     boxes: Vec<Aabb>,
     tree: BoxTree,
     mesh: Option<Arc<Mesh>>,
+    /// How the mesh goes on across the sides of each triangle.
+    folds: Vec<[Fold; 3]>,
+}
+
+/// How a mesh goes on across a side of a triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Fold {
+    /// Away from what is over the triangle, or not at all.
+    Down,
+    /// In the same plane.
+    Flat,
+    /// Towards what is over it: the edge is hollow.
+    Up,
 }
 
 /// What a part is to the pieces of a body.
@@ -75,7 +88,9 @@ impl Still {
         };
         let boxes: Vec<Aabb> = pieces.iter().map(bounds).collect();
         let mesh = if let Part::Mesh(mesh) = part { Some(mesh.clone()) } else { None };
-        Ok(Self { tree: BoxTree::new(&boxes), pieces, boxes, mesh })
+        let folds =
+            mesh.iter().flat_map(|m| m.faces.iter().map(|f| [0, 1, 2].map(|side| Fold::of(m, f, side)))).collect();
+        Ok(Self { tree: BoxTree::new(&boxes), pieces, boxes, mesh, folds })
     }
 
     /// How the pieces of a body meet the part, if they do: bodies with ways of their own to meet planes, blocks and
@@ -138,42 +153,91 @@ impl Still {
             Some(Some(low)) if low > within => return,
             _ => {}
         }
-        if let (Some(n), Core::Polyhedron(triangle)) = (self.facet(other), both.second.core) {
-            let mut over = |c: DVec3, mark: Mark| {
-                let p = both.first.centre + both.first.axes * c;
-                let seen = p - both.second.centre;
-                let distance = n.dot(seen);
-                if distance - both.first.rounding <= within
-                    && distance > -self.thickness(other)
-                    && triangle.is_over(0, seen, 0.0)
-                {
-                    let arm = p - n * both.first.rounding;
-                    let points = [arm, p - n * distance];
-                    each(&Meeting { normal: n, points, gap: distance - both.first.rounding, mark });
-                }
-            };
-            match both.first.core {
-                Core::Polyhedron(body) => {
-                    for (k, &c) in body.corners.iter().enumerate() {
-                        over(c, Mark::Polyhedra(Feature::Corner { of: 0, corner: k as u8, on: On::Face(0) }));
-                    }
-                }
-                Core::Discs(discs) => {
-                    // The shortest way out of a triangle may be over its edge, where the next one is.
-                    let down = both.first.axes.transpose() * -n;
-                    for (ring, slot) in (0..2_u8).flat_map(|ring| (0..SLOTS).map(move |slot| (ring, slot))) {
-                        if let Some(p) = discs.rim(usize::from(ring), slot, down) {
-                            over(p, Mark::Rim { of: 0, ring, slot });
-                        }
-                    }
-                }
-            }
-        }
+        self.for_over(other, both, x, within, &mut each);
         both.touching(&nearest(both), within, |m| {
             if self.has(other, &m, x) {
                 each(&m);
             }
         });
+    }
+
+    /// Calls `each` for the corners and points of rims of a piece of a body that are over a triangle, or a little below
+    /// it, and touch its plane: the shortest way out of a triangle may be over its edge, where the next one is.
+    pub(super) fn for_over(&self, other: u32, both: &Both, x: DVec3, within: f64, each: &mut impl FnMut(&Meeting)) {
+        let Some(n) = self.facet(other) else { return };
+        let mut over = |c: DVec3, mark: Mark| {
+            let m = self.on_facet(n, both, c, mark);
+            if m.gap <= within && self.is_over(other, both, x, m.points[0] + n * both.first.rounding) {
+                each(&m);
+            }
+        };
+        match both.first.core {
+            Core::Polyhedron(body) => {
+                for (k, &c) in body.corners.iter().enumerate() {
+                    over(c, Mark::Polyhedra(Feature::Corner { of: 0, corner: k as u8, on: On::Face(0) }));
+                }
+            }
+            Core::Discs(discs) => {
+                let down = both.first.axes.transpose() * -n;
+                for (ring, slot) in (0..2_u8).flat_map(|ring| (0..SLOTS).map(move |slot| (ring, slot))) {
+                    if let Some(p) = discs.rim(usize::from(ring), slot, down) {
+                        over(p, Mark::Rim { of: 0, ring, slot });
+                    }
+                }
+            }
+        }
+    }
+
+    /// The meeting of a point of a piece of a body, in the piece's axes, with the plane of a triangle with this normal.
+    fn on_facet(&self, n: DVec3, both: &Both, c: DVec3, mark: Mark) -> Meeting {
+        let p = both.first.centre + both.first.axes * c;
+        let distance = n.dot(p - both.second.centre);
+        let arm = p - n * both.first.rounding;
+        Meeting { normal: n, points: [arm, p - n * distance], gap: distance - both.first.rounding, mark }
+    }
+
+    /// Whether a point `p` of a body is over a triangle, or less than the mesh's thickness below it. What is beyond a
+    /// hollow edge by no more than that, behind the triangle beside it, counts too: a tip that is below one of them by
+    /// rounding and beyond the edge would be over neither, and slip through.
+    fn is_over(&self, other: u32, both: &Both, x: DVec3, p: DVec3) -> bool {
+        let Some(mesh) = &self.mesh else { return false };
+        let (face, thick) = (&mesh.faces[other as usize], self.thickness(other));
+        let at = p + x;
+        if face.normal.dot(p - both.second.centre) <= -thick {
+            return false;
+        }
+        let beyond = face.sides.map(|(inward, offset)| offset - inward.dot(at));
+        if beyond.iter().all(|&b| b <= LEAN * thick) {
+            return true;
+        }
+        let middle = both.first.centre + x;
+        (0..3).any(|side| {
+            let b = beyond[side];
+            if self.folds[other as usize][side] != Fold::Up || b <= 0.0 || b >= thick {
+                return false;
+            }
+            let is_before = |k: u32| {
+                let beside = &mesh.faces[k as usize];
+                beside.normal.dot(middle) > beside.offset
+            };
+            let [from, to] = [face.corners[side], face.corners[(side + 1) % 3]].map(|c| mesh.vertices()[c as usize]);
+            let (along, length) = ((to - from).normalize(), (to - from).length());
+            let place = along.dot(at - from);
+            place >= -b && place <= length + b && face.neighbours[side].is_some_and(is_before)
+        })
+    }
+
+    /// The point of a rim of that name where it is over a triangle, or over what goes on in its plane or up from it.
+    pub(super) fn rim_again(&self, other: u32, both: &Both, x: DVec3, mark: Mark) -> Option<Meeting> {
+        let (mesh, n) = (self.mesh.as_ref()?, self.facet(other)?);
+        let (Mark::Rim { of: 0, ring, slot }, Core::Discs(discs)) = (mark, both.first.core) else { return None };
+        let down = both.first.axes.transpose() * -n;
+        let ring = usize::from(ring);
+        let m = self.on_facet(n, both, discs.rim(ring, slot, down).or_else(|| discs.rim(ring, 1, down))?, mark);
+        let at = m.points[0] + x;
+        let (face, folds) = (&mesh.faces[other as usize], &self.folds[other as usize]);
+        let stays = face.sides.iter().zip(folds).all(|(side, &f)| f != Fold::Down || side.0.dot(at) >= side.1);
+        stays.then_some(m)
     }
 
     /// Whether a meeting is one with the mesh: from outside, and at an edge or a corner not leaning into a triangle
@@ -223,6 +287,23 @@ impl Still {
             });
         }
         at_edge
+    }
+}
+
+impl Fold {
+    fn of(mesh: &Mesh, face: &Face, side: usize) -> Self {
+        let Some(beside) = face.neighbours[side].map(|k| &mesh.faces[k as usize]) else { return Self::Down };
+        let [from, to] = [face.corners[side], face.corners[(side + 1) % 3]];
+        let far = beside.corners.into_iter().find(|&c| c != from && c != to).unwrap_or(from);
+        let at = |c: u32| mesh.vertices()[c as usize];
+        let rise = (face.normal.dot(at(far)) - face.offset) / (at(far) - at(from)).length();
+        if rise > LEAN {
+            Self::Up
+        } else if rise < -LEAN {
+            Self::Down
+        } else {
+            Self::Flat
+        }
     }
 }
 

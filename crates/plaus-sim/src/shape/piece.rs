@@ -156,7 +156,8 @@ impl Piece {
             Core::Discs(discs) => {
                 let ([low, high], [r0, r1]) = (discs.heights, discs.radii);
                 let mut points = Vec::new();
-                for k in 0..RIM {
+                // A segment is one line, whatever way round it one looks.
+                for k in 0..if r0 == 0.0 && r1 == 0.0 { 1 } else { RIM } {
                     let (s, c) = math::sin_cos(TAU * (k as f64 / RIM as f64));
                     let at = |r: f64, z: f64| DVec3::new(r * c, r * s, z);
                     for (r, z) in [(r0, low), (r1, high)] {

@@ -248,6 +248,8 @@ pub struct Fate {
     pub out: f64,
     /// Deepest that bodies were in parts at the ends of their motions, over the size.
     pub deep: f64,
+    /// The same at the end.
+    pub left: f64,
     /// Energy gained over what there was (kinetic energy and the weight times the box).
     pub gain: f64,
     pub events: u64,
@@ -304,5 +306,7 @@ pub fn throw(bodies: &[Body], place: Place, throw: u64, preset: Preset, until: f
     let mut watch = Watch { world: &world, place, turn, sizes, out: f64::NEG_INFINITY, deep: 0.0 };
     let outcome = world.run(&mut state, &mut Scratch::<RigidScratch>::default(), until, &mut watch).expect("a run");
     let (out, deep) = (watch.out, watch.deep);
-    Fate { outcome, out, deep, gain: (energy(&state) - before) / scale, events: state.counts().events }
+    let depth = |(k, b): (usize, &Turning)| world.depth(k, b) / watch.sizes[k];
+    let left = state.bodies().iter().enumerate().map(depth).fold(0.0, f64::max);
+    Fate { outcome, out, deep, left, gain: (energy(&state) - before) / scale, events: state.counts().events }
 }

@@ -26,6 +26,10 @@ const ROUNDS: usize = 40;
 /// to 1e-10 of it.
 const ASIDE: f64 = 1e-5;
 
+/// Overlap over the size up to which the best direction looked at is taken, where it is the normal of a face with the
+/// other's lowest point over it: no way out is shorter nearby, and others elsewhere are by less than this. Default 1e-4.
+const SHALLOW: f64 = 1e-4;
+
 /// Change of a direction within which it counts as found.
 const FOUND: f64 = 1e-10;
 
@@ -121,7 +125,11 @@ impl Search<'_, '_> {
             }
         }
         let (apart, normal) = self.far;
-        let mut best = self.at(normal, apart, Mark::Nearest);
+        let (mut best, off) = self.at(normal, apart, Mark::Nearest);
+        let size = self.both.size();
+        if -apart <= SHALLOW * size && off <= PROVED * size {
+            return best;
+        }
         let centres = (self.both.first.centre - self.both.second.centre).try_normalize();
         let starts = [Some(normal), self.near.map(|m| m.normal), centres];
         for start in starts.into_iter().flatten() {
@@ -155,16 +163,17 @@ impl Search<'_, '_> {
     }
 
     /// Points that a direction is the normal of: of those of the first equally low one over the second, if that is
-    /// seen.
-    fn at(&self, normal: DVec3, apart: f64, mark: Mark) -> Meeting {
+    /// seen. With them how far they are off the skins.
+    fn at(&self, normal: DVec3, apart: f64, mark: Mark) -> (Meeting, f64) {
         let (p, q) = (self.both.first.farthest(-normal), self.both.second.farthest(normal));
         // Of a flat piece over a point or the other way round the point tells where.
         let (on_p, on_q) = (p - normal * apart, q + normal * apart);
         let off = |of: usize, x: DVec3| self.both.piece(of).foot(x).1.abs();
-        if off(1, on_p) <= off(0, on_q) {
-            self.both.meeting([p, on_p], normal, apart, mark)
+        let (off_p, off_q) = (off(1, on_p), off(0, on_q));
+        if off_p <= off_q {
+            (self.both.meeting([p, on_p], normal, apart, mark), off_p)
         } else {
-            self.both.meeting([on_q, q], normal, apart, mark)
+            (self.both.meeting([on_q, q], normal, apart, mark), off_q)
         }
     }
 }
