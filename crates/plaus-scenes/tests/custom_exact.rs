@@ -84,14 +84,6 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 0, 31]\nvelocity_m_s = [{ uniform = [0, 2] }, 0, 0]",
         "relative = { body = 'marble_1', to = 'marble_3', y_mm = 15, within_mm = 20, scale_mm = 40 }",
     ],
-    // A paddle whose way is uncertain.
-    [
-        "duration_s = 0.5\n[[world.custom.driven]]\nname = 'paddle'\nshape = { box = { size_mm = [20, 200, 100] } }\n\
-         keys = [\n{ at_s = 0, at_mm = [-200, 0, 60] },\n\
-         { at_s = 'uniform(0.2, 0.5)', at_mm = ['normal(100, 30)', 0, 60] }]",
-        "at_mm = [0, { normal = [0, 20] }, 31]",
-        "passes = { body = 'ball', x_mm = 250, y_mm = 0, z_mm = 31, within_mm = 15, scale_mm = 25 }",
-    ],
 ];
 
 /// The scenario of a case.

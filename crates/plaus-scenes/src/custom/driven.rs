@@ -133,7 +133,7 @@ where
 {
     let key = |(index, &(time, value)): (usize, &(f64, T))| {
         let around = index.checked_sub(1).and_then(|before| values.get(before)).zip(values.get(index + 1));
-        let slope = around.map_or(value - value, |(before, after)| (after.1 - before.1) * (1.0 / (after.0 - before.0)));
+        let slope = around.map_or(value * 0.0, |(before, after)| (after.1 - before.1) * (1.0 / (after.0 - before.0)));
         Key { time, value, slopes: [slope; 2] }
     };
     Track { between, keys: values.iter().enumerate().map(key).collect() }
