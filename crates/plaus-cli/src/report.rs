@@ -1,7 +1,7 @@
 //! What is said about a run once it is there.
 
 use crate::progress::acceptance;
-use crate::table::{grouped, lay_out, percent, short};
+use crate::table::{amount, grouped, lay_out, percent, short};
 use plaus_run::{Diagnosis, Manifest, Run, RunFileError, RunOf, RunVisitor};
 use plaus_scenes::{Role, Scene};
 use serde_json::{Value, json};
@@ -163,8 +163,8 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
 pub(crate) fn independent(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
     let Some(found) = &diagnosis.independent else { return String::new() };
     let minute = seconds.filter(|&seconds| seconds > 0.0).map(|seconds| 60.0 * found.ess / seconds);
-    let pace = minute.map(|minute| format!(", {} a minute", short(minute))).unwrap_or_default();
-    let ess = short(found.ess);
+    let pace = minute.map(|minute| format!(", {} a minute", amount(minute))).unwrap_or_default();
+    let ess = amount(found.ess);
     format!("{ess} independent solutions{pace} (by {}, which mixes worst: `plaus explain independent`)\n", found.scalar)
 }
 

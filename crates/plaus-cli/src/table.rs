@@ -30,6 +30,11 @@ pub(crate) fn grouped(number: u64) -> String {
     text
 }
 
+/// How much there is of something, with commas between thousands where it is much.
+pub(crate) fn amount(number: f64) -> String {
+    if (1e3..1e15).contains(&number) { grouped(number.round() as u64) } else { short(number) }
+}
+
 /// A number in about five characters.
 pub(crate) fn short(number: f64) -> String {
     match number.abs() {

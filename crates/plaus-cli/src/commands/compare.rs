@@ -5,7 +5,7 @@ use crate::console;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Monitor;
-use crate::table::{grouped, short};
+use crate::table::{amount, grouped, short};
 use plaus_mcmc::chance::{ChancePulse, Parts, count};
 use plaus_run::{Diagnosis, Run, RunOf, RunVisitor};
 use plaus_scenes::Scene;
@@ -44,8 +44,8 @@ pub(super) fn with_prior(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, as
     console::note_line(&format!(
         "in a minute of one processor the chains make {} independent solutions, plain draws of the prior {} ({} of {} \
          draws){times}",
-        short(chains),
-        short(prior),
+        amount(chains),
+        amount(prior),
         grouped(hits),
         grouped(draws),
     ));
