@@ -9,7 +9,7 @@ use glam::DVec3;
 use plaus_export::sound;
 use plaus_run::RunOf;
 use plaus_run::replay::Replay;
-use plaus_scenes::animation::{Animation, Piece};
+use plaus_scenes::animation::{Animation, Piece, View};
 use plaus_scenes::{Role, Scene};
 use serde_json::{Value, json};
 
@@ -47,7 +47,7 @@ pub(crate) fn pack<S: Scene>(run: &RunOf<'_, S>, replays: &[Replay], maps: &Maps
         .iter()
         .map(|scalar| json!({"name": scalar.name, "unit": scalar.unit, "draw": scalar.role == Role::Draw}))
         .collect();
-    let view = replays.iter().find_map(|replay| replay.animation.view);
+    let view = replays.iter().filter_map(|replay| replay.animation.view).reduce(both);
     let meta = json!({
         "plaus": manifest.plaus,
         "scene": manifest.scene,
@@ -176,6 +176,15 @@ impl Ranges {
 
 fn signed(value: f64, largest: f64) -> i16 {
     (value / largest * 32767.0).round() as i16
+}
+
+/// A view in which all is seen that either shows.
+fn both(one: View, other: View) -> View {
+    let frame = match (one.frame, other.frame) {
+        (Some([a, b]), Some([c, d])) => Some([a.min(b).min(c).min(d), a.max(b).max(c).max(d)]),
+        (frame, None) | (None, frame) => frame,
+    };
+    View { frame, alone: one.alone && other.alone, ..one }
 }
 
 /// The box in which all bodies move, as far as they reach.

@@ -1,8 +1,12 @@
 //! Worlds that users describe, described wrongly: each is refused where it stands, in words that help. And what is
 //! right is read as it is meant.
 
+use plaus_dist::{Purpose, Seed, math};
+use plaus_mcmc::{Target, Variables};
+use plaus_scenes::animation::Shape;
+use plaus_scenes::custom::Custom;
 use plaus_scenes::scenario::{explain, template};
-use plaus_scenes::{Scenario, World};
+use plaus_scenes::{Scenario, Scene, World};
 
 const BALL: &str =
     "[[world.custom.bodies]]\nname = 'ball'\nshape = { ball = { radius_mm = 30 } }\nat_mm = [0, 0, 100]\n";
@@ -48,6 +52,61 @@ const CASES: &[(&str, &str, &[&str])] = &[
         "[0, 0, 100]",
         &["bodies[0].at_mm", "begin inside each other", "\"ball\" begins 10.000 mm inside \"b\""],
     ),
+    ("velocity_m_s = ['2 * ', 0, 0]", "'2 * '", &["velocity_m_s[0]", "cannot be read as arithmetic"]),
+    ("velocity_m_s = ['i * 2', 0, 0]", "'i * 2'", &["\"i\" counts in arrays", "`count`"]),
+    ("release_s = '1 - 3'", "'1 - 3'", &["comes to -2", "from 0 to 10000"]),
+    ("release_s = 'normal(1, 0.1)'", "'normal", &["-inf to inf", "at least 0", "max("]),
+    ("release_s = 'sqrt(uniform(-1, 1))'", "'sqrt", &["may come to no number"]),
+    ("velocity_m_s = ['1 / uniform(0, 1)', 0, 0]", "'1 / uni", &["may come to no number", "divides by what may be 0"]),
+    ("velocity_m_s = ['uniform(1, 0)', 0, 0]", "'uniform", &["high is 0", "above low"]),
+    ("velocity_m_s = ['normal(0, uniform(1, 2))', 0, 0]", "'normal", &["must be certain"]),
+    ("velocity_m_s = ['unifrom(0, 1)', 0, 0]", "'unifrom", &["no function \"unifrom\"", "did you mean \"uniform\"?"]),
+    (
+        "[[world.custom.quantities]]\nname = 'a'\nvalue = 'b + 1'\n\
+         [[world.custom.quantities]]\nname = 'b'\nvalue = '2 * a'",
+        "'b + 1'",
+        &["quantities[0].value", "depends on itself: a → b → a"],
+    ),
+    ("[[world.custom.quantities]]\nname = 'a'\nvalue = 'a'", "'a'", &["depends on itself: a → a"]),
+    ("[[world.custom.quantities]]\nname = 'pi'\nvalue = 3", "'pi'", &["means something else"]),
+    ("[[world.custom.quantities]]\nname = 'a'\nvalue = 'c'", "'c'", &["no quantity \"c\""]),
+    ("count = 0", "0", &["bodies[0].count", "out of range"]),
+    ("count = 1_000_000", "1_000_000", &["bodies[0].count", "out of range", "4096"]),
+    (
+        "[[world.custom.bodies]]\nname = 'b'\ncount = 4096\nshape = { ball = { radius_mm = 3 } }\n\
+         at_mm = ['9 * i', 0, 900]",
+        "4096",
+        &["bodies[1].count", "these are 4097 bodies: at most 4096"],
+    ),
+    (
+        "[[world.custom.bodies]]\nname = 'b_2'\nshape = { ball = { radius_mm = 3 } }\n\
+         [[world.custom.bodies]]\nname = 'b'\ncount = 2\nshape = { ball = { radius_mm = 3 } }",
+        "'b'",
+        &["bodies[2].name", "something called \"b_2\" already"],
+    ),
+    (
+        "[[world.custom.bodies]]\nname = 'b'\ncount = 3\nshape = { ball = { radius_mm = 30 } }\n\
+         at_mm = ['50 * i', 0, 500]",
+        "['50 * i'",
+        &["bodies[1].at_mm", "\"b_1\" begins 10.000 mm inside \"b_2\""],
+    ),
+    (
+        "[[world.custom.driven]]\nname = 'foot'\nshape = { ball = { radius_mm = 3 } }\n\
+         keys = [{ at_s = 'uniform(0, 1)', at_mm = [0, 0, 9] }, { at_s = 0.9, at_mm = [9, 0, 9] }]",
+        "0.9",
+        &["driven[0].keys[1].at_s", "may come at 0.9 s", "before it at 1 s"],
+    ),
+    (
+        "[[world.custom.driven]]\nname = 'foot'\nshape = { ball = { radius_mm = 3 } }\nkeys = []",
+        "[]",
+        &["driven[0].keys", "a list of 0"],
+    ),
+    (
+        "[[world.custom.driven]]\nname = 'ball'\nshape = { ball = { radius_mm = 3 } }\n\
+         keys = [{ at_s = 0, at_mm = [0, 0, 9] }]",
+        "'ball'",
+        &["driven[0].name", "already"],
+    ),
     ("colour = 'red'", "'red'", &["no colour", "#c04030"]),
     ("any_turn = true\nturn_deg = [0, 0, 1]", "true", &["leave `turn_deg` out"]),
     ("[[require]]\nrests = { body = 'bal' }", "'bal'", &["no \"bal\"", "did you mean \"ball\"?"]),
@@ -92,6 +151,109 @@ fn overrides_reach_into_lists_and_laws() {
     let pair = format!("[[world.custom.pairs]]\nbetween = ['', '']\nrestitution = {{ uniform = [0.1, 0.2] }}\n{BALL}");
     let scenario = read(&pair, &[]);
     assert_eq!(read(&scenario.to_toml(), &[]), scenario, "what a pair leaves open stays open");
+}
+
+/// An array is what its members would be, written one by one; so is arithmetic with certain numbers.
+#[test]
+fn arrays_and_arithmetic_are_what_is_meant() {
+    let array = "[[world.custom.quantities]]\nname = 'gap'\nvalue = '3 * side'\n\
+                 [[world.custom.quantities]]\nname = 'side'\nvalue = 20\n\
+                 [[world.custom.bodies]]\nname = 'pin'\ncount = 3\nshape = { ball = { radius_mm = 'side / 2' } }\n\
+                 at_mm = ['gap * (i - (n - 1) / 2)', { normal = [0, 2] }, 'max(side, 50) + 10 * (i % 2)']\n";
+    let one = |name: &str, x: f64, z: f64| {
+        format!(
+            "[[world.custom.bodies]]\nname = '{name}'\nshape = {{ ball = {{ radius_mm = 10 }} }}\n\
+             at_mm = [{x}, {{ normal = [0, 2] }}, {z}]\n"
+        )
+    };
+    let listed = [one("pin_1", -60.0, 50.0), one("pin_2", 0.0, 60.0), one("pin_3", 60.0, 50.0)].concat();
+    let seen = |text: &str| {
+        let World::Custom(config) = read(text, &[]).world else { panic!("another world") };
+        let scene = Custom::new(&config).unwrap();
+        let draw = scene.start(&mut Seed(1).chain(0).at(0, Purpose::START));
+        let names: Vec<String> = scene.scalars().iter().map(|scalar| scalar.name.clone()).collect();
+        (names, scene.animate(&draw).unwrap().tracks)
+    };
+    let (names, tracks) = seen(array);
+    assert_eq!((names.clone(), tracks), seen(&listed));
+    assert!(names.contains(&"pin_2.y".to_owned()), "{names:?}");
+}
+
+/// What is worked out in the scene is what one works out from its columns.
+#[test]
+fn what_is_worked_out_follows_from_what_is_drawn() {
+    let text = "[[world.custom.quantities]]\nname = 'wide'\nvalue = '2 * narrow'\n\
+                [[world.custom.quantities]]\nname = 'narrow'\nvalue = { uniform = [10, 20] }\n\
+                [[world.custom.bodies]]\nname = 'brick'\nshape = { box = { size_mm = ['narrow', 'wide', 9] } }\n\
+                at_mm = [0, 'wide + normal(100, 5) * uniform(1, 2)', 200]\n";
+    let World::Custom(config) = read(text, &[]).world else { panic!("another world") };
+    let scene = Custom::new(&config).unwrap();
+    let names: Vec<&str> = scene.vars().iter().map(|var| var.name.as_ref()).collect();
+    assert_eq!(names, ["narrow", "brick.y.law", "brick.y.law_2"]);
+    for nth in 0..20 {
+        let draw = scene.start(&mut Seed(1).chain(0).at(nth, Purpose::START));
+        let track = &scene.animate(&draw).unwrap().tracks[0];
+        let [narrow, normal, factor] = draw.numbers[..] else { panic!("{draw:?}") };
+        let Shape::Cuboid { half, .. } = track.shape else { panic!("{:?}", track.shape) };
+        assert!((half * 2e3 - glam::DVec3::new(narrow, 2.0 * narrow, 9.0)).length() < 1e-9, "{half} {narrow}");
+        // An animation's z is the simulator's y, towards the viewer.
+        let y = -1e3 * track.pieces[0].position(0.0).z;
+        assert!((y - 2.0 * narrow - normal * factor).abs() < 1e-9, "{y}");
+    }
+}
+
+/// A paddle goes through its keys whatever it hits; what it hits leaves with `1 + e` times its speed.
+#[test]
+fn what_is_driven_goes_its_way_and_moves_what_it_meets() {
+    let world = |between: &str, keys: &str| {
+        format!(
+            "[world.custom]\ngravity = 0\nduration_s = 3\nfixed = []\n\
+             [[world.custom.materials]]\nname = 'm'\nfriction = 0\nrestitution = 0.5\n\
+             [[world.custom.bodies]]\nname = 'ball'\nmaterial = 'm'\nshape = {{ ball = {{ radius_mm = 20 }} }}\n\
+             at_mm = [530, 0, 0]\n\
+             [[world.custom.driven]]\nname = 'paddle'\nmaterial = 'm'\nbetween = '{between}'\n\
+             shape = {{ box = {{ size_mm = [20, 300, 300] }} }}\nkeys = [{keys}]\n"
+        )
+    };
+    let seen = |text: &str| {
+        let World::Custom(config) = read(text, &[]).world else { panic!("another world") };
+        let scene = Custom::new(&config).unwrap();
+        assert!(scene.scalars().iter().all(|scalar| !scalar.name.starts_with("paddle")));
+        scene.animate(&scene.start(&mut Seed(1).chain(0).at(0, Purpose::START))).unwrap()
+    };
+    let keys = "{ at_s = 0, at_mm = [0, 0, 0] }, { at_s = 2, at_mm = [2000, 0, 0] }";
+    let straight = seen(&world("linear", keys));
+    let [ball, paddle] = &straight.tracks[..] else { panic!("{:?}", straight.tracks) };
+    // It reaches the ball at 0.5 s with 1 m/s. The gap at which bodies count as touching is far below a millimetre.
+    assert!((straight.impacts[0].time - 0.5).abs() < 1e-3, "{:?}", straight.impacts);
+    assert!((ball.position(1.5).x - 0.53 - 1.5).abs() < 2e-3, "{}", ball.position(1.5));
+    for (time, place) in [(0.25, 0.25), (1.5, 1.5), (2.5, 2.0)] {
+        assert!((paddle.position(time).x - place).abs() < 1e-9, "{}", paddle.position(time));
+    }
+    let turned = "{ at_s = 0, at_mm = [0, 0, 0] }, { at_s = 2, at_mm = [400, 0, 0], turn_deg = [0, 0, 60] }";
+    let smooth = seen(&world("smooth", turned));
+    let paddle = &smooth.tracks[1];
+    // Half of the way at half of the time; of a cubic that begins and ends slowly 5/32 after a quarter.
+    for (time, part) in [(0.5, 5.0 / 32.0), (1.0, 0.5), (2.0, 1.0)] {
+        // Ways are followed to a tenth of the gap at which bodies touch.
+        assert!((paddle.position(time).x - 0.4 * part).abs() < 1e-4, "{time}: {}", paddle.position(time));
+    }
+    let turn = paddle.orientation(1.0) * paddle.orientation(0.0).inverse();
+    assert!((turn.xyz().length() - math::sin(15_f64.to_radians())).abs() < 1e-3, "{turn}");
+}
+
+/// A chain of quantities as long as may be is worked out, each once, in whatever order it stands.
+#[test]
+fn long_chains_of_quantities_are_worked_out_once_each() {
+    let one = |k: usize| {
+        let value = match k {
+            0 | 1 => "'uniform(0.999, 1.001)'".to_owned(),
+            _ => format!("'0.5 * q{} + 0.5 * q{}'", k - 1, k - 2),
+        };
+        format!("[[world.custom.quantities]]\nname = 'q{k}'\nvalue = {value}\n")
+    };
+    let chain: String = (0..4096).rev().map(one).collect();
+    read(&format!("{chain}{BALL}velocity_m_s = ['q4095', 0, 0]\n"), &[]);
 }
 
 #[test]

@@ -69,6 +69,21 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [60, { normal = [0, 80] }, 100]\nvelocity_m_s = [0, { normal = [0, 0.3] }, 0]",
         "touches = { body = 'ball', with = 'other' }",
     ],
+    // Arithmetic: laws within formulas, a shared quantity that two numbers follow from.
+    [
+        "duration_s = 0.5\n[[world.custom.quantities]]\nname = 'push'\nvalue = 'max(0.2, normal(0.8, 0.4))'",
+        "at_mm = [0, 0, '100 + 50 * push * uniform(0.5, 1.5)']\n\
+         velocity_m_s = ['push', 'normal(0, 0.2) - 0.1 * push', 0]",
+        "passes = { x_mm = 300, y_mm = 0, z_mm = 100, within_mm = 40, scale_mm = 80 }",
+    ],
+    // An array whose members have a number of their own each.
+    [
+        "duration_s = 0.4\n[[world.custom.bodies]]\nname = 'marble'\ncount = 3\n\
+         shape = { ball = { radius_mm = 'uniform(8, 12) + 2 * i' } }\n\
+         at_mm = ['80 * (i + 1)', { normal = [0, 10] }, 'uniform(40, 80)']",
+        "at_mm = [0, 0, 31]\nvelocity_m_s = [{ uniform = [0, 2] }, 0, 0]",
+        "relative = { body = 'marble_1', to = 'marble_3', y_mm = 15, within_mm = 20, scale_mm = 40 }",
+    ],
 ];
 
 /// The scenario of a case.

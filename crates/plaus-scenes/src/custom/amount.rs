@@ -1,4 +1,4 @@
-//! A number of a scenario that may be uncertain: fixed, of a law, or that of a quantity with a name.
+//! A number of a scenario that may be uncertain: fixed, of a law, that of a quantity with a name, or worked out.
 
 use super::laws::LawOf;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -91,13 +91,13 @@ measures! {
     Plain: "", -1e9 to 1e9, Any;
 }
 
-/// A number: fixed, uncertain, or named elsewhere.
+/// A number: fixed, uncertain, named elsewhere, or worked out.
 #[derive(Debug)]
 pub enum Amount<M> {
     /// Always this.
     Fixed(f64),
-    /// The quantity of this name.
-    Named(String),
+    /// The quantity of this name, or what this formula comes to.
+    Said(String),
     /// Of a law of its own.
     Law(Box<LawOf>, PhantomData<fn() -> M>),
 }
@@ -126,7 +126,7 @@ impl<M> Clone for Amount<M> {
     fn clone(&self) -> Self {
         match self {
             Self::Fixed(value) => Self::Fixed(*value),
-            Self::Named(name) => Self::Named(name.clone()),
+            Self::Said(name) => Self::Said(name.clone()),
             Self::Law(law, _) => Self::Law(law.clone(), PhantomData),
         }
     }
@@ -136,7 +136,7 @@ impl<M> PartialEq for Amount<M> {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Fixed(a), Self::Fixed(b)) => a == b,
-            (Self::Named(a), Self::Named(b)) => a == b,
+            (Self::Said(a), Self::Said(b)) => a == b,
             (Self::Law(a, _), Self::Law(b, _)) => a == b,
             _ => false,
         }
@@ -147,7 +147,7 @@ impl<M> Serialize for Amount<M> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Fixed(value) => serializer.serialize_f64(*value),
-            Self::Named(name) => serializer.serialize_str(name),
+            Self::Said(name) => serializer.serialize_str(name),
             Self::Law(law, _) => law.serialize(serializer),
         }
     }
@@ -160,12 +160,12 @@ impl<'de, M> Deserialize<'de> for Amount<M> {
         #[serde(untagged)]
         enum Written {
             Fixed(f64),
-            Named(String),
+            Said(String),
             Law(LawOf),
         }
         Ok(match Written::deserialize(deserializer)? {
             Written::Fixed(value) => Self::Fixed(value),
-            Written::Named(name) => Self::Named(name),
+            Written::Said(name) => Self::Said(name),
             Written::Law(law) => Self::of(law),
         })
     }
@@ -184,7 +184,7 @@ impl<M: Measure> JsonSchema for Amount<M> {
         let mut schema = json_schema!({
             "anyOf": [
                 { "type": "number", "minimum": M::LEAST, "maximum": M::MOST },
-                { "type": "string", "description": "The name of one of the `quantities`." },
+                { "type": "string", "description": "The name of one of the `quantities`, or arithmetic with them." },
                 generator.subschema_for::<LawOf>(),
             ],
         });

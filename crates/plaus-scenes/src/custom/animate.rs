@@ -3,7 +3,7 @@
 use super::flight::{Record, part};
 use super::plan::{Built, Plan, Standing};
 use super::solids::{MM, mesh};
-use super::values::{Drawn, vector};
+use super::values::{Drawn, Numbers, vector};
 use crate::animation::{Animation, Contact, Form, Impact, Piece, Prop, Track, Turn, UPRIGHT, upright};
 use crate::touch::{Toucher, in_order};
 use glam::{DQuat, DVec3};
@@ -50,7 +50,7 @@ pub(super) fn motion(plan: &Plan, record: &Record, built: &Built) -> Animation {
 
 /// What rolls and slides on what.
 fn contacts(plan: &Plan, record: &Record, built: &Built, animation: &Animation) -> Vec<Contact> {
-    let trace = &record.trace;
+    let (trace, numbers) = (&record.trace, plan.works.numbers(Some(&record.draw)));
     let of_body = |(index, track): (usize, &Track)| {
         let Track { name, shape, pieces, .. } = track;
         let motions = trace.motions.get(index).map_or(&[][..], Vec::as_slice);
@@ -69,7 +69,7 @@ fn contacts(plan: &Plan, record: &Record, built: &Built, animation: &Animation) 
                 animation.impacts.iter().rev().find(|hit| hit.time <= pieces[piece].start && hit.involves(name))?;
             Some(if hit.body == *name { hit.other.clone() } else { hit.body.clone() })
         };
-        let mass = plan.mass(index, Some(&record.draw), &built.shapes[index]);
+        let mass = plan.mass(index, &numbers, &built.shapes[index]);
         Toucher { name, shape, mass, pieces, end: animation.duration }.contacts(touches)
     };
     in_order(animation.tracks.iter().enumerate().flat_map(of_body).collect())
@@ -106,20 +106,20 @@ fn piece(body: &Turning, axes: DQuat) -> Piece {
 
 /// What stands still. A plane is shown so far in m around the middle of what moves.
 pub(super) fn props(plan: &Plan, draw: &Drawn, reach: f64) -> Result<Vec<Prop>, ModelError> {
-    plan.parts.iter().map(|part| prop(part, draw, reach)).collect()
+    let numbers = plan.works.numbers(Some(draw));
+    plan.parts.iter().map(|part| prop(part, &numbers, reach)).collect()
 }
 
-fn prop(part: &Standing, draw: &Drawn, reach: f64) -> Result<Prop, ModelError> {
-    let draw = Some(draw);
-    let (at, turn) = (vector(&part.at, draw) * MM, part.turned(draw));
+fn prop(part: &Standing, numbers: &Numbers<'_>, reach: f64) -> Result<Prop, ModelError> {
+    let (at, turn) = (vector(&part.at, numbers) * MM, part.turned(numbers));
     let form = match &part.form {
         None => Form::Plane { centre: upright(at), normal: upright(turn * DVec3::Z), half: reach },
-        Some(form) => match form.sharp_box(draw) {
+        Some(form) => match form.sharp_box(numbers) {
             Some(edges) => {
                 Form::Block { centre: upright(at), half: 0.5 * edges, orientation: (UPRIGHT * turn).normalize() }
             }
             None => {
-                let made = form.make(draw).map_err(ModelError::new)?;
+                let made = form.make(numbers).map_err(ModelError::new)?;
                 let (vertices, triangles) = mesh(&made.drawn);
                 let place = |vertex: DVec3| upright(at + turn * (vertex + made.centre));
                 Form::Mesh { vertices: vertices.into_iter().map(place).collect(), triangles }

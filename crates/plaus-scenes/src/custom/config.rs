@@ -1,6 +1,7 @@
 //! Scenario keys of worlds that users describe.
 
 use super::amount::{self, Amount};
+use super::driven::Driven;
 use super::forms::{Ball, Plane, Shape, Still};
 use super::laws::LawOf;
 use super::moves::CustomMoves;
@@ -14,8 +15,8 @@ use serde::{Deserialize, Serialize};
 /// in it is said by `[[require]]`.
 ///
 /// Places are in millimetres, x and y level, z up. Any number that a body, a material or a piece of scenery has may be
-/// a law instead, as in `{ normal = [0, 20] }`, or the name of one of the `quantities`, which then is the same wherever
-/// it is named. A law that is written out is drawn for this number alone.
+/// a law instead, as in `{ normal = [0, 20] }`, the name of one of the `quantities`, which then is the same wherever it
+/// is named, or arithmetic: `"0.5 * width + normal(0, 2)"`. A law that is written out is drawn for this number alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
@@ -46,6 +47,9 @@ pub struct Config {
     /// What moves.
     #[schemars(length(min = 1, max = 4096))]
     pub bodies: Vec<Body>,
+    /// What goes its own way by keyframes: a paddle, a tray, a foot.
+    #[schemars(length(max = 4096))]
+    pub driven: Vec<Driven>,
     /// Relative weights of the moves.
     pub weights: Weights<CustomMoves>,
 }
@@ -63,6 +67,7 @@ impl Default for Config {
             quantities: Vec::new(),
             fixed: vec![Fixed {
                 name: "floor".into(),
+                count: None,
                 shape: Still::Plane(Plane::default()),
                 material: String::new(),
                 colour: String::new(),
@@ -71,6 +76,7 @@ impl Default for Config {
             }],
             bodies: vec![Body {
                 name: "ball".into(),
+                count: None,
                 shape: Shape::Ball(Ball { radius_mm: 30.0.into() }),
                 material: String::new(),
                 colour: String::new(),
@@ -81,6 +87,7 @@ impl Default for Config {
                 spin_deg_s: Default::default(),
                 release_s: Amount::default(),
             }],
+            driven: Vec::new(),
             weights: Weights::default(),
         }
     }
@@ -197,7 +204,7 @@ pub struct Pair {
 pub struct Quantity {
     /// Its name.
     pub name: String,
-    /// Its value, in the unit of the keys that name it.
+    /// Its value, in the unit of the keys that name it: a number, a law, or arithmetic with others.
     pub value: Amount<amount::Plain>,
 }
 
@@ -207,6 +214,11 @@ pub struct Quantity {
 pub struct Fixed {
     /// Its name.
     pub name: String,
+    /// How many there are of it: an array. They are called `peg_1`, `peg_2` and so on; in the arithmetic of its numbers
+    /// `i` is 0 for the first, 1 for the next, and `n` is how many there are. Unset: one, called `peg`.
+    #[serde(default)]
+    #[schemars(range(min = 1, max = 4096))]
+    pub count: Option<u32>,
     /// Its shape.
     pub shape: Still,
     /// The name of its material.
@@ -229,6 +241,11 @@ pub struct Fixed {
 pub struct Body {
     /// Its name, for requirements, tables and exports.
     pub name: String,
+    /// How many there are of it: an array. They are called `ball_1`, `ball_2` and so on; in the arithmetic of its
+    /// numbers `i` is 0 for the first, 1 for the next, and `n` is how many there are. Unset: one, called `ball`.
+    #[serde(default)]
+    #[schemars(range(min = 1, max = 4096))]
+    pub count: Option<u32>,
     /// Its shape.
     pub shape: Shape,
     /// The name of its material.

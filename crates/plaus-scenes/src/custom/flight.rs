@@ -84,7 +84,7 @@ impl Work {
     fn world(&mut self, plan: &Plan, draw: &Drawn) -> Result<&Built, WorldError> {
         match self.built.take().filter(|_| plan.is_steady) {
             Some(built) => Ok(self.built.insert(built)),
-            None => Ok(self.built.insert(plan.build(Some(draw))?)),
+            None => Ok(self.built.insert(plan.build(&plan.works.numbers(Some(draw)))?)),
         }
     }
 }
@@ -114,7 +114,7 @@ impl Plan {
     /// What begins inside what, in a draw.
     pub(super) fn overlap(&self, draw: &Drawn, work: &mut Work) -> Result<Option<Overlap>, WorldError> {
         let built = work.world(self, draw)?;
-        let starts = self.starts(Some(draw), &built.shapes);
+        let starts = self.starts(&self.works.numbers(Some(draw)), &built.shapes);
         match built.rigid.state(&starts) {
             Ok(_) => Ok(None),
             Err(error) => overlap(&error, starts.len()).map(Some).ok_or(error),
@@ -129,7 +129,7 @@ pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Ending, 
     let Work { scratch, built: Some(built), last: record } = work else {
         return Err(ModelError::new("a world was made and is not there: a bug"));
     };
-    let starts = plan.starts(Some(draw), &built.shapes);
+    let starts = plan.starts(&plan.works.numbers(Some(draw)), &built.shapes);
     let mut state = match built.rigid.state(&starts) {
         Ok(state) => state,
         Err(error) => {

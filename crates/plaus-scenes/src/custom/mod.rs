@@ -4,16 +4,23 @@
 mod amount;
 mod animate;
 mod config;
+mod driven;
 mod flight;
 mod forms;
+mod formula;
 mod laws;
 mod moves;
+mod names;
 mod plan;
+mod quantities;
+mod range;
 mod solids;
 mod values;
+mod view;
 
 pub use amount::{Amount, Domain, Measure};
 pub use config::{Body, Config, Finish, Fixed, Material, Pair, Quantity};
+pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Last, Overlap, Work};
 pub use forms::{Ball, Capsule, Cone, Cuboid, Cylinder, Hull, Plane, Shape, Still};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
@@ -29,7 +36,7 @@ use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
 use crate::world::{Physical, PlainWorld};
 use flight::fly;
-use plan::Plan;
+use plan::{Moving, Plan};
 use plaus_dist::{LogDensity, LogPotential, Purpose, Seed, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Variables, Vars, vars};
 use values::Slot;
@@ -56,7 +63,7 @@ impl Custom {
     /// or things begin inside each other in every draw that was tried.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let (plan, collector) = Plan::new(config)?;
-        plan.build(None).map_err(|error| ConfigError::new("world.custom", error))?;
+        plan.build(&plan.works.numbers(None)).map_err(|error| ConfigError::new("world.custom", error))?;
         let empty = collector.empty();
         let vars =
             Vars::new(collector.vars).in_groups(collector.groups.into_iter().filter(|g| !g.is_empty()).collect());
@@ -101,7 +108,7 @@ impl Custom {
         let Some(overlap) = first else { return Ok(()) };
         let share = if self.vars.is_empty() { String::new() } else { format!("in all of {TRIES} draws, ") };
         let message = format!("things begin inside each other: {share}{}", self.in_words(&overlap));
-        Err(ConfigError::new(format!("world.custom.bodies[{}].at_mm", overlap.body), message))
+        Err(ConfigError::new(format!("{}.at_mm", self.plan.bodies[overlap.body as usize].key), message))
     }
 
     fn simulated(&self, draw: &Drawn) -> Result<Work, ModelError> {
@@ -179,12 +186,11 @@ impl Variables for Custom {
 impl Goal for Custom {
     fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
         let Ending::Done(done) = &state.outcome else { return None };
-        let shapes = &self.config.bodies;
-        Some(done.class(self.config.distinct_mm / 1e3, |body| matches!(shapes[body].shape, Shape::Ball(_))))
+        Some(done.class(self.config.distinct_mm / 1e3, |body| self.plan.bodies[body].is_ball()))
     }
 }
 
-/// Columns of where a body ends, with their units.
+/// Columns of where a body ends that does not go its own way, with their units.
 const ENDS: [(&str, &str); 4] = [("end_x", "mm"), ("end_y", "mm"), ("end_z", "mm"), ("rest", "s")];
 
 impl Scene for Custom {
@@ -194,15 +200,15 @@ impl Scene for Custom {
 
     /// Where each body ends and when it came to rest, then the variables.
     fn scalars(&self) -> Vec<Scalar> {
-        let of_body = |body: &Body| {
+        let of_body = |body: &Moving| {
             ENDS.map(|(name, unit)| Scalar::new(format!("{}.{name}", body.name), unit, Role::Outcome, None))
         };
-        let ends = self.config.bodies.iter().flat_map(of_body).collect();
+        let ends = self.plan.free().iter().flat_map(of_body).collect();
         columns::scalars(ends, &self.vars)
     }
 
     fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
-        let (ends, variables) = values.split_at_mut(ENDS.len() * self.config.bodies.len());
+        let (ends, variables) = values.split_at_mut(ENDS.len() * self.plan.free().len());
         ends.fill(f64::NAN);
         if let Ending::Done(done) = &state.outcome {
             for (end, last) in ends.chunks_mut(ENDS.len()).zip(&done.bodies) {
@@ -219,7 +225,9 @@ impl Scene for Custom {
             return Err(ModelError::new("nothing was recorded: a bug"));
         };
         let scenery = animate::props(&self.plan, draw, animate::reach(&record.trace))?;
-        Ok(animate::motion(&self.plan, record, built).with_scenery(scenery))
+        let animation = animate::motion(&self.plan, record, built).with_scenery(scenery);
+        let view = view::view(&animation);
+        Ok(animation.with_view(view))
     }
 
     fn motion(&self, draw: &Drawn) -> Result<Animation, ModelError> {
@@ -263,8 +271,9 @@ impl Scene for Custom {
 
     /// Of values in the middle of their laws.
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
-        let built = self.plan.build(None).map_err(ModelError::new)?;
-        let places = self.plan.starts(None, &built.shapes).iter().map(|start| start.position).collect();
+        let numbers = self.plan.works.numbers(None);
+        let built = self.plan.build(&numbers).map_err(ModelError::new)?;
+        let places = self.plan.starts(&numbers, &built.shapes).iter().map(|start| start.position).collect();
         Ok(Some(PlainWorld { world: Physical::Rigid(Box::new(built.rigid)), places }))
     }
 }

@@ -1,8 +1,10 @@
 //! What a scenario describes, with every number as a value: from it the simulator's world of a draw is made.
 
 use super::config::{Body, Config, Fixed, Material};
+use super::driven::{Driven, Way};
+use super::names::{Member, check_name, colour, members};
 use super::solids::{Form, MM, Made};
-use super::values::{Collector, Drawn, Owner, Value, Values, vector};
+use super::values::{Collector, Numbers, Owner, Value, Values, Works, vector};
 use crate::animation::Look;
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
@@ -22,6 +24,7 @@ pub(super) struct Plan {
     substances: Vec<Substance>,
     /// Which two substances, and friction, restitution, resistance to rolling and to spinning where they are said.
     pairs: Vec<([usize; 2], [Option<Value>; 4])>,
+    pub(super) works: Works,
     gravity: f64,
     pub(super) duration: f64,
     pub(super) accuracy: Accuracy,
@@ -33,6 +36,8 @@ pub(super) struct Plan {
 #[derive(Debug, Clone)]
 pub(super) struct Moving {
     pub(super) name: String,
+    /// Its table in the file.
+    pub(super) key: String,
     pub(super) look: Look,
     form: Form,
     substance: usize,
@@ -41,6 +46,8 @@ pub(super) struct Moving {
     velocity: Values,
     spin: Values,
     release: Value,
+    /// Its way, if it goes its own. Those that do come last.
+    pub(super) way: Option<Way>,
 }
 
 /// How something is turned.
@@ -55,6 +62,8 @@ enum Turned {
 #[derive(Debug, Clone)]
 pub(super) struct Standing {
     pub(super) name: String,
+    /// Its table in the file.
+    pub(super) key: String,
     pub(super) look: Look,
     /// `None`: a plane.
     pub(super) form: Option<Form>,
@@ -78,65 +87,39 @@ pub(super) struct Built {
     pub(super) shapes: Vec<Made>,
 }
 
-/// The colour in `#c04030`.
-fn colour(owner: &Owner<'_>, text: &str) -> Result<Option<[u8; 3]>, ConfigError> {
-    if text.is_empty() {
-        return Ok(None);
-    }
-    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii());
-    let part = |k: usize| u8::from_str_radix(digits?.get(2 * k..2 * k + 2)?, 16).ok();
-    match (part(0), part(1), part(2)) {
-        (Some(red), Some(green), Some(blue)) => Ok(Some([red, green, blue])),
-        _ => Err(owner.wrong("colour", format!("{text:?} is no colour: write one like \"#c04030\""))),
-    }
-}
-
-/// Longest name.
-const LONGEST: usize = 40;
-
-/// Refuses names that could not be told apart in requirements, tables and files.
-fn check_name(owner: &Owner<'_>) -> Result<(), ConfigError> {
-    let letter = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    if owner.name.is_empty() || owner.name.len() > LONGEST || !owner.name.chars().all(letter) {
-        let must = format!("a name is from 1 to {LONGEST} letters a–z, A–Z, digits, `_` and `-`");
-        return Err(owner.wrong("name", format!("{:?}: {must}", owner.name)));
-    }
-    Ok(())
-}
-
-/// Refuses a name that another has.
-fn check_unique<'a>(names: &mut BTreeSet<&'a str>, name: &'a str, owner: &Owner<'_>) -> Result<(), ConfigError> {
-    check_name(owner)?;
-    let message = || format!("there is something called {:?} already", owner.name);
-    if names.insert(name) { Ok(()) } else { Err(owner.wrong("name", message())) }
-}
-
 impl Plan {
     /// The plan of a configuration, and its variables.
     pub(super) fn new(config: &Config) -> Result<(Self, Collector), ConfigError> {
-        let mut names = BTreeSet::new();
         for (index, quantity) in config.quantities.iter().enumerate() {
-            check_name(&Owner { name: &quantity.name, key: &format!("world.custom.quantities[{index}]") })?;
+            check_name(&Owner::new(&quantity.name, &format!("world.custom.quantities[{index}]")))?;
         }
         let mut collector = Collector::new(&config.quantities)?;
         let (kinds, substances, pairs) = Self::substances(config, &mut collector)?;
-        let mut parts = Vec::with_capacity(config.fixed.len());
-        for (index, fixed) in config.fixed.iter().enumerate() {
-            let key = format!("world.custom.fixed[{index}]");
-            check_unique(&mut names, &fixed.name, &Owner { name: &fixed.name, key: &key })?;
+        let mut names = BTreeSet::new();
+        let fixed = config.fixed.iter().map(|fixed| (fixed.name.as_str(), fixed.count));
+        let fixed = members("fixed", fixed, &mut names)?;
+        let mut parts = Vec::with_capacity(fixed.len());
+        for member in &fixed {
             collector.begin();
-            parts.push(Standing::new(&mut collector, &key, fixed, &kinds, &substances)?);
+            parts.push(Standing::new(&mut collector, member, &config.fixed[member.entry], &kinds, &substances)?);
         }
-        let mut bodies = Vec::with_capacity(config.bodies.len());
-        for (index, body) in config.bodies.iter().enumerate() {
-            let key = format!("world.custom.bodies[{index}]");
-            check_unique(&mut names, &body.name, &Owner { name: &body.name, key: &key })?;
+        let moving = config.bodies.iter().map(|body| (body.name.as_str(), body.count));
+        let moving = members("bodies", moving, &mut names)?;
+        let mut bodies = Vec::with_capacity(moving.len());
+        for (index, member) in moving.iter().enumerate() {
             collector.begin();
-            bodies.push(Moving::new(&mut collector, &key, (index, body), &kinds, &substances)?);
+            let body = (index, &config.bodies[member.entry]);
+            bodies.push(Moving::new(&mut collector, member, body, &kinds, &substances)?);
+        }
+        let driven = config.driven.iter().map(|driven| (driven.name.as_str(), driven.count));
+        for member in members("driven", driven, &mut names)? {
+            collector.begin();
+            let body = (bodies.len(), &config.driven[member.entry]);
+            bodies.push(Moving::driven(&mut collector, &member, body, &kinds, &substances)?);
         }
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
-        let is_steady = false;
-        let plan = Self { bodies, parts, substances, pairs, gravity, duration, accuracy, is_steady };
+        let (works, is_steady) = (collector.works(), false);
+        let plan = Self { bodies, parts, substances, pairs, works, gravity, duration, accuracy, is_steady };
         plan.check_shapes()?;
         let plan = Self { is_steady: plan.is_steady(), ..plan };
         Ok((plan, collector))
@@ -149,10 +132,10 @@ impl Plan {
     ) -> Result<(Vec<String>, Vec<Substance>, Vec<([usize; 2], [Option<Value>; 4])>), ConfigError> {
         let plain = Material::default();
         let mut kinds = vec![String::new()];
-        let mut substances = vec![Substance::new(collector, &Owner { name: "", key: "" }, &plain)?];
+        let mut substances = vec![Substance::new(collector, &Owner::new("", ""), &plain)?];
         for (index, material) in config.materials.iter().enumerate() {
             let key = format!("world.custom.materials[{index}]");
-            let owner = Owner { name: &material.name, key: &key };
+            let owner = Owner::new(&material.name, &key);
             check_name(&owner)?;
             if kinds.contains(&material.name) {
                 return Err(owner.wrong("name", format!("a second material called {:?}", material.name)));
@@ -165,7 +148,7 @@ impl Plan {
         for (index, pair) in config.pairs.iter().enumerate() {
             let key = format!("world.custom.pairs[{index}]");
             let name = pair.between.join("-");
-            let owner = Owner { name: &name, key: &key };
+            let owner = Owner::new(&name, &key);
             collector.begin();
             let [a, b] = [0, 1].map(|k| substance(&owner, &format!("between[{k}]"), &kinds, &pair.between[k]));
             let two = [a?, b?];
@@ -185,13 +168,19 @@ impl Plan {
         Ok((kinds, substances, pairs))
     }
 
+    /// Bodies that do not go their own way: the first.
+    pub(super) fn free(&self) -> &[Moving] {
+        &self.bodies[..self.bodies.partition_point(|body| body.way.is_none())]
+    }
+
     /// Blames shapes that are none on their keys.
     fn check_shapes(&self) -> Result<(), ConfigError> {
-        let bodies = self.bodies.iter().enumerate().map(|(k, body)| (format!("bodies[{k}]"), Some(&body.form)));
-        let parts = self.parts.iter().enumerate().map(|(k, part)| (format!("fixed[{k}]"), part.form.as_ref()));
+        let numbers = self.works.numbers(None);
+        let bodies = self.bodies.iter().map(|body| (&body.key, Some(&body.form)));
+        let parts = self.parts.iter().map(|part| (&part.key, part.form.as_ref()));
         for (key, form) in bodies.chain(parts) {
-            if let Some(Err(error)) = form.map(|form| form.make(None)) {
-                return Err(ConfigError::new(format!("world.custom.{key}.shape"), error));
+            if let Some(Err(error)) = form.map(|form| form.make(&numbers)) {
+                return Err(ConfigError::new(format!("{key}.shape"), error));
             }
         }
         Ok(())
@@ -202,48 +191,54 @@ impl Plan {
         let substances = self.substances.iter().flat_map(|one| one.contact.iter().chain([&one.density]));
         let places = self.parts.iter().flat_map(|part| part.at.iter().chain(&part.turn));
         said.chain(substances).chain(places).all(|value| value.is_fixed())
-            && self.bodies.iter().all(|body| body.form.is_fixed())
+            && self.bodies.iter().all(|body| body.form.is_fixed() && body.way.as_ref().is_none_or(Way::is_fixed))
             && self.parts.iter().all(|part| part.form.as_ref().is_none_or(Form::is_fixed))
     }
 
-    /// The simulator's world of a draw; without one, of values in the middle of their laws.
-    pub(super) fn build(&self, draw: Option<&Drawn>) -> Result<Built, WorldError> {
-        let shapes = self.bodies.iter().map(|body| body.form.make(draw)).collect::<Result<Vec<_>, _>>()?;
+    /// The simulator's world of a draw.
+    pub(super) fn build(&self, numbers: &Numbers<'_>) -> Result<Built, WorldError> {
+        let shapes = self.bodies.iter().map(|body| body.form.make(numbers)).collect::<Result<Vec<_>, _>>()?;
         let spec = |(body, made): (&Moving, &Made)| {
-            let density = self.substances[body.substance].density.of(draw);
+            let density = self.substances[body.substance].density.of(numbers);
             BodySpec::solid(made.solid.clone(), density, Kind(body.substance as u16))
         };
         let world = RigidWorld {
             bodies: self.bodies.iter().zip(&shapes).map(spec).collect(),
-            parts: self.parts.iter().map(|part| part.make(draw)).collect::<Result<_, _>>()?,
-            laws: self.laws(draw)?,
+            parts: self.parts.iter().map(|part| part.make(numbers)).collect::<Result<_, _>>()?,
+            laws: self.laws(numbers)?,
             gravity: DVec3::new(0.0, 0.0, -self.gravity),
             accuracy: self.accuracy,
             skin: 0.5,
             sink: f64::NEG_INFINITY,
             duration: self.duration,
         };
-        Ok(Built { rigid: Rigid::new(world)?, shapes })
+        let mut rigid = Rigid::new(world)?;
+        for (index, (body, made)) in self.bodies.iter().zip(&shapes).enumerate() {
+            if let Some(way) = &body.way {
+                rigid.drive(index, &way.keyframes(numbers, made))?;
+            }
+        }
+        Ok(Built { rigid, shapes })
     }
 
     /// The mass of a body, in kg.
-    pub(super) fn mass(&self, body: usize, draw: Option<&Drawn>, made: &Made) -> f64 {
-        let density = self.substances[self.bodies[body].substance].density.of(draw);
+    pub(super) fn mass(&self, body: usize, numbers: &Numbers<'_>, made: &Made) -> f64 {
+        let density = self.substances[self.bodies[body].substance].density.of(numbers);
         made.solid.mass_properties(density).mass
     }
 
-    fn laws(&self, draw: Option<&Drawn>) -> Result<Laws, WorldError> {
+    fn laws(&self, numbers: &Numbers<'_>) -> Result<Laws, WorldError> {
         let count = self.substances.len();
         let mut laws = Laws::new(count as u16, Law::new(0.0, 0.0))?;
         let contact: Vec<[f64; 4]> =
-            self.substances.iter().map(|one| one.contact.map(|value| value.of(draw))).collect();
+            self.substances.iter().map(|one| one.contact.map(|value| value.of(numbers))).collect();
         let mut set = |a: usize, b: usize, said: &[Option<Value>; 4]| {
             let follows = |k: usize| {
                 let (one, other) = (contact[a][k], contact[b][k]);
                 if k < 2 { (one * other).sqrt() } else { 0.5 * (one + other) }
             };
             let [friction, restitution, rolling, spinning] =
-                [0, 1, 2, 3].map(|k| said[k].map_or_else(|| follows(k), |value| value.of(draw)));
+                [0, 1, 2, 3].map(|k| said[k].map_or_else(|| follows(k), |value| value.of(numbers)));
             let law = Law::new(friction, restitution).with_resistance(rolling, spinning);
             laws.set(Kind(a as u16), Kind(b as u16), law)
         };
@@ -259,18 +254,18 @@ impl Plan {
     }
 
     /// How the bodies start.
-    pub(super) fn starts(&self, draw: Option<&Drawn>, shapes: &[Made]) -> Vec<Start> {
+    pub(super) fn starts(&self, numbers: &Numbers<'_>, shapes: &[Made]) -> Vec<Start> {
         let start = |(body, made): (&Moving, &Made)| {
             let turn = match &body.turn {
-                Turned::Angles(angles) => by_angles(angles.map(|angle| angle.of(draw))),
-                Turned::Any(index) => draw.map_or(DQuat::IDENTITY, |draw| draw.turns[*index]),
+                Turned::Angles(angles) => by_angles(angles.map(|angle| angle.of(numbers))),
+                Turned::Any(index) => numbers.turn(*index),
             };
             Start {
-                position: vector(&body.at, draw) * MM + turn * made.centre,
+                position: vector(&body.at, numbers) * MM + turn * made.centre,
                 orientation: (turn * made.axes).normalize(),
-                velocity: vector(&body.velocity, draw),
-                spin: vector(&body.spin, draw) * 1.0_f64.to_radians(),
-                time: body.release.of(draw),
+                velocity: vector(&body.velocity, numbers),
+                spin: vector(&body.spin, numbers) * 1.0_f64.to_radians(),
+                time: body.release.of(numbers),
             }
         };
         self.bodies.iter().zip(shapes).map(start).collect()
@@ -313,17 +308,18 @@ impl Substance {
 impl Standing {
     fn new(
         collector: &mut Collector,
-        key: &str,
+        member: &Member,
         fixed: &Fixed,
         kinds: &[String],
         substances: &[Substance],
     ) -> Result<Self, ConfigError> {
-        let owner = Owner { name: &fixed.name, key };
+        let owner = member.owner();
         let substance = substance(&owner, "material", kinds, &fixed.material)?;
         let look = substances[substance].look(colour(&owner, &fixed.colour)?, Look::STONE);
         let solid = fixed.shape.solid();
         Ok(Self {
-            name: fixed.name.clone(),
+            name: owner.name.to_owned(),
+            key: member.key.clone(),
             look,
             form: solid.map(|solid| Form::new(collector, &owner, &solid)).transpose()?,
             substance,
@@ -333,18 +329,18 @@ impl Standing {
     }
 
     /// How it is turned.
-    pub(super) fn turned(&self, draw: Option<&Drawn>) -> DQuat {
-        by_angles(self.turn.map(|angle| angle.of(draw)))
+    pub(super) fn turned(&self, numbers: &Numbers<'_>) -> DQuat {
+        by_angles(self.turn.map(|angle| angle.of(numbers)))
     }
 
-    fn make(&self, draw: Option<&Drawn>) -> Result<Part, WorldError> {
-        let (at, turn, material) = (vector(&self.at, draw) * MM, self.turned(draw), Kind(self.substance as u16));
+    fn make(&self, numbers: &Numbers<'_>) -> Result<Part, WorldError> {
+        let (at, turn, material) = (vector(&self.at, numbers) * MM, self.turned(numbers), Kind(self.substance as u16));
         let Some(form) = &self.form else { return Ok(Part::Plane(Plane::new(at, turn * DVec3::Z, material)?)) };
-        if let Some(edges) = form.sharp_box(draw).filter(|_| turn == DQuat::IDENTITY) {
+        if let Some(edges) = form.sharp_box(numbers).filter(|_| turn == DQuat::IDENTITY) {
             let bounds = Aabb { min: at - 0.5 * edges, max: at + 0.5 * edges };
             return Ok(Part::Block { bounds, material, stretches: Vec::new() });
         }
-        let made = form.make(draw)?;
+        let made = form.make(numbers)?;
         Ok(Part::Solid(Box::new(SolidPart {
             at: at + turn * made.centre,
             turn: (turn * made.axes).normalize(),
@@ -357,12 +353,12 @@ impl Standing {
 impl Moving {
     fn new(
         collector: &mut Collector,
-        key: &str,
+        member: &Member,
         (index, body): (usize, &Body),
         kinds: &[String],
         substances: &[Substance],
     ) -> Result<Self, ConfigError> {
-        let owner = Owner { name: &body.name, key };
+        let owner = member.owner();
         let substance = substance(&owner, "material", kinds, &body.material)?;
         let look = substances[substance].look(colour(&owner, &body.colour)?, Look::nth(index));
         let at = collector.three(&owner, "at_mm", ["x", "y", "z"], &body.at_mm)?;
@@ -376,7 +372,8 @@ impl Moving {
             Turned::Angles(angles)
         };
         Ok(Self {
-            name: body.name.clone(),
+            name: owner.name.to_owned(),
+            key: member.key.clone(),
             look,
             form: Form::new(collector, &owner, &body.shape)?,
             substance,
@@ -385,6 +382,31 @@ impl Moving {
             velocity: collector.three(&owner, "velocity_m_s", ["vx", "vy", "vz"], &body.velocity_m_s)?,
             spin: collector.three(&owner, "spin_deg_s", ["wx", "wy", "wz"], &body.spin_deg_s)?,
             release: collector.number(&owner, "release_s", "release", &body.release_s)?,
+            way: None,
         })
+    }
+
+    fn driven(
+        collector: &mut Collector,
+        member: &Member,
+        (index, body): (usize, &Driven),
+        kinds: &[String],
+        substances: &[Substance],
+    ) -> Result<Self, ConfigError> {
+        let owner = member.owner();
+        let substance = substance(&owner, "material", kinds, &body.material)?;
+        let look = substances[substance].look(colour(&owner, &body.colour)?, Look::nth(index));
+        let form = Form::new(collector, &owner, &body.shape)?;
+        let way = Way::new(collector, &owner, body)?;
+        let (at, turn) = way.first();
+        let [velocity, spin] = [[Value::Fixed(0.0); 3]; 2];
+        let (name, key, turn) = (owner.name.to_owned(), member.key.clone(), Turned::Angles(turn));
+        let release = Value::Fixed(0.0);
+        Ok(Self { name, key, look, form, substance, at, turn, velocity, spin, release, way: Some(way) })
+    }
+
+    /// Whether no axis of it is told from another.
+    pub(super) fn is_ball(&self) -> bool {
+        matches!(self.form, Form::Ball(_))
     }
 }

@@ -1,7 +1,7 @@
 //! Shapes of a draw: for the simulator, and as they are drawn.
 
 use super::forms::Shape;
-use super::values::{Collector, Drawn, Owner, Value, Values, vector};
+use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::animation;
 use crate::scene::ConfigError;
 use glam::{DQuat, DVec3};
@@ -87,23 +87,23 @@ impl Form {
     }
 
     /// Edges of a box, and whether it is sharp.
-    pub(super) fn sharp_box(&self, draw: Option<&Drawn>) -> Option<DVec3> {
+    pub(super) fn sharp_box(&self, numbers: &Numbers<'_>) -> Option<DVec3> {
         match self {
-            Self::Box(size, rounding) if rounding.of(draw) == 0.0 => Some(vector(size, draw) * MM),
+            Self::Box(size, rounding) if rounding.of(numbers) == 0.0 => Some(vector(size, numbers) * MM),
             _ => None,
         }
     }
 
     /// The shape of a draw.
-    pub(super) fn make(&self, draw: Option<&Drawn>) -> Result<Made, WorldError> {
-        let metres = |value: &Value| value.of(draw) * MM;
+    pub(super) fn make(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {
+        let metres = |value: &Value| value.of(numbers) * MM;
         match self {
             Self::Ball(radius) => {
                 let radius = metres(radius);
                 Ok(Made::plain(Solid::Ball(radius), animation::Shape::ball(radius)))
             }
             Self::Box(size, rounding) => {
-                let cuboid = Cuboid::new(vector(size, draw) * MM, metres(rounding))?;
+                let cuboid = Cuboid::new(vector(size, numbers) * MM, metres(rounding))?;
                 let drawn = animation::Shape::Cuboid { half: cuboid.half(), pips: None };
                 Ok(Made::plain(Solid::Cuboid(cuboid), drawn))
             }
@@ -111,7 +111,7 @@ impl Form {
             Self::Cone(radius, height) => Made::round(Frustum::cone(metres(radius), metres(height))?),
             Self::Capsule(radius, length) => Made::round(Frustum::capsule(metres(radius), metres(length))?),
             Self::Hull(points, rounding) => {
-                let points: Vec<DVec3> = points.iter().map(|point| vector(point, draw) * MM).collect();
+                let points: Vec<DVec3> = points.iter().map(|point| vector(point, numbers) * MM).collect();
                 Made::hull(ConvexHull::new(&points, metres(rounding))?)
             }
         }
@@ -225,7 +225,7 @@ mod tests {
     /// What is drawn has the volume of what is simulated, but for the corners of circles.
     #[test]
     fn what_is_drawn_is_what_is_simulated() {
-        let fixed = Value::Fixed;
+        let (fixed, works) = (Value::Fixed, Collector::default().works());
         let points = [[0.0, 0.0, 0.0], [30.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 50.0]];
         for form in [
             Form::Ball(fixed(20.0)),
@@ -235,7 +235,7 @@ mod tests {
             Form::Capsule(fixed(10.0), fixed(40.0)),
             Form::Hull(points.map(|point| point.map(fixed)).to_vec(), fixed(0.0)),
         ] {
-            let made = form.make(None).unwrap();
+            let made = form.make(&works.numbers(None)).unwrap();
             let drawn = volume(&mesh(&made.drawn));
             let solid = made.solid.mass_properties(1.0).mass;
             // A polygon of 48 corners has 0.3 % less area than its circle, an arc of 8 chords 0.6 % less.

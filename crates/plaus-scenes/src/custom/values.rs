@@ -2,12 +2,18 @@
 
 use super::amount::{Amount, Domain, Measure};
 use super::config::Quantity;
+use super::formula::Formula;
+use super::laws::LawOf;
+use super::quantities;
+use super::range::Range;
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use glam::{DQuat, DVec3};
 use plaus_mcmc::{Law, Var};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// The values of all random variables.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -39,8 +45,10 @@ pub(super) enum Slot {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Value {
     Fixed(f64),
-    /// The number of the draw with this index; and a value in the middle of its law.
-    Drawn(usize, f64),
+    /// The number of the draw with this index.
+    Drawn(usize),
+    /// What the formula with this index comes to.
+    Worked(usize),
 }
 
 impl Value {
@@ -48,11 +56,11 @@ impl Value {
         matches!(self, Self::Fixed(_))
     }
 
-    /// The number; without a draw one in the middle of its law.
-    pub(super) fn of(self, draw: Option<&Drawn>) -> f64 {
+    pub(super) fn of(self, numbers: &Numbers<'_>) -> f64 {
         match self {
             Self::Fixed(value) => value,
-            Self::Drawn(index, centre) => draw.map_or(centre, |draw| draw.numbers[index]),
+            Self::Drawn(index) => numbers.drawn[index],
+            Self::Worked(index) => numbers.worked[index],
         }
     }
 }
@@ -61,8 +69,53 @@ impl Value {
 pub(super) type Values = [Value; 3];
 
 /// Three numbers as a vector.
-pub(super) fn vector(values: &Values, draw: Option<&Drawn>) -> DVec3 {
-    DVec3::from_array(values.map(|value| value.of(draw)))
+pub(super) fn vector(values: &Values, numbers: &Numbers<'_>) -> DVec3 {
+    DVec3::from_array(values.map(|value| value.of(numbers)))
+}
+
+/// All numbers of a draw: those that were drawn, and what follows from them.
+#[derive(Debug)]
+pub(super) struct Numbers<'a> {
+    drawn: &'a [f64],
+    worked: Vec<f64>,
+    turns: &'a [DQuat],
+}
+
+impl Numbers<'_> {
+    /// An orientation that is random as a whole.
+    pub(super) fn turn(&self, index: usize) -> DQuat {
+        self.turns[index]
+    }
+}
+
+/// A formula with what its names and laws stand for.
+#[derive(Debug, Clone)]
+struct Step {
+    formula: Arc<Formula>,
+    values: Vec<Value>,
+}
+
+/// From draws to numbers.
+#[derive(Debug, Clone)]
+pub(super) struct Works {
+    /// Each needs only those before it.
+    steps: Vec<Step>,
+    /// Values in the middle of their laws.
+    middle: Drawn,
+}
+
+impl Works {
+    /// The numbers of a draw; without one, of values in the middle of their laws.
+    pub(super) fn numbers<'a>(&'a self, draw: Option<&'a Drawn>) -> Numbers<'a> {
+        let draw = draw.unwrap_or(&self.middle);
+        let mut numbers =
+            Numbers { drawn: &draw.numbers, worked: Vec::with_capacity(self.steps.len()), turns: &draw.turns };
+        for step in &self.steps {
+            let values: Vec<Range> = step.values.iter().map(|value| Range::point(value.of(&numbers))).collect();
+            numbers.worked.push(step.formula.of(&values).0);
+        }
+        numbers
+    }
 }
 
 /// Collects variables.
@@ -72,8 +125,16 @@ pub(super) struct Collector {
     pub(super) slots: Vec<Slot>,
     /// Indices of the variables of each body, material and the like.
     pub(super) groups: Vec<Vec<usize>>,
-    counts: [usize; 2],
-    quantities: BTreeMap<String, (Value, [f64; 2])>,
+    /// What each drawn number may be, and a value in the middle of its law.
+    drawn: Vec<(Range, f64)>,
+    /// Orientations.
+    turns: usize,
+    steps: Vec<Step>,
+    /// What each may come to.
+    worked: Vec<Range>,
+    quantities: BTreeMap<String, Value>,
+    /// Formulas that were read, by their texts: those of an array are read once.
+    read: BTreeMap<String, Arc<Formula>>,
 }
 
 /// What is named, for its variables: `ball`, at the key `world.custom.bodies[0]`.
@@ -81,9 +142,15 @@ pub(super) struct Collector {
 pub(super) struct Owner<'a> {
     pub(super) name: &'a str,
     pub(super) key: &'a str,
+    /// Of an array: which it is, from 0, and how many there are.
+    pub(super) nth: Option<[u32; 2]>,
 }
 
-impl Owner<'_> {
+impl<'a> Owner<'a> {
+    pub(super) fn new(name: &'a str, key: &'a str) -> Self {
+        Self { name, key, nth: None }
+    }
+
     pub(super) fn wrong(&self, key: &str, message: impl std::fmt::Display) -> ConfigError {
         ConfigError::new(format!("{}.{key}", self.key), message)
     }
@@ -93,20 +160,24 @@ impl Collector {
     /// With these quantities, each a group of its own where it is uncertain.
     pub(super) fn new(quantities: &[Quantity]) -> Result<Self, ConfigError> {
         let mut collector = Self::default();
-        for (index, quantity) in quantities.iter().enumerate() {
+        for index in quantities::in_order(quantities, &mut collector)? {
+            let quantity = &quantities[index];
             let key = format!("world.custom.quantities[{index}]");
-            let owner = Owner { name: &quantity.name, key: &key };
-            if collector.quantities.contains_key(&quantity.name) {
-                return Err(owner.wrong("name", format!("a second quantity called {:?}", quantity.name)));
-            }
-            if let Amount::Named(_) = quantity.value {
-                return Err(owner.wrong("value", "a quantity is a number or a law, not the name of another"));
-            }
             collector.begin();
-            let value = collector.value(&owner, "value", "", &quantity.value)?;
+            let value = collector.number(&Owner::new(&quantity.name, &key), "value", "", &quantity.value)?;
             collector.quantities.insert(quantity.name.clone(), value);
         }
         Ok(collector)
+    }
+
+    /// The formula of a text.
+    pub(super) fn read(&mut self, text: &str) -> Result<Arc<Formula>, String> {
+        if let Some(known) = self.read.get(text) {
+            return Ok(Arc::clone(known));
+        }
+        let formula = Arc::new(Formula::read(text)?);
+        self.read.insert(text.to_owned(), Arc::clone(&formula));
+        Ok(formula)
     }
 
     /// Begins a new group.
@@ -135,15 +206,38 @@ impl Collector {
         short: &str,
         amount: &Amount<M>,
     ) -> Result<Value, ConfigError> {
-        let (value, support) = self.value(owner, key, short, amount)?;
-        if M::DOMAIN.holds(support) {
+        let value = self.value(owner, key, short, amount)?;
+        let Range(low, high) = self.range(value);
+        let is_worked_out = matches!((amount, value), (Amount::Said(_), Value::Fixed(_)));
+        if is_worked_out && !(M::LEAST..=M::MOST).contains(&low) {
+            let [least, most] = [M::LEAST, M::MOST];
+            return Err(owner.wrong(key, format!("comes to {low}: it must be from {least} to {most}")));
+        }
+        if M::DOMAIN.holds([low, high]) {
             return Ok(value);
         }
-        let [low, high] = support;
-        let bounded = if let Amount::Law(law, _) = amount { law.bounded() } else { "that quantity needs other ends" };
+        let bounded = match amount {
+            Amount::Law(law, _) => law.bounded(),
+            _ => "quantities with other ends, or max(…) and min(…), keep it there",
+        };
         let must = M::DOMAIN.words();
         let message = format!("its values go from {low} to {high}, and must be {must}: {bounded}");
         Err(owner.wrong(key, message))
+    }
+
+    /// Between which ends a value is.
+    pub(super) fn ends(&self, value: Value) -> (f64, f64) {
+        let Range(low, high) = self.range(value);
+        (low, high)
+    }
+
+    /// What a value may be.
+    fn range(&self, value: Value) -> Range {
+        match value {
+            Value::Fixed(value) => Range::point(value),
+            Value::Drawn(index) => self.drawn[index].0,
+            Value::Worked(index) => self.worked[index],
+        }
     }
 
     /// Three numbers: coordinates, edges, angles.
@@ -167,42 +261,99 @@ impl Collector {
         key: &str,
         short: &str,
         amount: &Amount<M>,
-    ) -> Result<(Value, [f64; 2]), ConfigError> {
+    ) -> Result<Value, ConfigError> {
+        let wrong = |message: String| owner.wrong(key, message);
         match amount {
-            Amount::Fixed(value) => Ok((Value::Fixed(*value), [*value; 2])),
-            Amount::Named(name) => self.quantities.get(name).copied().ok_or_else(|| {
-                let known: Vec<&str> = self.quantities.keys().map(String::as_str).collect();
-                let near = nearest(name, known.iter().copied());
-                let near = near.map(|near| format!("did you mean {near:?}? ")).unwrap_or_default();
-                let there =
-                    if known.is_empty() { "there are none".into() } else { format!("there are {}", known.join(", ")) };
-                owner.wrong(key, format!("there is no quantity {name:?}; {near}{there}"))
-            }),
+            Amount::Fixed(value) => Ok(Value::Fixed(*value)),
+            Amount::Said(text) => match self.quantities.get(text) {
+                Some(value) => Ok(*value),
+                None => self.worked(owner, short, text).map_err(wrong),
+            },
             Amount::Law(law, _) => {
-                let (made, support) = law.law(M::DOMAIN).map_err(|message| owner.wrong(key, message))?;
                 let name = if short.is_empty() { owner.name.to_owned() } else { format!("{}.{short}", owner.name) };
-                let index = self.counts[0];
-                self.counts[0] += 1;
-                self.add(Var::new(name, M::UNIT, made).column(1.0), Slot::Number(index));
-                let centre = match M::DOMAIN {
-                    Domain::Any | Domain::Turn => law.centre(),
-                    Domain::NotNegative | Domain::Share => law.centre().max(0.0),
-                };
-                Ok((Value::Drawn(index, centre), support))
+                self.drawn(law, name, M::UNIT, M::DOMAIN).map_err(wrong)
             }
         }
     }
 
+    /// A new variable.
+    fn drawn(&mut self, law: &LawOf, name: String, unit: &'static str, domain: Domain) -> Result<Value, String> {
+        let (made, [low, high]) = law.law(domain)?;
+        let index = self.drawn.len();
+        self.add(Var::new(name, unit, made).column(1.0), Slot::Number(index));
+        let centre = match domain {
+            Domain::Any | Domain::Turn => law.centre(),
+            Domain::NotNegative | Domain::Share => law.centre().max(0.0),
+        };
+        self.drawn.push((Range(low, high), centre));
+        Ok(Value::Drawn(index))
+    }
+
+    /// What a formula comes to. Each of its laws is a new variable.
+    fn worked(&mut self, owner: &Owner<'_>, short: &str, text: &str) -> Result<Value, String> {
+        let formula = self.read(text)?;
+        let mut values = Vec::with_capacity(formula.names.len() + formula.laws());
+        for name in &formula.names {
+            values.push(self.named(owner, name)?);
+        }
+        let ranges: Vec<Range> = values.iter().map(|value| self.range(*value)).collect();
+        for place in 0..formula.laws() {
+            let law = formula.law(place, &ranges)?;
+            let which = if place == 0 { String::new() } else { format!("_{}", place + 1) };
+            let dot = if short.is_empty() { "" } else { "." };
+            let name = format!("{}{dot}{short}.law{which}", owner.name);
+            values.push(self.drawn(&law, name, "", Domain::Any)?);
+        }
+        let ranges: Vec<Range> = values.iter().map(|value| self.range(*value)).collect();
+        let range = formula.of(&ranges);
+        if !range.is_number() {
+            return Err("may come to no number: it divides by what may be 0, or takes a root or power of what may be \
+                        below 0"
+                .into());
+        }
+        if values.iter().all(|value| value.is_fixed()) {
+            return Ok(Value::Fixed(range.0));
+        }
+        self.steps.push(Step { formula, values });
+        self.worked.push(range);
+        Ok(Value::Worked(self.steps.len() - 1))
+    }
+
+    /// What a name in a formula means.
+    fn named(&self, owner: &Owner<'_>, name: &str) -> Result<Value, String> {
+        if let Some(value) = self.quantities.get(name) {
+            return Ok(*value);
+        }
+        match (name, owner.nth) {
+            ("pi", _) => return Ok(Value::Fixed(PI)),
+            ("i", Some([nth, _])) => return Ok(Value::Fixed(f64::from(nth))),
+            ("n", Some([_, count])) => return Ok(Value::Fixed(f64::from(count))),
+            ("i" | "n", None) => return Err(format!("{name:?} counts in arrays: it needs a `count` in this table")),
+            _ => {}
+        }
+        let known: Vec<&str> = self.quantities.keys().map(String::as_str).collect();
+        let near = nearest(name, known.iter().copied());
+        let near = near.map(|near| format!("did you mean {near:?}? ")).unwrap_or_default();
+        let there = if known.is_empty() { "there are none".into() } else { format!("there are {}", known.join(", ")) };
+        Err(format!("there is no quantity {name:?}; {near}{there}"))
+    }
+
     /// An orientation that is random as a whole: its place among those of the draw.
     pub(super) fn turn(&mut self, owner: &Owner<'_>) -> usize {
-        let index = self.counts[1];
-        self.counts[1] += 1;
+        let index = self.turns;
+        self.turns += 1;
         self.add(Var::new(format!("{}.turn", owner.name), "", Law::Own), Slot::Turn(index));
         index
     }
 
     /// A draw with places for all values.
     pub(super) fn empty(&self) -> Drawn {
-        Drawn { numbers: vec![0.0; self.counts[0]], turns: vec![DQuat::IDENTITY; self.counts[1]] }
+        Drawn { numbers: vec![0.0; self.drawn.len()], turns: vec![DQuat::IDENTITY; self.turns] }
+    }
+
+    /// The way from draws to numbers.
+    pub(super) fn works(&self) -> Works {
+        let numbers = self.drawn.iter().map(|(_, centre)| *centre).collect();
+        Works { steps: self.steps.clone(), middle: Drawn { numbers, ..self.empty() } }
     }
 }

@@ -1,0 +1,140 @@
+//! Bodies that go their own way by keyframes: a paddle, a tray, a foot.
+
+use super::amount::{self, Amount};
+use super::forms::Shape;
+use super::solids::{MM, Made};
+use super::values::{Collector, Numbers, Owner, Value, Values, vector};
+use crate::scene::ConfigError;
+use crate::turns::by_angles;
+use glam::DQuat;
+use plaus_sim::rigid::{Between, Key, Keyframes, Track};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::ops::{Add, Mul, Sub};
+
+/// A body that goes its own way, whatever it meets: what it hits is moved, and it goes on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Driven {
+    /// Its name, for requirements, tables and exports.
+    pub name: String,
+    /// How many there are of it: an array, as of bodies. Unset: one.
+    #[serde(default)]
+    #[schemars(range(min = 1, max = 4096))]
+    pub count: Option<u32>,
+    /// Its shape.
+    pub shape: Shape,
+    /// The name of its material.
+    #[serde(default)]
+    pub material: String,
+    /// Colour as on the web, `#c04030`. Unset: that of its material.
+    #[serde(default)]
+    pub colour: String,
+    /// How it goes from key to key.
+    #[serde(default)]
+    pub between: Going,
+    /// Where it is when, in the order of time. Before the first key and after the last it stands still.
+    #[schemars(length(min = 1, max = 10_000))]
+    pub keys: Vec<At>,
+}
+
+/// Where a body is at a time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct At {
+    /// When. It must come after the key before, whatever is uncertain about both.
+    pub at_s: Amount<amount::Moment>,
+    /// Where its middle is; of a hull the origin of its points.
+    pub at_mm: [Amount<amount::Place>; 3],
+    /// How it is turned: about the world's x axis, then about y, then about z.
+    #[serde(default)]
+    pub turn_deg: [Amount<amount::Angle>; 3],
+}
+
+/// How something goes from key to key.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Going {
+    /// It stays, and is at the next key at once. The jump itself hits nothing.
+    Step,
+    /// Its centre of gravity goes straight, at a steady speed, and it turns the shorter way.
+    #[default]
+    Linear,
+    /// In a curve without corners that begins and ends slowly: at a key it has the mean velocity from the key before to
+    /// the key after.
+    Smooth,
+}
+
+/// A way with its numbers as values.
+#[derive(Debug, Clone)]
+pub(super) struct Way {
+    between: Between,
+    keys: Vec<(Value, Values, Values)>,
+}
+
+impl Way {
+    pub(super) fn new(collector: &mut Collector, owner: &Owner<'_>, driven: &Driven) -> Result<Self, ConfigError> {
+        let mut keys = Vec::with_capacity(driven.keys.len());
+        let mut before = f64::NEG_INFINITY;
+        for (index, key) in driven.keys.iter().enumerate() {
+            let names = ["at_s", "at_mm", "turn_deg"].map(|name| format!("keys[{index}].{name}"));
+            let short = |axis: &str| format!("key_{}_{axis}", index + 1);
+            let [x, y, z] = ["x", "y", "z"].map(short);
+            let [turn_x, turn_y, turn_z] = ["turn_x", "turn_y", "turn_z"].map(short);
+            let time = collector.number(owner, &names[0], &short("at"), &key.at_s)?;
+            let (early, late) = collector.ends(time);
+            if early <= before {
+                let message = format!("a key may come at {early} s, and the one before it at {before} s");
+                return Err(owner.wrong(&names[0], message));
+            }
+            before = late;
+            let place = collector.three(owner, &names[1], [&x, &y, &z], &key.at_mm)?;
+            keys.push((time, place, collector.three(owner, &names[2], [&turn_x, &turn_y, &turn_z], &key.turn_deg)?));
+        }
+        let between = match driven.between {
+            Going::Step => Between::Step,
+            Going::Linear => Between::Linear,
+            Going::Smooth => Between::Cubic,
+        };
+        Ok(Self { between, keys })
+    }
+
+    /// Whether no draw changes it.
+    pub(super) fn is_fixed(&self) -> bool {
+        let fixed = |values: &Values| values.iter().all(|value| value.is_fixed());
+        self.keys.iter().all(|(time, place, turn)| time.is_fixed() && fixed(place) && fixed(turn))
+    }
+
+    /// Where it is first.
+    pub(super) fn first(&self) -> (Values, Values) {
+        self.keys.first().map_or(([Value::Fixed(0.0); 3], [Value::Fixed(0.0); 3]), |key| (key.1, key.2))
+    }
+
+    /// The way of a draw, of a body of this shape.
+    pub(super) fn keyframes(&self, numbers: &Numbers<'_>, made: &Made) -> Keyframes {
+        let (mut places, mut turns) = (Vec::new(), Vec::new());
+        let mut last = DQuat::IDENTITY;
+        for (time, place, turn) in &self.keys {
+            let (time, turn) = (time.of(numbers), by_angles(turn.map(|angle| angle.of(numbers))));
+            places.push((time, vector(place, numbers) * MM + turn * made.centre));
+            // Of the two quaternions of a rotation that which is nearer to the one before.
+            let turn = (turn * made.axes).normalize();
+            last = if turn.dot(last) < 0.0 { -turn } else { turn };
+            turns.push((time, last));
+        }
+        Keyframes { position: track(self.between, &places), rotation: track(self.between, &turns) }
+    }
+}
+
+/// A track through values at times. At a key it has the mean rate from the key before to the one after, at the ends 0.
+fn track<T>(between: Between, values: &[(f64, T)]) -> Track<T>
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
+{
+    let key = |(index, &(time, value)): (usize, &(f64, T))| {
+        let around = index.checked_sub(1).and_then(|before| values.get(before)).zip(values.get(index + 1));
+        let slope = around.map_or(value * 0.0, |(before, after)| (after.1 - before.1) * (1.0 / (after.0 - before.0)));
+        Key { time, value, slopes: [slope; 2] }
+    };
+    Track { between, keys: values.iter().enumerate().map(key).collect() }
+}

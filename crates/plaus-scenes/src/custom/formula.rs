@@ -1,0 +1,288 @@
+//! Arithmetic in scenarios: `"30 * i + normal(0, 2)"`.
+//!
+//! The text is read by `syn`, as an expression of Rust; of those only numbers, names, `+ - * / %`, brackets and the
+//! functions below mean something here. Nothing is ever run: what was read is a tree of numbers.
+
+use super::laws::{Factor, LawOf, Several, Truncated};
+use super::range::Range;
+use crate::scenario::nearest;
+use plaus_dist::math;
+use syn::{BinOp, Expr, Lit, UnOp};
+
+/// Most characters of a formula, and most brackets and signs in one another: reading goes as deep as they do.
+const LONGEST: usize = 400;
+const DEEPEST: usize = 32;
+
+/// What may stand in one.
+const OTHER: &str = "arithmetic is of numbers, names, + - * / %, brackets and functions";
+
+/// What functions there are, with how many numbers each takes.
+const FUNCTIONS: &[(&str, usize, Function)] = &[
+    ("abs", 1, Function::One(Range::abs)),
+    ("sqrt", 1, Function::One(Range::sqrt)),
+    ("floor", 1, Function::One(|a| a.rising(f64::floor))),
+    ("exp", 1, Function::One(|a| a.rising(math::exp))),
+    ("sin", 1, Function::One(|a| a.wave(math::sin))),
+    ("cos", 1, Function::One(|a| a.wave(math::cos))),
+    ("min", 2, Function::Two(Range::min)),
+    ("max", 2, Function::Two(Range::max)),
+    ("pow", 2, Function::Two(Range::pow)),
+];
+
+/// What laws can be drawn from within a formula, with how many numbers each takes; a choice takes any.
+const LAWS: &[(&str, usize)] =
+    &[("uniform", 2), ("normal", 2), ("truncated", 4), ("log_normal", 2), ("triangular", 3), ("choice", 0)];
+
+#[derive(Debug, Clone, Copy)]
+enum Function {
+    One(fn(Range) -> Range),
+    Two(fn(Range, Range) -> Range),
+}
+
+#[derive(Debug, Clone)]
+enum Node {
+    Number(f64),
+    /// The value of this place: of a name, or of a law.
+    Value(usize),
+    One(fn(Range) -> Range, Box<Node>),
+    Two(fn(Range, Range) -> Range, Box<[Node; 2]>),
+}
+
+/// A formula that was read.
+#[derive(Debug)]
+pub(super) struct Formula {
+    root: Node,
+    /// Names in it, each once. Their values come first, those of its laws after them.
+    pub(super) names: Vec<String>,
+    laws: Vec<(&'static str, Vec<Node>)>,
+}
+
+impl Formula {
+    /// Reads a formula.
+    ///
+    /// # Errors
+    /// What is wrong with it, in words.
+    pub(super) fn read(text: &str) -> Result<Self, String> {
+        if text.chars().count() > LONGEST {
+            return Err(format!("a formula has at most {LONGEST} characters"));
+        }
+        let (mut depth, mut signs, mut deepest) = (0_usize, 0_usize, 0_usize);
+        for c in text.chars().filter(|c| !c.is_whitespace()) {
+            signs = if c == '-' { signs + 1 } else { 0 };
+            depth = if c == '(' { depth + 1 } else { depth.saturating_sub(usize::from(c == ')')) };
+            deepest = deepest.max(depth + signs);
+        }
+        if deepest > DEEPEST {
+            return Err(format!("nested too deep: at most {DEEPEST} brackets in one another"));
+        }
+        let read = syn::parse_str::<Expr>(text).map_err(|error| {
+            let hint = match error.to_string() {
+                _ if text.trim().is_empty() => "it is empty".to_owned(),
+                // What `syn` would read if all of Rust were asked of it.
+                hint if hint.contains("syn's") => OTHER.to_owned(),
+                hint => hint,
+            };
+            format!("{text:?} cannot be read as arithmetic: {hint}")
+        })?;
+        let mut formula = Self { root: Node::Number(0.0), names: Vec::new(), laws: Vec::new() };
+        formula.gather_names(&read);
+        formula.root = formula.node(&read)?;
+        Ok(formula)
+    }
+
+    /// How many laws are drawn from.
+    pub(super) fn laws(&self) -> usize {
+        self.laws.len()
+    }
+
+    /// The law of this place, for what its names mean.
+    ///
+    /// # Errors
+    /// Where its numbers are uncertain, or too many or too few.
+    pub(super) fn law(&self, place: usize, names: &[Range]) -> Result<LawOf, String> {
+        let (law, nodes) = &self.laws[place];
+        let mut numbers = Vec::with_capacity(nodes.len());
+        for node in nodes {
+            let Range(low, high) = node.of(names);
+            if low != high {
+                return Err(uncertain(law));
+            }
+            numbers.push(low);
+        }
+        Ok(match (*law, numbers.as_slice()) {
+            ("uniform", &[low, high]) => LawOf::Uniform([low, high]),
+            ("normal", &[mean, sd]) => LawOf::Normal([mean, sd]),
+            ("truncated", &[mean, sd, from, to]) => LawOf::Truncated(Truncated { mean, sd, from, to }),
+            ("log_normal", &[median, spread]) => LawOf::LogNormal(Factor { median, spread }),
+            ("triangular", &[low, peak, high]) => LawOf::Triangular([low, peak, high]),
+            _ => LawOf::Choice(Several { of: numbers, weights: Vec::new() }),
+        })
+    }
+
+    /// What it comes to.
+    pub(super) fn of(&self, values: &[Range]) -> Range {
+        self.root.of(values)
+    }
+
+    /// Places of names are known before those of laws.
+    fn gather_names(&mut self, read: &Expr) {
+        match read {
+            Expr::Path(path) => {
+                let name = path.path.get_ident().map(ToString::to_string);
+                self.names.extend(name.filter(|name| !self.names.contains(name)));
+            }
+            Expr::Paren(inner) => self.gather_names(&inner.expr),
+            Expr::Unary(inner) => self.gather_names(&inner.expr),
+            Expr::Binary(inner) => {
+                self.gather_names(&inner.left);
+                self.gather_names(&inner.right);
+            }
+            Expr::Call(call) => call.args.iter().for_each(|inner| self.gather_names(inner)),
+            _ => {}
+        }
+    }
+
+    fn node(&mut self, read: &Expr) -> Result<Node, String> {
+        match read {
+            Expr::Lit(literal) => number(&literal.lit).map(Node::Number),
+            Expr::Paren(inner) => self.node(&inner.expr),
+            Expr::Unary(inner) if matches!(inner.op, UnOp::Neg(_)) => {
+                Ok(Node::One(Range::minus, Box::new(self.node(&inner.expr)?)))
+            }
+            Expr::Binary(inner) => {
+                let f = operator(&inner.op)?;
+                Ok(Node::Two(f, Box::new([self.node(&inner.left)?, self.node(&inner.right)?])))
+            }
+            Expr::Path(path) => {
+                let name = path.path.get_ident().map(ToString::to_string);
+                let place = name.and_then(|name| self.names.iter().position(|known| *known == name));
+                place.map(Node::Value).ok_or_else(|| "a name is letters, digits and `_`".into())
+            }
+            Expr::Call(call) => {
+                let name = match &*call.func {
+                    Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
+                    _ => String::new(),
+                };
+                let laws = self.laws.len();
+                let nodes = call.args.iter().map(|inner| self.node(inner)).collect::<Result<Vec<_>, _>>()?;
+                if self.laws.len() > laws && LAWS.iter().any(|(law, _)| *law == name) {
+                    return Err(uncertain(&name));
+                }
+                self.call(&name, nodes)
+            }
+            _ => Err(OTHER.into()),
+        }
+    }
+
+    fn call(&mut self, name: &str, nodes: Vec<Node>) -> Result<Node, String> {
+        let count = |wanted: usize| format!("{name}(…) takes {wanted} numbers, and is given {}", nodes.len());
+        if let Some(&(law, wanted)) = LAWS.iter().find(|(known, _)| *known == name) {
+            if (wanted > 0 && nodes.len() != wanted) || nodes.is_empty() {
+                return Err(count(wanted.max(1)));
+            }
+            self.laws.push((law, nodes));
+            return Ok(Node::Value(self.names.len() + self.laws.len() - 1));
+        }
+        let Some(&(_, wanted, function)) = FUNCTIONS.iter().find(|(known, ..)| *known == name) else {
+            let known: Vec<&str> =
+                FUNCTIONS.iter().map(|(known, ..)| *known).chain(LAWS.iter().map(|law| law.0)).collect();
+            let near = nearest(name, known.iter().copied());
+            let near = near.map(|near| format!("did you mean {near:?}? ")).unwrap_or_default();
+            return Err(format!("there is no function {name:?}; {near}there are {}", known.join(", ")));
+        };
+        let wrong = count(wanted);
+        let mut nodes = nodes.into_iter();
+        match (function, nodes.next(), nodes.next(), nodes.next()) {
+            (Function::One(f), Some(one), None, None) => Ok(Node::One(f, Box::new(one))),
+            (Function::Two(f), Some(one), Some(other), None) => Ok(Node::Two(f, Box::new([one, other]))),
+            _ => Err(wrong),
+        }
+    }
+}
+
+fn uncertain(law: &str) -> String {
+    format!("the numbers of {law}(…) must be certain: they say what is uncertain, and how")
+}
+
+fn number(literal: &Lit) -> Result<f64, String> {
+    let (digits, suffix) = match literal {
+        Lit::Int(int) => (int.base10_digits(), int.suffix()),
+        Lit::Float(float) => (float.base10_digits(), float.suffix()),
+        _ => return Err("arithmetic is of numbers".into()),
+    };
+    if !suffix.is_empty() {
+        return Err(format!("{digits}{suffix}: a number has no unit here, it is in that of its key"));
+    }
+    digits.parse().map_err(|_| format!("{digits} is no number"))
+}
+
+fn operator(op: &BinOp) -> Result<fn(Range, Range) -> Range, String> {
+    Ok(match op {
+        BinOp::Add(_) => Range::plus,
+        BinOp::Sub(_) => |a, b| a.plus(b.minus()),
+        BinOp::Mul(_) => Range::times,
+        BinOp::Div(_) => Range::over,
+        BinOp::Rem(_) => Range::modulo,
+        BinOp::BitXor(_) => return Err("for a power write pow(a, b)".into()),
+        _ => return Err("of signs there are + - * / %".into()),
+    })
+}
+
+impl Node {
+    fn of(&self, values: &[Range]) -> Range {
+        match self {
+            Self::Number(value) => Range::point(*value),
+            Self::Value(place) => values[*place],
+            Self::One(f, inner) => f(inner.of(values)),
+            Self::Two(f, inner) => f(inner[0].of(values), inner[1].of(values)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn worth(text: &str, values: &[f64]) -> f64 {
+        let formula = Formula::read(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        let Range(low, high) = formula.of(&values.iter().map(|value| Range::point(*value)).collect::<Vec<_>>());
+        assert_eq!(low.to_bits(), high.to_bits(), "{text}");
+        low
+    }
+
+    #[test]
+    fn arithmetic_is_as_on_paper() {
+        assert_eq!(worth("0.5 * width + 20 * i", &[6.0, 3.0]), 63.0);
+        assert_eq!(worth("2 - 3 - 4 * -2", &[]), 7.0);
+        assert_eq!(worth("7 % 3 + -7 % 3 + 1e1", &[]), 1.0 + 2.0 + 10.0);
+        assert_eq!(worth("max(min(1, 2), min(3, 4)) * 2 + 1", &[]), 7.0);
+        assert_eq!(worth("sin(30) + cos(60) + sqrt(4) + abs(-3) + floor(1.7) + pow(2, 3)", &[]), 15.0);
+        assert_eq!(worth("minor + minor", &[2.0]), 4.0, "a name that begins as a function does");
+    }
+
+    #[test]
+    fn what_is_no_arithmetic_is_told_so() {
+        let deep = format!("{}1{}", "(".repeat(40), ")".repeat(40));
+        let long = "1 + ".repeat(200) + "1";
+        for (text, part) in [
+            ("", "it is empty"),
+            ("1 +", "cannot be read"),
+            ("2 ^ 3", "pow(a, b)"),
+            ("20mm", "no unit"),
+            ("normal(0, 1 + uniform(1, 2))", "must be certain"),
+            ("sine(3)", "did you mean \"sin\"?"),
+            ("min(3)", "takes 2 numbers, and is given 1"),
+            ("normal(3)", "takes 2 numbers"),
+            ("std::process::exit(1)", "no function"),
+            ("a.b()", "arithmetic is of"),
+            ("{ loop {} }", "arithmetic is of"),
+            ("\"a\"", "numbers"),
+            (&deep, "nested too deep"),
+            (&long, "at most 400 characters"),
+            (&"-".repeat(300), "nested too deep"),
+        ] {
+            let error = Formula::read(text).expect_err(text);
+            assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+}

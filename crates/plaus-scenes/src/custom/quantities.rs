@@ -1,0 +1,87 @@
+//! In which order quantities are worked out: each after those that it names.
+
+use super::amount::Amount;
+use super::config::Quantity;
+use super::values::{Collector, Owner};
+use crate::scene::ConfigError;
+use std::collections::BTreeMap;
+
+/// Names that mean something else in formulas.
+const TAKEN: [&str; 3] = ["i", "n", "pi"];
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    New,
+    /// What it names is looked at now.
+    Open,
+    Done,
+}
+
+/// Indices in an order in which each comes after those that it names, otherwise as in the file.
+///
+/// # Errors
+/// Names that are given twice or mean something else, formulas that are none, and quantities that name each other in a
+/// circle.
+pub(super) fn in_order(quantities: &[Quantity], collector: &mut Collector) -> Result<Vec<usize>, ConfigError> {
+    let keys: Vec<String> = (0..quantities.len()).map(|index| format!("world.custom.quantities[{index}]")).collect();
+    let owner = |index: usize| Owner::new(&quantities[index].name, &keys[index]);
+    let mut places = BTreeMap::new();
+    for (index, quantity) in quantities.iter().enumerate() {
+        let name = quantity.name.as_str();
+        if TAKEN.contains(&name) {
+            return Err(owner(index).wrong("name", format!("{name:?} means something else in arithmetic")));
+        }
+        if places.insert(name, index).is_some() {
+            return Err(owner(index).wrong("name", format!("a second quantity called {name:?}")));
+        }
+    }
+    let mut names = Vec::with_capacity(quantities.len());
+    for (index, quantity) in quantities.iter().enumerate() {
+        names.push(match &quantity.value {
+            Amount::Said(text) if places.contains_key(text.as_str()) => vec![places[text.as_str()]],
+            Amount::Said(text) => {
+                let formula = collector.read(text).map_err(|message| owner(index).wrong("value", message))?;
+                formula.names.iter().filter_map(|name| places.get(name.as_str()).copied()).collect()
+            }
+            _ => Vec::new(),
+        });
+    }
+    sorted(&names).map_err(|circle| {
+        let words: Vec<&str> = circle.iter().map(|index| quantities[*index].name.as_str()).collect();
+        owner(circle[0]).wrong("value", format!("depends on itself: {}", words.join(" → ")))
+    })
+}
+
+/// The order, or a circle whose last is its first.
+fn sorted(names: &[Vec<usize>]) -> Result<Vec<usize>, Vec<usize>> {
+    let mut marks = vec![Mark::New; names.len()];
+    let mut order = Vec::with_capacity(names.len());
+    for first in 0..names.len() {
+        // What is open, and how many of its names are done. No recursion: a chain of names may be long.
+        let mut open: Vec<(usize, usize)> = Vec::new();
+        if marks[first] == Mark::New {
+            (marks[first], open) = (Mark::Open, vec![(first, 0)]);
+        }
+        while let Some((index, done)) = open.last_mut() {
+            let Some(&next) = names[*index].get(*done) else {
+                marks[*index] = Mark::Done;
+                order.push(*index);
+                open.pop();
+                continue;
+            };
+            *done += 1;
+            match marks[next] {
+                Mark::Done => {}
+                Mark::Open => {
+                    let circle = open.iter().map(|(index, _)| *index).skip_while(|index| *index != next);
+                    return Err(circle.chain([next]).collect());
+                }
+                Mark::New => {
+                    marks[next] = Mark::Open;
+                    open.push((next, 0));
+                }
+            }
+        }
+    }
+    Ok(order)
+}
