@@ -67,7 +67,8 @@ fn tossed_coins_come_to_lie() {
 fn a_coin_is_laid_flat_only_where_little_is_left() {
     for (preset, part, lies) in [(Preset::Standard, 0.5, true), (Preset::Standard, 10.0, false)] {
         let (world, _) = toss(0, preset);
-        let height = 0.5 * Accuracy::preset(preset).rest_speed.powi(2) * HALF;
+        let speed = Accuracy::preset(preset).rest_speed;
+        let height = 0.5 * speed * speed * HALF;
         let tilt = part * height / RADIUS;
         let turn = DQuat::from_rotation_x(tilt);
         let rise = (turn * DVec3::new(0.0, RADIUS, HALF)).z;

@@ -10,14 +10,13 @@
 //! Bodies in lasting contact are looked at [`LOOKS`] times within a step, for points away from those that it is made
 //! of: the steps deal with these.
 
-use super::body::{Phase, Pose, Turning};
+use super::body::{Pose, Turning};
 use super::bound::Bound;
-use super::detect::{Search, earliest};
+use super::detect::earliest;
 use super::spots::{Spot, for_elements};
 use super::still::Ground;
 use super::tumble::Tumble;
-use super::{Rigid, Spec, step};
-use crate::scenery::Surface;
+use super::{Spec, step};
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use glam::{DMat3, DVec3};
 
@@ -435,36 +434,4 @@ fn fastest(spec: &Spec, body: &Turning) -> f64 {
         return now;
     }
     spec.inertia.momentum(body.turn, body.spin).length() / spec.inertia.moments.min_element()
-}
-
-impl Rigid {
-    /// First time in `[from, until]` at which pieces of two bodies touch while approaching. Of bodies in lasting
-    /// contact (`linked`) only at points that are not part of it yet.
-    pub(super) fn first_of_pieces(
-        &self,
-        [i, j]: [usize; 2],
-        bodies: [&Turning; 2],
-        [from, until]: [f64; 2],
-        linked: bool,
-    ) -> Option<f64> {
-        let target = Target::Body(&self.specs[j], bodies[1]);
-        let level = self.pair_gap([i, j]);
-        let hunt = Hunt { spec: &self.specs[i], body: bodies[0], target, level, from, until, linked };
-        hunt.first().map(|found| found.0)
-    }
-}
-
-impl Search<'_> {
-    /// First contact of a body's pieces with a part.
-    pub(super) fn pieces(&mut self, part: u16, ground: Ground) {
-        let (spec, body) = (self.spec, self.body);
-        let of_part = |s: &Surface| matches!(s, Surface::Spot { part: p, .. } if *p == part);
-        let linked = matches!(body.phase, Phase::Step | Phase::Glide) && body.touching().iter().any(of_part);
-        let start = body.path.t;
-        let (from, until) = (start, start + self.until);
-        let hunt = Hunt { spec, body, target: Target::Ground(ground), level: spec.gap, from, until, linked };
-        if let Some((time, spot)) = hunt.first() {
-            self.strikes(time - start, spot.surface(part));
-        }
-    }
 }

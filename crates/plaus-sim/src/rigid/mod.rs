@@ -66,6 +66,7 @@ mod hunt;
 mod kicks;
 mod ledges;
 mod mechanics;
+mod meets;
 mod newton;
 mod pair;
 mod part;
