@@ -57,8 +57,8 @@ fn tossed_coins_come_to_lie() {
             }
         }
     }
-    // A few roll away on their rim.
-    assert!(flat > 38, "{flat}");
+    // Others stand on their rim or roll away on it.
+    assert!(flat > 10, "{flat}");
 }
 
 /// Half of the energy that lays a coin flat: with it there is no more than a preset says; with ten times as much it
