@@ -1,7 +1,8 @@
 //! A ball on a lane against the closed form: sliding into rolling, and the hook under oil and dry boards.
 
 use glam::DVec3;
-use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, SolidPart, Start, Stretch};
+use plaus_sim::field::{Grid, Spline};
+use plaus_sim::rigid::{BodySpec, Part, Phase, Rigid, RigidWorld, SolidPart, Start, Stretch, Table};
 use plaus_sim::scenery::{Aabb, Mesh, Plane};
 use plaus_sim::shape::{Cuboid, MassProperties, Shape};
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch};
@@ -132,8 +133,8 @@ fn a_ball_that_leaves_the_lane_falls() {
     assert!(body.path.x.x > 5.0 && body.path.x.z < -1.0, "{}", body.path.x);
 }
 
-/// Ground of most kinds, level at height 0. On a table a rest of the speed stays, of the size of rounding.
-fn grounds() -> [(&'static str, Part); 4] {
+/// Ground of every kind, level at height 0.
+fn grounds() -> [(&'static str, Part); 5] {
     let corners = [[-9.0, -9.0], [90.0, -9.0], [90.0, 90.0], [-9.0, 90.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
     let mesh = Mesh::new(corners.to_vec(), &[([0, 1, 2], Material(0)), ([0, 2, 3], Material(0))], 0.0).unwrap();
     let slab = Shape::Cuboid(Cuboid::new(DVec3::new(200.0, 200.0, 1.0), 0.0).unwrap());
@@ -145,6 +146,7 @@ fn grounds() -> [(&'static str, Part); 4] {
         ("block", block(Vec::new())),
         ("solid", Part::Solid(Box::new(solid))),
         ("mesh", Part::Mesh(Arc::new(mesh))),
+        ("table", Part::Table(Box::new(Table::new(table, Material(0))))),
     ]
 }
 

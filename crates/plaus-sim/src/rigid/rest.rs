@@ -78,15 +78,8 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if let [place] = &group.places[..] {
         let spec = &world.specs[place.body];
         if spec.is_ball {
-            if let [(_, only)] = &group.touches[..]
-                && only.point().is_none()
-            {
-                return rests_on_its_point(world, place, only, h);
-            }
             if let [(_, only)] = &group.touches[..] {
-                return only.normal.cross(spec.pull).length() <= 1e-9 * spec.strength
-                    && place.start.v == DVec3::ZERO
-                    && place.start.w == DVec3::ZERO;
+                return rests_on_its_point(world, place, only, h);
             }
             if group.touches.iter().all(|t| t.1.point().is_some()) {
                 return false;
@@ -129,7 +122,7 @@ const STOPPED: f64 = 0.1;
 /// Velocity over `g · step` that counts as none where contacts are tried. Default 1e-6, above what the solver leaves.
 const NO_MOTION: f64 = 1e-6;
 
-/// Whether a ball that touches at one point of a mesh or a solid stays: where the ground leans less than what its
+/// Whether a ball that touches at one point stays: where the ground leans less than what its
 /// resistance to rolling holds, and it moves no faster than its weight along the ground makes it within a step.
 fn rests_on_its_point(world: &Rigid, place: &Place, touch: &Touch, h: f64) -> bool {
     let spec = &world.specs[place.body];
