@@ -25,6 +25,7 @@ TRIED_WITH = [
     "arviz==0.23.4",
     "ipykernel==7.4.0",
     "matplotlib==3.11.2",
+    "mypy==2.4.1",
     "nbclient==0.11.0",
     "numpy==2.4.6",
     "polars==2.1.0",
@@ -102,6 +103,12 @@ def tests(python: Path, target: Path, command: Path | None) -> int:
     return run(words, cwd=target / "wheel", env=around)
 
 
+def types(python: Path, target: Path) -> int:
+    """Whether stubs say what the compiled part is, and the package what its types are."""
+    words = [[python, "-m", "mypy.stubtest", "plaus._plaus"], [python, "-m", "mypy", "--strict", "-p", "plaus"]]
+    return max(run(each, cwd=target / "wheel", env=bare(python)) for each in words)
+
+
 def notebooks(python: Path, target: Path) -> int:
     """Every notebook, cell by cell."""
     return run(
@@ -117,6 +124,7 @@ def check(target: Path, profile: str, with_notebooks: bool, all_of_them: bool) -
     command = command if command.exists() else None
     for step in (
         lambda: install(python, wheel),
+        lambda: types(python, target),
         lambda: tests(python, target, command),
         lambda: notebooks(python, target) if with_notebooks else 0,
     ):

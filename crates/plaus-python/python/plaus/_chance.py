@@ -30,7 +30,7 @@ class Estimate(NamedTuple):
     """Where the probability lies, with 95 % confidence if the method has seen every way to the goal."""
     simulations: int
     """Simulations that it took."""
-    count: int
+    count: int  # type: ignore[assignment]  # Every tuple has a method of that name.
     """Draws where it was counted, else batches."""
 
 

@@ -2,10 +2,37 @@
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, Self, final
 
 import numpy as np
 from numpy.typing import NDArray
+
+__all__ = [
+    "chance",
+    "read_chance",
+    "Problem",
+    "RunError",
+    "ScenarioError",
+    "WorldError",
+    "Motion",
+    "Parcels",
+    "Asked",
+    "Outcome",
+    "RunFolder",
+    "sample",
+    "_scenario",
+    "Scenario",
+    "SimWorld",
+    "CheckReport",
+    "Functions",
+    "Kernel",
+    "Rng",
+    "check",
+    "sample_target",
+    "command",
+    "call",
+    "__version__",
+]
 
 __version__: str
 
@@ -31,6 +58,7 @@ class RunError(RuntimeError):
 class WorldError(ValueError):
     """A world, or a start in it, that cannot be simulated."""
 
+@final
 class Problem:
     """One thing that is wrong with a scenario."""
 
@@ -47,6 +75,10 @@ class Problem:
     said: str | None
     """The override that said so, as `key=value`; None for the text itself."""
 
+def _scenario(text: str, name: str, overrides: Sequence[str]) -> Scenario:
+    """A scenario as it was pickled."""
+
+@final
 class Scenario:
     """A scenario: a world, what must happen in it, and how it is sampled.
 
@@ -92,13 +124,14 @@ class Scenario:
     def overrides(self) -> list[str]:
         """Keys set since, as `key=value`."""
 
+@final
 class Outcome:
     """What came of a candidate: what a requirement judges.
 
     Numbers are at hand; motion and impacts are found, by simulating once more, when they are first asked for.
     """
 
-    def __getitem__(self, name: str) -> float:
+    def __getitem__(self, name: str, /) -> float:
         """One of the scene's numbers: `outcome["rest_x"]`."""
     @property
     def scalars(self) -> dict[str, float]:
@@ -125,13 +158,15 @@ class Outcome:
     def rest_orientation(self) -> dict[str, list[float]]:
         """How each body is turned at the end, by name: a unit quaternion x, y, z, w from its axes to the world's."""
 
+@final
 class Parcels:
     """Opens outcomes that came from another process, of one scenario."""
 
-    def __init__(self, scenario: Scenario) -> None: ...
+    def __new__(cls, scenario: Scenario) -> Self: ...
     def open(self, parcel: bytes) -> Outcome:
         """The outcome in a parcel."""
 
+@final
 class Motion:
     """The motion of all bodies of one sample."""
 
@@ -150,18 +185,20 @@ class Motion:
     def to_json(self) -> str:
         """The motion whole, in closed-form pieces, as JSON."""
 
+@final
 class Asked:
     """A requirement, with what it has cost."""
 
-    def __init__(self, function: Callable[[Outcome], Any], name: str, most: float | None) -> None: ...
+    def __new__(cls, function: Callable[[Outcome], Any], name: str, most: float | None) -> Self: ...
     @property
     def cost(self) -> tuple[int, float, float]:
         """Calls, seconds spent in them, and seconds that chains waited for their turn."""
 
+@final
 class RunFolder:
     """A run in a folder."""
 
-    def __init__(self, path: str | os.PathLike[str], salvage: bool = False) -> None: ...
+    def __new__(cls, path: str | os.PathLike[str], salvage: bool = False) -> Self: ...
     def manifest(self) -> str:
         """What the run is, as JSON."""
     def size(self) -> tuple[int, int, int]:
@@ -223,11 +260,12 @@ def command(arguments: Sequence[str]) -> int:
 def call(arguments: Sequence[str]) -> None:
     """Does what a command line without the program's name says; what is wrong is raised."""
 
+@final
 class SimWorld:
     """A world that can be run."""
 
-    def __init__(
-        self,
+    def __new__(
+        cls,
         bodies: Sequence[dict[str, Any]],
         surfaces: Sequence[dict[str, Any]],
         laws: Sequence[dict[str, Any]],
@@ -238,7 +276,7 @@ class SimWorld:
         duration: float,
         accuracy: str,
         events: int | None,
-    ) -> None: ...
+    ) -> Self: ...
     @staticmethod
     def bins(count: int, duration: float, accuracy: str, events: int | None) -> SimWorld:
         """Marbles over the bins of the paper's figure 10."""
@@ -269,10 +307,11 @@ class SimWorld:
     ) -> dict[str, Any]:
         """Runs from every start, on all threads; arrays by name."""
 
+@final
 class Rng:
     """Random numbers of one iteration: the same for the same seed, chain and iteration, whatever else is drawn."""
 
-    def __init__(self, seed: int) -> None:
+    def __new__(cls, seed: int) -> Self:
         """Numbers of a seed, outside of any chain."""
     def uniform(self, low: float = 0.0, high: float = 1.0) -> float:
         """Uniform between `low` and `high`, without the ends."""
@@ -281,16 +320,19 @@ class Rng:
     def below(self, count: int) -> int:
         """A whole number from 0 to `count` - 1, each equally likely."""
 
+@final
 class Functions:
     """The functions of a target."""
 
-    def __init__(self, start: Any, log_prior: Any, log_density: Any, met: Any) -> None: ...
+    def __new__(cls, start: Any, log_prior: Any, log_density: Any, met: Any) -> Self: ...
 
+@final
 class Kernel:
     """A move: what it proposes, and how much likelier the way back is."""
 
-    def __init__(self, name: str, weight: float, propose: Any, log_ratio: Any) -> None: ...
+    def __new__(cls, name: str, weight: float, propose: Any, log_ratio: Any) -> Self: ...
 
+@final
 class CheckReport:
     """What checks of moves found. True where that is nothing; as text, what it is."""
 

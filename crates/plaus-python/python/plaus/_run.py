@@ -319,7 +319,7 @@ class Run:
 
     def to_inferencedata(self, *, warmup: bool = True) -> Any:
         """The draws for ArviZ: an `InferenceData` in 0.23, a `DataTree` in 1.x, which has no other."""
-        import arviz
+        import arviz  # type: ignore[import-untyped,unused-ignore]
 
         tree = self.to_datatree(warmup=warmup)
         read: Any = getattr(arviz, "from_datatree", None)
