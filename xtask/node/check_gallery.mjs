@@ -104,8 +104,13 @@ async function visit(file, { name: kind, width, height, colorScheme }, name) {
   demand(still.length > 1000, 'a tile is empty');
   await tiles.nth(0).hover();
   const over = await page.evaluate(() => [gallery.frames, performance.now()]);
-  await page.waitForTimeout(800);
-  demand((await picture('.tile canvas')) !== still, 'the tile pointed at stands still');
+  // On a machine that is slow at the moment the first picture may take seconds.
+  let moved = false;
+  for (let tries = 0; tries < 12 && !moved; tries++) {
+    await page.waitForTimeout(800);
+    moved = (await picture('.tile canvas')) !== still;
+  }
+  demand(moved, 'the tile pointed at stands still');
   const hovered = await rate(page, over);
 
   // Choosing, comparing, starring, filtering, sorting.
