@@ -1,7 +1,10 @@
 //! Pins: standing for ever, tipping at the analytic angle, and a ball that goes through none of them.
 
+#[path = "../examples/shots/mod.rs"]
+mod shots;
+
 use glam::{DQuat, DVec3};
-use plaus_dist::{Purpose, Seed, math, open_unit};
+use plaus_dist::math;
 use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
 use plaus_sim::trace::Observer;
 use plaus_sim::worlds::Alley;
@@ -139,67 +142,12 @@ fn nothing_goes_through_anything() {
     }
 }
 
-/// Sums the energy of all bodies whenever time has gone on, and keeps its largest rise from one time to the next.
-struct Ledger<'w> {
-    world: &'w Rigid,
-    each: Vec<f64>,
-    clock: f64,
-    before: f64,
-    rise: f64,
-}
-
-impl Ledger<'_> {
-    fn close(&mut self) {
-        let now: f64 = self.each.iter().sum();
-        self.rise = self.rise.max(now - self.before);
-        self.before = now;
-    }
-}
-
-impl Observer<Rigid> for Ledger<'_> {
-    fn motion(&mut self, index: usize, body: &Turning) {
-        if body.path.t != self.clock {
-            self.close();
-            self.clock = body.path.t;
-        }
-        if body.phase == Phase::Gone {
-            // What leaves takes its energy, negative below the deck, along.
-            (self.each[index], self.before) = (0.0, f64::INFINITY);
-        } else {
-            self.each[index] = self.world.energy(index, body);
-        }
-    }
-}
-
-/// Largest rise of the energy of ball and pins in shots until all is at rest or five seconds are over, over a pin's
-/// weight times the radius of its foot.
-fn largest_rise(shots: usize, preset: Preset) -> f64 {
-    let alley = Alley { accuracy: Accuracy::preset(preset), ..Alley::default() };
-    let world = alley.world().unwrap();
-    let unit = alley.pin_mass * 9.81 * alley.pin().unwrap().rings()[0].circle;
-    let mut stream = Seed(3).chain(0).at(0, Purpose::START);
-    let mut between = |low: f64, high: f64| low + (high - low) * open_unit(&mut stream);
-    let mut shot = || {
-        let (angle, speed) = (between(-0.02, 0.1), between(7.0, 8.5));
-        let velocity = DVec3::new(-angle * speed, speed, 0.0);
-        let spin = DVec3::new(-velocity.y, velocity.x, 0.0) / alley.ball_radius;
-        let starts = alley.starts(2.0, between(0.0, 0.1) + angle * 2.0, velocity, spin).unwrap();
-        let mut ledger =
-            Ledger { world: &world, each: vec![0.0; world.count()], clock: 0.0, before: f64::INFINITY, rise: 0.0 };
-        let mut state = world.state(&starts).unwrap();
-        world.run(&mut state, &mut Scratch::default(), 5.0, &mut ledger).unwrap();
-        ledger.close();
-        ledger.rise / unit
-    };
-    (0..shots).map(|_| shot()).fold(0.0, f64::max)
-}
-
 /// Pins that jam each other between the side of the lane and the wall are where energy came from: pushing them out of
 /// overlaps of micrometres once gave a pin 240 km/s.
 #[test]
 fn pins_gain_no_energy_until_they_rest() {
     // A body that is lifted out of an overlap rises by it: by a thousandth of its size at most, and there are ten.
     let tolerance = 10.0 * 1e-3;
-    let rise = largest_rise(120, Preset::Standard);
+    let rise = shots::rises(120, Preset::Standard).unwrap().largest;
     assert!(rise <= tolerance, "a rise of {rise} of a pin's weight times its foot");
 }
