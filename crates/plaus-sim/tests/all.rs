@@ -19,7 +19,6 @@ mod marble_truth;
 mod marble_worlds;
 mod marbles_exact;
 mod metamorphic;
-mod oracle;
 mod restart;
 mod rigid_boxes;
 mod rigid_coins;
