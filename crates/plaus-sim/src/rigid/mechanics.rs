@@ -12,6 +12,7 @@ impl Mechanics for Rigid {
     type Body = Turning;
     type Scratch = RigidScratch;
     const WATCHES_LINKED: bool = true;
+    const HEAP: usize = step::HEAP;
 
     fn len(&self) -> usize {
         self.specs.len()

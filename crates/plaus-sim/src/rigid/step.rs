@@ -157,9 +157,15 @@ pub(super) fn settle(
     }
     let mut is_forced = true;
     scratch.push = 1.0;
+    let is_heap = scratch.places.len() >= HEAP;
     for _ in 0..SHORTENINGS {
         let step = scratch.drift(world, h);
         match scratch.returns().or_else(|| scratch.misses(world, h)).or_else(|| scratch.climbs(world)) {
+            // Shorter steps would have to lift the heap as high.
+            Some(_) if is_heap && scratch.climbs(world).is_some() => {
+                is_forced = true;
+                break;
+            }
             Some(part) => {
                 is_forced = true;
                 h *= part;
@@ -182,7 +188,7 @@ pub(super) fn settle(
         scratch.touches.append(&mut scratch.leaving);
         scratch.pairs.append(&mut scratch.parting);
         scratch.touches.sort_by_key(|t| t.0);
-        pushes = &[1.0, GENTLE, 0.0];
+        pushes = if is_heap { &[GENTLE, 0.0] } else { &[1.0, GENTLE, 0.0] };
     }
     for &push in pushes {
         scratch.push = push;
@@ -194,6 +200,9 @@ pub(super) fn settle(
     scratch.give_in(world, h);
     scratch.write(world, bodies, h);
 }
+
+/// Members from which a group counts as a heap. Default 13: more than ten pins and a ball.
+pub(super) const HEAP: usize = 13;
 
 /// Part of the push out of overlaps that a jam is given where the whole brings too much energy. Default 1/16.
 const GENTLE: f64 = 0.0625;
