@@ -53,6 +53,11 @@ impl Marks {
         self.seen.resize(bodies, 0);
     }
 
+    /// Whether a body has been marked.
+    fn has(&self, body: u32) -> bool {
+        self.seen[body as usize] == self.epoch
+    }
+
     /// Marks a body; whether it is the first time.
     fn mark(&mut self, body: u32) -> bool {
         let seen = &mut self.seen[body as usize];
@@ -147,9 +152,12 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         self.scratch.concerned.clear();
         self.scratch.marks.wipe(self.state.bodies.len());
         loop {
-            self.state.counts.events += 1;
-            self.bring_to(body as u32, &event);
-            self.resolve(body as u32, &event);
+            // The end of a step is one event of all that it is of.
+            if event.happening != Happening::Expiry || !self.scratch.marks.has(body as u32) {
+                self.state.counts.events += 1;
+                self.bring_to(body as u32, &event);
+                self.resolve(body as u32, &event);
+            }
             if self.scratch.concerned.len() < M::HEAP {
                 return;
             }
