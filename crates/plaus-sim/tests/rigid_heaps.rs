@@ -1,11 +1,12 @@
 //! Bodies that stand on each other come to rest where they stand, at once.
 
-use crate::common::zoo::{G, M};
+use crate::common::zoo::{Dice, G, M};
 use glam::DVec3;
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start};
+use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, Start, Turning};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::{Cuboid, Frustum, Shape};
-use plaus_sim::{Accuracy, Law, Laws, Outcome, Preset, Scratch};
+use plaus_sim::trace::Observer;
+use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State};
 
 /// Lets bodies of one shape go where they stand; says how many events it took until all were at rest.
 fn comes_to_rest(shape: Shape, places: &[DVec3], preset: Preset, most: u64) -> u64 {
@@ -75,4 +76,71 @@ fn a_pyramid_of_cubes_rests() {
     for preset in [Preset::Draft, Preset::Reference] {
         comes_to_rest(cube.clone(), &places, preset, 330);
     }
+}
+
+/// Momentum along the floor and energy of a heap, event by event.
+struct Ledger<'w> {
+    world: &'w Rigid,
+    start: DVec3,
+    energy: f64,
+    lost: f64,
+    gained: f64,
+    largest: usize,
+}
+
+impl Observer<Rigid> for Ledger<'_> {
+    fn proceed(&mut self, state: &State<Turning>) -> bool {
+        let at = |k: usize| self.world.at(k, &state.bodies()[k], state.time());
+        let bodies: Vec<Turning> = (0..state.bodies().len()).map(at).collect();
+        let momentum: DVec3 = bodies.iter().map(|b| b.path.v).sum();
+        let energy: f64 = bodies.iter().enumerate().map(|(k, b)| self.world.energy(k, b)).sum();
+        self.lost = self.lost.max((momentum - self.start).truncate().length());
+        self.gained = self.gained.max(energy - self.energy);
+        self.energy = self.energy.min(energy);
+        self.largest = self.largest.max(state.links().len() + 1);
+        true
+    }
+}
+
+/// Sixteen slabs on each other, each shoved its own way, on a floor with this friction: what of their momentum along it
+/// is lost, over all that they have; what energy is gained, over a slab's weight times its size; the largest group.
+fn shoved(floor: f64) -> (f64, f64, usize) {
+    let (edges, ground) = (DVec3::new(0.08, 0.08, 0.02), Material(1));
+    let mut laws = Laws::new(2, Law::new(0.3, 0.0)).unwrap();
+    laws.set(M, ground, Law::new(floor, 0.0)).unwrap();
+    let slab = BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0).unwrap()), 1000.0, M);
+    let world = Rigid::new(RigidWorld {
+        bodies: vec![slab.clone(); 16],
+        parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, ground).unwrap())],
+        laws,
+        gravity: DVec3::new(0.0, 0.0, -G),
+        accuracy: Accuracy::default(),
+        skin: 0.5,
+        sink: f64::NEG_INFINITY,
+        duration: 10.0,
+    })
+    .unwrap();
+    let mut dice = Dice::new(29, 0);
+    let shove = |k: u32| Start {
+        velocity: (dice.in_cube() * 0.1).with_z(0.0) + DVec3::X * 0.2,
+        ..Start::at_rest(DVec3::Z * (edges.z * (f64::from(k) + 0.5)))
+    };
+    let starts: Vec<Start> = (0..16).map(shove).collect();
+    let mut state = world.state(&starts).unwrap();
+    let start = starts.iter().map(|s| s.velocity).sum::<DVec3>();
+    let mut ledger = Ledger { world: &world, start, energy: f64::INFINITY, lost: 0.0, gained: 0.0, largest: 0 };
+    world.run(&mut state, &mut Scratch::default(), 0.05, &mut ledger).unwrap();
+    let unit = slab.mass.mass * G * slab.shape.size();
+    (ledger.lost / start.length(), ledger.gained / unit, ledger.largest)
+}
+
+/// What a heap on ice has of momentum along it stays, whatever its bodies do to each other; on a floor that rubs, the
+/// same test sees it go. Energy grows by no more than a step may err at the standard preset, a thousandth.
+#[test]
+fn a_heap_keeps_momentum_on_ice_and_gains_no_energy() {
+    let (lost, gained, largest) = shoved(0.0);
+    assert!(largest >= 13, "{largest}");
+    assert!(lost < 1e-12 && gained < 1e-3, "{lost} lost, {gained} gained");
+    let (lost, gained, _) = shoved(0.2);
+    assert!(lost > 0.1 && gained < 1e-3, "{lost} lost, {gained} gained");
 }

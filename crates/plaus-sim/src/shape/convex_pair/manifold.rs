@@ -257,10 +257,15 @@ impl Both<'_> {
         let towards = between / distance;
         let turned = self.first.axes.transpose() * (towards * along + normal.cross(towards) * off);
         let p = self.first.centre + self.first.axes * a.rim(usize::from(rings[0]), 0, turned)?;
-        // Along the axis of the second's disc: at its rim, what is nearest in an overlap is its side.
+        let m = self.at_point(0, p, Mark::Rims { rings, side });
+        // A little inside the second's rim, its side is as near as its disc, which is meant.
         let up = self.second.axes.z_axis;
         let up = if up.dot(normal) < 0.0 { -up } else { up };
         let distance = up.dot(p - to);
+        let is_shallow = distance <= 0.0 && -distance <= SAME * self.first.reach.min(self.second.reach);
+        if m.normal.dot(up) > FACING || !is_shallow {
+            return Some(m);
+        }
         Some(self.meeting([p, p - up * distance], up, distance, Mark::Rims { rings, side }))
     }
 }
