@@ -3,6 +3,7 @@
 use crate::clock::ProcessorClock;
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::output;
 use crate::table::short;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
@@ -106,7 +107,7 @@ impl Args {
             console::note_line(&warning);
         }
         if self.json {
-            console::print_line(&report::to_json(manifest, &diagnosis).to_string())?;
+            output::print_line(&report::to_json(manifest, &diagnosis).to_string())?;
         } else {
             let solutions =
                 report::solutions(&diagnosis) + &at_this_pace(&run, &diagnosis)? + &report::tempering(&diagnosis, None);
@@ -118,7 +119,7 @@ impl Args {
                 }
             };
             let verdict = if diagnosis.is_healthy() { "nothing speaks against these chains\n" } else { "findings:\n" };
-            console::print(&format!(
+            output::print(&format!(
                 "{}\n{solutions}\n{}{some}\n{}\n{}{verdict}{findings}",
                 report::headline(manifest),
                 report::scalar_table(&diagnosis, usize::MAX),
