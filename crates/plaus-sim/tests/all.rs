@@ -26,6 +26,7 @@ mod rigid_die;
 mod rigid_driven;
 mod rigid_extremes;
 mod rigid_given;
+mod rigid_heaps;
 mod rigid_hulls;
 mod rigid_ledges;
 mod rigid_mirror;
