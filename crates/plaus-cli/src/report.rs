@@ -45,6 +45,13 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
     )
 }
 
+/// How draws are made, where that was left open or asked for.
+pub(crate) fn way(manifest: &Manifest) -> Option<String> {
+    let way = manifest.way.as_ref()?;
+    let how = if way.independent { "independent draws of the prior" } else { "chains" };
+    Some(format!("sampling by {how}: {}", way.why))
+}
+
 /// What to tell of an acceptance rule without a guarantee.
 pub(crate) fn warning(manifest: &Manifest) -> Option<String> {
     let on: Vec<&str> = manifest.acceptance_rule.iter().filter(|(_, on)| **on).map(|(flag, _)| flag.as_str()).collect();
@@ -165,7 +172,12 @@ pub(crate) fn independent(diagnosis: &Diagnosis, seconds: Option<f64>) -> String
     let minute = seconds.filter(|&seconds| seconds > 0.0).map(|seconds| 60.0 * found.ess / seconds);
     let pace = minute.map(|minute| format!(", {} a minute", amount(minute))).unwrap_or_default();
     let ess = amount(found.ess);
-    format!("{ess} independent solutions{pace} (by {}, which mixes worst: `plaus explain independent`)\n", found.scalar)
+    match &found.scalar {
+        Some(worst) => {
+            format!("{ess} independent solutions{pace} (by {worst}, which mixes worst: `plaus explain independent`)\n")
+        }
+        None => format!("{ess} independent solutions{pace} (each drawn by itself: `plaus explain independent`)\n"),
+    }
 }
 
 /// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are
@@ -217,6 +229,7 @@ pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
         "seed": manifest.plan.seed,
         "exact_acceptance": manifest.exact,
         "scenario_hash": manifest.scenario.hash,
+        "way": manifest.way,
         "iterations": diagnosis.iterations,
         "recorded_draws": diagnosis.recorded,
         "draws": diagnosis.draws,

@@ -71,6 +71,7 @@ pub mod solutions;
 mod streamed;
 pub mod tally;
 mod trail;
+pub mod way;
 
 pub use confirm::Confirmation;
 pub use diagnosis::{Diagnosis, Finding, Independent};
@@ -87,3 +88,4 @@ pub use sample::{
 pub use shard::{Shard, ShardError};
 pub use solutions::Solution;
 pub use tally::{SampleId, Tally};
+pub use way::Way;
