@@ -2,7 +2,7 @@
 
 use crate::progress::acceptance;
 use crate::table::{amount, grouped, lay_out, percent, short};
-use plaus_run::{Diagnosis, Manifest, Run, RunFileError, RunOf, RunVisitor};
+use plaus_run::{Beside, Diagnosis, Manifest, Run, RunFileError, RunOf, RunVisitor};
 use plaus_scenes::{Role, Scene};
 use serde_json::{Value, json};
 
@@ -178,6 +178,35 @@ pub(crate) fn independent(diagnosis: &Diagnosis, seconds: Option<f64>) -> String
         }
         None => format!("{ess} independent solutions{pace} (each drawn by itself: `plaus explain independent`)\n"),
     }
+}
+
+/// What exact draws say of the chains: a finding, if there is one, and what is known or not known otherwise.
+pub(crate) fn beside(beside: &Beside) -> (String, String) {
+    let (kept, draws) = (grouped(beside.kept), grouped(beside.draws));
+    let Some(missed) = &beside.missed else {
+        return (
+            String::new(),
+            match beside.says_something() {
+                true => format!("{kept} exact draws, kept of {draws} of the prior, lie where the chains are too\n"),
+                false => format!(
+                    "{kept} of {draws} draws of the prior would be kept: too few to tell whether there is something that all chains missed\n"
+                ),
+            },
+        );
+    };
+    let range = match missed.between {
+        [Some(low), Some(high)] => format!("between {} and {}", short(low), short(high)),
+        [Some(low), None] => format!("above {}", short(low)),
+        [None, Some(high)] => format!("up to {}", short(high)),
+        [None, None] => "anywhere".to_owned(),
+    };
+    let finding = format!(
+        "  {}: {} of {kept} exact draws, kept of {draws} of the prior, lie {range}, where the chains were {} of the time: they missed something\n",
+        missed.scalar,
+        percent(missed.kept),
+        percent(missed.chains),
+    );
+    (finding, String::new())
 }
 
 /// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are

@@ -314,7 +314,9 @@ impl<'a, T: Target> Chain<'a, T> {
         let log_constraint = self.target.log_constraint(&outcome)?;
         if log_constraint > most {
             let (found, most) = (log_constraint.value(), most.value());
-            return Err(ModelError::new(format!("a log constraint of {found} exceeds the most it said, {most}: a bug")));
+            return Err(ModelError::new(format!(
+                "a log constraint of {found} exceeds the most it said, {most}: a bug"
+            )));
         }
         let accepted = self.accept_above(floor, outcome, log_prior, log_constraint)?;
         self.target.settle(accepted, &mut self.scratch);

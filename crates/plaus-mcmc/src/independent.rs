@@ -2,8 +2,8 @@
 
 use crate::chance::prior;
 use crate::moves::{Mixture, Move, Path, Proposal};
-use crate::target::{Goal, ModelError, StateOf, Target};
-use plaus_dist::{LogRatio, Purpose, Seed, Stream, math};
+use crate::target::{Goal, ModelError, Simulated, State, StateOf, Target};
+use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math, open_unit};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -89,4 +89,33 @@ pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result
     // Summed in order, so that the sum does not depend on who made which.
     let made: Vec<Tried> = numbers.into_par_iter().map_init(T::Scratch::default, one).collect::<Result<_, _>>()?;
     Ok(made.into_iter().fold(Tried::default(), Tried::and))
+}
+
+/// Makes the draws of the prior with these numbers, as [`try_draws`] does, and gives those that are kept: independent
+/// draws of the target.
+///
+/// # Errors
+/// As [`try_draws`]; also where a log constraint exceeds its bound.
+pub fn keep_draws<T: Target>(target: &T, seed: Seed, numbers: Range<u64>) -> Result<Vec<StateOf<T>>, ModelError> {
+    let Some(most) = target.most() else {
+        return Err(ModelError::new("its constraint has no bound that is known: no draw of the prior can be kept"));
+    };
+    let streams = seed.chain(1 << 62 | 1);
+    let one = |scratch: &mut T::Scratch, number| -> Result<Option<StateOf<T>>, ModelError> {
+        let mut stream = streams.at(number, TRIAL);
+        let draw = target.start(&mut stream);
+        let log_prior = target.log_prior(&draw)?;
+        if log_prior.is_zero() {
+            return Ok(None);
+        }
+        let floor = LogPotential::new(math::ln(open_unit(&mut stream)) + most.value())?;
+        let Simulated::Complete(outcome) = target.simulate(&draw, None, floor, scratch)? else { return Ok(None) };
+        let log_constraint = target.log_constraint(&outcome)?;
+        if log_constraint > most {
+            return Err(ModelError::new("a log constraint exceeds the most that its target said: a bug"));
+        }
+        Ok((log_constraint > floor).then_some(State { draw, outcome, log_prior, log_constraint }))
+    };
+    let made: Vec<_> = numbers.into_par_iter().map_init(T::Scratch::default, one).collect::<Result<_, _>>()?;
+    Ok(made.into_iter().flatten().collect())
 }

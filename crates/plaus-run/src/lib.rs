@@ -46,6 +46,7 @@
 //! resumed. Records are written first, checkpoints after; a checkpoint says how long the records were, and what lies beyond that is cut off
 //! when the run goes on. So a process that dies at any moment loses at most the iterations since the last checkpoint.
 
+pub mod beside;
 pub mod chance;
 pub mod checkpoint;
 pub mod codec;
@@ -73,6 +74,7 @@ pub mod tally;
 mod trail;
 pub mod way;
 
+pub use beside::{Beside, Missed};
 pub use confirm::Confirmation;
 pub use diagnosis::{Diagnosis, Finding, Independent};
 pub use drive::{Alone, Drive, Driven, Journey};

@@ -212,9 +212,10 @@ fn settled<S: Scene>(
     if manifest.way.is_some() || recipe.scenario.method() != Method::Auto {
         return Ok(manifest);
     }
+    let pulse = sampling.watch.pulse();
     let way = match &manifest.requirement {
         Some(_) => Way { independent: false, why: "no trial asks what a program requires".to_owned() },
-        None => sampling.pool(&manifest)?.install(|| way::tried(recipe, scene, &sampling.watch.pulse()))?,
+        None => sampling.pool(&manifest)?.install(|| way::tried(recipe, scene, &pulse))?,
     };
     manifest.made(way, scene, &recipe.scenario.sampler.rules)
 }

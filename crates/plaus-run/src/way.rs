@@ -7,18 +7,19 @@ use crate::diagnosis::worth_of;
 use crate::error::Error;
 use crate::manifest::Recipe;
 use plaus_dist::Seed;
-use plaus_mcmc::{
-    Block, Control, Independent, Mixture, MoveCounts, Plan, Progress, Pulse, Sink, Snapshot, Tried, run_watched,
-    try_draws,
-};
+use plaus_mcmc::{Chain, ChainError, Independent, Mixture, Plan, Pulse, Tried, Verdict, try_draws};
 use plaus_scenes::scenario::Method;
 use plaus_scenes::{ConfigError, Role, Rules, Scenario, Scene};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Draws of the prior between two looks at what they come to.
 const AT_A_TIME: u64 = 32;
-/// Most draws of the prior in a trial, and the fewest that it may stop at where there are no solutions.
-const DRAWS: [u64; 2] = [512, 64];
+/// Draws of the prior in a trial that finds too few solutions: one for so many of the run's iterations, within bounds.
+const ONE_FOR: u64 = 50;
+const DRAWS: [u64; 2] = [64, 2048];
+/// Most of them where only some solutions are looked for, which should come soon.
+const DRAWS_FOR_SOME: u64 = 128;
 /// Solutions that a trial looks for: their number is then known to a half.
 const ENOUGH: f64 = 4.0;
 /// Where the prior needs fewer draws than this for a solution, no chain is tried. Of the scenes that come with plaus no
@@ -74,7 +75,8 @@ pub(crate) fn moves_of<S: Scene>(scene: &S, rules: &Rules, way: Option<&Way>) ->
 pub(crate) fn tried<S: Scene>(recipe: &Recipe, scene: &S, pulse: &Pulse) -> Result<Way, Error> {
     let plan = recipe.plan();
     let total = plan.end().saturating_mul(u64::from(plan.chains));
-    let most = (total / 50).clamp(DRAWS[1], DRAWS[0]);
+    let most = if plan.solutions.is_some() { DRAWS_FOR_SOME } else { DRAWS[1] };
+    let most = (total / ONE_FOR).clamp(DRAWS[0], most);
     let mut found = Tried::default();
     while found.draws < most && found.kept < ENOUGH {
         go_on(pulse)?;
@@ -116,86 +118,69 @@ struct Trial {
 }
 
 impl Trial {
-    /// Runs chains for a warm-up of `iterations`, and as many that count.
+    /// Walks chains through a warm-up of `iterations`, and as many that count.
     fn of<S: Scene>(scene: &S, recipe: &Recipe, iterations: u64, pulse: &Pulse) -> Result<Self, Error> {
-        let own = recipe.plan();
-        // No run has a seed of 2⁶³ or more, so none has these chains.
-        let (seed, block) = (Seed(!own.seed.0), 256);
-        let plan =
-            Plan { seed, chains: CHAINS, warmup: iterations, iterations, thin: 1, block, solutions: None, ..own };
+        let plan = recipe.plan();
         let moves = scene.moves(&recipe.scenario.sampler.rules)?;
-        let mut seen = Seen::new(scene, iterations);
-        let stop = Stopper { pulse, seen: &mut seen };
-        run_watched(scene, &moves, plan, Vec::new(), rayon::current_num_threads(), &mut { stop }, &Pulse::default())
-            .map_err(|error| Error::Sampling(error.to_string()))?;
+        let course = Course { scene, moves: &moves, plan, iterations, pulse };
+        let walked = (0..CHAINS).into_par_iter().map(|chain| course.walk(chain));
+        let walked = walked.collect::<Result<Vec<Walked>, _>>().map_err(|error| Error::Sampling(error.to_string()))?;
         go_on(pulse)?;
-        let counts = seen.counts;
-        let simulated = counts.made() - counts.stayed - counts.rejected_by_prior;
-        let share = simulated as f64 / counts.made().max(1) as f64;
-        let all = iterations as f64 * f64::from(CHAINS);
-        let fewest = seen.columns.iter().filter_map(|chains| worth_of(chains, &seen.satisfied)).reduce(f64::min);
-        Ok(Self { independent: fewest.unwrap_or(0.0), simulations: all * share })
+        let simulations = walked.iter().map(|one| one.simulations).sum::<u64>() as f64;
+        let (satisfied, columns): (Vec<_>, Vec<_>) = walked.into_iter().map(|one| (one.satisfied, one.columns)).unzip();
+        let variables = columns.first().map_or(0, Vec::len);
+        let of_variable = |var: usize| columns.iter().map(|chain| chain[var].clone()).collect::<Vec<_>>();
+        let worth = (0..variables).filter_map(|var| worth_of(&of_variable(var), &satisfied));
+        Ok(Self { independent: worth.reduce(f64::min).unwrap_or(0.0), simulations })
     }
 }
 
-/// What is looked at of a trial's chains after their warm-up.
-struct Seen<'a, S: Scene> {
+/// What the chains of a trial share.
+struct Course<'a, S: Scene> {
     scene: &'a S,
-    from: u64,
-    /// Numbers of the variables of the draw among the scalars.
-    variables: Vec<usize>,
-    scalars: Vec<f64>,
-    /// Per variable, per chain, per draw.
-    columns: Vec<Vec<Vec<f64>>>,
-    satisfied: Vec<Vec<bool>>,
-    counts: MoveCounts,
-}
-
-impl<'a, S: Scene> Seen<'a, S> {
-    fn new(scene: &'a S, from: u64) -> Self {
-        let all = scene.scalars();
-        let variables: Vec<usize> = (0..all.len()).filter(|&number| all[number].role == Role::Draw).collect();
-        let columns = vec![vec![Vec::new(); CHAINS as usize]; variables.len()];
-        let satisfied = vec![Vec::new(); CHAINS as usize];
-        Self { scene, from, scalars: vec![0.0; all.len()], variables, columns, satisfied, counts: MoveCounts::default() }
-    }
-}
-
-/// Looks at a trial, and stops it with the run that it is for.
-struct Stopper<'a, 'b, S: Scene> {
+    moves: &'a Mixture<S>,
+    plan: Plan,
+    iterations: u64,
     pulse: &'a Pulse,
-    seen: &'a mut Seen<'b, S>,
 }
 
-impl<S: Scene> Sink<S::Draw, S::Outcome> for Stopper<'_, '_, S> {
-    type Error = std::convert::Infallible;
+/// What is looked at of a chain after its warm-up.
+struct Walked {
+    /// Per variable of the draw, per iteration.
+    columns: Vec<Vec<f64>>,
+    satisfied: Vec<bool>,
+    simulations: u64,
+}
 
-    fn block(
-        &mut self,
-        chain: u32,
-        block: Block<S::Draw, S::Outcome>,
-        _: &Snapshot<S::Draw, S::Outcome>,
-    ) -> Result<(), Self::Error> {
-        let (seen, chain, mut next) = (&mut *self.seen, chain as usize, block.first_iteration);
-        for entry in &block.entries {
-            next += entry.draws;
-            let times = (next.saturating_sub(seen.from)).min(entry.draws) as usize;
-            if times == 0 {
+impl<S: Scene> Course<'_, S> {
+    fn walk(&self, chain: u32) -> Result<Walked, ChainError> {
+        // No run has a seed of 2⁶³ or more, so none has these chains.
+        let streams = Seed(!self.plan.seed.0).chain(u64::from(chain));
+        let mut chain = Chain::start(self.scene, self.moves, streams)?;
+        if self.plan.adapt {
+            chain = chain.adapting(self.iterations);
+        }
+        let scalars = self.scene.scalars();
+        let variables: Vec<usize> = (0..scalars.len()).filter(|&k| scalars[k].role == Role::Draw).collect();
+        let mut values = vec![0.0; scalars.len()];
+        let mut walked = Walked { columns: vec![Vec::new(); variables.len()], satisfied: Vec::new(), simulations: 0 };
+        let mut is_hit = false;
+        for iteration in 1..=2 * self.iterations {
+            if self.pulse.is_stopped() {
+                break; // the whole trial is dropped
+            }
+            let verdict = chain.step()?.verdict;
+            if iteration <= self.iterations {
                 continue;
             }
-            seen.scene.write_scalars(&entry.state, &mut seen.scalars);
-            for (&number, chains) in seen.variables.iter().zip(&mut seen.columns) {
-                chains[chain].extend(std::iter::repeat_n(seen.scalars[number], times));
+            walked.simulations += u64::from(!matches!(verdict, Verdict::Stayed | Verdict::RejectedByPrior));
+            if verdict == Verdict::Accepted || walked.satisfied.is_empty() {
+                self.scene.write_scalars(chain.state(), &mut values);
+                is_hit = self.scene.class(chain.state()).is_some();
             }
-            seen.satisfied[chain].extend(std::iter::repeat_n(entry.class.is_some(), times));
+            walked.columns.iter_mut().zip(&variables).for_each(|(column, &var)| column.push(values[var]));
+            walked.satisfied.push(is_hit);
         }
-        Ok(())
-    }
-
-    fn round(&mut self, progress: &Progress<'_>) -> Result<Control, Self::Error> {
-        self.seen.counts = MoveCounts::default();
-        let counts = progress.chains.iter().flat_map(|(counts, _)| counts.iter());
-        counts.for_each(|one| self.seen.counts.add(one));
-        Ok(if self.pulse.is_stopped() { Control::Stop } else { Control::Continue })
+        Ok(walked)
     }
 }
