@@ -155,14 +155,18 @@ fn pages_link_to_files_that_exist() {
 }
 
 #[test]
-fn every_path_named_in_architecture_exists() {
-    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
-    let named = text.split('`').skip(1).step_by(2);
-    let paths =
-        named.filter(|word| ["crates/", "tests/", "xtask/", "scenarios/"].iter().any(|top| word.starts_with(top)));
-    let missing: Vec<&str> =
-        paths.filter(|path| !path.contains(['<', '*', '{']) && !root().join(path).exists()).collect();
-    assert!(missing.is_empty(), "named in ARCHITECTURE.md, but not there: {missing:?}");
+fn every_path_named_in_architecture_and_contributing_exists() {
+    let named_in = |page: &'static str| {
+        let text = std::fs::read_to_string(root().join(page)).unwrap();
+        let words: Vec<String> = text.split('`').skip(1).step_by(2).map(str::to_owned).collect();
+        words.into_iter().map(move |word| (page, word))
+    };
+    let named: Vec<_> = ["ARCHITECTURE.md", "CONTRIBUTING.md"].into_iter().flat_map(named_in).collect();
+    let is_path = |word: &str| ["crates/", "tests/", "xtask/", "scenarios/"].iter().any(|top| word.starts_with(top));
+    let paths: Vec<_> = named.iter().filter(|(_, word)| is_path(word) && !word.contains(['<', '*', '{'])).collect();
+    let missing: Vec<_> = paths.iter().filter(|(_, path)| !root().join(path).exists()).collect();
+    assert!(missing.is_empty(), "named, but not there: {missing:?}");
+    assert!(["ARCHITECTURE.md", "CONTRIBUTING.md"].iter().all(|page| paths.iter().any(|(on, _)| on == page)));
 }
 
 /// A file that the one program of a crate's tests does not name would never run.

@@ -32,11 +32,14 @@ pub trait Requirement<T: Target>: Sync {
     /// simulation stops early.
     fn most(&self) -> Option<LogPotential>;
 
-    /// Judges a state.
+    /// Called before a simulation whose state may be judged: what the target's memory is to keep for that.
+    fn prepare(&self, _target: &T, _scratch: &mut T::Scratch) {}
+
+    /// Judges a state; `scratch` is the memory that it was simulated with, where it was just now.
     ///
     /// # Errors
     /// [`ModelError`] where it cannot.
-    fn judge(&self, target: &T, state: &StateOf<T>) -> Result<Mark, ModelError>;
+    fn judge(&self, target: &T, state: &StateOf<T>, scratch: &T::Scratch) -> Result<Mark, ModelError>;
 }
 
 /// An outcome with the whole state of the target it came from, and its mark.
@@ -76,12 +79,12 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
         lent(moves)
     }
 
-    /// Judges a state of the target.
+    /// Judges a state of the target; `scratch` is the memory that it was simulated with, or a new one.
     ///
     /// # Errors
     /// [`ModelError`] where the requirement fails, or its log potential exceeds what it said is the most.
-    pub fn judge(&self, seen: StateOf<T>) -> Result<State<T::Draw, JudgedOf<T>>, ModelError> {
-        let mark = self.requirement.judge(self.target, &seen)?;
+    pub fn judge(&self, seen: StateOf<T>, scratch: &T::Scratch) -> Result<State<T::Draw, JudgedOf<T>>, ModelError> {
+        let mark = self.requirement.judge(self.target, &seen, scratch)?;
         if let Some(most) = self.requirement.most().filter(|most| mark.log > *most) {
             let (found, most) = (mark.log.value(), most.value());
             return Err(ModelError::new(format!(
@@ -99,7 +102,7 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
         let snapshot = snapshot.try_map(|recorded| {
             let own = self.target.log_constraint(&recorded.outcome)?;
             let wanted = recorded.log_constraint;
-            let again = self.judge(State { log_constraint: own, ..recorded })?;
+            let again = self.judge(State { log_constraint: own, ..recorded }, &T::Scratch::default())?;
             if again.log_constraint == wanted {
                 return Ok(again);
             }
@@ -145,6 +148,7 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
         scratch: &mut T::Scratch,
     ) -> Result<Simulated<Self::Outcome>, ModelError> {
         let seen_floor = self.floor_seen(floor)?;
+        self.requirement.prepare(self.target, scratch);
         let current = current.map(|state| &state.outcome.seen);
         let Simulated::Complete(outcome) = self.target.simulate(draw, current, seen_floor, scratch)? else {
             return Ok(Simulated::CannotExceedFloor);
@@ -155,7 +159,7 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
         }
         let log_prior = self.target.log_prior(draw)?;
         let seen = State { draw: draw.clone(), outcome, log_prior, log_constraint };
-        self.judge(seen).map(|state| Simulated::Complete(state.outcome))
+        self.judge(seen, scratch).map(|state| Simulated::Complete(state.outcome))
     }
 
     fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError> {

@@ -26,7 +26,7 @@ impl Requirement<Ring> for &Beyond {
         self.most.map(|most| LogPotential::new(most).unwrap())
     }
 
-    fn judge(&self, _: &Ring, state: &StateOf<Ring>) -> Result<Mark, ModelError> {
+    fn judge(&self, _: &Ring, state: &StateOf<Ring>, (): &()) -> Result<Mark, ModelError> {
         let asked = self.asked.fetch_add(1, Relaxed);
         let met = state.draw > 5;
         let log = if self.fickle { (asked % 2) as f64 } else { f64::from(u8::from(met)) };

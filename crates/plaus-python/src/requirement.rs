@@ -13,7 +13,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyDict, PyTuple};
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 
 /// What a state can show of itself, whatever its scene.
@@ -51,13 +51,16 @@ pub(crate) struct Numbers {
 
 /// What came of a candidate: what a requirement judges.
 ///
-/// Numbers are at hand; motion and impacts are found, by simulating once more, when they are first asked for.
+/// Numbers are at hand; motion and impacts are made when they are first asked for. A function that asked for them once
+/// gets them from the simulation that was run anyway, where the scene keeps it; else by simulating once more.
 #[pyclass(frozen, module = "plaus")]
 pub(crate) struct Outcome {
     shown: Box<dyn Shown>,
     names: Arc<[String]>,
     numbers: Numbers,
     motion: OnceLock<Motion>,
+    /// Told when the motion is asked for.
+    asked: Option<Arc<Py<Asked>>>,
 }
 
 impl Outcome {
@@ -73,7 +76,7 @@ impl Outcome {
     /// What came of `draw`.
     pub(crate) fn new<S: Scene>(scene: &Arc<S>, names: &Arc<[String]>, numbers: Numbers, draw: S::Draw) -> Self {
         let shown = Box::new(Drawn { scene: Arc::clone(scene), draw });
-        Self { shown, names: Arc::clone(names), numbers, motion: OnceLock::new() }
+        Self { shown, names: Arc::clone(names), numbers, motion: OnceLock::new(), asked: None }
     }
 }
 
@@ -117,6 +120,9 @@ impl Outcome {
     /// The motion of all bodies, without what stands still around them.
     #[getter]
     fn motion(&self, py: Python<'_>) -> PyResult<Motion> {
+        if let Some(asked) = &self.asked {
+            asked.get().looks.store(true, Relaxed);
+        }
         if let Some(motion) = self.motion.get() {
             return Ok(motion.clone());
         }
@@ -170,6 +176,8 @@ pub(crate) struct Asked {
     calls: AtomicU64,
     nanoseconds: AtomicU64,
     waited: AtomicU64,
+    /// Whether the function has ever asked for a motion: then motions are kept for it.
+    looks: AtomicBool,
 }
 
 #[pymethods]
@@ -179,7 +187,15 @@ impl Asked {
         let wrong = |_| PyValueError::new_err("most: a number that no log potential exceeds, or None");
         let most = most.map(LogPotential::new).transpose().map_err(wrong)?;
         let zero = || AtomicU64::new(0);
-        Ok(Self { function, name, most, calls: zero(), nanoseconds: zero(), waited: zero() })
+        Ok(Self {
+            function,
+            name,
+            most,
+            calls: zero(),
+            nanoseconds: zero(),
+            waited: zero(),
+            looks: AtomicBool::new(false),
+        })
     }
 
     /// Calls, seconds spent in them, and seconds that chains waited for their turn.
@@ -251,13 +267,30 @@ struct OfScene<S: Scene> {
     most: Option<LogPotential>,
 }
 
+impl<S: Scene> OfScene<S> {
+    /// Whether the function looks at motions, here: another process simulates for itself.
+    fn keeps(&self) -> bool {
+        self.by.others.is_none() && self.by.asked.get().looks.load(Relaxed)
+    }
+}
+
 impl<S: Scene> Requirement<S> for OfScene<S> {
     fn most(&self) -> Option<LogPotential> {
         self.most
     }
 
-    fn judge(&self, _: &S, state: &StateOf<S>) -> Result<Mark, ModelError> {
-        let outcome = Outcome::of(&self.scene, &self.names, state);
+    fn prepare(&self, scene: &S, scratch: &mut S::Scratch) {
+        if self.keeps() {
+            scene.record_motions(scratch);
+        }
+    }
+
+    fn judge(&self, scene: &S, state: &StateOf<S>, scratch: &S::Scratch) -> Result<Mark, ModelError> {
+        let mut outcome = Outcome::of(&self.scene, &self.names, state);
+        if self.keeps() {
+            outcome.motion = Motion(Arc::new(scene.motion_simulated(&state.draw, scratch)?)).into();
+        }
+        outcome.asked = Some(Arc::clone(&self.by.asked));
         self.by.asked.get().ask(outcome, self.by.others.as_deref())
     }
 }

@@ -877,6 +877,51 @@ def test_memory_that_runs_out_is_an_exception():
         sim.World.dice().run(np.tile([0, 0, 0.1], (200_000, 1, 1)), times=np.zeros(2_000_000))
 
 
+# Run by itself: what is left of the address space is bounded, then filled from inside a chain.
+OUT_OF_MEMORY = '''
+import pathlib, resource, sys
+import plaus
+
+def held():
+    return int(pathlib.Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+
+def bounded(more):
+    resource.setrlimit(resource.RLIMIT_AS, (held() + more, resource.RLIM_INFINITY))
+
+def raises(call, text):
+    try:
+        call()
+    except MemoryError as error:
+        assert text in str(error), error
+    else:
+        raise AssertionError("no exception")
+
+little = {"threads": 1, "progress": False}
+hoard = []
+
+def greedy(outcome):
+    hoard.append(bytearray(1 << 24))
+    return True
+
+asked = plaus.Requirement(greedy)
+plaus.sample(sys.argv[1], iterations=10, **little)
+bounded(1 << 28)
+raises(lambda: plaus.sample(sys.argv[1], requirement=asked, **little), "")
+assert len(hoard) > 4
+hoard.clear()
+target = plaus.Target(lambda rng: [0.0] * 2000, lambda x: 0.0)
+raises(lambda: plaus.sample_target(target, [plaus.Move.walk(1.0)], iterations=10**12, warmup=0), "no memory")
+print("alive", plaus.Scenario.from_file(sys.argv[1]).scene)
+'''
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="where the address space can be bounded")
+def test_memory_that_runs_out_inside_a_chain_is_an_exception():
+    call = [sys.executable, "-c", OUT_OF_MEMORY, SCENARIOS / "ball2d.toml"]
+    done = subprocess.run(call, check=False, capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout == "alive ball2d\n", done.stderr
+
+
 # --- the package
 
 

@@ -64,6 +64,10 @@ pub trait Scene:
         self.animate(draw)
     }
 
+    /// From now on this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`]. A scene that
+    /// keeps them only then overrides this.
+    fn record_motions(&self, _scratch: &mut Self::Scratch) {}
+
     /// [`Scene::motion`] of a draw that was simulated last with this memory: a scene that keeps what it simulated need
     /// not do so again, and overrides this.
     ///

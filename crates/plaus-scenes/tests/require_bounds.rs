@@ -1,7 +1,7 @@
 //! What a motion that is known in part can still come to: for every kind, over many draws and times, the whole motion
 //! never comes to more or to less. Twins that claim to know more than they do are found out.
 
-use plaus_dist::{Purpose, Seed};
+use plaus_dist::{LogPotential, Purpose, Seed};
 use plaus_mcmc::Target;
 use plaus_scenes::animation::Animation;
 use plaus_scenes::ball2d::Ball2d;
@@ -161,6 +161,34 @@ fn a_simulation_that_ends_early_bounds_the_whole() {
         }
     }
     assert!(told > 0, "no beginning ruled anything out");
+}
+
+/// A motion that was kept is, to the last bit, the one that a simulation of its own makes.
+#[test]
+fn motions_that_are_kept_are_those_of_another_simulation() {
+    let mut found = 0;
+    for together in [false, true] {
+        let config = dice::Config { dice: 2, together, constraints: Vec::new(), ..dice::Config::default() };
+        let scene = Dice::new(&config).unwrap();
+        let (mut kept, mut forgotten) = (dice::Work::default(), dice::Work::default());
+        scene.record_motions(&mut kept);
+        for nth in 0..12 {
+            let draw = scene.start(&mut Seed(13).chain(0).at(nth, Purpose::START));
+            // Dice that begin inside each other are no draw.
+            if scene.log_prior(&draw).unwrap().is_zero() {
+                continue;
+            }
+            let simulated = |work: &mut dice::Work| {
+                scene.simulate(&draw, None, LogPotential::ZERO, work).unwrap();
+                scene.motion_simulated(&draw, work).unwrap()
+            };
+            let (one, other) = (simulated(&mut kept), simulated(&mut forgotten));
+            assert!(one == other, "draw {nth}, together: {together}");
+            found += u32::from(kept.keeps_motions_of(&draw));
+            assert!(!forgotten.keeps_motions_of(&draw));
+        }
+    }
+    assert!(found >= 10, "{found} of 24 motions were kept");
 }
 
 /// Every kind there is stands in one of the lists.

@@ -93,6 +93,25 @@ impl<M: Mechanics, A: Observer<M>, B: Observer<M>> Observer<M> for (A, B) {
     }
 }
 
+/// One listener, or nobody, decided as the program runs.
+impl<M: Mechanics, O: Observer<M>> Observer<M> for Option<O> {
+    fn impact(&mut self, impact: &Impact) {
+        if let Some(listener) = self {
+            listener.impact(impact);
+        }
+    }
+
+    fn motion(&mut self, index: usize, body: &M::Body) {
+        if let Some(listener) = self {
+            listener.motion(index, body);
+        }
+    }
+
+    fn proceed(&mut self, state: &State<M::Body>) -> bool {
+        self.as_mut().is_none_or(|listener| listener.proceed(state))
+    }
+}
+
 /// A listener that is lent.
 impl<M: Mechanics, O: Observer<M>> Observer<M> for &mut O {
     fn impact(&mut self, impact: &Impact) {

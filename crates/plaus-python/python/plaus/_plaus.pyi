@@ -128,7 +128,8 @@ class Scenario:
 class Outcome:
     """What came of a candidate: what a requirement judges.
 
-    Numbers are at hand; motion and impacts are found, by simulating once more, when they are first asked for.
+    Numbers are at hand; motion and impacts are made when they are first asked for. A function that asked for them once
+    gets them from the simulation that was run anyway, where the scene keeps it; else by simulating once more.
     """
 
     def __getitem__(self, name: str, /) -> float:

@@ -21,7 +21,7 @@ class Cost(NamedTuple):
     calls: int
     """How often the function was called."""
     seconds: float
-    """Seconds spent in it, with the simulation of motions that it asked for."""
+    """Seconds spent in it, with what it had simulated once more."""
     waited: float
     """Seconds that chains waited for their turn, and for answers of other processes to arrive."""
 
@@ -37,8 +37,7 @@ class Requirement:
     `function` is called with an `Outcome` and returns `(log potential, met)`: the log of a factor that the sampled
     distribution gets (0 for no preference, `-inf` for impossible), and whether the requirement is met, so that the
     outcome may count as a solution. `True` stands for `(0, True)`, `False` for `(-inf, False)`; but a chain must be
-    able to start,
-    and finds its way much sooner along a slope than off a cliff.
+    able to start, and finds its way much sooner along a slope than off a cliff.
 
     The function must depend on the outcome alone: equal outcomes, equal answers. Then the chain stays exact, and the
     same seed gives the same bits, whatever the number of threads.

@@ -3,11 +3,13 @@
 use super::kernel::{Kernel, mixture};
 use super::{ByFunctions, Functions, Point};
 use crate::arrays::frozen;
-use crate::errors::{RunError, of_chain};
+use crate::errors::{RunError, of_chain, room};
 use plaus_dist::Seed;
 use plaus_mcmc::{Block, Control, Ending, MoveCounts, Plan, Progress, Pulse, RunError as Failed, Sink, Snapshot};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::collections::TryReserveError;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread;
@@ -31,8 +33,18 @@ struct Chain {
     satisfied: Vec<bool>,
 }
 
+impl Chain {
+    /// Makes room for further draws of a point.
+    fn reserve(&mut self, draws: usize, size: usize) -> Result<(), TryReserveError> {
+        self.points.try_reserve(draws.saturating_mul(size))?;
+        self.log_p.try_reserve(draws)?;
+        self.satisfied.try_reserve(draws)
+    }
+}
+
 impl Sink<Vec<f64>, super::Said> for Kept {
-    type Error = std::convert::Infallible;
+    /// There is no memory for more draws.
+    type Error = TryReserveError;
 
     fn block(
         &mut self,
@@ -46,6 +58,7 @@ impl Sink<Vec<f64>, super::Said> for Kept {
             let state: &Point = &entry.state;
             let from = next.max(self.warmup);
             next += entry.draws;
+            chain.reserve(next.saturating_sub(from) as usize, state.draw.len())?;
             for _ in from..next.max(from) {
                 chain.points.extend(&state.draw);
                 chain.log_p.push(state.log_p().value());
@@ -125,6 +138,7 @@ pub(crate) fn sample_target<'py>(
     let ended = ended.map_err(|_| RunError::new_err("plaus panicked while sampling: a bug of plaus"))?;
     let ending = ended.map_err(|error| match error {
         Failed::Chain { chain, source } => of_chain(py, &source, Some(chain), "Nothing of it is kept"),
+        Failed::Sink(error) => PyMemoryError::new_err(format!("no memory for more draws: {error}. Nothing is kept")),
         other => RunError::new_err(other.to_string()),
     })?;
     let made = arrays(py, &kept)?;
@@ -151,11 +165,17 @@ fn arrays<'py>(py: Python<'py>, kept: &Kept) -> PyResult<Bound<'py, PyDict>> {
         return Err(RunError::new_err("start gave points of different lengths: all points of a target have one"));
     }
     let made = PyDict::new(py);
-    let points: Vec<f64> = kept.chains.iter().flat_map(|chain| &chain.points[..draws * size]).copied().collect();
-    made.set_item("x", frozen(py, [chains, draws, size], points)?)?;
-    let log_p: Vec<f64> = kept.chains.iter().flat_map(|chain| &chain.log_p[..draws]).copied().collect();
-    made.set_item("lp", frozen(py, [chains, draws], log_p)?)?;
-    let satisfied: Vec<bool> = kept.chains.iter().flat_map(|chain| &chain.satisfied[..draws]).copied().collect();
-    made.set_item("satisfied", frozen(py, [chains, draws], satisfied)?)?;
+    made.set_item("x", frozen(py, [chains, draws, size], joined(kept, draws * size, |chain| &chain.points)?)?)?;
+    made.set_item("lp", frozen(py, [chains, draws], joined(kept, draws, |chain| &chain.log_p)?)?)?;
+    made.set_item("satisfied", frozen(py, [chains, draws], joined(kept, draws, |chain| &chain.satisfied)?)?)?;
     Ok(made)
+}
+
+/// The first `each` values of every chain, one chain after the other.
+fn joined<T: Copy + Default>(kept: &Kept, each: usize, of: impl Fn(&Chain) -> &[T]) -> PyResult<Vec<T>> {
+    let mut all = room(T::default(), each * kept.chains.len())?;
+    if each > 0 {
+        all.chunks_mut(each).zip(&kept.chains).for_each(|(part, chain)| part.copy_from_slice(&of(chain)[..each]));
+    }
+    Ok(all)
 }

@@ -8,6 +8,7 @@ use glam::DVec3;
 use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
 use plaus_sim::rigid::{Phase, Rigid, Turning};
+use std::borrow::Borrow;
 
 /// Pips of the faces +x, −x, +y, −y, +z, −z.
 const PIPS: [u8; 6] = [3, 4, 2, 5, 1, 6];
@@ -16,7 +17,8 @@ const PIPS: [u8; 6] = [3, 4, 2, 5, 1, 6];
 const WOBBLE: f64 = 0.004;
 
 pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError> {
-    let (motion, [low, high]) = motion(scene, draw, scene.plan.longest)?;
+    let recorded = Work::default().record(&scene.plan, draw, scene.plan.longest)?;
+    let (motion, [low, high]) = motion(scene, draw, &recorded)?;
     let room = DVec3::new(0.03, 0.03, 0.0);
     let [low, high] = [low - room, high + room];
     let scenery = props::props(scene, draw, [low, high]).map_err(ModelError::new)?;
@@ -24,17 +26,24 @@ pub(super) fn animate(scene: &Dice, draw: &Draw) -> Result<Animation, ModelError
     Ok(motion.with_scenery(scenery).with_view(view))
 }
 
-/// The dice alone, simulated for so many seconds at most, and the corners of a box that holds the ways of their
-/// middles, in the simulator's axes.
-pub(super) fn motion(scene: &Dice, draw: &Draw, longest: f64) -> Result<(Animation, [DVec3; 2]), ModelError> {
+/// The dice alone, as they were recorded, and the corners of a box that holds the ways of their middles, in the
+/// simulator's axes.
+pub(super) fn motion(
+    scene: &Dice,
+    draw: &Draw,
+    recorded: &[impl Borrow<Recorded>],
+) -> Result<(Animation, [DVec3; 2]), ModelError> {
+    // Turns of such a body are not of constant velocity: it is asked where it is on its way.
+    let wobbles = scene.plan.rotations.len() != 24;
+    let free = wobbles.then(|| scene.plan.free_world()).transpose()?;
     let (mut tracks, mut impacts, mut duration) = (Vec::new(), Vec::new(), 0.0_f64);
     let (mut contacts, half) = (Vec::new(), scene.plan.cuboid.half());
     let mass = 8.0 * half.x * half.y * half.z * scene.plan.density;
     let mut extent = [DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)];
-    for Recorded { members, world, trace, .. } in Work::default().record(&scene.plan, draw, longest)? {
+    for Recorded { members, trace } in recorded.iter().map(Borrow::borrow) {
         let name = |k: usize| format!("die_{}", members[k] + 1);
         for (k, (&die, motions)) in members.iter().zip(&trace.motions).enumerate() {
-            let (pieces, offset) = (pieces(scene, draw, &world, (k, die), motions), scene.offset(draw, die));
+            let (pieces, offset) = (pieces(scene, draw, free.as_ref(), die, motions), scene.offset(draw, die));
             for motion in motions {
                 let x = motion.path.x + offset;
                 extent = [extent[0].min(x), extent[1].max(x)];
@@ -70,11 +79,10 @@ pub(super) fn motion(scene: &Dice, draw: &Draw, longest: f64) -> Result<(Animati
     Ok((Animation::new(duration, tracks, impacts).with_contacts(in_order(contacts)), extent))
 }
 
-/// The motions of one die, body `body` of its world, as pieces, with the orientation of its pips.
-fn pieces(scene: &Dice, draw: &Draw, world: &Rigid, (body, die): (usize, usize), motions: &[Turning]) -> Vec<Piece> {
+/// The motions of one die as pieces, with the orientation of its pips; of one that wobbles, as told by `free`, in many.
+fn pieces(scene: &Dice, draw: &Draw, free: Option<&Rigid>, die: usize, motions: &[Turning]) -> Vec<Piece> {
     let pips = &scene.plan.rotations[usize::from(draw.throws[die].turn)];
     let offset = scene.offset(draw, die);
-    let wobbles = scene.plan.rotations.len() != 24;
     let mut pieces: Vec<Piece> = Vec::with_capacity(motions.len());
     let mut add = |body: &Turning| {
         let moves = !matches!(body.phase, Phase::Rest | Phase::Waiting);
@@ -92,11 +100,11 @@ fn pieces(scene: &Dice, draw: &Draw, world: &Rigid, (body, die): (usize, usize),
     for (k, motion) in motions.iter().enumerate() {
         add(motion);
         let until = motions.get(k + 1).map_or(motion.path.t, |next| next.path.t);
-        if wobbles && matches!(motion.phase, Phase::Flight | Phase::Step) {
+        if let Some(free) = free.filter(|_| matches!(motion.phase, Phase::Flight | Phase::Step)) {
             let parts = ((until - motion.path.t) / WOBBLE).ceil().min(1e5) as u32;
             for part in 1..parts {
                 let time = motion.path.t + (until - motion.path.t) * f64::from(part) / f64::from(parts);
-                add(&world.on_its_way(body, motion, time));
+                add(&free.on_its_way(0, motion, time));
             }
         }
     }

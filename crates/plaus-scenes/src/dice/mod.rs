@@ -149,10 +149,11 @@ impl Dice {
     /// [`ModelError`] where the simulation fails.
     pub fn touched(&self, draw: &Draw) -> Result<(usize, usize), ModelError> {
         let (mut sites, mut bytes) = (BTreeSet::new(), 0);
-        for mut recorded in Work::default().record(&self.plan, draw, self.plan.longest)? {
-            bytes += surface::bytes(recorded.world.parts_mut());
-            let touched = Touched::take(recorded.world.parts_mut());
-            sites.extend(touched.sites().map(|site| (recorded.table, site)));
+        for members in self.groups(draw)? {
+            let (run, mut world) = Work::default().record_group(&self.plan, draw, members, self.plan.longest)?;
+            bytes += surface::bytes(world.parts_mut());
+            let table = run.members.first().map(|&die| draw.table_of(die));
+            sites.extend(Touched::take(world.parts_mut()).sites().map(|site| (table, site)));
         }
         Ok((sites.len(), bytes))
     }
@@ -164,6 +165,12 @@ impl Dice {
     pub fn taken_for_cubes(mut self) -> Self {
         self.plan.rotations = Rotation::of_cuboid(glam::DVec3::ONE);
         self
+    }
+
+    /// The dice alone, simulated for so many seconds at most.
+    fn moving(&self, draw: &Draw, longest: f64) -> Result<Animation, ModelError> {
+        let recorded = Work::default().record(&self.plan, draw, longest)?;
+        Ok(animate::motion(self, draw, &recorded)?.0)
     }
 
     /// What follows from the ways of all dice: faces, and how well each constraint is met.
@@ -332,8 +339,7 @@ impl Scene for Dice {
     /// that end with the next event.
     fn motion_to(&self, draw: &Draw, time: f64) -> Result<Option<Animation>, ModelError> {
         let exact = !self.plan.together && self.plan.rotations.len() == 24 && time < self.plan.longest;
-        let motion = || animate::motion(self, draw, time).map(|(motion, _)| motion);
-        exact.then(motion).transpose()
+        exact.then(|| self.moving(draw, time)).transpose()
     }
 
     /// Each constraint, and that all come to rest.
@@ -354,7 +360,18 @@ impl Scene for Dice {
     }
 
     fn motion(&self, draw: &Draw) -> Result<Animation, ModelError> {
-        animate::motion(self, draw, self.plan.longest).map(|(motion, _)| motion)
+        self.moving(draw, self.plan.longest)
+    }
+
+    fn record_motions(&self, work: &mut Work) {
+        work.records = true;
+    }
+
+    fn motion_simulated(&self, draw: &Draw, work: &Work) -> Result<Animation, ModelError> {
+        match work.recorded(draw) {
+            Some(recorded) => Ok(animate::motion(self, draw, &recorded)?.0),
+            None => self.motion(draw),
+        }
     }
 
     fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {

@@ -5,7 +5,7 @@ use super::draw::{Draw, Site};
 use super::flight::Trip;
 use super::plan::Plan;
 use super::surface::Touched;
-use super::throwing::Work;
+use super::throwing::{Recorded, Work};
 use crate::model::groups::{Group, Groups};
 use crate::way::Way;
 use plaus_mcmc::ModelError;
@@ -23,6 +23,8 @@ pub(super) struct Fall {
     pub(super) ways: Vec<Way>,
     /// The control points that were looked at: nothing else of the table had any influence.
     pub(super) touched: Touched,
+    /// The motions, where they are kept.
+    pub(super) recorded: Option<Recorded>,
 }
 
 impl Group for Fall {

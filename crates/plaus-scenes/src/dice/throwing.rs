@@ -14,7 +14,7 @@ use plaus_mcmc::{ModelError, Simulated, StateOf};
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidScratch, RigidWorld, Start, Turning};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
-use plaus_sim::trace::{Observer, Trace};
+use plaus_sim::trace::Trace;
 use plaus_sim::{Outcome, Scratch, WorldError};
 
 /// Standard gravity, m/s².
@@ -35,6 +35,10 @@ pub struct Work {
     /// Of dice thrown onto one table: what is known about the chain's state, and about the candidate that was simulated
     /// last.
     pub(super) memory: Memory<Draw, Fall>,
+    /// Whether the motions of what is simulated are kept.
+    pub(super) records: bool,
+    /// Of dice thrown each onto a table of its own: the draw that was simulated last, and its motions.
+    last: Option<(Draw, Vec<Recorded>)>,
 }
 
 impl Work {
@@ -62,7 +66,9 @@ impl Work {
             let trips = self.throw_together(plan, draw, current.map(|state| &state.draw))?;
             return Ok(Simulated::Complete(scene.judge(draw, trips)));
         }
+        self.last = None;
         let dice = draw.throws.len();
+        let mut recorded = Vec::new();
         let same = |die: usize| current.and_then(|state| known(plan, state, draw, die)).cloned();
         let mut trips: Vec<Option<Trip>> = (0..dice).map(same).collect();
         for die in 0..dice {
@@ -70,10 +76,29 @@ impl Work {
                 if cannot_exceed(plan, draw, &trips, floor)? {
                     return Ok(Simulated::CannotExceedFloor);
                 }
-                trips[die] = self.fall(plan, draw, vec![die])?.trips.pop();
+                let mut fall = self.fall(plan, draw, vec![die])?;
+                trips[die] = fall.trips.pop();
+                recorded.extend(fall.recorded);
             }
         }
+        self.last = (recorded.len() == dice).then(|| (draw.clone(), recorded));
         Ok(Simulated::Complete(scene.judge(draw, trips.into_iter().flatten().collect())))
+    }
+
+    /// Whether the motions of a draw are kept: it was simulated last, and all its dice came to rest.
+    #[must_use]
+    pub fn keeps_motions_of(&self, draw: &Draw) -> bool {
+        self.recorded(draw).is_some()
+    }
+
+    /// The motions of a draw, where they are kept.
+    pub(super) fn recorded(&self, draw: &Draw) -> Option<Vec<&Recorded>> {
+        let together = self.memory.candidate();
+        if together.draw() == Some(draw) {
+            return together.last().iter().map(|fall| fall.recorded.as_ref()).collect();
+        }
+        let (_, alone) = self.last.as_ref().filter(|(known, _)| known == draw)?;
+        Some(alone.iter().collect())
     }
 
     /// Throws one die onto a table without edges, or one that is plain throughout: where it comes to rest, if it does.
@@ -90,7 +115,7 @@ impl Work {
             None => plan.world(1, plan.surface.plain())?,
         };
         let mut watch = Watch::new(&world, vec![&asked], endless, DVec3::ZERO);
-        let bodies = self.run((&world, plan.longest), std::slice::from_ref(throw), &mut watch)?;
+        let bodies = self.run((&world, plan.longest), std::slice::from_ref(throw), (Some(&mut watch), None))?;
         let trip = watch.finish(&bodies, plan.longest).0.pop();
         Ok(trip.filter(|trip| trip.end == End::AtRest))
     }
@@ -102,17 +127,23 @@ impl Work {
         let throws: Vec<Throw> = members.iter().map(|&die| draw.throws[die]).collect();
         let asked = members.iter().map(|&die| &plan.asked[die]).collect();
         let mut watch = Watch::new(&world, asked, plan.looking, draw.offset(first, plan.surface.spacing()));
-        let bodies = self.run((&world, plan.longest), &throws, &mut watch)?;
+        let mut trace = self.records.then(Trace::default);
+        let bodies = self.run((&world, plan.longest), &throws, (Some(&mut watch), trace.as_mut()))?;
         let (trips, ways) = watch.finish(&bodies, plan.longest);
-        Ok(Fall { members, trips, ways, touched: Touched::take(world.parts_mut()) })
+        let touched = Touched::take(world.parts_mut());
+        // Where a die leaves the table its run ends early.
+        let recorded = trace
+            .filter(|_| trips.iter().all(|trip| trip.end == End::AtRest))
+            .map(|trace| Recorded::new(members.clone(), trace, bodies));
+        Ok(Fall { members, trips, ways, touched, recorded })
     }
 
-    /// Runs a world for so many seconds at most.
+    /// Runs a world for so many seconds at most, watched and recorded where that is asked for.
     fn run(
         &mut self,
         (world, longest): (&Rigid, f64),
         throws: &[Throw],
-        observer: &mut impl Observer<Rigid>,
+        mut listeners: (Option<&mut Watch<'_>>, Option<&mut Trace<Turning>>),
     ) -> Result<Vec<Turning>, ModelError> {
         self.runs += 1;
         self.dice += throws.len() as u64;
@@ -125,7 +156,7 @@ impl Work {
         };
         let starts: Vec<Start> = throws.iter().map(start).collect();
         let mut state = world.state(&starts).map_err(ModelError::new)?;
-        let outcome = world.run(&mut state, &mut self.scratch, longest, observer).map_err(ModelError::new)?;
+        let outcome = world.run(&mut state, &mut self.scratch, longest, &mut listeners).map_err(ModelError::new)?;
         if let Outcome::NotFinite { body } = outcome {
             return Err(ModelError::new(format!("die {}: its motion is no longer finite", body + 1)));
         }
@@ -136,29 +167,42 @@ impl Work {
     pub(super) fn record(&mut self, plan: &Plan, draw: &Draw, longest: f64) -> Result<Vec<Recorded>, ModelError> {
         let alone = || (0..draw.throws.len()).map(|die| vec![die]).collect();
         let groups = if plan.together { self.groups(plan, draw)? } else { alone() };
-        let record = |members: Vec<usize>| {
-            let throws: Vec<Throw> = members.iter().map(|&die| draw.throws[die]).collect();
-            let table = draw.table_of(members.first().copied().unwrap_or(0));
-            let (world, mut trace) =
-                (plan.world(members.len(), plan.surface.part(&draw.tables[table]))?, Trace::default());
-            let bodies = self.run((&world, longest), &throws, &mut trace)?;
-            for (motions, last) in trace.motions.iter_mut().zip(bodies) {
-                motions.push(last);
-            }
-            Ok(Recorded { members, table, world, trace })
-        };
-        groups.into_iter().map(record).collect()
+        groups.into_iter().map(|members| self.record_group(plan, draw, members, longest).map(|(run, _)| run)).collect()
+    }
+
+    /// Simulates some dice by themselves with all motions and impacts, and gives the world they were in.
+    pub(super) fn record_group(
+        &mut self,
+        plan: &Plan,
+        draw: &Draw,
+        members: Vec<usize>,
+        longest: f64,
+    ) -> Result<(Recorded, Rigid), ModelError> {
+        let throws: Vec<Throw> = members.iter().map(|&die| draw.throws[die]).collect();
+        let table = draw.table_of(members.first().copied().unwrap_or(0));
+        let world = plan.world(members.len(), plan.surface.part(&draw.tables[table]))?;
+        let mut trace = Trace::default();
+        let bodies = self.run((&world, longest), &throws, (None, Some(&mut trace)))?;
+        Ok((Recorded::new(members, trace, bodies), world))
     }
 }
 
 /// Dice that were simulated together, with all that happened.
+#[derive(Debug)]
 pub(super) struct Recorded {
     /// Which dice, in ascending order.
     pub(super) members: Vec<usize>,
-    /// Which of the draw's tables they are on.
-    pub(super) table: usize,
-    pub(super) world: Rigid,
     pub(super) trace: Trace<Turning>,
+}
+
+impl Recorded {
+    /// A run that left the bodies as they are.
+    fn new(members: Vec<usize>, mut trace: Trace<Turning>, bodies: Vec<Turning>) -> Self {
+        for (motions, last) in trace.motions.iter_mut().zip(bodies) {
+            motions.push(last);
+        }
+        Self { members, trace }
+    }
 }
 
 impl Plan {
@@ -169,6 +213,11 @@ impl Plan {
         // Farther apart than they are long, however they are turned.
         let apart = 2.5 * self.cuboid.half().length();
         Ok(PlainWorld { world, places: (0..dice).map(|die| DVec3::new(apart * die as f64, 0.0, HAND)).collect() })
+    }
+
+    /// A world of one die, for its motion between impacts.
+    pub(super) fn free_world(&self) -> Result<Rigid, ModelError> {
+        self.world(1, self.surface.plain())
     }
 
     /// A world of dice on a table.

@@ -169,6 +169,7 @@ impl<S: Scene> Target for Asked<S> {
         if !floor.is_zero() && self.is_hopeless(draw, floor)? {
             return Ok(Simulated::CannotExceedFloor);
         }
+        self.scene.record_motions(scratch);
         let own_floor = self.own_floor(floor)?;
         let current = current.map(Self::plain);
         let Simulated::Complete(outcome) = self.scene.simulate(draw, current.as_ref(), own_floor, scratch)? else {
@@ -288,6 +289,10 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn motion(&self, draw: &S::Draw) -> Result<Animation, ModelError> {
         self.scene.motion(draw)
+    }
+
+    fn record_motions(&self, scratch: &mut S::Scratch) {
+        self.scene.record_motions(scratch);
     }
 
     fn motion_simulated(&self, draw: &S::Draw, scratch: &S::Scratch) -> Result<Animation, ModelError> {
