@@ -189,7 +189,8 @@ pub(crate) fn beside(beside: &Beside) -> (String, String) {
             match beside.says_something() {
                 true => format!("{kept} exact draws, kept of {draws} of the prior, lie where the chains are too\n"),
                 false => format!(
-                    "{kept} of {draws} draws of the prior would be kept: too few to tell whether there is something that all chains missed\n"
+                    "{kept} of {draws} draws of the prior would be kept: too few to tell whether there is something that \
+                 all chains missed\n"
                 ),
             },
         );
@@ -201,7 +202,8 @@ pub(crate) fn beside(beside: &Beside) -> (String, String) {
         [None, None] => "anywhere".to_owned(),
     };
     let finding = format!(
-        "  {}: {} of {kept} exact draws, kept of {draws} of the prior, lie {range}, where the chains were {} of the time: they missed something\n",
+        "  {}: {} of {kept} exact draws, kept of {draws} of the prior, lie {range}, where the chains were {} of the \
+         time: they missed something\n",
         missed.scalar,
         percent(missed.kept),
         percent(missed.chains),

@@ -30,8 +30,8 @@ pub struct Diagnosis {
     pub stride: u64,
     /// Per scalar, those of the draw first.
     pub scalars: Vec<ScalarDiagnosis>,
-    /// How many independent solutions there are; `None` where there are none, of a chain also where there are fewer than
-    /// two or nothing in them ever moved.
+    /// How many independent solutions there are; `None` where there are none, of a chain also where there are fewer
+    /// than two or nothing in them ever moved.
     pub independent: Option<Independent>,
     /// What the records add up to.
     pub tally: Tally,

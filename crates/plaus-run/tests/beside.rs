@@ -5,7 +5,7 @@ use plaus_run::diagnosis::columns;
 use plaus_run::{Beside, Diagnosis, Folder, Recipe, Run, RunOf, RunVisitor, Sampling, Unwatched, sample};
 use plaus_scenes::{Role, Scenario, Scene};
 
-/// A ball that bounces once, where the target can be met by two bands of angles; the second holds about an eighth.
+/// A ball that bounces once, where the target can be met by two bands of angles; the second holds about a tenth.
 const TWO_MODES: &[&str] =
     &["collisions=1", "sigma_theta_deg=20", "sigma_d=0.02", "tolerance=0.02", "iterations=20000", "thin=1"];
 /// The paper's move, with steps that hardly ever lead from one band to the other.
@@ -46,14 +46,14 @@ fn widest_gap(mut values: Vec<f64>) -> f64 {
 
 #[test]
 fn a_mode_that_all_chains_missed_is_seen() {
-    let (_place, exact) = run(1, &["method=independent", "iterations=40000"]);
+    let (_place, exact) = run(1, &["method=independent", "iterations=40000", "warmup=4000"]);
     let (angles, _, beside) = exact.visit(Looked).unwrap();
     assert_eq!(beside, None, "exact draws have nothing beside them");
     let gap = widest_gap(angles.clone());
     let above = |angles: &[f64]| angles.iter().filter(|angle| **angle > gap).count() as f64 / angles.len() as f64;
     let share = above(&angles);
-    assert!((0.05..0.95).contains(&share), "{share} above {gap}");
-    let (mut missed, mut lulled) = (0, 0);
+    assert!((0.02..0.98).contains(&share), "{share} above {gap}");
+    let (mut missed, mut lulled, mut seen) = (0, 0, 0);
     for seed in 1..=8 {
         let (_place, run) = run(seed, SMALL_STEPS);
         let (angles, diagnosis, beside) = run.visit(Looked).unwrap();
@@ -61,12 +61,16 @@ fn a_mode_that_all_chains_missed_is_seen() {
         assert!(found.says_something(), "{found:?}");
         if there == 0.0 || there == 1.0 {
             missed += 1;
-            lulled += usize::from(diagnosis.is_healthy());
-            let said = found.missed.as_ref().unwrap();
-            assert!(said.chains < 0.5 * said.kept, "seed {seed}: {said:?}");
+            let is_lulled = diagnosis.is_healthy();
+            lulled += usize::from(is_lulled);
+            if let Some(said) = found.missed.as_ref().filter(|_| is_lulled) {
+                seen += 1;
+                assert!(said.chains < 0.5 * said.kept, "seed {seed}: {said:?}");
+            }
         }
     }
-    assert!(missed >= 2 && lulled >= 1, "{missed} runs missed a mode, {lulled} of them without a word");
+    // Some 120 draws are kept, a dozen of them in the other mode; four are needed. One run in fifty has fewer.
+    assert!(missed >= 2 && lulled >= 2 && seen + 1 >= lulled, "{missed} missed it, {lulled} unsaid, {seen} seen");
     for seed in 1..=8 {
         let (_place, run) = run(seed, &["chains=2", "warmup=1000"]);
         let (angles, _, beside) = run.visit(Looked).unwrap();
@@ -81,5 +85,5 @@ fn what_cannot_be_known_is_not_claimed() {
     let (_place, run) = run(1, &["sigma_d=0.00001", "tolerance=0.00001", "warmup=1000"]);
     let (_, _, beside) = run.visit(Looked).unwrap();
     let beside = beside.unwrap();
-    assert!(!beside.says_something() && beside.missed.is_none() && beside.draws == 6000, "{beside:?}");
+    assert!(!beside.says_something() && beside.missed.is_none() && beside.draws == 40_000, "{beside:?}");
 }
