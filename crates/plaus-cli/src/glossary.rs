@@ -47,7 +47,8 @@ const WORDS: &[(&[&str], &str)] = &[
         &["independent", "independent solutions"],
         "how many solutions, each drawn anew, those of the run are worth: counted by that random variable of theirs which \
          changes most slowly from solution to solution. A chain that stays near one solution has many distinct ones, \
-         and few independent ones.",
+         and few independent ones. Where draws of the prior are kept instead (`sampler.method`), each solution is \
+         drawn by itself, and they are as many as were kept.",
     ),
     (&["ess"], "effective sample size: how many independent animations the recorded ones are worth for an average."),
     (&["mcse"], "Monte Carlo standard error: how far an average over the run is likely to be off."),

@@ -2,7 +2,7 @@
 
 use crate::progress::acceptance;
 use crate::table::{amount, grouped, lay_out, percent, short};
-use plaus_run::{Diagnosis, Manifest, Run, RunFileError, RunOf, RunVisitor};
+use plaus_run::{Beside, Diagnosis, Manifest, Run, RunFileError, RunOf, RunVisitor};
 use plaus_scenes::{Role, Scene};
 use serde_json::{Value, json};
 
@@ -43,6 +43,13 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
         grouped(plan.iterations),
         grouped(plan.warmup),
     )
+}
+
+/// How draws are made, where that was left open or asked for.
+pub(crate) fn way(manifest: &Manifest) -> Option<String> {
+    let way = manifest.way.as_ref()?;
+    let how = if way.independent { "independent draws of the prior" } else { "chains" };
+    Some(format!("sampling by {how}: {}", way.why))
 }
 
 /// What to tell of an acceptance rule without a guarantee.
@@ -165,7 +172,43 @@ pub(crate) fn independent(diagnosis: &Diagnosis, seconds: Option<f64>) -> String
     let minute = seconds.filter(|&seconds| seconds > 0.0).map(|seconds| 60.0 * found.ess / seconds);
     let pace = minute.map(|minute| format!(", {} a minute", amount(minute))).unwrap_or_default();
     let ess = amount(found.ess);
-    format!("{ess} independent solutions{pace} (by {}, which mixes worst: `plaus explain independent`)\n", found.scalar)
+    match &found.scalar {
+        Some(worst) => {
+            format!("{ess} independent solutions{pace} (by {worst}, which mixes worst: `plaus explain independent`)\n")
+        }
+        None => format!("{ess} independent solutions{pace} (each drawn by itself: `plaus explain independent`)\n"),
+    }
+}
+
+/// What exact draws say of the chains: a finding, if there is one, and what is known or not known otherwise.
+pub(crate) fn beside(beside: &Beside) -> (String, String) {
+    let (kept, draws) = (grouped(beside.kept), grouped(beside.draws));
+    let Some(missed) = &beside.missed else {
+        return (
+            String::new(),
+            match beside.says_something() {
+                true => format!("{kept} exact draws, kept of {draws} of the prior, lie where the chains are too\n"),
+                false => format!(
+                    "{kept} of {draws} draws of the prior would be kept: too few to tell whether there is something that \
+                 all chains missed\n"
+                ),
+            },
+        );
+    };
+    let range = match missed.between {
+        [Some(low), Some(high)] => format!("between {} and {}", short(low), short(high)),
+        [Some(low), None] => format!("above {}", short(low)),
+        [None, Some(high)] => format!("up to {}", short(high)),
+        [None, None] => "anywhere".to_owned(),
+    };
+    let finding = format!(
+        "  {}: {} of {kept} exact draws, kept of {draws} of the prior, lie {range}, where the chains were {} of the \
+         time: they missed something\n",
+        missed.scalar,
+        percent(missed.kept),
+        percent(missed.chains),
+    );
+    (finding, String::new())
 }
 
 /// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are
@@ -217,6 +260,7 @@ pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
         "seed": manifest.plan.seed,
         "exact_acceptance": manifest.exact,
         "scenario_hash": manifest.scenario.hash,
+        "way": manifest.way,
         "iterations": diagnosis.iterations,
         "recorded_draws": diagnosis.recorded,
         "draws": diagnosis.draws,

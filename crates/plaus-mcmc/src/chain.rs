@@ -261,7 +261,11 @@ impl<'a, T: Target> Chain<'a, T> {
     /// `ln u < log α` says that the candidate's log constraint exceeds a floor known before the simulation. Rounding is
     /// monotone, so a bound on the constraint at or below the floor decides exactly as the whole simulation would.
     fn judge(&mut self, next: u64, move_id: MoveId, proposal: Proposal) -> Result<Verdict, ModelError> {
-        let Proposal::Candidate { log_ratio, path, later } = proposal else { return Ok(Verdict::Stayed) };
+        let (log_ratio, path, later) = match proposal {
+            Proposal::Stay => return Ok(Verdict::Stayed),
+            Proposal::Anew => return self.judge_anew(next),
+            Proposal::Candidate { log_ratio, path, later } => (log_ratio, path, later),
+        };
         let log_prior = self.target.log_prior(&self.candidate)?;
         let ln_u = math::ln(open_unit(&mut self.streams.at(next, Purpose::ACCEPT)));
         let log_p = self.state.log_prior + self.state.log_constraint.tempered(self.beta)?;
@@ -285,6 +289,36 @@ impl<'a, T: Target> Chain<'a, T> {
                 None => false,
             }
         };
+        self.target.settle(accepted, &mut self.scratch);
+        Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
+    }
+
+    /// The accept step of rejection: a draw of the prior is kept with probability `(p_c / M)^β`, whatever the current
+    /// state. The flow from a to b, `p_w(a) p_c(a)^β · p_w(b) (p_c(b) / M)^β`, is that from b to a.
+    fn judge_anew(&mut self, next: u64) -> Result<Verdict, ModelError> {
+        let log_prior = self.target.log_prior(&self.candidate)?;
+        if log_prior.is_zero() {
+            return Ok(Verdict::RejectedByPrior);
+        }
+        let Some(most) = self.target.most() else {
+            return Err(ModelError::new("its constraint has no bound that is known: no draw of the prior can be kept"));
+        };
+        let ln_u = math::ln(open_unit(&mut self.streams.at(next, Purpose::ACCEPT)));
+        let floor = LogPotential::new(ln_u + most.tempered(self.beta)?.value())?;
+        let Some(seen) = floor_seen(floor, self.beta) else { return Ok(Verdict::RejectedEarly) };
+        let simulated = self.target.simulate(&self.candidate, Some(&self.state), seen, &mut self.scratch)?;
+        let Simulated::Complete(outcome) = simulated else {
+            self.target.settle(false, &mut self.scratch);
+            return Ok(Verdict::RejectedEarly);
+        };
+        let log_constraint = self.target.log_constraint(&outcome)?;
+        if log_constraint > most {
+            let (found, most) = (log_constraint.value(), most.value());
+            return Err(ModelError::new(format!(
+                "a log constraint of {found} exceeds the most it said, {most}: a bug"
+            )));
+        }
+        let accepted = self.accept_above(floor, outcome, log_prior, log_constraint)?;
         self.target.settle(accepted, &mut self.scratch);
         Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
     }

@@ -54,6 +54,7 @@ pub mod chain;
 pub mod chance;
 pub mod check;
 pub mod diagnose;
+pub mod independent;
 pub mod ladder;
 pub mod law;
 pub mod library;
@@ -71,6 +72,7 @@ pub mod view;
 
 pub use adapt::{Adapted, Scale, Scales};
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
+pub use independent::{Independent, Tried, keep_draws, try_draws};
 pub use ladder::Ladder;
 pub use law::{Law, Offset, Recipe, Rectangle};
 pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};

@@ -26,6 +26,10 @@ pub enum Proposal {
         /// nothing is missing.
         later: Option<LogRatio>,
     },
+    /// The candidate buffer holds a draw of the prior, which shares nothing with the current one. It is kept with
+    /// probability `p_c / M`, `M` being [`Target::most`], whatever the current state: so what is kept is an independent
+    /// draw of the target, exact by rejection.
+    Anew,
 }
 
 impl Proposal {
@@ -38,11 +42,11 @@ impl Proposal {
         Self::Candidate { log_ratio, path: Path(0), later: None }
     }
 
-    /// The way a candidate was made; `None` where there is no candidate.
+    /// The way a candidate was made; `None` where there is no candidate, or none that came from the current state.
     #[must_use]
     pub fn path(self) -> Option<Path> {
         match self {
-            Self::Stay => None,
+            Self::Stay | Self::Anew => None,
             Self::Candidate { path, .. } => Some(path),
         }
     }

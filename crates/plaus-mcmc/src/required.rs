@@ -166,6 +166,10 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
         Ok(outcome.seen.log_constraint + outcome.mark.log)
     }
 
+    fn most(&self) -> Option<LogPotential> {
+        Some(self.target.most()? + self.requirement.most()?)
+    }
+
     fn settle(&self, accepted: bool, scratch: &mut T::Scratch) {
         self.target.settle(accepted, scratch);
     }

@@ -70,6 +70,12 @@ pub trait Target: Sync {
     /// [`ModelError`] where it is no number.
     fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError>;
 
+    /// The largest log constraint there is, or anything above; `None` where no bound is known, and then no independent
+    /// draws can be made by rejection (see [`crate::Proposal::Anew`]). A bound that is too high costs time alone.
+    fn most(&self) -> Option<LogPotential> {
+        None
+    }
+
     /// Told after every accept step that followed a simulation whether the simulated candidate became the current
     /// state, so that memory kept in `scratch` about the current state can follow.
     fn settle(&self, _accepted: bool, _scratch: &mut Self::Scratch) {}

@@ -12,6 +12,7 @@ mod check_vertices;
 mod diagnose_properties;
 mod engine_chain;
 mod engine_run;
+mod independent;
 mod library;
 mod replicas;
 mod required;

@@ -300,3 +300,95 @@ fn batches_are_functions_of_their_number_and_can_be_stopped() {
     assert!(matches!(count(&target, UPPER, Seed(3), 0, 9, &pulse), Err(ChanceError::Stopped)));
     assert!(matches!(stones(&target, &moves, Seed(3), 0, STONES, &pulse), Err(ChanceError::Stopped)));
 }
+
+/// A tail that the constraint leads to, and a small square that it leads away from.
+#[derive(Clone, Copy)]
+struct Hidden {
+    tail: Tail,
+    /// Half the square's side, and its middle.
+    half: f64,
+    middle: [f64; 2],
+}
+
+impl Hidden {
+    fn is_in_square(&self, x: &[f64; 2]) -> bool {
+        x.iter().zip(&self.middle).all(|(x, middle)| (x - middle).abs() < self.half)
+    }
+
+    fn probability_of_square(&self) -> f64 {
+        self.middle.iter().map(|middle| tail_of(middle - self.half) - tail_of(middle + self.half)).product()
+    }
+}
+
+impl Target for Hidden {
+    type Draw = [f64; 2];
+    type Outcome = [f64; 2];
+    type Scratch = ();
+    fn start(&self, stream: &mut Stream) -> [f64; 2] {
+        self.tail.start(stream)
+    }
+    fn log_prior(&self, draw: &[f64; 2]) -> Result<LogDensity, ModelError> {
+        self.tail.log_prior(draw)
+    }
+    fn simulate(
+        &self,
+        draw: &[f64; 2],
+        _: Option<&StateOf<Self>>,
+        _: LogPotential,
+        (): &mut (),
+    ) -> Result<Simulated<[f64; 2]>, ModelError> {
+        Ok(Simulated::Complete(*draw))
+    }
+    fn log_constraint(&self, outcome: &[f64; 2]) -> Result<LogPotential, ModelError> {
+        if self.is_in_square(outcome) { Ok(LogPotential::ONE) } else { self.tail.log_constraint(outcome) }
+    }
+}
+
+impl Goal for Hidden {
+    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+        let there = state.draw[0] >= self.tail.past || self.is_in_square(&state.draw);
+        there.then(|| SolutionClass::of([0]))
+    }
+}
+
+impl plaus_mcmc::view::View for Hidden {
+    type Seen = Tail;
+    fn seen(&self) -> &Tail {
+        &self.tail
+    }
+}
+
+/// Two ways to the goal, one of which is a needle that nothing points to: splitting and stones, which go by what they
+/// have seen, miss all of it and agree with each other; draws of the prior know better, and that is said.
+#[test]
+fn a_mode_that_is_hard_to_find_makes_estimators_disagree() {
+    let pulse = ChancePulse::default();
+    let found = |half: f64| {
+        let target = Hidden { tail: Tail::beyond(5.0), half, middle: [-1.5, 0.0] };
+        let moves = Arc::new(plaus_mcmc::view::lend::<Hidden>(turns()).unwrap());
+        let draws = (0..16).map(|batch| count(&target, Parts::NONE, Seed(8), batch, 62_500, &pulse).unwrap());
+        let particles =
+            (0..12).map(|batch| split((&target, &moves), Parts::NONE, Seed(8), batch, SPLITTING, &pulse).unwrap());
+        let plan = Stones { warmup: 100, iterations: 600, ..STONES };
+        let stoned = (0..12).map(|batch| stones(&target, &moves, Seed(8), batch, plan, &pulse).unwrap());
+        let counted = Estimate::counted(&draws.collect::<Vec<_>>(), 0).unwrap();
+        let split = Estimate::split(&particles.collect::<Vec<_>>(), 0).unwrap();
+        let stoned = Estimate::stones(&stoned.collect::<Vec<_>>()).unwrap();
+        (target, counted, split, stoned)
+    };
+    // Some 20 of a million draws are in the square. Of 1,200 particles, or the 8,400 draws of the stones' first rungs,
+    // none is, most likely.
+    let (target, counted, split, stoned) = found(0.01);
+    let (square, tail) = (target.probability_of_square(), tail_of(5.0));
+    assert!(square > 50.0 * tail && (counted.probability - square - tail).abs() < 5.0 * counted.error, "{counted:?}");
+    for missed in [split, stoned] {
+        assert!((missed.probability - tail).abs() < 6.0 * missed.error, "{missed:?} is not {tail}");
+        let found = disagree(&[counted, missed]);
+        assert!(found.len() == 1 && found[0].less == missed.method, "{counted:?} {missed:?}");
+    }
+    assert_eq!(disagree(&[split, stoned]), [], "two that missed the same agree");
+    // Without the square all agree, though counting finds nothing.
+    let (_, counted, split, stoned) = found(0.0);
+    assert_eq!(counted.probability, 0.0);
+    assert_eq!(disagree(&[counted, split, stoned]), []);
+}

@@ -30,7 +30,8 @@ pub struct Diagnosis {
     pub stride: u64,
     /// Per scalar, those of the draw first.
     pub scalars: Vec<ScalarDiagnosis>,
-    /// How many independent solutions there are; `None` of fewer than two, or where nothing in them ever moved.
+    /// How many independent solutions there are; `None` where there are none, of a chain also where there are fewer
+    /// than two or nothing in them ever moved.
     pub independent: Option<Independent>,
     /// What the records add up to.
     pub tally: Tally,
@@ -44,8 +45,8 @@ pub struct Diagnosis {
 pub struct Independent {
     /// How many.
     pub ess: f64,
-    /// The variable.
-    pub scalar: String,
+    /// The variable; `None` where each was drawn by itself, so that they are as many as were kept.
+    pub scalar: Option<String>,
 }
 
 /// What was found about a scalar.
@@ -138,8 +139,8 @@ impl Diagnosis {
             let some = &all[from..all.len().min(from.saturating_add(width as usize))];
             let (columns, moments) = streamed(run, from, some.len(), stride)?;
             let solutions = |(scalar, chains): (&Scalar, &Vec<Vec<f64>>)| {
-                let ess = if scalar.role == Role::Draw { ess_where(chains, &satisfied) } else { Ok(None) };
-                Some(Independent { ess: ess.ok()??, scalar: scalar.name.clone() })
+                let ess = (scalar.role == Role::Draw).then(|| worth_of(chains, &satisfied));
+                Some(Independent { ess: ess??, scalar: Some(scalar.name.clone()) })
             };
             let fewest = some.par_iter().zip(&columns).filter_map(solutions).collect::<Vec<_>>();
             independent = fewest.into_iter().chain(independent).reduce(|a, b| if b.ess < a.ess { b } else { a });
@@ -147,6 +148,10 @@ impl Diagnosis {
                 diagnose(scalar, &chains, iterations, (stride > 1).then_some(moments))
             };
             scalars.par_extend(some.par_iter().zip(columns).zip(moments).map(diagnose));
+        }
+        if run.run().manifest().is_independent() {
+            let kept = kept(run)?;
+            independent = (kept > 0).then_some(Independent { ess: kept as f64, scalar: None });
         }
         scalars.sort_by_key(|scalar: &ScalarDiagnosis| scalar.scalar.role != Role::Draw);
         let tally = Tally::of(run)?;
@@ -160,6 +165,25 @@ impl Diagnosis {
     pub fn is_healthy(&self) -> bool {
         self.findings.is_empty()
     }
+}
+
+/// How many independent solutions these values of one variable are worth, per chain, per draw; `None` where that cannot
+/// be told.
+pub(crate) fn worth_of(chains: &[Vec<f64>], satisfied: &[Vec<bool>]) -> Option<f64> {
+    ess_where(chains, satisfied).ok()?
+}
+
+/// Solutions that were drawn by themselves in the sampling phase, of all chains, as far as they were recorded.
+fn kept<S: Scene>(run: &RunOf<'_, S>) -> Result<u64, RunFileError> {
+    let chain = |chain| -> Result<u64, RunFileError> {
+        let mut kept = 0;
+        run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
+            kept += u64::from(stretch.accepted > 0 && stretch.entry.class.is_some());
+            Ok(())
+        })?;
+        Ok(kept)
+    };
+    run.chains().into_par_iter().map(chain).sum()
 }
 
 /// Per chain, per draw: whether it satisfies the constraint.

@@ -46,6 +46,7 @@
 //! resumed. Records are written first, checkpoints after; a checkpoint says how long the records were, and what lies beyond that is cut off
 //! when the run goes on. So a process that dies at any moment loses at most the iterations since the last checkpoint.
 
+pub mod beside;
 pub mod chance;
 pub mod checkpoint;
 pub mod codec;
@@ -71,7 +72,9 @@ pub mod solutions;
 mod streamed;
 pub mod tally;
 mod trail;
+pub mod way;
 
+pub use beside::{Beside, Missed};
 pub use confirm::Confirmation;
 pub use diagnosis::{Diagnosis, Finding, Independent};
 pub use drive::{Alone, Drive, Driven, Journey};
@@ -87,3 +90,4 @@ pub use sample::{
 pub use shard::{Shard, ShardError};
 pub use solutions::Solution;
 pub use tally::{SampleId, Tally};
+pub use way::Way;

@@ -4,8 +4,9 @@ use crate::disk::Disk;
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::shard::Shard;
-use plaus_mcmc::Plan;
-use plaus_scenes::{Role, Scenario, Scene};
+use crate::way::{Way, is_independent, moves_of};
+use plaus_mcmc::{Mixture, Plan};
+use plaus_scenes::{Role, Rules, Scenario, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -52,6 +53,9 @@ pub struct Manifest {
     /// on only with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub requirement: Option<String>,
+    /// How draws are made, and why so; not there where the scenario does not say and chains make them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub way: Option<Way>,
 }
 
 /// The scenario of a run.
@@ -122,6 +126,7 @@ impl Recipe {
     /// [`Error`] where the weights of its moves make no mixture.
     pub fn manifest<S: Scene>(&self, scene: &S) -> Result<Manifest, Error> {
         let rules = &self.scenario.sampler.rules;
+        let way = Way::said(&self.scenario);
         let effective = self.scenario.to_toml();
         let read =
             Scenario::read(&self.file, &effective, &[]).map_err(|error| Error::StoredScenario(error.to_string()))?;
@@ -138,11 +143,12 @@ impl Recipe {
             overrides: self.overrides.clone(),
             plan: self.plan(),
             extended_from: Vec::new(),
-            exact: rules.is_exact(),
+            exact: rules.is_exact() || is_independent(way.as_ref()),
             acceptance_rule: rules.flags().into_iter().map(|(flag, on)| (flag.to_owned(), on)).collect(),
-            moves: scene.moves(rules)?.names(),
+            moves: moves_of(scene, rules, way.as_ref())?.names(),
             scalars: stored_scalars(scene),
             requirement: None,
+            way,
         })
     }
 }
@@ -292,6 +298,31 @@ impl Manifest {
         Ok(scenario)
     }
 
+    /// Whether its draws are independent ones of the prior.
+    #[must_use]
+    pub fn is_independent(&self) -> bool {
+        is_independent(self.way.as_ref())
+    }
+
+    /// The moves that its chains make.
+    ///
+    /// # Errors
+    /// [`Error`] where the stored scenario cannot be read, or its weights make no mixture.
+    pub fn mixture<S: Scene>(&self, scene: &S) -> Result<Mixture<S>, Error> {
+        Ok(moves_of(scene, &self.scenario()?.sampler.rules, self.way.as_ref())?)
+    }
+
+    /// The same with draws made another way.
+    ///
+    /// # Errors
+    /// [`Error`] where the weights of its moves make no mixture.
+    pub(crate) fn made<S: Scene>(self, way: Way, scene: &S, rules: &Rules) -> Result<Self, Error> {
+        let way = Some(way);
+        let moves = moves_of(scene, rules, way.as_ref())?.names();
+        let exact = rules.is_exact() || is_independent(way.as_ref());
+        Ok(Self { way, moves, exact, ..self })
+    }
+
     /// How this run differs from `other`, where it does: version, seed, the first key of the scenario, which piece.
     #[must_use]
     pub fn differs_from(&self, other: &Self) -> Option<String> {
@@ -309,6 +340,7 @@ impl Manifest {
             ("how its keys were set on the command line", self.overrides != other.overrides),
             ("how often it was made longer", self.extended_from != other.extended_from),
             ("what is required beyond the scenario", self.requirement != other.requirement),
+            ("how draws are made", self.way != other.way),
             ("its moves, scalars or rules", Self { shard: other.shard, ..self.clone() } != *other),
         ];
         let part = parts.into_iter().find(|part| part.1).map(|(what, _)| format!("{what} differs"));

@@ -32,7 +32,7 @@ pub fn pace<S: Scene>(run: &RunOf<'_, S>, pulse: &Pulse) -> Result<Option<u64>, 
     // As long as any run may be.
     let iterations = (1 << 48) - 1 - manifest.plan.warmup;
     let plan = Plan { iterations, solutions: None, ..manifest.plan };
-    let moves = run.scene().moves(&run.run().scenario().sampler.rules)?;
+    let moves = manifest.mixture(run.scene())?;
     let starts = vec![Start { snapshot, distinct: Distinct::default() }];
     run_some(run.scene(), &moves, plan, first..first + 1, starts, 1, &mut Nowhere, pulse)
         .map_err(|error| Error::Sampling(error.to_string()))?;

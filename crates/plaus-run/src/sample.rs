@@ -13,7 +13,9 @@ use crate::shard::Shard;
 use crate::siblings::Siblings;
 use crate::sink::{FolderSink, Hunt, Place};
 use crate::trail;
+use crate::way::{self, Way};
 use plaus_mcmc::{Control, Distinct, Ending, Progress, Pulse, RunError, Start, Target};
+use plaus_scenes::scenario::Method;
 use plaus_scenes::{Scenario, Scene, Visitor};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -147,6 +149,7 @@ fn begin<D: Drive>(
         fn visit<S: Scene>(self, scene: S) -> Self::Output {
             let Self(folder, recipe, shard, sampling, drive) = self;
             let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
+            let manifest = settled(manifest, recipe, &scene, &sampling)?;
             let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
             folder.create(sampling.disk, &json)?;
             let _claim = folder.claim()?;
@@ -188,11 +191,33 @@ pub fn sample_or_go_on(
         }
     }
     let found = Manifest::read(folder)?;
-    let expected = recipe.scenario.visit(Expected(recipe, shard))??;
+    let mut expected = recipe.scenario.visit(Expected(recipe, shard))??;
+    if recipe.scenario.method() == Method::Auto {
+        // A trial finds the same each time.
+        (expected.way, expected.moves, expected.exact) = (found.way.clone(), found.moves.clone(), found.exact);
+    }
     match found.differs_from(&expected) {
         Some(difference) => Err(RunFileError::new(folder.path(), RunFileProblem::OtherRun(difference)).into()),
         None => resume(folder, More::default(), sampling),
     }
+}
+
+/// The manifest of a run of which it is settled how its draws are made.
+fn settled<S: Scene>(
+    manifest: Manifest,
+    recipe: &Recipe,
+    scene: &S,
+    sampling: &Sampling<'_>,
+) -> Result<Manifest, Error> {
+    if manifest.way.is_some() || recipe.scenario.method() != Method::Auto {
+        return Ok(manifest);
+    }
+    let pulse = sampling.watch.pulse();
+    let way = match &manifest.requirement {
+        Some(_) => Way { independent: false, why: "no trial asks what a program requires".to_owned() },
+        None => sampling.pool(&manifest)?.install(|| way::tried(recipe, scene, &pulse))?,
+    };
+    manifest.made(way, scene, &recipe.scenario.sampler.rules)
 }
 
 fn piece<S: Scene>(recipe: &Recipe, scene: &S, shard: Option<Shard>) -> Result<Manifest, Error> {
@@ -340,7 +365,7 @@ fn restore_chain<S: Scene>(
         let message = format!("{} moves are counted, the scene has {}", snapshot.counts.len(), manifest.moves.len());
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
     }
-    let kernels = scene.moves(&manifest.scenario()?.sampler.rules)?;
+    let kernels = manifest.mixture(scene)?;
     let tempered = snapshot.replicas.iter().flat_map(|replicas| replicas.scales.iter().flatten());
     if !snapshot.scales.iter().chain(tempered).all(|scales| scales.fit(&kernels)) {
         let message = "its scales are not those of the scene's moves".to_owned();
@@ -370,7 +395,7 @@ fn go_on<S: Scene, D: Drive>(
     sampling: Sampling<'_>,
     drive: &D,
 ) -> Result<Ending, Error> {
-    let moves = scene.moves(&manifest.scenario()?.sampler.rules)?;
+    let moves = manifest.mixture(&**scene)?;
     let done = starts.first().map_or(0, |start| start.snapshot.end_iteration);
     let lengths =
         manifest.chains().map(|chain| records::length(&folder.records(chain))).collect::<Result<Vec<_>, _>>()?;

@@ -82,8 +82,7 @@ pub struct ScaleTally {
 
 fn scales<S: Scene>(run: &RunOf<'_, S>, scales: &Scales) -> Vec<ScaleTally> {
     // A run that was opened has a scenario that makes a scene, and moves.
-    let rules = run.run().scenario().sampler.rules;
-    let Ok(moves) = run.scene().moves(&rules) else { return Vec::new() };
+    let Ok(moves) = run.run().manifest().mixture(run.scene()) else { return Vec::new() };
     let mut all = Vec::new();
     for (id, (_, kernel)) in (0..).map(MoveId).zip(moves.iter()) {
         let adapted = scales.values(id).into_iter().zip(scales.adapted(id));

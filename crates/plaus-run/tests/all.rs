@@ -3,8 +3,10 @@
 
 mod common;
 
+mod beside;
 mod damaged;
 mod killed;
 mod merged;
 mod mixing;
 mod refused;
+mod ways;

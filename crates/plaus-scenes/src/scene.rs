@@ -6,7 +6,6 @@ use crate::model::Scalar;
 use crate::require::{Cast, Mark, Require};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
-use plaus_dist::LogPotential;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateOf, Variables};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -92,11 +91,6 @@ pub trait Scene:
     /// are about these.
     fn cast(&self) -> Cast {
         Cast { bodies: Vec::new(), fixed: Vec::new(), longest: f64::INFINITY, faces: false }
-    }
-
-    /// The largest log constraint there is, or anything above; `None` where that is not known.
-    fn most(&self) -> Option<LogPotential> {
-        None
     }
 
     /// What the scene demands itself, as far as requirements can say it, each with the key that says so: what

@@ -8,8 +8,9 @@ use crate::table::short;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
 use plaus_run::pace::pace;
-use plaus_run::{Folder, Phase, Run, RunOf, RunVisitor};
+use plaus_run::{Beside, Diagnosis, Folder, Phase, Run, RunOf, RunVisitor};
 use plaus_scenes::Scene;
+use serde_json::json;
 use std::path::PathBuf;
 use std::thread;
 use std::time::Duration;
@@ -76,7 +77,7 @@ impl RunVisitor for Pace {
 }
 
 /// Independent solutions, and how many come in a minute of one processor here.
-fn at_this_pace(run: &Run, diagnosis: &plaus_run::Diagnosis) -> Result<String, Failure> {
+fn at_this_pace(run: &Run, diagnosis: &Diagnosis) -> Result<String, Failure> {
     let Some(found) = &diagnosis.independent else { return Ok(String::new()) };
     let mut text = report::independent(diagnosis, None);
     let iterations = diagnosis.iterations as f64 * run.manifest().chains().len() as f64;
@@ -85,6 +86,16 @@ fn at_this_pace(run: &Run, diagnosis: &plaus_run::Diagnosis) -> Result<String, F
         text.insert_str(text.find(" (by").unwrap_or(0), &format!(", {minute} a minute of one processor here"));
     }
     Ok(text)
+}
+
+/// Holds a run's chains against exact draws.
+struct BesidePrior<'a>(&'a Diagnosis);
+
+impl RunVisitor for BesidePrior<'_> {
+    type Output = Result<Option<Beside>, plaus_run::Error>;
+    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+        Beside::of(&run, self.0)
+    }
 }
 
 impl Args {
@@ -103,11 +114,16 @@ impl Args {
         }
         let diagnosis = report::diagnose(&run, None)?;
         let manifest = run.manifest();
+        let beside = run.visit(BesidePrior(&diagnosis))??;
+        let is_healthy = diagnosis.is_healthy() && beside.as_ref().is_none_or(|beside| beside.missed.is_none());
         if let Some(warning) = report::warning(manifest) {
             console::note_line(&warning);
         }
         if self.json {
-            output::print_line(&report::to_json(manifest, &diagnosis).to_string())?;
+            let mut object = report::to_json(manifest, &diagnosis);
+            object["beside_prior"] = json!(beside);
+            object["healthy"] = json!(is_healthy);
+            output::print_line(&object.to_string())?;
         } else {
             let solutions =
                 report::solutions(&diagnosis) + &at_this_pace(&run, &diagnosis)? + &report::tempering(&diagnosis, None);
@@ -118,15 +134,17 @@ impl Args {
                     format!("(effective draws and R-hat from one draw in {stride}, means and deviations from all)\n")
                 }
             };
-            let verdict = if diagnosis.is_healthy() { "nothing speaks against these chains\n" } else { "findings:\n" };
+            let (found, unknown) = beside.as_ref().map(report::beside).unwrap_or_default();
+            let findings = findings + &found;
+            let verdict = if is_healthy { "nothing speaks against these chains\n" } else { "findings:\n" };
             output::print(&format!(
-                "{}\n{solutions}\n{}{some}\n{}\n{}{verdict}{findings}",
+                "{}\n{solutions}\n{}{some}\n{}\n{}{verdict}{findings}{unknown}",
                 report::headline(manifest),
                 report::scalar_table(&diagnosis, usize::MAX),
                 report::move_table(manifest, &diagnosis),
                 report::scale_table(&diagnosis),
             ))?;
         }
-        Ok(if diagnosis.is_healthy() { Outcome::Done } else { Outcome::Unsatisfied })
+        Ok(if is_healthy { Outcome::Done } else { Outcome::Unsatisfied })
     }
 }

@@ -142,6 +142,7 @@ impl Watching {
                 "scenario_hash": manifest.scenario.hash,
                 "exact_acceptance": manifest.exact,
                 "plan": manifest.plan,
+                "way": manifest.way,
                 "iteration": done,
             });
             // Where the reader has gone, the end of the run will say so.
@@ -150,6 +151,9 @@ impl Watching {
             console::note_line(&format!("seed {}", manifest.plan.seed));
         } else {
             console::note_line(&report::headline(manifest));
+            if let Some(way) = report::way(manifest) {
+                console::note_line(&way);
+            }
             if done > 0 {
                 console::note_line(&format!("going on from iteration {}", grouped(done)));
             }

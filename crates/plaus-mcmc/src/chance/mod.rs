@@ -113,7 +113,11 @@ fn streams(seed: Seed, batch: u32) -> ChainStreams {
 }
 
 /// A draw of the prior, wholly evaluated.
-fn prior<T: Target>(target: &T, stream: &mut Stream, scratch: &mut T::Scratch) -> Result<StateOf<T>, ModelError> {
+pub(crate) fn prior<T: Target>(
+    target: &T,
+    stream: &mut Stream,
+    scratch: &mut T::Scratch,
+) -> Result<StateOf<T>, ModelError> {
     for _ in 0..TRIES {
         let draw = target.start(stream);
         if !target.log_prior(&draw)?.is_zero() {

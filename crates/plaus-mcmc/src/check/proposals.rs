@@ -76,6 +76,7 @@ fn frequencies_from<T: Target>(
         let proposal = kernel.propose(target, state, &mut candidate, &mut streams.at(index, TRY))?;
         let seen = match proposal {
             Proposal::Stay => Branch { draw: None, probability: 0.0, path: Path(0) },
+            Proposal::Anew => Branch { draw: Some(candidate.clone()), probability: 0.0, path: Path(0) },
             Proposal::Candidate { path, .. } => Branch { draw: Some(candidate.clone()), probability: 0.0, path },
         };
         let cell = cell_of(&seen).unwrap_or(branches.len());

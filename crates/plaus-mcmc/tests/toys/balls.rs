@@ -105,6 +105,9 @@ impl Target for Balls {
     fn log_constraint(&self, loads: &Vec<u32>) -> Result<LogPotential, ModelError> {
         Ok(self.goal.log_potential(filled(loads)))
     }
+    fn most(&self) -> Option<LogPotential> {
+        Some(self.goal.log_potential(self.bins as u64))
+    }
 }
 
 impl Goal for Balls {

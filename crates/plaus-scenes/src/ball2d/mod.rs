@@ -161,6 +161,10 @@ impl Target for Ball2d {
         let z = (x - self.config.target) / self.config.sigma_d;
         Ok(LogPotential::new(-0.5 * z * z)?)
     }
+
+    fn most(&self) -> Option<LogPotential> {
+        Some(LogPotential::ONE)
+    }
 }
 
 impl Variables for Ball2d {
@@ -214,10 +218,6 @@ impl Scene for Ball2d {
 
     fn cast(&self) -> Cast {
         Cast { bodies: vec!["ball_0".into()], fixed: vec!["table".into()], longest: f64::INFINITY, faces: false }
-    }
-
-    fn most(&self) -> Option<LogPotential> {
-        Some(LogPotential::ONE)
     }
 
     /// Where the ball comes to rest.

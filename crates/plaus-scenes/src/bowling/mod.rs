@@ -103,7 +103,7 @@ impl Bowling {
     }
 
     /// The most that k + m can still become once these pins are down, by their places in the rack.
-    fn most(&self, down: Pins) -> u64 {
+    fn reachable(&self, down: Pins) -> u64 {
         let one = |(place, leave): (usize, &bool)| match (down.contains(place), leave) {
             (true, true) => 0,
             (false, true) => 2,
@@ -148,7 +148,7 @@ impl Target for Bowling {
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
-        let hopeless = |down| self.goal.log_potential(self.most(down)) <= floor;
+        let hopeless = |down| self.goal.log_potential(self.reachable(down)) <= floor;
         let rest = self.lane.bowl(draw, lane::LENGTH, work, hopeless, &mut ())?;
         Ok(rest.map_or(Simulated::CannotExceedFloor, Simulated::Complete))
     }
@@ -159,6 +159,10 @@ impl Target for Bowling {
         }
         let (k, m) = self.counts(rest);
         Ok(self.goal.log_potential(k + m))
+    }
+
+    fn most(&self) -> Option<LogPotential> {
+        Some(self.goal.log_potential(self.reachable(Pins::default())))
     }
 }
 

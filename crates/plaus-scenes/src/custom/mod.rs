@@ -153,6 +153,10 @@ impl Target for Custom {
     fn log_constraint(&self, ending: &Ending) -> Result<LogPotential, ModelError> {
         Ok(if matches!(ending, Ending::Done(_)) { LogPotential::ONE } else { LogPotential::ZERO })
     }
+
+    fn most(&self) -> Option<LogPotential> {
+        Some(LogPotential::ONE)
+    }
 }
 
 impl Variables for Custom {
@@ -253,10 +257,6 @@ impl Scene for Custom {
         let bodies = self.plan.bodies.iter().map(|body| body.name.clone()).collect();
         let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
         Cast { bodies, fixed, longest: self.config.duration_s, faces: false }
-    }
-
-    fn most(&self) -> Option<LogPotential> {
-        Some(LogPotential::ONE)
     }
 
     fn asked(&self) -> Vec<String> {

@@ -226,6 +226,10 @@ impl Target for Dice {
         // Summed in the order of the constraints: what a bound is summed like.
         Ok(LogPotential::new(rest.marks.iter().fold(0.0, |sum, mark| sum + mark.log))?)
     }
+
+    fn most(&self) -> Option<LogPotential> {
+        Some(LogPotential::ONE)
+    }
 }
 
 impl Goal for Dice {
@@ -323,10 +327,6 @@ impl Scene for Dice {
     fn cast(&self) -> Cast {
         let bodies = (1..=self.config.dice).map(|die| format!("die_{die}")).collect();
         Cast { bodies, fixed: vec!["table".into()], longest: self.config.longest_s, faces: true }
-    }
-
-    fn most(&self) -> Option<LogPotential> {
-        Some(LogPotential::ONE)
     }
 
     fn demands(&self) -> Vec<(String, Require)> {

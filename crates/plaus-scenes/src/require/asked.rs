@@ -189,6 +189,10 @@ impl<S: Scene> Target for Asked<S> {
         Ok(answer.own + LogPotential::new(asked)?)
     }
 
+    fn most(&self) -> Option<LogPotential> {
+        self.scene.most().and_then(|own| LogPotential::new(own.value() + self.asks.most).ok())
+    }
+
     fn settle(&self, accepted: bool, scratch: &mut S::Scratch) {
         self.scene.settle(accepted, scratch);
     }
@@ -311,10 +315,6 @@ impl<S: Scene> Scene for Asked<S> {
 
     fn cast(&self) -> Cast {
         self.asks.cast.clone()
-    }
-
-    fn most(&self) -> Option<LogPotential> {
-        self.scene.most().and_then(|own| LogPotential::new(own.value() + self.asks.most).ok())
     }
 
     fn demands(&self) -> Vec<(String, Require)> {

@@ -68,10 +68,29 @@ pub struct Sampler {
     /// accepted, and kept from then on. Unset: as measurement says is better for the scene (dice: yes; others: no).
     /// Without a warm-up, and where steps are hardly tried in it, they are as configured.
     pub adapt: Option<bool>,
+    /// How draws are made; unset: as `chain`. The law of what comes out is the same whichever it is.
+    pub method: Option<Method>,
     /// Exact acceptance, or the paper's as printed.
     pub rules: Rules,
     /// Restarts from fresh draws that keep the chain exact.
     pub tempering: Tempering,
+}
+
+/// How draws are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// By chains that walk from state to state with the scene's moves.
+    #[default]
+    Chain,
+    /// By plain draws of the prior, of which each is kept with the probability that its constraint gives it, so that
+    /// solutions are independent of each other. An iteration is one draw of the prior, and in between a chain stands
+    /// still. Best where the prior reaches the goal now and then.
+    Independent,
+    /// As a trial finds out before the run begins: by draws of the prior where these make independent solutions faster
+    /// than chains do, else by chains. The trial counts simulations, not seconds, so that the same seed decides alike
+    /// on every machine; the run says what was decided, and why.
+    Auto,
 }
 
 /// Parallel tempering: each chain climbs and descends a ladder of constraints that count less and less, down to none,
@@ -104,6 +123,7 @@ impl Default for Sampler {
             thin: 1,
             checkpoint_every: 20_000,
             adapt: None,
+            method: None,
             rules: Rules::default(),
             tempering: Tempering::default(),
         }
@@ -156,6 +176,12 @@ impl Scenario {
         self.sampler.adapt.unwrap_or_else(|| self.world.adapts())
     }
 
+    /// How draws are made, or that a trial is to find out.
+    #[must_use]
+    pub fn method(&self) -> Method {
+        self.sampler.method.unwrap_or_default()
+    }
+
     /// Builds the scene, under what is required besides, and hands it to `visitor`.
     ///
     /// # Errors
@@ -187,6 +213,10 @@ impl Scenario {
         }
         if self.sampler.tempering.rungs > 1 && !self.sampler.rules.is_exact() {
             let message = "tempering needs exact acceptance, as its swaps rest on the law of every rung: set sampler.rules.preset = \"exact\", or rungs = 1";
+            return Err(ConfigError::new("sampler.tempering.rungs", message));
+        }
+        if self.sampler.tempering.rungs > 1 && self.method() != Method::Chain {
+            let message = "tempering is for chains: set sampler.method = \"chain\", or rungs = 1";
             return Err(ConfigError::new("sampler.tempering.rungs", message));
         }
         self.visit(Build(&self.sampler.rules))?

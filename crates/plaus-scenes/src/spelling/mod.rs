@@ -197,6 +197,14 @@ impl Target for Spelling {
         Ok(self.goal.log_potential(self.reward(rest)))
     }
 
+    fn most(&self) -> Option<LogPotential> {
+        let most = match self.config.count {
+            Count::Bins => self.word.designated().len(),
+            Count::Balls => self.balls,
+        };
+        Some(self.goal.log_potential(most as u64))
+    }
+
     fn settle(&self, accepted: bool, work: &mut Work) {
         work.settle(accepted);
     }

@@ -1,0 +1,121 @@
+//! Independent draws of the target, by rejection from the prior.
+
+use crate::chance::prior;
+use crate::moves::{Mixture, Move, Path, Proposal};
+use crate::target::{Goal, ModelError, Simulated, State, StateOf, Target};
+use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math, open_unit};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// What a draw of a trial is made from.
+const TRIAL: Purpose = Purpose(6);
+
+/// Proposes [`Target::start`]'s draw, to be kept with probability `p_c / M` whatever the current state, `M` being
+/// [`Target::most`]. Right for a target whose start has the law of its prior. A chain that makes no other move holds
+/// each draw that was kept until the next is: what it keeps are independent draws of the target.
+///
+/// Beside it, [`Redraw`](crate::Redraw) with its Metropolis ratio keeps more, but each the longer the better it is.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Independent;
+
+impl Independent {
+    /// Its name as a move.
+    pub const NAME: &'static str = "draw_prior";
+
+    /// The moves of a chain that makes no other.
+    #[must_use]
+    pub fn mixture<T: Target>() -> Mixture<T> {
+        Mixture::of(Box::new(Self))
+    }
+}
+
+impl<T: Target> Move<T> for Independent {
+    fn name(&self) -> &str {
+        Self::NAME
+    }
+
+    fn propose(
+        &self,
+        target: &T,
+        _: &StateOf<T>,
+        candidate: &mut T::Draw,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        *candidate = target.start(stream);
+        Ok(Proposal::Anew)
+    }
+
+    /// Of the proposal alone. It is not what the accept step goes by.
+    fn log_ratio(&self, _: &T, from: &StateOf<T>, to: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
+    }
+}
+
+/// What draws of the prior come to.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tried {
+    /// How many were made, and simulated to their end.
+    pub draws: u64,
+    /// Solutions among them.
+    pub hits: u64,
+    /// How many solutions a chain of [`Independent`] would keep of them on average: the sum of their `p_c / M`.
+    pub kept: f64,
+}
+
+impl Tried {
+    /// These, and others besides.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self { draws: self.draws + other.draws, hits: self.hits + other.hits, kept: self.kept + other.kept }
+    }
+}
+
+/// Makes the draws of the prior with these numbers, on the current pool of threads. They are functions of target, seed
+/// and number, and none of them is a chain's of a run.
+///
+/// # Errors
+/// [`ModelError`] where the model fails, or its constraint has no bound that is known.
+pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result<Tried, ModelError> {
+    let Some(most) = target.most() else {
+        return Err(ModelError::new("its constraint has no bound that is known: no draw of the prior can be kept"));
+    };
+    let streams = seed.chain(1 << 62);
+    let one = |scratch: &mut T::Scratch, number| -> Result<Tried, ModelError> {
+        let state = prior(target, &mut streams.at(number, TRIAL), scratch)?;
+        let is_hit = target.class(&state).is_some();
+        let kept = if is_hit { math::exp(state.log_constraint.value() - most.value()) } else { 0.0 };
+        Ok(Tried { draws: 1, hits: u64::from(is_hit), kept })
+    };
+    // Summed in order, so that the sum does not depend on who made which.
+    let made: Vec<Tried> = numbers.into_par_iter().map_init(T::Scratch::default, one).collect::<Result<_, _>>()?;
+    Ok(made.into_iter().fold(Tried::default(), Tried::and))
+}
+
+/// Makes the draws of the prior with these numbers, as [`try_draws`] does, and gives those that are kept: independent
+/// draws of the target.
+///
+/// # Errors
+/// As [`try_draws`]; also where a log constraint exceeds its bound.
+pub fn keep_draws<T: Target>(target: &T, seed: Seed, numbers: Range<u64>) -> Result<Vec<StateOf<T>>, ModelError> {
+    let Some(most) = target.most() else {
+        return Err(ModelError::new("its constraint has no bound that is known: no draw of the prior can be kept"));
+    };
+    let streams = seed.chain(1 << 62 | 1);
+    let one = |scratch: &mut T::Scratch, number| -> Result<Option<StateOf<T>>, ModelError> {
+        let mut stream = streams.at(number, TRIAL);
+        let draw = target.start(&mut stream);
+        let log_prior = target.log_prior(&draw)?;
+        if log_prior.is_zero() {
+            return Ok(None);
+        }
+        let floor = LogPotential::new(math::ln(open_unit(&mut stream)) + most.value())?;
+        let Simulated::Complete(outcome) = target.simulate(&draw, None, floor, scratch)? else { return Ok(None) };
+        let log_constraint = target.log_constraint(&outcome)?;
+        if log_constraint > most {
+            return Err(ModelError::new("a log constraint exceeds the most that its target said: a bug"));
+        }
+        Ok((log_constraint > floor).then_some(State { draw, outcome, log_prior, log_constraint }))
+    };
+    let made: Vec<_> = numbers.into_par_iter().map_init(T::Scratch::default, one).collect::<Result<_, _>>()?;
+    Ok(made.into_iter().flatten().collect())
+}

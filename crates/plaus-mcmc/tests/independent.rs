@@ -1,0 +1,156 @@
+//! Independent draws by rejection: what is kept has the law of the target, whatever was there before; with twins that
+//! keep too much, or draw from another law than the prior.
+
+use crate::toys::balls::{Balls, Drops, active, filled};
+use plaus_dist::{LogDensity, LogPotential, LogRatio, Seed, Stream};
+use plaus_mcmc::check::{OneStep, OneStepReport, Statistic, one_step, rejection};
+use plaus_mcmc::{
+    Chain, ChainError, Independent, Mixture, ModelError, Move, Path, Proposal, Required, Simulated, StateOf, Target,
+    Verdict,
+};
+use plaus_mcmc::{Mark, Requirement};
+
+const PLAN: OneStep = OneStep { seed: Seed(11), samples: 40_000, steps: 1, cells: 16, false_alarm: 1e-6 };
+
+fn statistics<'a>() -> [Statistic<'a, Drops, Vec<u32>>; 3] {
+    [
+        Statistic::new("active", |state: &StateOf<Balls>| active(&state.draw) as f64),
+        Statistic::new("filled", |state: &StateOf<Balls>| filled(&state.outcome) as f64),
+        Statistic::new("sum of places", |state: &StateOf<Balls>| state.draw.iter().flatten().sum()),
+    ]
+}
+
+fn balls(ln_lambda: f64) -> Balls {
+    Balls::anywhere(4, 3, 0.5, ln_lambda)
+}
+
+fn stepped(kernel: Box<dyn Move<Balls>>, ln_lambda: f64) -> OneStepReport {
+    let balls = balls(ln_lambda);
+    let exact = rejection(&balls, balls.most().unwrap());
+    one_step(&balls, &Mixture::of(kernel), exact, &statistics(), PLAN).unwrap()
+}
+
+/// Draws from a part of the prior only.
+struct Few;
+
+impl Move<Balls> for Few {
+    fn name(&self) -> &str {
+        "few"
+    }
+    fn propose(
+        &self,
+        target: &Balls,
+        _: &StateOf<Balls>,
+        draw: &mut Drops,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
+        *draw = target.start(stream);
+        draw[0] = None;
+        Ok(Proposal::Anew)
+    }
+    fn log_ratio(&self, _: &Balls, _: &StateOf<Balls>, _: &StateOf<Balls>, _: Path) -> Result<LogRatio, ModelError> {
+        Ok(LogRatio::ONE)
+    }
+}
+
+#[test]
+fn the_target_stays_and_a_draw_from_elsewhere_is_noticed() {
+    for ln_lambda in [0.0, 1.0, 3.0] {
+        let right = stepped(Box::new(Independent), ln_lambda);
+        assert!(right.passed() && right.accepted() > 1000, "{right}");
+        let wrong = stepped(Box::new(Few), ln_lambda);
+        assert!(!wrong.passed(), "{wrong}");
+    }
+}
+
+/// Balls of which some bound is claimed.
+struct Claims(Balls, Option<f64>);
+
+impl Target for Claims {
+    type Draw = Drops;
+    type Outcome = Vec<u32>;
+    type Scratch = Vec<u32>;
+    fn start(&self, stream: &mut Stream) -> Drops {
+        self.0.start(stream)
+    }
+    fn log_prior(&self, draw: &Drops) -> Result<LogDensity, ModelError> {
+        self.0.log_prior(draw)
+    }
+    fn simulate(
+        &self,
+        draw: &Drops,
+        _: Option<&StateOf<Self>>,
+        floor: LogPotential,
+        loads: &mut Vec<u32>,
+    ) -> Result<Simulated<Vec<u32>>, ModelError> {
+        self.0.simulate(draw, None, floor, loads)
+    }
+    fn log_constraint(&self, loads: &Vec<u32>) -> Result<LogPotential, ModelError> {
+        self.0.log_constraint(loads)
+    }
+    fn most(&self) -> Option<LogPotential> {
+        Some(LogPotential::new(self.1?).unwrap())
+    }
+}
+
+/// What is kept is independent: neither the state before nor a bound that is too high shows in it. A bound that is too
+/// low, or none, is an error and no other law.
+#[test]
+fn bounds_that_are_too_high_cost_time_alone() {
+    let shares = |bound: f64| {
+        let target = Claims(balls(1.0), Some(bound));
+        let moves = Independent::mixture();
+        let mut chain = Chain::start(&target, &moves, Seed(5).chain(0)).unwrap();
+        let (mut kept, mut full, mut both, mut last) = (0.0_f64, 0.0_f64, 0.0_f64, false);
+        for _ in 0..400_000 {
+            if chain.step().unwrap().verdict == Verdict::Accepted {
+                let now = filled(&chain.state().outcome) == 3;
+                (kept, full) = (kept + 1.0, full + f64::from(u8::from(now)));
+                both += f64::from(u8::from(now && last));
+                last = now;
+            }
+        }
+        (kept, full / kept, both / kept)
+    };
+    let (tight, loose) = (shares(3.0), shares(4.0));
+    // Of so many independent draws a share p is off by five standard errors once in two million.
+    let off = |p: f64, n: f64| 5.0 * (p * (1.0 - p) / n).sqrt();
+    assert!((tight.1 - loose.1).abs() < off(tight.1, tight.0) + off(tight.1, loose.0), "{tight:?} {loose:?}");
+    assert!((tight.0 / loose.0 / 1.0_f64.exp() - 1.0).abs() < 10.0 / loose.0.sqrt(), "{tight:?} {loose:?}");
+    // One full after another is as likely as two that know nothing of each other (a pair's count has twice the spread).
+    assert!((tight.2 - tight.1 * tight.1).abs() < 2.0 * off(tight.1, tight.0), "{tight:?}");
+    for bound in [Some(2.0), None] {
+        let (target, moves) = (Claims(balls(1.0), bound), Independent::mixture());
+        let mut chain = Chain::start(&target, &moves, Seed(5).chain(0)).unwrap();
+        let failed = (0..10_000).find_map(|_| chain.step().err());
+        assert!(matches!(failed, Some(ChainError::Model { .. })), "{bound:?}");
+    }
+}
+
+/// Wishes for few balls.
+struct Sparse(Option<f64>);
+
+impl Requirement<Balls> for Sparse {
+    fn most(&self) -> Option<LogPotential> {
+        Some(LogPotential::new(self.0?).unwrap())
+    }
+    fn judge(&self, _: &Balls, state: &StateOf<Balls>) -> Result<Mark, ModelError> {
+        Ok(Mark { log: LogPotential::new(2.0 - 0.5 * active(&state.draw) as f64).unwrap(), met: true })
+    }
+}
+
+/// Under a requirement the bound is that of both.
+#[test]
+fn a_requirement_counts_too() {
+    let balls = balls(1.0);
+    let required = Required::new(&balls, Sparse(Some(2.0)));
+    let exact = rejection(&required, required.most().unwrap());
+    let active = [Statistic::new("active", |state: &plaus_mcmc::State<Drops, _>| active(&state.draw) as f64)];
+    let report = one_step(&required, &Independent::mixture(), exact, &active, PLAN).unwrap();
+    assert!(report.passed() && report.accepted() > 1000, "{report}");
+    let mixture = Required::<Balls, Sparse>::moves(&Independent::mixture());
+    let exact = rejection(&required, required.most().unwrap());
+    let lent = one_step(&required, &mixture, exact, &active, PLAN).unwrap();
+    assert!(lent.passed() && lent.accepted() == report.accepted(), "{lent}");
+    assert!(Required::new(&balls, Sparse(None)).most().is_none());
+}

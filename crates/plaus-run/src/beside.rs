@@ -1,0 +1,196 @@
+//! A run's chains beside exact draws of its target, made from the prior by rejection: what chains that all missed the
+//! same thing cannot see in each other.
+//!
+//! Chains that agree may all be at the same part of what they should sample. Draws of the prior know nothing of the
+//! chains. Each that is kept is an independent draw of the target, so the share of them between two values of a
+//! variable is that of the chains there, but for chance. Cells between such values, each with an equal share of the kept draws,
+//! are held against the chains by Fisher's exact test, the chains taken for as many draws as their effective sample
+//! size. A cell in which chains hardly ever were, though draws were kept there, is something that they missed.
+//!
+//! It sees what shows in one variable or outcome by itself and holds more than a few of the kept draws. Where the prior
+//! hardly ever gets there, nothing is kept, and nothing is known.
+
+use crate::diagnosis::{Diagnosis, columns};
+use crate::error::Error;
+use crate::read::RunOf;
+use plaus_dist::math;
+use plaus_mcmc::keep_draws;
+use plaus_scenes::Scene;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Most draws; there are no more than the run has iterations.
+const MOST: u64 = 40_000;
+/// Numbers of a state times draws: bounds the time where states are large.
+const NUMBERS: u64 = 80_000;
+/// Draws between two looks at how many were kept.
+const AT_A_TIME: u64 = 64;
+/// As many kept draws are enough: a cell then holds a dozen.
+const ENOUGH: usize = 200;
+/// Fewer say nothing: even if all of them lay where no chain ever was, it might be one cell of one variable.
+const FEWEST: usize = 8;
+/// Most cells, and fewest kept draws in each.
+const CELLS: usize = 16;
+const IN_CELL: usize = 4;
+/// One in so many right runs is blamed.
+const ALARM: f64 = 1e-3;
+
+/// What exact draws say of a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Beside {
+    /// Draws of the prior that were made.
+    pub draws: u64,
+    /// Those that were kept: independent draws of the target.
+    pub kept: u64,
+    /// Where the chains hardly ever were, though more draws were kept there than chance explains: the worst such place.
+    pub missed: Option<Missed>,
+}
+
+/// A part of what should be sampled that chains hardly know.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Missed {
+    /// The variable or outcome it shows in.
+    pub scalar: String,
+    /// Its values there: above the first, and up to the second; `None` where there is no such end.
+    pub between: [Option<f64>; 2],
+    /// Share of the kept draws there.
+    pub kept: f64,
+    /// Share of the chains' draws there.
+    pub chains: f64,
+    /// How likely so large a difference is by chance, over all that was looked at.
+    pub p: f64,
+}
+
+impl Beside {
+    /// Whether there were enough exact draws to say anything.
+    #[must_use]
+    pub fn says_something(&self) -> bool {
+        self.kept >= FEWEST as u64
+    }
+
+    /// Makes draws of the prior and holds the run's chains against them. `None` where there is nothing to be held
+    /// against them: the draws are independent ones already, moves are not exact, or a program required something that
+    /// the folder does not hold.
+    ///
+    /// # Errors
+    /// [`Error`] where a draw fails, or the records are damaged.
+    pub fn of<S: Scene>(run: &RunOf<'_, S>, diagnosis: &Diagnosis) -> Result<Option<Self>, Error> {
+        let manifest = run.run().manifest();
+        if manifest.is_independent() || !manifest.exact || manifest.requirement.is_some() || diagnosis.draws == 0 {
+            return Ok(None);
+        }
+        let scene = run.scene();
+        let scalars = scene.scalars();
+        let total = diagnosis.iterations.saturating_mul(run.chains().len() as u64);
+        let most = total.clamp(1, MOST).min(NUMBERS / scalars.len().max(1) as u64 + 1);
+        let (mut draws, mut kept) = (0, Vec::new());
+        while draws < most && kept.len() < ENOUGH {
+            let next = most.min(draws + AT_A_TIME);
+            let made = keep_draws(scene, manifest.plan.seed, draws..next);
+            kept.extend(made.map_err(|error| Error::Sampling(error.to_string()))?);
+            draws = next;
+        }
+        let found = Self { draws, kept: kept.len() as u64, missed: None };
+        if !found.says_something() {
+            return Ok(Some(found));
+        }
+        let mut exact = vec![Vec::with_capacity(kept.len()); scalars.len()];
+        let mut values = vec![0.0; scalars.len()];
+        for state in &kept {
+            scene.write_scalars(state, &mut values);
+            exact.iter_mut().zip(&values).for_each(|(column, &value)| column.push(value));
+        }
+        let cells = (kept.len() / IN_CELL).min(CELLS);
+        let tests = (cells * scalars.len()) as f64;
+        let look = |number: usize| -> Result<Option<Missed>, Error> {
+            let name = &scalars[number].name;
+            let row = diagnosis.scalars.iter().find(|row| row.scalar.name == *name);
+            let Some(ess) = row.and_then(|row| row.summary.as_ref()).map(|summary| summary.ess_bulk) else {
+                return Ok(None);
+            };
+            let chains = columns(run, number, 1, diagnosis.stride)?.concat().concat();
+            Ok(worst(name, &mut exact[number].clone(), chains, ess, cells))
+        };
+        let all = (0..scalars.len()).into_par_iter().map(look).collect::<Result<Vec<_>, _>>()?;
+        let worst = all.into_iter().flatten().reduce(|a, b| if b.p < a.p { b } else { a });
+        let missed = worst.map(|worst| Missed { p: (worst.p * tests).min(1.0), ..worst }).filter(|one| one.p < ALARM);
+        Ok(Some(Self { missed, ..found }))
+    }
+}
+
+/// The cell in which kept draws exceed those of chains by most, with the chance of that cell alone.
+fn worst(name: &str, exact: &mut [f64], mut chains: Vec<f64>, ess: f64, cells: usize) -> Option<Missed> {
+    if exact.iter().chain(&chains).any(|value| !value.is_finite()) {
+        return None;
+    }
+    exact.sort_unstable_by(f64::total_cmp);
+    chains.sort_unstable_by(f64::total_cmp);
+    // Ends of cells are values between kept draws that differ; the outermost are open.
+    let mut ends: Vec<f64> = (1..cells).map(|cell| exact[cell * exact.len() / cells - 1]).collect();
+    ends.dedup();
+    ends.retain(|end| end < &exact[exact.len() - 1]);
+    let ends: Vec<Option<f64>> =
+        std::iter::once(None).chain(ends.into_iter().map(Some)).chain(std::iter::once(None)).collect();
+    let below = |values: &[f64], end: Option<f64>, none: usize| {
+        end.map_or(none, |end| values.partition_point(|value| *value <= end))
+    };
+    let effective = ess.clamp(1.0, 1e5).round() as usize;
+    let cell = |pair: &[Option<f64>]| {
+        let count = |values: &[f64]| below(values, pair[1], values.len()) - below(values, pair[0], 0);
+        let (here, share) = (count(exact), count(&chains) as f64 / chains.len() as f64);
+        let p = fisher(here, exact.len(), (share * effective as f64).round() as usize, effective);
+        let kept = here as f64 / exact.len() as f64;
+        Missed { scalar: name.to_owned(), between: [pair[0], pair[1]], kept, chains: share, p }
+    };
+    ends.windows(2).map(cell).reduce(|a, b| if b.p < a.p { b } else { a })
+}
+
+/// Fisher's exact test, one-sided: how likely it is that of `here + there` hits at least `here` are among the first
+/// `n` of `n + m` draws.
+fn fisher(here: usize, n: usize, there: usize, m: usize) -> f64 {
+    let hits = here + there;
+    let mut factorials = vec![0.0_f64; n + m + 1];
+    for k in 1..factorials.len() {
+        factorials[k] = factorials[k - 1] + math::ln(k as f64);
+    }
+    let choose = |n: usize, k: usize| factorials[n] - factorials[k] - factorials[n - k];
+    let possible = here..=hits.min(n);
+    let one = |k: usize| {
+        let misses = n - k;
+        if misses > n + m - hits {
+            0.0
+        } else {
+            math::exp(choose(hits, k) + choose(n + m - hits, misses) - choose(n + m, n))
+        }
+    };
+    possible.map(one).sum::<f64>().min(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Fisher's lady: eight cups, all four told right; and three of four.
+    #[test]
+    fn fishers_test_is_the_one_of_the_books() {
+        assert!((fisher(4, 4, 0, 4) - 1.0 / 70.0).abs() < 1e-12);
+        assert!((fisher(3, 4, 1, 4) - 17.0 / 70.0).abs() < 1e-12);
+        assert!((fisher(0, 4, 4, 4) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_missed_mode_is_where_it_is_said_to_be() {
+        let grid = |n: usize, from: f64, to: f64| (0..n).map(move |k| from + (to - from) * (k as f64 + 0.5) / n as f64);
+        let mut exact: Vec<f64> = grid(87, 0.0, 1.0).chain(grid(13, 5.0, 5.1)).collect();
+        let missed = worst("x", &mut exact, grid(5000, 0.0, 1.0).collect(), 400.0, 16).unwrap();
+        // The cell of seven is full of what the chains never saw: all seven hits among the first 100 of 500 draws.
+        let chance: f64 = (0..7).map(|k| f64::from(100 - k) / f64::from(500 - k)).product();
+        assert!((missed.p / chance - 1.0).abs() < 1e-9 && missed.chains == 0.0, "{missed:?}, {chance}");
+        assert!(missed.between[0].is_some_and(|end| (0.9..5.1).contains(&end)), "{missed:?}");
+        // The same with the mode in it, and with one value only.
+        let whole: Vec<f64> = grid(4350, 0.0, 1.0).chain(grid(650, 5.0, 5.1)).collect();
+        assert!(worst("x", &mut exact, whole, 400.0, 16).unwrap().p > 0.1);
+        assert!(worst("x", &mut [1.0; 20], vec![1.0; 50], 40.0, 5).unwrap().p > 0.99);
+        assert_eq!(worst("x", &mut [f64::NAN; 20], vec![1.0; 50], 40.0, 5), None);
+    }
+}
