@@ -36,6 +36,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("plaus-figures", &["plaus-dist", "plaus-mcmc", "plaus-picture", "plaus-scenes", "plaus-sim"]),
     ("plaus-tradeoff", &["plaus-dist", "plaus-figures", "plaus-mcmc", "plaus-scenes", "plaus-sim"]),
     ("plaus-benches", &[]),
+    ("plaus-oracle", &[]),
     ("plaus-tests", &["plaus-dist"]),
     ("xtask", &[]),
 ];

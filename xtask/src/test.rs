@@ -5,10 +5,11 @@ use crate::command::{Command, Failure, built, cargo, has_subcommand, target};
 use crate::steps::{self, Done, Step};
 use crate::{clients, documented, examples};
 
-/// All packages but benches and the comparison with another engine, whose build takes longer than all the rest; clippy
-/// looks at our side of them. Every build in the profile `dev` begins with these words: where packages or
+/// All packages but benches and comparisons with other libraries, which take longer to build than all the rest, and for
+/// which cargo builds what we share with them otherwise; clippy looks at our side of them. Every build in the profile `dev` begins with these words: where packages or
 /// dev-dependencies differ, cargo chooses other features of what they share, and builds all of it anew.
-const ALL: [&str; 5] = ["--workspace", "--exclude", "plaus-tradeoff", "--exclude", "plaus-benches"];
+const ALL: [&str; 7] =
+    ["--workspace", "--exclude", "plaus-tradeoff", "--exclude", "plaus-benches", "--exclude", "plaus-oracle"];
 
 /// What is tried in release: both packages at once, for the same reason.
 const IN_RELEASE: [&str; 5] = ["--release", "--package", "plaus-cli", "--package", "plaus-tests"];
@@ -89,6 +90,7 @@ fn code() -> Vec<Step> {
         // Tests and examples. What else there is, benches and the extension for Python, clippy has looked at.
         Step::command("build", cargo(&["test"]).args(ALL).args(["--no-run"])),
         Step::command("tests", cargo(&["test"]).args(ALL)),
+        Step::command("distances beside another library", cargo(&["test", "--package", "plaus-oracle"])),
         Step::command("golden traces, unoptimised", cargo(&["test", "--profile", "unoptimised"]).args(golden)),
         Step::command("release", cargo(&["build"]).args(IN_RELEASE).args(["--bin", "plaus", "--test", "golden"])),
         Step::command("golden traces, release", cargo(&["test"]).args(IN_RELEASE).args(["--test", "golden"])),

@@ -1,21 +1,7 @@
-//! Standard output and standard error, written such that a reader who goes away is no accident.
+//! What is said on standard error, and how.
 
-use crate::failure::Failure;
 use std::io::{self, IsTerminal, Write};
-
-/// Writes to stdout and flushes. A reader who has gone has seen enough: how the command ends does not depend on it.
-pub(crate) fn print(text: &str) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::of_output(error)),
-        _ => Ok(()),
-    }
-}
-
-/// Writes a line to stdout.
-pub(crate) fn print_line(text: &str) -> Result<(), Failure> {
-    print(&format!("{text}\n"))
-}
+use std::path::Path;
 
 /// Writes to stderr. Nobody is told where that fails: there is nowhere left to tell it.
 pub(crate) fn note(text: &str) {
@@ -35,4 +21,11 @@ pub(crate) fn is_live() -> bool {
 /// Whether messages may be coloured: on a terminal, unless `NO_COLOR` says no.
 pub(crate) fn is_coloured() -> bool {
     is_live() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// A path as a shell takes it.
+pub(crate) fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || "/._-+=:@,%".contains(c));
+    if plain { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }

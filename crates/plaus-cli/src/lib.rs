@@ -19,6 +19,7 @@ mod glossary;
 mod interrupt;
 mod label;
 mod likely;
+mod output;
 mod plots;
 mod progress;
 mod report;

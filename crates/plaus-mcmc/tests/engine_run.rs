@@ -222,6 +222,18 @@ fn a_run_stopped_in_the_middle_of_a_block_leaves_the_beginning_of_the_whole_run(
     }
 }
 
+/// Starts count as work too: who stops a run of many chains does not wait for all of them to start.
+#[test]
+fn a_run_stopped_while_its_chains_start_leaves_nothing() {
+    for plan in [PLAN, TEMPERED] {
+        let (pulse, mut log) = (Pulse::default(), Log::default());
+        pulse.stop();
+        let ended = run_watched(&balls(), &mixture(), plan, Vec::new(), 2, &mut log, &pulse);
+        assert_eq!(ended.unwrap(), Ending::Stopped);
+        assert!(log == Log::default(), "something was recorded");
+    }
+}
+
 /// What a run that stops for `wanted` solutions must leave, from a run that does not stop: those of the warm-up count.
 fn first_iteration_with(wanted: u64, all: &Log, thin: u64) -> Option<u64> {
     let mut classes = Vec::new();

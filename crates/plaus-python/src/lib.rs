@@ -7,6 +7,7 @@ mod chance;
 mod clock;
 mod errors;
 mod motion;
+mod outcome;
 mod parcel;
 mod requirement;
 mod run;
@@ -32,9 +33,11 @@ mod _plaus {
     #[pymodule_export]
     use crate::motion::Motion;
     #[pymodule_export]
+    use crate::outcome::Outcome;
+    #[pymodule_export]
     use crate::parcel::Parcels;
     #[pymodule_export]
-    use crate::requirement::{Asked, Outcome};
+    use crate::requirement::Asked;
     #[pymodule_export]
     use crate::run::RunFolder;
     #[pymodule_export]

@@ -2,27 +2,15 @@
 //! follows.
 
 use crate::errors::RunError;
-use crate::requirement::{Numbers, Outcome};
+use crate::outcome::{KIND, Numbers, Outcome};
 use crate::scenario::Scenario;
-use plaus_mcmc::{ModelError, Target};
-use plaus_run::codec::{self, Kind};
+use plaus_mcmc::Target;
+use plaus_run::codec;
 use plaus_scenes::{Scene, Visitor};
 use pyo3::prelude::*;
-use serde::Serialize;
 use std::sync::Arc;
 
-/// Read by the process that is of the same program, and kept nowhere.
-const KIND: Kind = Kind::new(*b"outc", 1, "an outcome");
-
-/// What another process needs to make an outcome again.
-///
-/// # Errors
-/// [`ModelError`] where the draw is too long.
-pub(crate) fn pack<D: Serialize>(numbers: &Numbers, draw: &D) -> Result<Vec<u8>, ModelError> {
-    codec::encode(KIND, &(numbers, draw)).map_err(ModelError::new)
-}
-
-/// Makes outcomes of a scenario's scene from what [`pack`] gave.
+/// Makes outcomes of a scenario's scene from what [`Outcome::pack`] gave.
 trait Unpack: Send + Sync {
     fn unpack(&self, parcel: &[u8]) -> PyResult<Outcome>;
 }

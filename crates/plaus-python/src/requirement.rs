@@ -2,170 +2,17 @@
 //! may still accept.
 
 use crate::clock::now;
-use crate::errors::{Raised, RunError};
-use crate::motion::Motion;
-use crate::parcel;
+use crate::errors::Raised;
+use crate::outcome::Outcome;
 use plaus_dist::LogPotential;
-use plaus_mcmc::{Mark, Mixture, ModelError, Required, Requirement, Sink, State, StateOf};
+use plaus_mcmc::{Mark, Mixture, ModelError, Required, Requirement, Sink, StateOf};
 use plaus_run::{Drive, Driven, Journey, RunFileError};
-use plaus_scenes::{Animation, Scene};
+use plaus_scenes::Scene;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyBytes, PyDict, PyTuple};
-use serde::{Deserialize, Serialize};
+use pyo3::types::{PyBool, PyBytes, PyTuple};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, OnceLock};
-
-/// What a state can show of itself, whatever its scene.
-trait Shown: Send + Sync {
-    fn motion(&self) -> Result<Animation, ModelError>;
-
-    /// All that another process needs to make it again.
-    fn pack(&self, numbers: &Numbers) -> Result<Vec<u8>, ModelError>;
-}
-
-/// A draw and the scene that simulates it.
-struct Drawn<S: Scene> {
-    scene: Arc<S>,
-    draw: S::Draw,
-}
-
-impl<S: Scene> Shown for Drawn<S> {
-    fn motion(&self) -> Result<Animation, ModelError> {
-        self.scene.motion(&self.draw)
-    }
-
-    fn pack(&self, numbers: &Numbers) -> Result<Vec<u8>, ModelError> {
-        parcel::pack(numbers, &self.draw)
-    }
-}
-
-/// What is known of a state without simulating it again.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Numbers {
-    pub(crate) values: Vec<f64>,
-    pub(crate) log_prior: f64,
-    pub(crate) log_constraint: f64,
-    pub(crate) satisfied: bool,
-}
-
-/// What came of a candidate: what a requirement judges.
-///
-/// Numbers are at hand; motion and impacts are made when they are first asked for. A function that asked for them once
-/// gets them from the simulation that was run anyway, where the scene keeps it; else by simulating once more.
-#[pyclass(frozen, module = "plaus")]
-pub(crate) struct Outcome {
-    shown: Box<dyn Shown>,
-    names: Arc<[String]>,
-    numbers: Numbers,
-    motion: OnceLock<Motion>,
-    /// Told when the motion is asked for.
-    asked: Option<Arc<Py<Asked>>>,
-}
-
-impl Outcome {
-    fn of<S: Scene>(scene: &Arc<S>, names: &Arc<[String]>, state: &StateOf<S>) -> Self {
-        let mut values = vec![0.0; names.len()];
-        scene.write_scalars(state, &mut values);
-        let State { draw, log_prior, log_constraint, .. } = state;
-        let (log_prior, log_constraint) = (log_prior.value(), log_constraint.value());
-        let numbers = Numbers { values, log_prior, log_constraint, satisfied: scene.class(state).is_some() };
-        Self::new(scene, names, numbers, draw.clone())
-    }
-
-    /// What came of `draw`.
-    pub(crate) fn new<S: Scene>(scene: &Arc<S>, names: &Arc<[String]>, numbers: Numbers, draw: S::Draw) -> Self {
-        let shown = Box::new(Drawn { scene: Arc::clone(scene), draw });
-        Self { shown, names: Arc::clone(names), numbers, motion: OnceLock::new(), asked: None }
-    }
-}
-
-#[pymethods]
-impl Outcome {
-    /// The scene's numbers by name, as in the table of draws.
-    #[getter]
-    fn scalars<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let scalars = PyDict::new(py);
-        self.names.iter().zip(&self.numbers.values).try_for_each(|(name, value)| scalars.set_item(name, value))?;
-        Ok(scalars)
-    }
-
-    /// One of the scene's numbers: `outcome["rest_x"]`.
-    fn __getitem__(&self, name: &str) -> PyResult<f64> {
-        let found = self.names.iter().position(|known| known == name);
-        found.map(|index| self.numbers.values[index]).ok_or_else(|| {
-            let known = self.names.join(", ");
-            pyo3::exceptions::PyKeyError::new_err(format!("there is no number `{name}`: there are {known}"))
-        })
-    }
-
-    /// Log prior density of the draw, up to a constant.
-    #[getter]
-    fn log_prior(&self) -> f64 {
-        self.numbers.log_prior
-    }
-
-    /// Log constraint of the scenario alone, up to a constant.
-    #[getter]
-    fn log_constraint(&self) -> f64 {
-        self.numbers.log_constraint
-    }
-
-    /// Whether the scenario's own constraint is satisfied.
-    #[getter]
-    fn satisfied(&self) -> bool {
-        self.numbers.satisfied
-    }
-
-    /// The motion of all bodies, without what stands still around them.
-    #[getter]
-    fn motion(&self, py: Python<'_>) -> PyResult<Motion> {
-        if let Some(asked) = &self.asked {
-            asked.get().looks.store(true, Relaxed);
-        }
-        if let Some(motion) = self.motion.get() {
-            return Ok(motion.clone());
-        }
-        // Other chains go on meanwhile.
-        let made = py.detach(|| self.shown.motion()).map_err(|error| RunError::new_err(error.to_string()))?;
-        Ok(self.motion.get_or_init(|| Motion(Arc::new(made))).clone())
-    }
-
-    /// Names of the bodies.
-    #[getter]
-    fn bodies(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        Ok(self.motion(py)?.0.tracks.iter().map(|track| track.name.clone()).collect())
-    }
-
-    /// Where each body is at the end, by name: (x, y, z) in m, y up.
-    #[getter]
-    fn rest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let motion = self.motion(py)?;
-        let rest = PyDict::new(py);
-        for track in &motion.0.tracks {
-            rest.set_item(&track.name, track.position(motion.0.duration).to_array())?;
-        }
-        Ok(rest)
-    }
-
-    /// How each body is turned at the end, by name: a unit quaternion (x, y, z, w) from its axes to the world's.
-    #[getter]
-    fn rest_orientation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let motion = self.motion(py)?;
-        let rest = PyDict::new(py);
-        for track in &motion.0.tracks {
-            rest.set_item(&track.name, track.orientation(motion.0.duration).to_array())?;
-        }
-        Ok(rest)
-    }
-
-    fn __repr__(&self) -> String {
-        let numbers = self.names.iter().zip(&self.numbers.values).take(6);
-        let numbers: Vec<String> = numbers.map(|(name, value)| format!("{name}={value:.4}")).collect();
-        let more = if self.names.len() > 6 { ", ..." } else { "" };
-        format!("<Outcome {}{more}, satisfied={}>", numbers.join(", "), self.numbers.satisfied)
-    }
-}
 
 /// A requirement, with what it has cost.
 #[pyclass(frozen, module = "plaus._plaus")]
@@ -177,7 +24,7 @@ pub(crate) struct Asked {
     nanoseconds: AtomicU64,
     waited: AtomicU64,
     /// Whether the function has ever asked for a motion: then motions are kept for it.
-    looks: AtomicBool,
+    looks: Arc<AtomicBool>,
 }
 
 #[pymethods]
@@ -187,15 +34,7 @@ impl Asked {
         let wrong = |_| PyValueError::new_err("most: a number that no log potential exceeds, or None");
         let most = most.map(LogPotential::new).transpose().map_err(wrong)?;
         let zero = || AtomicU64::new(0);
-        Ok(Self {
-            function,
-            name,
-            most,
-            calls: zero(),
-            nanoseconds: zero(),
-            waited: zero(),
-            looks: AtomicBool::new(false),
-        })
+        Ok(Self { function, name, most, calls: zero(), nanoseconds: zero(), waited: zero(), looks: Arc::default() })
     }
 
     /// Calls, seconds spent in them, and seconds that chains waited for their turn.
@@ -238,7 +77,7 @@ impl Asked {
     fn ask(&self, outcome: Outcome, others: Option<&Py<PyAny>>) -> Result<Mark, ModelError> {
         let asked = now();
         let spent = |seconds: f64| (seconds * 1e9) as u64;
-        let pack = |others| outcome.shown.pack(&outcome.numbers).map(|parcel| (others, parcel));
+        let pack = |others| outcome.pack().map(|parcel| (others, parcel));
         let parcel: Option<(&Py<PyAny>, Vec<u8>)> = others.map(pack).transpose()?;
         Python::attach(|py| {
             let begun = now();
@@ -286,11 +125,8 @@ impl<S: Scene> Requirement<S> for OfScene<S> {
     }
 
     fn judge(&self, scene: &S, state: &StateOf<S>, scratch: &S::Scratch) -> Result<Mark, ModelError> {
-        let mut outcome = Outcome::of(&self.scene, &self.names, state);
-        if self.keeps() {
-            outcome.motion = Motion(Arc::new(scene.motion_simulated(&state.draw, scratch)?)).into();
-        }
-        outcome.asked = Some(Arc::clone(&self.by.asked));
+        let motion = self.keeps().then(|| scene.motion_simulated(&state.draw, scratch)).transpose()?;
+        let outcome = Outcome::of(&self.scene, &self.names, state, (&self.by.asked.get().looks, motion));
         self.by.asked.get().ask(outcome, self.by.others.as_deref())
     }
 }

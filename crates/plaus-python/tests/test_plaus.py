@@ -24,6 +24,14 @@ SCENARIOS = pathlib.Path(os.environ["PLAUS_SCENARIOS"])
 COMMAND = [os.environ.get("PLAUS_COMMAND") or str(pathlib.Path(sys.executable).with_name("plaus"))]
 
 
+@pytest.fixture(autouse=True)
+def interruptible():
+    """Ctrl-C is heard also where the tests run in the background, where shells have it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def short(**how):
     """A run of a second or less."""
     return plaus.sample(SCENARIOS / "ball2d.toml", **{"iterations": 2000, "warmup": 200, "progress": False, **how})

@@ -47,6 +47,9 @@ pub trait Mechanics {
     /// Whether bodies in lasting contact with each other can meet at more points while it lasts.
     const WATCHES_LINKED: bool = false;
 
+    /// From how many bodies on an event's group counts as a heap, whose events of one time are resolved before it settles.
+    const HEAP: usize = usize::MAX;
+
     /// How many bodies there are.
     fn len(&self) -> usize;
     /// Whether there are none.

@@ -53,6 +53,11 @@ impl Marks {
         self.seen.resize(bodies, 0);
     }
 
+    /// Whether a body has been marked.
+    fn has(&self, body: u32) -> bool {
+        self.seen[body as usize] == self.epoch
+    }
+
     /// Marks a body; whether it is the first time.
     fn mark(&mut self, body: u32) -> bool {
         let seen = &mut self.seen[body as usize];
@@ -85,9 +90,7 @@ pub fn simulate<M: Mechanics>(
             break;
         }
         run.state.time = event.time;
-        run.state.counts.events += 1;
-        run.bring_to(body as u32, &event);
-        run.resolve(body as u32, &event);
+        run.take(body, event);
         run.settle();
         if let Some(outcome) = run.look_ahead().or_else(|| run.is_over()) {
             return outcome;
@@ -143,9 +146,50 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         self.look_ahead()
     }
 
+    /// Resolves an event; where it concerns a heap, also those that other bodies have at the same time: what stands on
+    /// much else is struck at many places at once, and the heap is to settle once.
+    fn take(&mut self, mut body: usize, mut event: Event) {
+        self.scratch.concerned.clear();
+        self.scratch.marks.wipe(self.state.bodies.len());
+        loop {
+            // The end of a step is one event of all that it is of.
+            if event.happening != Happening::Expiry || !self.scratch.marks.has(body as u32) {
+                self.state.counts.events += 1;
+                self.bring_to(body as u32, &event);
+                self.resolve(body as u32, &event);
+            }
+            if self.scratch.concerned.len() < M::HEAP {
+                return;
+            }
+            self.put_off(body, &event);
+            let Some(next) = self.scratch.queue.first() else { return };
+            let due = self.state.events[next];
+            if due.time > event.time || due.happening == Happening::End || self.is_stale(&due) {
+                return;
+            }
+            (body, event) = (next, due);
+        }
+    }
+
+    /// Takes an event out of the queue until its bodies are looked at anew.
+    fn put_off(&mut self, body: usize, event: &Event) {
+        let never = Event { time: f64::INFINITY, happening: Happening::End };
+        self.state.events[body] = never;
+        self.scratch.queue.update(body, &self.state.events, &self.state.places);
+        if let Happening::Body { other, .. } = event.happening
+            && matches!(self.state.events[other as usize].happening, Happening::Body { other, .. } if other as usize == body)
+        {
+            self.state.events[other as usize] = never;
+            self.scratch.queue.update(other as usize, &self.state.events, &self.state.places);
+        }
+    }
+
+    fn is_stale(&self, event: &Event) -> bool {
+        matches!(event.happening, Happening::Body { other, generation } if generation != self.state.generations[other as usize])
+    }
+
     /// Brings the bodies of an event, and all that are in lasting contact with them, to its time.
     fn bring_to(&mut self, body: u32, event: &Event) {
-        self.scratch.concerned.clear();
         let mut other = None;
         if let Happening::Body { other: partner, generation } = event.happening {
             if generation != self.state.generations[partner as usize] {
@@ -154,13 +198,13 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             }
             other = Some(partner);
         }
-        self.scratch.marks.wipe(self.state.bodies.len());
         let Scratch { concerned, marks, .. } = &mut *self.scratch;
+        let first = concerned.len();
         add_group(&self.state.links, body, marks, concerned);
         if let Some(partner) = other {
             add_group(&self.state.links, partner, marks, concerned);
         }
-        for &k in &self.scratch.concerned {
+        for &k in &self.scratch.concerned[first..] {
             self.mechanics.advance(k as usize, &mut self.state.bodies[k as usize], event.time);
         }
     }

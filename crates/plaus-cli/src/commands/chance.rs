@@ -7,6 +7,7 @@ use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::likely;
+use crate::output;
 use crate::scenario_file;
 use crate::table::{grouped, short};
 use plaus_mcmc::chance::ChancePulse;
@@ -171,9 +172,9 @@ impl Args {
         let answers = answers(chance);
         let Some(all) = answers.first() else { return Ok(Outcome::Unsatisfied) };
         if self.json {
-            console::print_line(&likely::to_json(chance).to_string())?;
+            output::print_line(&likely::to_json(chance).to_string())?;
         } else {
-            console::print(&likely::in_words(chance))?;
+            output::print(&likely::in_words(chance))?;
         }
         let found = all.best.is_some_and(|best| best.probability > 0.0);
         Ok(if found && all.disagreements.is_empty() { Outcome::Done } else { Outcome::Unsatisfied })

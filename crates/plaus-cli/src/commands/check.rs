@@ -2,6 +2,7 @@
 
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::output;
 use crate::scenario_file;
 use crate::why::{self, OfPrior};
 use plaus_run::Manifest;
@@ -53,7 +54,7 @@ impl Args {
             let tally = recipe.scenario.visit(OfPrior { draws, seed, tells }).map_err(locate)?;
             let tally = tally.map_err(|error| Failure::Message(format!("{name}: {error}")))?;
             let text = if self.json { format!("{}\n", why::to_json(&tally)) } else { why::in_words(&tally, "draws") };
-            console::print(&text)?;
+            output::print(&text)?;
             return Ok(Outcome::Done);
         }
         if !self.quiet {
@@ -64,7 +65,7 @@ impl Args {
                 scalars.join(", ")
             ));
             console::note_line("With all keys in force:");
-            console::print(&manifest.scenario.effective)?;
+            output::print(&manifest.scenario.effective)?;
         }
         Ok(Outcome::Done)
     }

@@ -4,6 +4,7 @@ use crate::clock::ProcessorClock;
 use crate::console;
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::output;
 use crate::progress::Monitor;
 use crate::table::{amount, grouped, short};
 use plaus_mcmc::chance::{ChancePulse, Parts, count};
@@ -38,7 +39,7 @@ pub(super) fn with_prior(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, as
             "solutions": hits,
             "independent_a_minute": { "chains": chains, "prior": prior },
         });
-        return console::print_line(&object.to_string());
+        return output::print_line(&object.to_string());
     }
     let times = if hits > 0 { format!(": {} times as many", short(chains / prior)) } else { String::new() };
     console::note_line(&format!(

@@ -1,8 +1,8 @@
 //! `plaus completions`
 
 use crate::Cli;
-use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::output;
 use clap::CommandFactory;
 use clap_complete::Shell;
 
@@ -17,7 +17,7 @@ impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut Cli::command(), "plaus", &mut script);
-        console::print(&String::from_utf8_lossy(&script))?;
+        output::print(&String::from_utf8_lossy(&script))?;
         Ok(Outcome::Done)
     }
 }

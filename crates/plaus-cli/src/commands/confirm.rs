@@ -1,7 +1,6 @@
 //! `--confirm`: which solutions hold at the reference accuracy.
 
-use super::sample::quoted;
-use crate::console;
+use crate::console::{self, quoted};
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::table::grouped;

@@ -3,6 +3,7 @@
 use crate::clock::ProcessorClock;
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::output;
 use crate::table::short;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
@@ -122,7 +123,7 @@ impl Args {
             let mut object = report::to_json(manifest, &diagnosis);
             object["beside_prior"] = json!(beside);
             object["healthy"] = json!(is_healthy);
-            console::print_line(&object.to_string())?;
+            output::print_line(&object.to_string())?;
         } else {
             let solutions =
                 report::solutions(&diagnosis) + &at_this_pace(&run, &diagnosis)? + &report::tempering(&diagnosis, None);
@@ -136,7 +137,7 @@ impl Args {
             let (found, unknown) = beside.as_ref().map(report::beside).unwrap_or_default();
             let findings = findings + &found;
             let verdict = if is_healthy { "nothing speaks against these chains\n" } else { "findings:\n" };
-            console::print(&format!(
+            output::print(&format!(
                 "{}\n{solutions}\n{}{some}\n{}\n{}{verdict}{findings}{unknown}",
                 report::headline(manifest),
                 report::scalar_table(&diagnosis, usize::MAX),

@@ -1,8 +1,8 @@
 //! `plaus explain`
 
-use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::glossary;
+use crate::output;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{self, KeyDoc, NoKey};
 
@@ -30,7 +30,7 @@ impl Args {
             }
             Some(key) => describe(&scenario::explain(key).map_err(|error| unknown(key, error))?),
         };
-        console::print(&text)?;
+        output::print(&text)?;
         Ok(Outcome::Done)
     }
 }

@@ -1,8 +1,7 @@
 //! `plaus merge`
 
-use super::sample::quoted;
 use crate::clock::{Stopwatch, in_words};
-use crate::console;
+use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
 use crate::table::grouped;

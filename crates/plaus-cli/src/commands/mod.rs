@@ -10,6 +10,7 @@ mod diagnose;
 mod explain;
 mod export;
 mod gallery;
+mod job;
 mod merge;
 mod new;
 mod replay;

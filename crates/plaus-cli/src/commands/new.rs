@@ -1,8 +1,8 @@
 //! `plaus new`
 
-use super::sample::quoted;
-use crate::console;
+use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
+use crate::output;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{self, SCHEMA_FILE};
 use std::fs::File;
@@ -29,7 +29,7 @@ impl Args {
         // Editors that know TOML read the schema that this line names.
         let text = format!("#:schema ./{SCHEMA_FILE}\n{text}");
         match self.file.filter(|file| file != Path::new("-")) {
-            None => console::print(&text)?,
+            None => output::print(&text)?,
             Some(file) => {
                 let refuse = |error: io::Error| {
                     let advice = match error.kind() {

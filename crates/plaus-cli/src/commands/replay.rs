@@ -3,6 +3,7 @@
 use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::label;
+use crate::output;
 use plaus_export::{Clip, Cut, Label, table};
 use plaus_run::replay::{Replay, replay, replay_at};
 use plaus_run::{Error, Folder, Manifest, Run, RunOf, RunVisitor, SampleId};
@@ -61,11 +62,11 @@ impl Args {
             Format::Csv => {
                 let mut rows = format!("{}\n", table::POSES).into_bytes();
                 table::write_poses(&mut rows, &clip, "").map_err(Failure::of_output)?;
-                console::print(&String::from_utf8_lossy(&rows))?;
+                output::print(&String::from_utf8_lossy(&rows))?;
             }
             Format::Json => {
                 let poses = table::poses_to_json(&clip);
-                console::print_line(&to_json(run.manifest(), &replay, poses).to_string())?;
+                output::print_line(&to_json(run.manifest(), &replay, poses).to_string())?;
             }
         }
         console::note_line(&closing(&replay));

@@ -5,9 +5,10 @@ use super::confirm::{self, ACCURACY};
 use super::shards;
 use super::wanted::Wanted;
 use crate::clock::{in_words, parse_duration};
-use crate::console;
+use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::interrupt;
+use crate::output;
 use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
 use crate::table::{grouped, rate};
@@ -16,7 +17,7 @@ use plaus_mcmc::{Ending, Plan};
 use plaus_run::{Diagnosis, Error, Folder, Manifest, Run, Sampling};
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Draws of all chains together that the closing summary looks at; `plaus diagnose` looks at all.
@@ -145,7 +146,7 @@ impl Watching {
                 "iteration": done,
             });
             // Where the reader has gone, the end of the run will say so.
-            let _ = console::print_line(&begin.to_string());
+            let _ = output::print_line(&begin.to_string());
         } else if self.quiet {
             console::note_line(&format!("seed {}", manifest.plan.seed));
         } else {
@@ -172,7 +173,7 @@ impl Watching {
         let path = folder.path();
         if monitor.stop() == Some(Stop::Interrupted) && ending == Ending::Stopped {
             if self.json {
-                console::print_line(
+                output::print_line(
                     &json!({ "event": "end", "ending": "interrupted", "iteration": monitor.done() }).to_string(),
                 )?;
             }
@@ -211,9 +212,9 @@ impl Watching {
                 let (held, checked) = (list.held, list.solutions.len());
                 end["confirmed"] = json!({ "accuracy": list.accuracy.name(), "checked": checked, "held": held });
             }
-            console::print_line(&end.to_string())?;
+            output::print_line(&end.to_string())?;
         } else if !self.quiet {
-            console::print(&summary(&run, &diagnosis, monitor, ending))?;
+            output::print(&summary(&run, &diagnosis, monitor, ending))?;
         }
         if self.compare_prior {
             compare::with_prior(&run, &diagnosis, monitor, self.json)?;
@@ -373,11 +374,4 @@ fn cores() -> usize {
 /// What makes a run that has ended ten times as long.
 fn longer(plan: &Plan) -> String {
     format!(" --iterations {}", plan.iterations.saturating_mul(10))
-}
-
-/// A path as a shell takes it.
-pub(super) fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || "/._-+=:@,%".contains(c));
-    if plain { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }

@@ -1,9 +1,9 @@
 //! `plaus status`: how far pieces are, from the small files that they write. Nothing is asked over a network.
 
-use super::submit::Job;
+use super::job::Job;
 use crate::clock::{in_words, unix_seconds};
-use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::output;
 use crate::progress::{LONGEST_SILENCE, Signal, State, host, read_signal};
 use crate::table::{grouped, lay_out, percent, rate};
 use plaus_run::{Folder, Shard, chance};
@@ -215,14 +215,14 @@ impl Args {
         }
         let summary = Summary::of(&pieces);
         if self.json {
-            console::print_line(
+            output::print_line(
                 &json!({ "summary": summary, "pieces": pieces, "merged": merged.flatten() }).to_string(),
             )?;
         } else {
-            console::print(&self.table(&pieces, &summary))?;
+            output::print(&self.table(&pieces, &summary))?;
             match merged {
-                Some(Some(run)) => console::print_line(&format!("merged: {}", run.display()))?,
-                Some(None) => console::print_line("not merged yet")?,
+                Some(Some(run)) => output::print_line(&format!("merged: {}", run.display()))?,
+                Some(None) => output::print_line("not merged yet")?,
                 None => {}
             }
         }

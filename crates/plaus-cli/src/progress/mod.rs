@@ -13,6 +13,7 @@ use crate::clock::{ProcessorClock, Stopwatch};
 use crate::console;
 use crate::failure::Failure;
 use crate::interrupt;
+use crate::output;
 use beacon::Beacon;
 use plaus_mcmc::{ChainPulse, Control, Ending, Progress, Pulse};
 use plaus_run::{Folder, Manifest, Mixing, Watch};
@@ -215,7 +216,7 @@ impl Monitor {
                 board.draw(&lines);
             }
             // Where the reader has gone, the end of the run will say so.
-            Style::Json => drop(console::print_line(&view.json().to_string())),
+            Style::Json => drop(output::print_line(&view.json().to_string())),
             _ => {
                 console::note_line(&view.headlines().join("  "));
                 let chains = if self.verbose { view.chain_lines() } else { Vec::new() };

@@ -117,6 +117,23 @@ fn streams(seed: Seed, chain: u32, replica: usize) -> ChainStreams {
     seed.chain(u64::from(chain) | (replica as u64) << 32)
 }
 
+/// Makes so many steps of a chain, unless `goes_on` says no before one of them; gives whether all were made.
+fn stride<'a, T: Target>(
+    chain: &mut Chain<'a, T>,
+    steps: u64,
+    goes_on: &impl Fn() -> bool,
+    mut watch: impl FnMut(&Chain<'a, T>, Step),
+) -> Result<bool, ChainError> {
+    for _ in 0..steps {
+        if !goes_on() {
+            return Ok(false);
+        }
+        let step = chain.step()?;
+        watch(chain, step);
+    }
+    Ok(true)
+}
+
 impl<'a, T: Target> Replicas<'a, T> {
     /// One replica a rung, from start draws of the target, with random numbers of chain `chain` of `seed`.
     ///
@@ -205,8 +222,22 @@ impl<'a, T: Target> Replicas<'a, T> {
     pub fn advance(
         &mut self,
         iteration: u64,
-        mut watch: impl FnMut(&Chain<'a, T>, TopStep) + Send,
+        watch: impl FnMut(&Chain<'a, T>, TopStep) + Send,
     ) -> Result<(), ChainError> {
+        self.advance_while(iteration, || true, watch).map(drop)
+    }
+
+    /// As [`Replicas::advance`], as long as `goes_on` says so, asked before every step; gives whether it always did.
+    /// Where it did not, the replicas are at different iterations: they can only be dropped.
+    ///
+    /// # Errors
+    /// As [`Replicas::advance`].
+    pub(crate) fn advance_while(
+        &mut self,
+        iteration: u64,
+        goes_on: impl Fn() -> bool + Sync,
+        mut watch: impl FnMut(&Chain<'a, T>, TopStep) + Send,
+    ) -> Result<bool, ChainError> {
         let every = self.course.tempering.swap_every;
         while self.iteration() < iteration {
             let now = self.iteration();
@@ -214,27 +245,33 @@ impl<'a, T: Target> Replicas<'a, T> {
                 self.swap(now, &mut watch);
             }
             let next = if self.chains.len() > 1 { (now / every + 1).saturating_mul(every) } else { iteration };
-            self.walk(next.min(iteration) - now, &mut watch)?;
+            if !self.walk(next.min(iteration) - now, &goes_on, &mut watch)? {
+                return Ok(false);
+            }
         }
-        Ok(())
+        Ok(true)
     }
 
-    fn walk(&mut self, steps: u64, watch: &mut (impl FnMut(&Chain<'a, T>, TopStep) + Send)) -> Result<(), ChainError> {
-        let mut top = |chain: &mut Chain<'a, T>| {
-            (0..steps).try_for_each(|_| chain.step().map(|step| watch(chain, TopStep::Step(step))))
-        };
+    fn walk(
+        &mut self,
+        steps: u64,
+        goes_on: &(impl Fn() -> bool + Sync),
+        watch: &mut (impl FnMut(&Chain<'a, T>, TopStep) + Send),
+    ) -> Result<bool, ChainError> {
+        let mut top =
+            |chain: &mut Chain<'a, T>| stride(chain, steps, goes_on, |chain, step| watch(chain, TopStep::Step(step)));
         if let [only] = self.chains.as_mut_slice() {
             return top(only);
         }
         let index = self.top_replica();
         let (before, rest) = self.chains.split_at_mut(index);
-        let Some((chain, after)) = rest.split_first_mut() else { return Ok(()) };
-        let walk = |chain: &mut Chain<'a, T>| (0..steps).try_for_each(|_| chain.step().map(drop));
+        let Some((chain, after)) = rest.split_first_mut() else { return Ok(true) };
+        let walk = |chain: &mut Chain<'a, T>| stride(chain, steps, goes_on, |_, _| ());
         let mut others: Vec<_> = before.iter_mut().chain(after).collect();
         let (first, others) =
             rayon::join(|| top(chain), || others.par_iter_mut().map(|chain| walk(chain)).collect::<Vec<_>>());
         // The failure reported does not depend on which came first.
-        first.and(others.into_iter().collect())
+        others.into_iter().try_fold(first?, |all, one| Ok(all && one?))
     }
 
     /// Proposes the swaps due after iteration `now`, and adapts the ladder where that is due.

@@ -264,8 +264,8 @@ pub fn run<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     run_watched(target, moves, plan, starts, threads, sink, &Pulse::default())
 }
 
-/// As [`run()`], with counters that other threads can read meanwhile, and through which they can stop it. The first
-/// round of a new run, which is the start, is always made.
+/// As [`run()`], with counters that other threads can read meanwhile, and through which they can stop it: within an
+/// iteration of each chain, or while the chains start. Then nothing at all is recorded.
 ///
 /// # Errors
 /// As [`run()`].
@@ -392,7 +392,8 @@ impl<'a, T: Goal> Fleet<'a, T> {
         if let Some((chain, source)) = failures.min_by_key(|(chain, failure)| (failure.iteration(), *chain)) {
             return Err(Failed { chain, source });
         }
-        if self.workers.iter().any(|worker| worker.books.end_iteration < end) {
+        let is_there = |(worker, made): (&Worker<'a, T>, &MadeOf<T>)| worker.books.end_iteration >= end && !made.is_cut;
+        if !self.workers.iter().zip(&made).all(is_there) {
             return Ok(None);
         }
         self.done = end;

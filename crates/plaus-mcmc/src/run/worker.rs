@@ -53,6 +53,8 @@ pub(super) struct Made<D, O> {
     pub(super) firsts: Vec<FirstOfClass>,
     /// What ended it early.
     pub(super) failure: Option<ChainError>,
+    /// Whether the run was stopped before it was there: the worker can only be dropped.
+    pub(super) is_cut: bool,
 }
 
 impl<'a, T: Goal> Worker<'a, T> {
@@ -76,7 +78,12 @@ impl<'a, T: Goal> Worker<'a, T> {
 
     /// Advances until iterations `0 .. end` are done, or the hunt ends, or an iteration fails.
     pub(super) fn advance(&mut self, job: &Job<'a, T>, end: u64, hunt: &Hunt<'_>) -> Made<T::Draw, T::Outcome> {
-        let mut made = Made { block: Block::starting_at(self.books.end_iteration), firsts: Vec::new(), failure: None };
+        let mut made = Made {
+            block: Block::starting_at(self.books.end_iteration),
+            firsts: Vec::new(),
+            failure: None,
+            is_cut: false,
+        };
         made.failure = self.try_advance(job, end, hunt, &mut made).err();
         made.block.end_iteration = self.books.end_iteration;
         made
@@ -90,6 +97,12 @@ impl<'a, T: Goal> Worker<'a, T> {
         made: &mut Made<T::Draw, T::Outcome>,
     ) -> Result<(), ChainError> {
         let (Self { replicas, books }, plan) = (self, &job.plan);
+        let goes_on = || !hunt.pulse.is_stopped();
+        if !goes_on() {
+            // Of many chains some may not even have started.
+            made.is_cut = true;
+            return Ok(());
+        }
         if replicas.is_none() && end > 0 {
             let started = Replicas::start(job.course(), job.plan.seed, books.index)?.adapting(job.adapts_until());
             books.class = job.target.class(started.top().state());
@@ -102,7 +115,7 @@ impl<'a, T: Goal> Worker<'a, T> {
         while books.end_iteration < end && hunt.goes_on(books.end_iteration) {
             let now = replicas.iteration();
             let next = (now / stride + 1).saturating_mul(stride).min(end - 1);
-            replicas.advance(next, |chain, step| match step {
+            let went_on = replicas.advance_while(next, goes_on, |chain, step| match step {
                 TopStep::Swapped => {
                     books.class = job.target.class(chain.state());
                     books.pending = (books.pending.0.saturating_add(1), None);
@@ -115,6 +128,10 @@ impl<'a, T: Goal> Worker<'a, T> {
                     books.note::<T>(job, books.end_iteration, chain, made, hunt);
                 }
             })?;
+            if !went_on {
+                made.is_cut = true;
+                return Ok(());
+            }
         }
         Ok(())
     }

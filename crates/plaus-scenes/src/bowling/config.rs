@@ -1,7 +1,7 @@
 //! Scenario keys of bowling.
 
 use super::moves::BowlingMoves;
-use super::release::Release;
+use super::release::{Delivery, Release};
 use crate::accuracy::AccuracyPreset;
 use crate::model::{Moves, Weights};
 use schemars::JsonSchema;
@@ -92,19 +92,6 @@ pub enum Rewarded {
     /// Any pin that stands, as the paper's text can be read. It then rewards a ball in the gutter, which moves no pin,
     /// as much as a strike.
     AnyStanding,
-}
-
-/// A set of laws of the delivery.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Delivery {
-    /// The paper's appendix A.1: a solid ball of 176 to 220 mm, released anywhere across the lane without spin but a
-    /// little about the vertical, on a lane with the same friction everywhere. Its largest ball is larger than the
-    /// rules allow.
-    #[default]
-    Paper,
-    /// Balls within the rules, at speeds and with the spin of good players, on a lane that is oiled for its first 12 m.
-    Regulation,
 }
 
 /// What happens where things touch. Between pins there are no published coefficients.

@@ -61,6 +61,6 @@ pub(super) fn vars(config: &Config, pins: &[usize]) -> Result<Vars, ConfigError>
         if is_uncertain { var.column(1.0) } else { var }
     };
     let pin = |&pin: &usize| Var::new("offset", "mm", Law::Plane(offset.clone())).of("pin", pin as u32);
-    let ball = Quantity::ALL.into_iter().zip(release::laws(config)?).map(quantity);
+    let ball = Quantity::ALL.into_iter().zip(release::laws(config.delivery, &config.release)?).map(quantity);
     Ok(Vars::new(ball.chain(pins.iter().map(pin)).collect()))
 }

@@ -1,8 +1,9 @@
 //! One shot: from a draw to the pins that are left.
 
-use super::config::{Config, Delivery, Rewarded};
+use super::config::{Config, Rewarded};
 use super::draw::Shot;
 use super::rack::Rack;
+use super::release::Delivery;
 use super::release::Quantity;
 use crate::scene::Until;
 use crate::world::{Physical, PlainWorld};

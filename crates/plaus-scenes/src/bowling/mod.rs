@@ -11,12 +11,12 @@ mod props;
 mod rack;
 mod release;
 
-pub use config::{Config, Contact, Delivery, Rewarded, Steps};
+pub use config::{Config, Contact, Rewarded, Steps};
 pub use draw::Shot;
 pub use lane::{Entry, Fate, Rest, Work};
 pub use moves::{Aim, BowlingMoves, mirror};
 pub use rack::Rack;
-pub use release::{Quantity, Release};
+pub use release::{Delivery, Quantity, Release};
 
 /// Weights of the scene's moves.
 pub type Weights = crate::Weights<BowlingMoves>;

@@ -1,11 +1,23 @@
 //! The laws of a delivery: which quantities of the ball are uncertain, and how.
 
-use super::config::{Config, Delivery};
 use crate::scene::ConfigError;
 use plaus_dist::{Gaussian, ParamError, TruncatedGaussian, WrappedUniform};
 use plaus_mcmc::Law;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+/// A set of laws of the delivery.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Delivery {
+    /// The paper's appendix A.1: a solid ball of 176 to 220 mm, released anywhere across the lane without spin but a
+    /// little about the vertical, on a lane with the same friction everywhere. Its largest ball is larger than the
+    /// rules allow.
+    #[default]
+    Paper,
+    /// Balls within the rules, at speeds and with the spin of good players, on a lane that is oiled for its first 12 m.
+    Regulation,
+}
 
 /// What differs from the chosen delivery's laws. Unset keys are the delivery's own; a standard deviation of 0, or an
 /// interval of one value, means that the quantity is not uncertain.
@@ -144,8 +156,8 @@ impl Quantity {
 ///
 /// # Errors
 /// [`ConfigError`] where an interval ends before it begins, or a ball is too large for its place.
-pub(super) fn laws(config: &Config) -> Result<[Law; 10], ConfigError> {
-    let (release, base) = (&config.release, preset(config.delivery));
+pub(super) fn laws(delivery: Delivery, release: &Release) -> Result<[Law; 10], ConfigError> {
+    let base = preset(delivery);
     let bad = |key: &str, message: String| ConfigError::new(format!("world.bowling.release.{key}"), message);
     let wrong = |key: &'static str| move |error: ParamError| bad(key, error.to_string());
     let or = |set: Option<f64>, own: Option<f64>| set.or(own).unwrap_or(0.0);

@@ -5,6 +5,7 @@ use super::driven::Driven;
 use super::forms::{Ball, Plane, Shape, Still};
 use super::laws::LawOf;
 use super::moves::CustomMoves;
+use super::quantity::Quantity;
 use crate::accuracy::AccuracyPreset;
 use crate::animation;
 use crate::model::Weights;
@@ -196,16 +197,6 @@ pub struct Pair {
     /// Resistance to spinning on one spot. Unset: the mean of theirs.
     #[serde(default)]
     pub spinning: Option<Amount<amount::Friction>>,
-}
-
-/// A number with a name, which several others can be.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Quantity {
-    /// Its name.
-    pub name: String,
-    /// Its value, in the unit of the keys that name it: a number, a law, or arithmetic with others.
-    pub value: Amount<amount::Plain>,
 }
 
 /// A thing that stands still.

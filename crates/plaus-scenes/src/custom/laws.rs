@@ -1,7 +1,7 @@
 //! The laws that a number of a scenario may have. A new one: its file in `plaus-dist`, a variant here, and a line in
 //! [`LawOf::law`].
 
-use super::amount::Domain;
+use super::domain::Domain;
 use plaus_dist::WrappedUniform;
 use plaus_dist::{Choice, Gaussian, LogNormal, NumberLaw, ParamError, Triangular, TruncatedGaussian, VonMises};
 use plaus_mcmc::Law;

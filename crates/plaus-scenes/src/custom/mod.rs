@@ -4,6 +4,7 @@
 mod amount;
 mod animate;
 mod config;
+mod domain;
 mod driven;
 mod flight;
 mod forms;
@@ -13,18 +14,21 @@ mod moves;
 mod names;
 mod plan;
 mod quantities;
+mod quantity;
 mod range;
 mod solids;
 mod values;
 mod view;
 
-pub use amount::{Amount, Domain, Measure};
-pub use config::{Body, Config, Finish, Fixed, Material, Pair, Quantity};
+pub use amount::{Amount, Measure};
+pub use config::{Body, Config, Finish, Fixed, Material, Pair};
+pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Last, Overlap, Work};
 pub use forms::{Ball, Capsule, Cone, Cuboid, Cylinder, Hull, Plane, Shape, Still};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
+pub use quantity::Quantity;
 pub use values::Drawn;
 
 use crate::accuracy::AccuracyPreset;

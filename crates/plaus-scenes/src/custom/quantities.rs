@@ -1,7 +1,7 @@
-//! In which order quantities are worked out: each after those that it names.
+//! Quantities are worked out first, each after those that it names.
 
 use super::amount::Amount;
-use super::config::Quantity;
+use super::quantity::Quantity;
 use super::values::{Collector, Owner};
 use crate::scene::ConfigError;
 use std::collections::BTreeMap;
@@ -17,12 +17,27 @@ enum Mark {
     Done,
 }
 
+impl Collector {
+    /// With these quantities, each a group of its own where it is uncertain.
+    pub(super) fn new(quantities: &[Quantity]) -> Result<Self, ConfigError> {
+        let mut collector = Self::default();
+        for index in in_order(quantities, &mut collector)? {
+            let quantity = &quantities[index];
+            let key = format!("world.custom.quantities[{index}]");
+            collector.begin();
+            let value = collector.number(&Owner::new(&quantity.name, &key), "value", "", &quantity.value)?;
+            collector.quantities.insert(quantity.name.clone(), value);
+        }
+        Ok(collector)
+    }
+}
+
 /// Indices in an order in which each comes after those that it names, otherwise as in the file.
 ///
 /// # Errors
 /// Names that are given twice or mean something else, formulas that are none, and quantities that name each other in a
 /// circle.
-pub(super) fn in_order(quantities: &[Quantity], collector: &mut Collector) -> Result<Vec<usize>, ConfigError> {
+fn in_order(quantities: &[Quantity], collector: &mut Collector) -> Result<Vec<usize>, ConfigError> {
     let keys: Vec<String> = (0..quantities.len()).map(|index| format!("world.custom.quantities[{index}]")).collect();
     let owner = |index: usize| Owner::new(&quantities[index].name, &keys[index]);
     let mut places = BTreeMap::new();

@@ -1,10 +1,9 @@
 //! From the numbers of a scenario to variables, and from draws to numbers.
 
-use super::amount::{Amount, Domain, Measure};
-use super::config::Quantity;
+use super::amount::{Amount, Measure};
+use super::domain::Domain;
 use super::formula::Formula;
 use super::laws::LawOf;
-use super::quantities;
 use super::range::Range;
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
@@ -132,7 +131,7 @@ pub(super) struct Collector {
     steps: Vec<Step>,
     /// What each may come to.
     worked: Vec<Range>,
-    quantities: BTreeMap<String, Value>,
+    pub(super) quantities: BTreeMap<String, Value>,
     /// Formulas that were read, by their texts: those of an array are read once.
     read: BTreeMap<String, Arc<Formula>>,
 }
@@ -157,19 +156,6 @@ impl<'a> Owner<'a> {
 }
 
 impl Collector {
-    /// With these quantities, each a group of its own where it is uncertain.
-    pub(super) fn new(quantities: &[Quantity]) -> Result<Self, ConfigError> {
-        let mut collector = Self::default();
-        for index in quantities::in_order(quantities, &mut collector)? {
-            let quantity = &quantities[index];
-            let key = format!("world.custom.quantities[{index}]");
-            collector.begin();
-            let value = collector.number(&Owner::new(&quantity.name, &key), "value", "", &quantity.value)?;
-            collector.quantities.insert(quantity.name.clone(), value);
-        }
-        Ok(collector)
-    }
-
     /// The formula of a text.
     pub(super) fn read(&mut self, text: &str) -> Result<Arc<Formula>, String> {
         if let Some(known) = self.read.get(text) {

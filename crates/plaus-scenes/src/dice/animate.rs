@@ -1,6 +1,7 @@
 //! The animation of a draw. The simulator's z points up; an animation's y does.
 
-use super::throwing::{Recorded, Work};
+use super::fall::Recorded;
+use super::throwing::Work;
 use super::{Dice, Draw, props};
 use crate::animation::{Animation, Impact, Look, Piece, Shape, Track, Turn, UPRIGHT, View, upright};
 use crate::touch::{Toucher, in_order};

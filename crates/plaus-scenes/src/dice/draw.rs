@@ -232,6 +232,36 @@ impl Realisation {
     }
 }
 
+/// How many numbers the initial conditions of a die have besides its orientation: place, velocity and angular velocity
+/// along three axes.
+pub const NUMBERS: usize = 9;
+
+/// How many variables a die has: its numbers, its orientation, which of its symmetries its pips are turned by.
+pub(super) const EACH: usize = NUMBERS + 2;
+
+/// The place of the orientation among them.
+pub(super) const ORIENTATION: usize = NUMBERS;
+
+/// One number of a throw: place, velocity, angular velocity, each along x, y, z; without its table's shift.
+pub(super) fn number(throw: &Throw, number: usize) -> &f64 {
+    let part = match number / 3 {
+        0 => &throw.position,
+        1 => &throw.velocity,
+        _ => &throw.spin,
+    };
+    &part[number % 3]
+}
+
+/// The same, to change.
+pub(super) fn number_mut(throw: &mut Throw, number: usize) -> &mut f64 {
+    let part = match number / 3 {
+        0 => &mut throw.position,
+        1 => &mut throw.velocity,
+        _ => &mut throw.spin,
+    };
+    &mut part[number % 3]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,6 +14,7 @@ mod animate;
 mod config;
 mod constraint;
 mod draw;
+mod fall;
 mod flight;
 mod moves;
 mod plan;
@@ -27,10 +28,10 @@ mod throwing;
 
 pub use config::{Config, Die, MOST_DICE, Spilt, Steps, Table, Throwing};
 pub use constraint::{Constraint, FaceUp, FirstImpact, Mark, Passes, PoseAt, RestAt};
-pub use draw::{Draw, Field, LARGEST_SCORE, Realisation, Site, Throw};
+pub use draw::{Draw, Field, LARGEST_SCORE, NUMBERS, Realisation, Site, Throw};
 pub use flight::{End, Frame, Trip};
 pub use moves::{DiceMoves, Near, Pick, Point, Recast, Shift, component, turn};
-pub use prior::{NUMBERS, Prior};
+pub use prior::Prior;
 pub use symmetry::Rotation;
 pub use throwing::Work;
 
@@ -45,11 +46,11 @@ use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use crate::turns::{any_orientation, turned_a_little};
 use crate::world::PlainWorld;
+use draw::{EACH, ORIENTATION};
 use plan::{Demand, Plan};
 use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Variables, Vars};
-use prior::{EACH, ORIENTATION};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use surface::Touched;
@@ -250,12 +251,12 @@ impl Variables for Dice {
 
     fn get<'a>(&self, draw: &'a Draw, var: usize) -> Option<&'a [f64]> {
         let number = Some(var % EACH).filter(|&number| number < NUMBERS)?;
-        draw.throws.get(var / EACH).map(|throw| std::slice::from_ref(prior::number(throw, number)))
+        draw.throws.get(var / EACH).map(|throw| std::slice::from_ref(draw::number(throw, number)))
     }
 
     fn get_mut<'a>(&self, draw: &'a mut Draw, var: usize) -> Option<&'a mut [f64]> {
         let number = Some(var % EACH).filter(|&number| number < NUMBERS)?;
-        draw.throws.get_mut(var / EACH).map(|throw| std::slice::from_mut(prior::number_mut(throw, number)))
+        draw.throws.get_mut(var / EACH).map(|throw| std::slice::from_mut(draw::number_mut(throw, number)))
     }
 
     /// A die stands farther on where its table has been shifted.

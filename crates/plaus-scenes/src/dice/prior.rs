@@ -1,22 +1,12 @@
 //! The law of a throw without the constraints.
 
 use super::config::Config;
-use super::draw::{Draw, Realisation, Throw};
+use super::draw::{Draw, NUMBERS, Realisation, Throw, number};
 use crate::turns::any_orientation;
 use glam::DVec3;
 use plaus_dist::stream::below;
 use plaus_dist::{Density, Gaussian, LogDensity, NotANumber, ParamError, Sample, Stream, TruncatedGaussian};
 use plaus_mcmc::{Law, Var, Vars};
-
-/// How many numbers the initial conditions of a die have besides its orientation: place, velocity and angular velocity
-/// along three axes.
-pub const NUMBERS: usize = 9;
-
-/// How many variables a die has: its numbers, its orientation, which of its symmetries its pips are turned by.
-pub(super) const EACH: usize = NUMBERS + 2;
-
-/// The place of the orientation among them.
-pub(super) const ORIENTATION: usize = NUMBERS;
 
 /// Names and units of the numbers' columns, and the factors from SI units.
 const COLUMNS: [(&str, &str, f64); NUMBERS] = [
@@ -162,24 +152,4 @@ impl Prior {
         }
         Ok(sum)
     }
-}
-
-/// One number of a throw: place, velocity, angular velocity, each along x, y, z; without its table's shift.
-pub(super) fn number(throw: &Throw, number: usize) -> &f64 {
-    let part = match number / 3 {
-        0 => &throw.position,
-        1 => &throw.velocity,
-        _ => &throw.spin,
-    };
-    &part[number % 3]
-}
-
-/// The same, to change.
-pub(super) fn number_mut(throw: &mut Throw, number: usize) -> &mut f64 {
-    let part = match number / 3 {
-        0 => &mut throw.position,
-        1 => &mut throw.velocity,
-        _ => &mut throw.spin,
-    };
-    &mut part[number % 3]
 }

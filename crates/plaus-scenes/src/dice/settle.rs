@@ -2,40 +2,16 @@
 //! simulated again: groups of the same dice, thrown alike, that came near no control point that has changed.
 
 use super::draw::{Draw, Site};
+use super::fall::Fall;
 use super::flight::Trip;
 use super::plan::Plan;
-use super::surface::Touched;
-use super::throwing::{Recorded, Work};
-use crate::model::groups::{Group, Groups};
-use crate::way::Way;
+use super::throwing::Work;
+use crate::model::groups::Groups;
 use plaus_mcmc::ModelError;
 
 /// Centres nearer than this many times the reach of a die are simulated together: 2, and more than the gap at which
 /// bodies touch.
 const NEAR: f64 = 2.0 * 1.01;
-
-/// Dice of one group, from their throws to the end.
-#[derive(Debug)]
-pub(super) struct Fall {
-    /// Which dice, in ascending order.
-    pub(super) members: Vec<usize>,
-    pub(super) trips: Vec<Trip>,
-    pub(super) ways: Vec<Way>,
-    /// The control points that were looked at: nothing else of the table had any influence.
-    pub(super) touched: Touched,
-    /// The motions, where they are kept.
-    pub(super) recorded: Option<Recorded>,
-}
-
-impl Group for Fall {
-    fn members(&self) -> &[usize] {
-        &self.members
-    }
-
-    fn ways(&self) -> &[Way] {
-        &self.ways
-    }
-}
 
 /// What differs between two draws; `None` where that is all.
 struct Differing<'a> {

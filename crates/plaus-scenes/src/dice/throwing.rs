@@ -1,9 +1,9 @@
 //! Simulating a draw: each die alone on its own table, or groups of dice on one.
 
 use super::draw::{Draw, Realisation, Throw};
+use super::fall::{Fall, Recorded};
 use super::flight::{Asked, End, Looking, Trip, Watch};
 use super::plan::Plan;
-use super::settle::Fall;
 use super::surface::{MATERIAL, Touched};
 use super::{Dice, Rest};
 use crate::model::groups::Memory;
@@ -184,24 +184,6 @@ impl Work {
         let mut trace = Trace::default();
         let bodies = self.run((&world, longest), &throws, (None, Some(&mut trace)))?;
         Ok((Recorded::new(members, trace, bodies), world))
-    }
-}
-
-/// Dice that were simulated together, with all that happened.
-#[derive(Debug)]
-pub(super) struct Recorded {
-    /// Which dice, in ascending order.
-    pub(super) members: Vec<usize>,
-    pub(super) trace: Trace<Turning>,
-}
-
-impl Recorded {
-    /// A run that left the bodies as they are.
-    fn new(members: Vec<usize>, mut trace: Trace<Turning>, bodies: Vec<Turning>) -> Self {
-        for (motions, last) in trace.motions.iter_mut().zip(bodies) {
-            motions.push(last);
-        }
-        Self { members, trace }
     }
 }
 

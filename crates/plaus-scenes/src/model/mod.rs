@@ -4,6 +4,7 @@
 pub mod columns;
 pub(crate) mod groups;
 mod offered;
+mod row;
 pub mod weights;
 
 pub use columns::{Column, Member, Role, Scalar};

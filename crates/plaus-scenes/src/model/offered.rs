@@ -1,6 +1,6 @@
 //! Moves of the library that every scene offers, of any weight that a scenario gives them: one row a move.
 
-use super::weights::Row;
+use super::row::Row;
 use plaus_mcmc::library::{RedrawOne, Sizes, Step, StepAll};
 use plaus_mcmc::{Move, Variables, Vars};
 

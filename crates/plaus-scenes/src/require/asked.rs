@@ -1,9 +1,10 @@
 //! A scene of which more is required than what it demands itself.
 
-use super::claim::agree;
+use super::agree::agree;
+use super::cast::Cast;
 use super::kinds::Require;
 use super::place::Place;
-use super::probe::{Cast, Probe};
+use super::probe::Probe;
 use super::score::{FAR, Mark};
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;

@@ -1,11 +1,9 @@
-//! Contradictions that can be known before anything is simulated.
+//! What requirements claim that others may contradict.
 
+use super::cast::Cast;
 use super::event::Event;
-use super::kinds::Require;
-use super::probe::Cast;
 use super::score::Band;
 use super::when::Window;
-use crate::scene::ConfigError;
 use glam::DVec3;
 use plaus_dist::math;
 
@@ -60,7 +58,7 @@ impl Claim {
     }
 
     /// Why both cannot be met; `None` where they may.
-    fn contradicts(&self, other: &Self, cast: &Cast) -> Option<String> {
+    pub(super) fn contradicts(&self, other: &Self, cast: &Cast) -> Option<String> {
         let only = cast.only().unwrap_or_default();
         match (self, other) {
             (
@@ -98,22 +96,4 @@ impl Claim {
 /// Names of bodies; one that is left out means the only one there is.
 fn named<'a>(only: &'a str, names: [&'a str; 2]) -> [&'a str; 2] {
     names.map(|name| if name.is_empty() { only } else { name })
-}
-
-/// Refuses requirements, each with the key that says it, of which two contradict each other.
-pub(crate) fn agree(all: &[(String, Require)], cast: &Cast) -> Result<(), ConfigError> {
-    let claims: Vec<(usize, Claim)> = all
-        .iter()
-        .enumerate()
-        .flat_map(|(at, (_, one))| one.claims().into_iter().map(move |claim| (at, claim)))
-        .collect();
-    for (nth, (later, claim)) in claims.iter().enumerate() {
-        for (earlier, other) in &claims[..nth] {
-            let Some(why) = other.contradicts(claim, cast) else { continue };
-            let (key, beside) = (&all[*later].0, &all[*earlier].0);
-            let beside = if earlier == later { String::new() } else { format!(": see `{beside}`") };
-            return Err(ConfigError::new(key.clone(), why + &beside));
-        }
-    }
-    Ok(())
 }

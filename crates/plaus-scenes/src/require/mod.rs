@@ -23,7 +23,9 @@
 //!
 //! Places are in millimetres in the axes of the scenario files, z up; times in seconds of the animation.
 
+mod agree;
 mod asked;
+mod cast;
 mod claim;
 mod event;
 mod kinds;
@@ -34,11 +36,12 @@ mod tally;
 mod ways;
 mod when;
 
+pub(crate) use agree::agree;
 pub use asked::{Answer, Asked};
-pub(crate) use claim::agree;
+pub use cast::Cast;
 pub use event::{Event, What};
 pub use kinds::*;
-pub use probe::{Cast, Probe};
+pub use probe::Probe;
 pub use score::{Band, FAR, Mark, Reach, Span};
 pub use tally::{Clause, Tally};
 pub use when::{When, Window};

@@ -1,6 +1,6 @@
 //! Where a requirement stands in a scenario, to blame it there.
 
-use super::probe::{Cast, matches};
+use super::cast::{Cast, matches};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 

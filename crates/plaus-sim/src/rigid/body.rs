@@ -91,6 +91,9 @@ pub struct Turning {
     pub(crate) passing: DVec3,
     /// Whether it is to sleep from its release on.
     pub(super) sleeps: bool,
+    /// Whether the group that it last settled with is a heap.
+    #[serde(default)]
+    pub(super) in_heap: bool,
     /// Events since `hurried_from`, all within `accuracy.rattle`.
     hurried: u32,
     hurried_from: f64,
@@ -129,6 +132,7 @@ impl Turning {
             ends: [Momentum::default(); 2],
             passing: DVec3::ZERO,
             sleeps: false,
+            in_heap: false,
             hurried: 0,
             hurried_from: -NEVER,
             touching: [NOWHERE; MOST_TOUCHES],

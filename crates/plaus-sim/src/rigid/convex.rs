@@ -197,7 +197,9 @@ impl Quest<'_> {
             let nearest = placed.nearest(last.as_ref());
             last = Some(nearest);
             if linked && advance == 0 {
-                held = Held::new(&placed, &nearest, super::step::TOUCHING * level);
+                // The points that the step was made with.
+                let sag = super::heap::sag(bodies.iter().all(|b| b.in_heap), s.size.min(t.size));
+                held = Held::new(&placed, &nearest, super::step::TOUCHING * level + sag);
             }
             if nearest.gap <= level {
                 let new = held.newest(&placed, &nearest, [&a, &b], level);

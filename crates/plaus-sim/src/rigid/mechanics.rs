@@ -2,6 +2,7 @@
 
 use super::Rigid;
 use super::body::{Phase, Turning};
+use super::heap;
 use super::part::Part;
 use super::step::{self, RigidScratch};
 use crate::links::Links;
@@ -12,6 +13,7 @@ impl Mechanics for Rigid {
     type Body = Turning;
     type Scratch = RigidScratch;
     const WATCHES_LINKED: bool = true;
+    const HEAP: usize = heap::HEAP;
 
     fn len(&self) -> usize {
         self.specs.len()

@@ -61,6 +61,7 @@ mod drive;
 mod energy;
 mod forces;
 mod glide;
+mod heap;
 mod hulls;
 mod hunt;
 mod kicks;

@@ -8,7 +8,7 @@ use super::step::{CLOSE, KEEP, PUSH, RigidScratch};
 use super::{Rigid, Skin};
 
 /// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values make fast turning in contact dearer, as their inverse root.
-const SAG: f64 = 1e-3;
+pub(super) const SAG: f64 = 1e-3;
 
 /// How much deeper, over the gap at which they touch, bodies other than cuboids may end a step than they were to. Default 300, 40 µm for a pin at the standard preset;
 /// looked at more closely, steps of pins get shorter and dearer by half.

@@ -105,6 +105,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     // What contacts cannot stop within a step is not at rest.
     let pull = |spec: &Spec| if spec.is_driven() { DVec3::ZERO } else { spec.pull * h };
     group.prepare(world, |spec, p| (p.start.v + pull(spec), p.start.w));
+    group.leave_out_distant(world);
     let limit = world.accuracy.rest_residual * world.strength * h;
     let fastest = |p: &Place| p.start.v.length().max(p.start.w.length() * world.specs[p.body].reach);
     let fastest = group.places.iter().map(fastest).fold(0.0, f64::max);

@@ -5,9 +5,8 @@
 //! [`PASSES`] passes over the true geometry; the second such that no point approaches or, where friction holds it, slips. Where a point slides, both halves act against the slip over
 //! the drift. Impacts of other points during the drift are found exactly on the path that is really taken; the impulses of a step that one interrupts count up to then.
 
-use super::body::{Momentum, Motion, NEVER, Phase, Pose, Turning};
+use super::body::{Momentum, Motion, Phase, Pose, Turning};
 use super::contact::{Touch, response};
-use super::glide;
 use super::newton::Newton;
 use super::pair::{PairTouch, to_middle};
 use super::part::Part;
@@ -15,6 +14,7 @@ use super::rest;
 use super::solve::{Contact, Member};
 use super::tumble::{drift, rotation};
 use super::{Rigid, Spec};
+use super::{glide, heap};
 use crate::links::Links;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -59,7 +59,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    fn of(body: &Turning, index: usize) -> Self {
+    pub(super) fn of(body: &Turning, index: usize) -> Self {
         let (pose, turn) = (body.pose(), body.turn);
         let drive = if body.phase == Phase::Driven { body.path.a } else { DVec3::ZERO };
         Self { body: index, start: pose, turn, spin: pose.w, end: pose, end_turn: turn, drive }
@@ -157,9 +157,15 @@ pub(super) fn settle(
     }
     let mut is_forced = true;
     scratch.push = 1.0;
+    let is_heap = heap::is_heap(group);
     for _ in 0..SHORTENINGS {
         let step = scratch.drift(world, h);
         match scratch.returns().or_else(|| scratch.misses(world, h)).or_else(|| scratch.climbs(world)) {
+            // Shorter steps would have to lift the heap as high.
+            Some(_) if is_heap && scratch.climbs(world).is_some() => {
+                is_forced = true;
+                break;
+            }
             Some(part) => {
                 is_forced = true;
                 h *= part;
@@ -182,7 +188,7 @@ pub(super) fn settle(
         scratch.touches.append(&mut scratch.leaving);
         scratch.pairs.append(&mut scratch.parting);
         scratch.touches.sort_by_key(|t| t.0);
-        pushes = &[1.0, GENTLE, 0.0];
+        pushes = if is_heap { &[GENTLE, 0.0] } else { &[1.0, GENTLE, 0.0] };
     }
     for &push in pushes {
         scratch.push = push;
@@ -199,73 +205,6 @@ pub(super) fn settle(
 const GENTLE: f64 = 0.0625;
 
 impl RigidScratch {
-    /// Finds the lasting contacts of a group. Bodies without any fly.
-    fn gather(&mut self, world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
-        self.places.clear();
-        self.touches.clear();
-        self.loads.clear();
-        self.leaving.clear();
-        self.pairs.clear();
-        self.parting.clear();
-        for &k in group {
-            for j in links.of(k).filter(|&j| j > k) {
-                let (i, j) = (k as usize, j as usize);
-                let (a, b) = (bodies[i].pose(), bodies[j].pose());
-                let hurried = bodies[i].is_hurried() || bodies[j].is_hurried();
-                let hurried = hurried && world.pair_law([i, j]).restitution < 1.0;
-                let limit = world.pair_settle_speed([i, j]);
-                world.for_pair_touches([i, j], [&a, &b], TOUCHING * world.pair_gap([i, j]), |touch| {
-                    let slow = hurried || touch.rate(&a, &b) <= limit;
-                    if slow { &mut self.pairs } else { &mut self.parting }.push(([i, j], touch));
-                });
-            }
-        }
-        links.retain(|[i, j]| !group.contains(&i) || self.pairs.iter().any(|p| p.0 == [i as usize, j as usize]));
-        for &k in group {
-            let index = k as usize;
-            if bodies[index].phase == Phase::Gone {
-                continue;
-            }
-            let (spec, pose, hurried) = (&world.specs[index], bodies[index].pose(), bodies[index].is_hurried());
-            if spec.is_driven() {
-                if self.pairs.iter().any(|p| p.0.contains(&index)) {
-                    self.places.push(Place::of(&bodies[index], index));
-                }
-                continue;
-            }
-            if std::mem::take(&mut bodies[index].sleeps) {
-                bodies[index].lie_still();
-                continue;
-            }
-            let (at, before) = (self.places.len(), self.touches.len());
-            world.for_known_touches(index, &bodies[index], &pose, |t| {
-                let law = world.law_at(index, &t, pose.x + t.arm);
-                if hurried && law.restitution < 1.0
-                    || pose.velocity(t.arm).dot(t.normal) <= world.settle_speed(spec, &law)
-                {
-                    self.touches.push((at, t));
-                    self.loads.push(bodies[index].load(t.surface));
-                } else {
-                    self.leaving.push((at, t));
-                }
-            });
-            let body = &mut bodies[index];
-            body.listed = -NEVER;
-            let linked = self.pairs.iter().any(|p| p.0.contains(&index));
-            if self.touches.len() == before && !linked {
-                self.leaving.retain(|l| l.0 != at);
-                body.list(std::iter::empty());
-                body.begin(Phase::Flight, spec.pull);
-                continue;
-            }
-            self.places.push(Place::of(body, index));
-        }
-        self.parting.retain(|p| p.0.iter().all(|&k| self.places.iter().any(|q| q.body == k)));
-        for p in self.pairs.iter_mut().chain(&mut self.parting) {
-            p.0 = p.0.map(|k| self.places.iter().position(|q| q.body == k).unwrap_or(0));
-        }
-    }
-
     /// A step within the present stretch of those that go their own way.
     fn until_driven_turn(&self, world: &Rigid, bodies: &[Turning], h: f64) -> f64 {
         let driven = self.places.iter().filter(|p| world.specs[p.body].is_driven());

@@ -3,7 +3,7 @@
 #![allow(dead_code, unreachable_pub)]
 
 use glam::{DMat3, DQuat, DVec3};
-use plaus_dist::{Purpose, Seed, Stream, math, open_unit};
+use plaus_dist::math;
 use plaus_sim::field::{Grid, Spline};
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidScratch, RigidWorld, SolidPart, Start, Table, Turning};
 use plaus_sim::scenery::{Aabb, Mesh, Plane};
@@ -11,6 +11,8 @@ use plaus_sim::shape::{Compound, Convex, ConvexHull, Cuboid, Frustum, Member, Pr
 use plaus_sim::trace::Observer;
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, WorldError};
 use std::sync::Arc;
+
+pub use super::dice::Dice;
 
 pub const M: Material = Material(0);
 pub const G: f64 = 9.81;
@@ -43,32 +45,6 @@ pub enum Place {
     Mesh,
     HollowBall,
     Table,
-}
-
-/// Random numbers of one throw.
-pub struct Dice(Stream);
-
-impl Dice {
-    pub fn new(seed: u64, throw: u64) -> Self {
-        Self(Seed(seed).chain(0).at(throw, Purpose::START))
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * open_unit(&mut self.0)
-    }
-
-    pub fn in_cube(&mut self) -> DVec3 {
-        DVec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0))
-    }
-
-    pub fn turn(&mut self) -> DQuat {
-        loop {
-            let q = DQuat::from_vec4(self.in_cube().extend(self.between(-1.0, 1.0)));
-            if (0.01..=1.0).contains(&q.length_squared()) {
-                return q.normalize();
-            }
-        }
-    }
 }
 
 impl Body {

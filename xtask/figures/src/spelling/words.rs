@@ -101,6 +101,27 @@ fn slope(rows: &[Row]) -> Option<f64> {
     (points.len() >= 3 && xx > 0.0).then(|| xy / xx)
 }
 
+/// Where a label stands, in the units of the axes.
+struct Label {
+    x: [f64; 2],
+    /// Its upper edge.
+    y: f64,
+}
+
+/// Width of a capital letter over that of the plot, and height of a line over the plot's, both with some air.
+const LETTER: f64 = 0.0125;
+const LINE: f64 = 0.035;
+
+/// The upper edge of a new label, at `y` or as much lower as it takes to be clear of those that stand.
+fn clear_of(labels: &[Label], x: [f64; 2], y: f64, line: f64) -> f64 {
+    let covers = |label: &&Label, y: f64| label.x[0] < x[1] && x[0] < label.x[1] && (label.y - y).abs() < line;
+    let mut y = y;
+    while let Some(label) = labels.iter().find(|label| covers(label, y)) {
+        y = label.y - line;
+    }
+    y
+}
+
 fn draw(area: &canvas::Area<'_>, rows: &[Row]) -> Result<()> {
     write(area, "Time to the first full word", &bold(20.0, colour::INK), HPos::Left, (24.0, 28.0))?;
     let (_, plot) = area.split_vertically(px(50.0));
@@ -124,13 +145,34 @@ fn draw(area: &canvas::Area<'_>, rows: &[Row]) -> Result<()> {
     };
     curve(&mut chart, &points(1), pen(colour::FAINT, 1.5))?;
     curve(&mut chart, &points(0), pen(colour::OURS, 2.5))?;
+    let (letter, line) = (LETTER * most * 1.08, LINE * (high - low));
+    let mut labels: Vec<Label> = Vec::new();
     for row in rows.iter().filter(|row| row.seconds[0].is_finite()) {
         let at = (row.bins as f64, math::log10(row.seconds[0]));
         chart.draw_series([Circle::new(at, px(4.0), colour::OURS.filled())])?;
-        let label =
+        let half = 0.5 * letter * row.text.len() as f64;
+        let y = clear_of(&labels, [at.0 - half, at.0 + half], at.1 - line, line);
+        labels.push(Label { x: [at.0 - half, at.0 + half], y });
+        let style =
             text(12.0, colour::INK).pos(plotters::style::text_anchor::Pos::new(HPos::Center, canvas::VPos::Top));
-        chart.draw_series([Text::new(row.text.to_owned(), (at.0, at.1 - 0.12), label)])?;
+        chart.draw_series([Text::new(row.text.to_owned(), (at.0, y), style)])?;
     }
     write(&plot, "median", &text(13.0, colour::OURS), HPos::Left, (90.0, 24.0))?;
     write(&plot, "worst seed", &text(13.0, colour::FAINT), HPos::Left, (90.0, 44.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_do_not_cover_each_other() {
+        let mut labels: Vec<Label> = Vec::new();
+        for x in [1.0, 1.5, 2.0, 9.0] {
+            let y = clear_of(&labels, [x - 1.0, x + 1.0], -0.1 * x, 1.0);
+            labels.push(Label { x: [x - 1.0, x + 1.0], y });
+        }
+        let tops: Vec<f64> = labels.iter().map(|label| label.y).collect();
+        assert_eq!(tops, [-0.1, -1.1, -2.1, -0.9]);
+    }
 }

@@ -1,8 +1,8 @@
 //! What each engine is given. Commands are lists of arguments wherever the engine takes them; the scripts of Slurm
 //! quote each argument for the shell.
 
-use super::job::{Engine, Job, text_of};
-use crate::commands::sample::quoted;
+use crate::commands::job::{Engine, Job, text_of};
+use crate::console::quoted;
 use crate::failure::Failure;
 use serde::Serialize;
 use serde_json::{Value, json};

@@ -1,8 +1,8 @@
 //! The engine of one machine: a process a piece, some at a time; one that is killed is started again.
 
 use super::engines::in_shell;
-use super::job::Job;
 use crate::clock::Stopwatch;
+use crate::commands::job::Job;
 use crate::commands::status;
 use crate::console;
 use crate::failure::{Failure, Outcome};

@@ -1,17 +1,15 @@
 //! `plaus submit`
 
 mod engines;
-mod job;
 mod local;
 
-pub(crate) use job::Job;
-use job::{Description, Engine};
-
 use super::asking::How;
+use super::job::{self, Description, Engine, Job};
 use super::status::{self, Standing};
 use super::wanted::Wanted;
 use crate::console;
 use crate::failure::{Failure, Outcome};
+use crate::output;
 use engines::in_shell;
 use plaus_run::chance::Asking;
 use plaus_run::manifest::VERSION;
@@ -150,11 +148,11 @@ fn show(job: &Job, wanted: &[u32], commands: &[Vec<String>]) -> Result<(), Failu
         .unwrap_or_default();
     files.sort();
     for file in files {
-        console::print(&excerpt(&file))?;
+        output::print(&excerpt(&file))?;
     }
     let pieces = engines::ranges(wanted);
-    console::print_line(&format!("# pieces {pieces} of {}, then merge", job.what.pieces))?;
-    commands.iter().try_for_each(|command| console::print_line(&in_shell(command)))
+    output::print_line(&format!("# pieces {pieces} of {}, then merge", job.what.pieces))?;
+    commands.iter().try_for_each(|command| output::print_line(&in_shell(command)))
 }
 
 /// Lines of a file that are shown.

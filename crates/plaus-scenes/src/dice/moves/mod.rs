@@ -15,8 +15,8 @@ pub use point::Point;
 pub use recast::Recast;
 pub use shift::Shift;
 
+use super::draw::{EACH, NUMBERS, ORIENTATION};
 use super::draw::{Field, LARGEST_SCORE, Site};
-use super::prior::{EACH, NUMBERS, ORIENTATION};
 use super::{Dice, Draw};
 use crate::model::{Menu, Printed, Row};
 use crate::rules::Rules;

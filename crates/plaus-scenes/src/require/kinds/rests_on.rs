@@ -1,9 +1,9 @@
 //! On what a body lies.
 
+use crate::require::cast::matches;
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
-use crate::require::probe::matches;
 use crate::require::score::Reach;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;

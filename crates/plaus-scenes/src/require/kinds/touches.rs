@@ -1,9 +1,9 @@
 //! Whether two things touch.
 
+use crate::require::cast::matches;
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
-use crate::require::probe::matches;
 use crate::require::score::{FAR, Reach};
 use crate::require::ways;
 use crate::require::when::When;

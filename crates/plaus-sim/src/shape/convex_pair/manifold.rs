@@ -22,6 +22,37 @@ const SAME: f64 = 1e-4;
 /// Of two such points the nearer counts, if it is by this part of that distance. Default 1e-6: rounding decides nothing.
 const CLOSER: f64 = 1e-6;
 
+/// Points of contact so far.
+struct Found {
+    points: Vec<Meeting>,
+    /// The largest gap of a point, and the nearest points' normal.
+    within: f64,
+    normal: DVec3,
+    /// Distance within which points count as one.
+    same: f64,
+}
+
+impl Found {
+    fn take(&mut self, m: Meeting) {
+        if m.gap > self.within || m.normal.dot(self.normal) <= FACING {
+            return;
+        }
+        let same = self.same;
+        let known = self.points.iter_mut().find(|f| (f.points[0] - m.points[0]).length_squared() <= same * same);
+        match known {
+            None => self.points.push(m),
+            Some(known) if m.gap < known.gap - CLOSER * same => *known = m,
+            Some(_) => {}
+        }
+    }
+
+    /// Whether three points are as near as what is nearest: then pieces lie flat on each other, and which point is the
+    /// nearest is up to rounding, and another at the next pose.
+    fn is_flat(&self, gap: f64) -> bool {
+        self.points.iter().filter(|f| f.gap <= gap + CLOSER * self.same).count() >= 3
+    }
+}
+
 impl Both<'_> {
     /// Calls `each` for the points with a gap of at most `within`, given the nearest points.
     pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
@@ -34,19 +65,9 @@ impl Both<'_> {
             let known = crate::shape::hull_pair::Meeting { normal: nearest.normal, arms, gap: nearest.gap, feature };
             return pair.touching(&known, within, |m| each(in_common(self, m)));
         }
-        let mut found: Vec<Meeting> = Vec::new();
         let same = SAME * self.first.reach.min(self.second.reach).max(f64::MIN_POSITIVE);
-        let mut take = |m: Meeting| {
-            if m.gap > within || m.normal.dot(nearest.normal) <= FACING {
-                return;
-            }
-            let known = found.iter_mut().find(|f| (f.points[0] - m.points[0]).length_squared() <= same * same);
-            match known {
-                None => found.push(m),
-                Some(known) if m.gap < known.gap - CLOSER * same => *known = m,
-                Some(_) => {}
-            }
-        };
+        let mut found = Found { points: Vec::new(), within, normal: nearest.normal, same };
+        let mut take = |m: Meeting| found.take(m);
         for of in 0..2 {
             match self.piece(of).core {
                 Core::Polyhedron(hull) => self.of_polyhedron(of, hull, nearest, within, &mut take),
@@ -54,8 +75,10 @@ impl Both<'_> {
             }
         }
         self.crossing_rims(nearest.normal, &mut take);
-        take(*nearest);
-        found.into_iter().for_each(each);
+        if nearest.mark != Mark::Nearest || !found.is_flat(nearest.gap) {
+            found.take(*nearest);
+        }
+        found.points.into_iter().for_each(each);
     }
 
     /// The point of that name at this pose. `towards` is its normal at a pose nearby.
@@ -233,8 +256,17 @@ impl Both<'_> {
         let off = (r * r - along * along).max(0.0).sqrt() * if side == 0 { 1.0 } else { -1.0 };
         let towards = between / distance;
         let turned = self.first.axes.transpose() * (towards * along + normal.cross(towards) * off);
-        let p = a.rim(usize::from(rings[0]), 0, turned)?;
-        Some(self.at_point(0, self.first.centre + self.first.axes * p, Mark::Rims { rings, side }))
+        let p = self.first.centre + self.first.axes * a.rim(usize::from(rings[0]), 0, turned)?;
+        let m = self.at_point(0, p, Mark::Rims { rings, side });
+        // A little inside the second's rim, its side is as near as its disc, which is meant.
+        let up = self.second.axes.z_axis;
+        let up = if up.dot(normal) < 0.0 { -up } else { up };
+        let distance = up.dot(p - to);
+        let is_shallow = distance <= 0.0 && -distance <= SAME * self.first.reach.min(self.second.reach);
+        if m.normal.dot(up) > FACING || !is_shallow {
+            return Some(m);
+        }
+        Some(self.meeting([p, p - up * distance], up, distance, Mark::Rims { rings, side }))
     }
 }
 

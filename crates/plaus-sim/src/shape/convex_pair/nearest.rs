@@ -120,7 +120,9 @@ impl Search<'_, '_> {
     fn deepest(mut self) -> Meeting {
         if let Some(m) = self.near {
             self.along(m.normal);
-            if m.gap + self.both.roundings() <= self.far.0 + SLACK * self.both.size() {
+            // Its own normal must be the way out: a point at an edge is as near to another side.
+            let apart = self.both.apart(m.normal);
+            if m.gap + self.both.roundings() <= self.far.0.min(apart) + SLACK * self.both.size() {
                 return m;
             }
         }

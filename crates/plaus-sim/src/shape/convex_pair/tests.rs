@@ -160,3 +160,33 @@ fn points_of_contact_are_found_again() {
     }
     assert!(most >= 4, "{most}");
 }
+
+/// Cylinders that stand on each other, a little apart or a little in each other, wherever their rims cross: all points
+/// of contact are along the axis, the crossings among them. One at a rim is as near to the side as to the disc.
+#[test]
+fn discs_that_lie_on_each_other_meet_along_their_axis() {
+    let (kinds, mut numbers) = (kinds(), Numbers(23));
+    let can = &kinds[0].1;
+    for case in 0..300 {
+        let gap = [1e-7, 0.0, -1e-9, -1e-7, -1e-6][case % 5];
+        let turned = |by: f64| DMat3::from_quat(DQuat::from_rotation_z(by));
+        let (aside, angle) = (0.02 + 0.56 * numbers.next(), 6.0 * numbers.next());
+        let shift = turned(angle) * DVec3::X * aside + DVec3::Z * (0.8 + gap);
+        let both = Both {
+            first: can.placed(&turned(6.0 * numbers.next()), shift),
+            second: can.placed(&turned(6.0 * numbers.next()), DVec3::ZERO),
+        };
+        let known = nearest(&both);
+        let mut found = Vec::new();
+        both.touching(&known, 1e-5, |m| found.push(m));
+        assert!((known.gap - gap).abs() < 1e-12 && known.normal.z > 1.0 - 1e-9, "{case}: {known:?}");
+        let crossings = found.iter().filter(|m| matches!(m.mark, Mark::Rims { .. })).count();
+        assert_eq!(crossings, 2, "{case}: {found:?}");
+        for m in &found {
+            assert!((m.gap - gap).abs() < 1e-12 && m.normal.z > 1.0 - 1e-9, "{case}: {m:?}");
+            assert!(m.mark != Mark::Nearest || found.len() < 4, "{case}: {m:?}");
+            let again = both.again(m.mark, m.normal);
+            assert!((again.points[0] - m.points[0]).length() < 1e-9 && again.normal.z > 0.9, "{case}: {again:?}");
+        }
+    }
+}

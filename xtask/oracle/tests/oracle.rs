@@ -1,7 +1,12 @@
 //! Distances of all convex shapes, and when they first touch, against another library: parry3d. `PLAUS_POSES=100000`
 //! looks at that many poses, and a hundredth as many encounters, for each pair.
 
-use crate::common::zoo::Dice;
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+#[path = "../../../crates/plaus-sim/tests/common/dice.rs"]
+mod dice;
+
+use dice::Dice;
 use glam::{DQuat, DVec3};
 use parry3d_f64::math::Pose3;
 use parry3d_f64::query::distance;

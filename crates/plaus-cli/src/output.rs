@@ -1,0 +1,18 @@
+//! Standard output, written such that a reader who goes away is no accident.
+
+use crate::failure::Failure;
+use std::io::{self, Write};
+
+/// Writes to stdout and flushes. A reader who has gone has seen enough: how the command ends does not depend on it.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::of_output(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a line to stdout.
+pub(crate) fn print_line(text: &str) -> Result<(), Failure> {
+    print(&format!("{text}\n"))
+}

@@ -1,0 +1,134 @@
+//! What a group touches, and what is different where it is a heap: many bodies in lasting contact.
+//!
+//! Half way through a step corners leave what they touch by its [`SAG`]. Each event of a heap interrupts a step of all of
+//! its bodies: contacts that count as over there would all be struck anew, one after the other, and each would interrupt
+//! a step again. So in a heap points are part of the contact that lasts up to that distance.
+
+use super::Rigid;
+use super::body::{NEVER, Phase, Turning};
+use super::contact::Touch;
+use super::pile::SAG;
+use super::step::{Place, RigidScratch, TOUCHING};
+use crate::links::Links;
+
+/// Members from which a group counts as a heap. Default 13: more than ten pins and a ball.
+pub(super) const HEAP: usize = 13;
+
+/// Part of [`SAG`] over which points of a heap that separate half way through a step belong to its contacts. Default 0.5:
+/// a straight drift leaves a curve by half of what steps are shortened for, an eighth of 4 times `SAG`.
+const FARTHEST: f64 = 0.5;
+
+/// Whether bodies in lasting contact with each other are a heap.
+pub(super) fn is_heap(group: &[u32]) -> bool {
+    group.len() >= HEAP
+}
+
+/// How far beyond touching points of bodies of this size belong to the contacts of a heap, in m.
+pub(super) fn sag(is_heap: bool, size: f64) -> f64 {
+    if is_heap { FARTHEST * SAG * size } else { 0.0 }
+}
+
+impl RigidScratch {
+    /// Finds the lasting contacts of a group. Bodies without any fly.
+    pub(super) fn gather(&mut self, world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
+        self.places.clear();
+        self.touches.clear();
+        self.loads.clear();
+        self.leaving.clear();
+        self.pairs.clear();
+        self.parting.clear();
+        let is_heap = is_heap(group);
+        for &k in group {
+            bodies[k as usize].in_heap = is_heap;
+            for j in links.of(k).filter(|&j| j > k) {
+                self.gather_pair(world, [k as usize, j as usize], bodies, is_heap);
+            }
+        }
+        links.retain(|[i, j]| !group.contains(&i) || self.pairs.iter().any(|p| p.0 == [i as usize, j as usize]));
+        for &k in group {
+            self.gather_touches(world, k as usize, bodies, is_heap);
+        }
+        self.parting.retain(|p| p.0.iter().all(|&k| self.places.iter().any(|q| q.body == k)));
+        for p in self.pairs.iter_mut().chain(&mut self.parting) {
+            p.0 = p.0.map(|k| self.places.iter().position(|q| q.body == k).unwrap_or(0));
+        }
+    }
+
+    fn gather_pair(&mut self, world: &Rigid, [i, j]: [usize; 2], bodies: &[Turning], is_heap: bool) {
+        let (a, b) = (bodies[i].pose(), bodies[j].pose());
+        let restitution = world.pair_law([i, j]).restitution;
+        let hurried = (bodies[i].is_hurried() || bodies[j].is_hurried()) && restitution < 1.0;
+        let limit = world.pair_settle_speed([i, j]);
+        let near = TOUCHING * world.pair_gap([i, j]);
+        let within = near + sag(is_heap, world.specs[i].size.min(world.specs[j].size));
+        world.for_pair_touches([i, j], [&a, &b], within, |touch| {
+            let rate = touch.rate(&a, &b);
+            // What is farther would bounce, or leaves.
+            if touch.gap > near && (rate > limit || -rate * restitution > limit) {
+                return;
+            }
+            let slow = hurried || rate <= limit;
+            if slow { &mut self.pairs } else { &mut self.parting }.push(([i, j], touch));
+        });
+    }
+
+    fn gather_touches(&mut self, world: &Rigid, index: usize, bodies: &mut [Turning], is_heap: bool) {
+        if bodies[index].phase == Phase::Gone {
+            return;
+        }
+        let (spec, pose, hurried) = (&world.specs[index], bodies[index].pose(), bodies[index].is_hurried());
+        if spec.is_driven() {
+            if self.pairs.iter().any(|p| p.0.contains(&index)) {
+                self.places.push(Place::of(&bodies[index], index));
+            }
+            return;
+        }
+        if std::mem::take(&mut bodies[index].sleeps) {
+            return bodies[index].lie_still();
+        }
+        let (at, before) = (self.places.len(), self.touches.len());
+        let near = TOUCHING * spec.gap;
+        let take = |t: Touch| {
+            let law = world.law_at(index, &t, pose.x + t.arm);
+            let (rate, limit) = (pose.velocity(t.arm).dot(t.normal), world.settle_speed(spec, &law));
+            if t.gap > near && is_heap && (rate > limit || -rate * law.restitution > limit) {
+                return;
+            }
+            if hurried && law.restitution < 1.0 || rate <= limit {
+                self.touches.push((at, t));
+                self.loads.push(bodies[index].load(t.surface));
+            } else {
+                self.leaving.push((at, t));
+            }
+        };
+        if is_heap {
+            world.for_touches(index, &pose, near + sag(true, spec.size), take);
+        } else {
+            world.for_known_touches(index, &bodies[index], &pose, take);
+        }
+        let body = &mut bodies[index];
+        body.listed = -NEVER;
+        let linked = self.pairs.iter().any(|p| p.0.contains(&index));
+        if self.touches.len() == before && !linked {
+            self.leaving.retain(|l| l.0 != at);
+            body.list(std::iter::empty());
+            return body.begin(Phase::Flight, spec.pull);
+        }
+        self.places.push(Place::of(body, index));
+    }
+
+    /// Leaves out, of contacts that are tried whether they can hold a heap, those that do not touch yet.
+    pub(super) fn leave_out_distant(&mut self, world: &Rigid) {
+        if self.places.len() < HEAP {
+            return;
+        }
+        let size = |k: usize| world.specs[self.places[k].body].gap;
+        let touches = self.touches.iter().map(|(k, t)| t.gap / size(*k));
+        let pairs = self.pairs.iter().map(|(ab, t)| t.gap / size(ab[0]).min(size(ab[1])));
+        for (c, gap) in self.contacts.iter_mut().zip(touches.chain(pairs)) {
+            if gap > TOUCHING {
+                c.target = -f64::MAX;
+            }
+        }
+    }
+}
