@@ -134,7 +134,7 @@ impl Requirement<Balls> for Sparse {
     fn most(&self) -> Option<LogPotential> {
         Some(LogPotential::new(self.0?).unwrap())
     }
-    fn judge(&self, _: &Balls, state: &StateOf<Balls>) -> Result<Mark, ModelError> {
+    fn judge(&self, _: &Balls, state: &StateOf<Balls>, _: &Vec<u32>) -> Result<Mark, ModelError> {
         Ok(Mark { log: LogPotential::new(2.0 - 0.5 * active(&state.draw) as f64).unwrap(), met: true })
     }
 }
