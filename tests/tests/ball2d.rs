@@ -122,8 +122,8 @@ impl Move<Ball2d> for Symmetric {
     }
     fn propose(&self, t: &Ball2d, current: &Ball, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
         Ok(match self.0.propose(t, current, to, s)? {
-            Proposal::Stay => Proposal::Stay,
             Proposal::Candidate { .. } => Proposal::SYMMETRIC,
+            other => other,
         })
     }
     fn log_ratio(&self, _: &Ball2d, _: &Ball, _: &Ball, _: Path) -> Result<LogRatio, ModelError> {

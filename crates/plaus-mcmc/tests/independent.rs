@@ -116,7 +116,7 @@ fn bounds_that_are_too_high_cost_time_alone() {
     // Of so many independent draws a share p is off by five standard errors once in two million.
     let off = |p: f64, n: f64| 5.0 * (p * (1.0 - p) / n).sqrt();
     assert!((tight.1 - loose.1).abs() < off(tight.1, tight.0) + off(tight.1, loose.0), "{tight:?} {loose:?}");
-    assert!((tight.0 / loose.0 / 1.0_f64.exp() - 1.0).abs() < 10.0 / loose.0.sqrt(), "{tight:?} {loose:?}");
+    assert!((tight.0 / loose.0 / std::f64::consts::E - 1.0).abs() < 10.0 / loose.0.sqrt(), "{tight:?} {loose:?}");
     // One full after another is as likely as two that know nothing of each other (a pair's count has twice the spread).
     assert!((tight.2 - tight.1 * tight.1).abs() < 2.0 * off(tight.1, tight.0), "{tight:?}");
     for bound in [Some(2.0), None] {
