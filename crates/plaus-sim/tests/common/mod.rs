@@ -1,7 +1,6 @@
 //! Small worlds shared by the tests.
 #![allow(dead_code, unreachable_pub)]
 
-pub mod dice;
 pub mod smooth;
 pub mod turning;
 pub mod zoo;

@@ -12,7 +12,9 @@ use plaus_sim::trace::Observer;
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, WorldError};
 use std::sync::Arc;
 
-pub use super::dice::Dice;
+#[path = "dice.rs"]
+mod dice;
+pub use dice::Dice;
 
 pub const M: Material = Material(0);
 pub const G: f64 = 9.81;
