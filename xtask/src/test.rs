@@ -6,8 +6,9 @@ use crate::steps::{self, Done, Step};
 use crate::{clients, documented, examples};
 
 /// All packages but benches and comparisons with other libraries, which take longer to build than all the rest, and for
-/// which cargo builds what we share with them otherwise; clippy looks at our side of them. Every build in the profile `dev` begins with these words: where packages or
-/// dev-dependencies differ, cargo chooses other features of what they share, and builds all of it anew.
+/// which cargo builds what we share with them otherwise; clippy looks at our side of them. Every build in the profile
+/// `dev` begins with these words: where packages or dev-dependencies differ, cargo chooses other features of what they
+/// share, and builds all of it anew.
 const ALL: [&str; 7] =
     ["--workspace", "--exclude", "plaus-tradeoff", "--exclude", "plaus-benches", "--exclude", "plaus-oracle"];
 

@@ -23,9 +23,10 @@ const M: Material = Material(0);
 /// Distance over the size to which ours is to be right.
 const RIGHT: f64 = 1e-9;
 
-/// What parry's distances of cylinders, cones and capsules are good to, over the size: there its search for nearest points
-/// ends, off by 8.4e-6 in 3,000 poses apart. Ours may be less than theirs by so much, never more, for both have two points
-/// that are as far apart as they say; and that ours is not too small a plane between proves (`convex_pair/tests.rs`).
+/// What parry's distances of cylinders, cones and capsules are good to, over the size: there its search for nearest
+/// points ends, off by 8.4e-6 in 3,000 poses apart. Ours may be less than theirs by so much, never more, for both have
+/// two points that are as far apart as they say; and that ours is not too small a plane between proves
+/// (`convex_pair/tests.rs`).
 const ORACLE: f64 = 1e-4;
 
 /// Shapes of which parry is not exact.
@@ -151,8 +152,8 @@ impl Observer<Rigid> for First {
     }
 }
 
-/// Flung past each other while they turn, two bodies are apart up to the time at which they are said to touch first, and
-/// touch then, to the gap at which bodies touch.
+/// Flung past each other while they turn, two bodies are apart up to the time at which they are said to touch first,
+/// and touch then, to the gap at which bodies touch.
 #[test]
 fn first_contacts_come_when_bodies_touch() {
     let encounters = poses().div_ceil(100);

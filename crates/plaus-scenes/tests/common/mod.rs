@@ -9,6 +9,9 @@ use serde_json::{Map, Value};
 /// The scenario of the paper's figures 1 and 2.
 pub(crate) const BALL2D: &str = include_str!("../../../../scenarios/ball2d.toml");
 
+/// Marks one of some words that may also be left out.
+const MAY_BE_UNSET: &str = "may be unset";
+
 /// A key that holds a value.
 #[derive(Debug, Clone)]
 pub(crate) struct Leaf {
@@ -29,6 +32,17 @@ fn collect(root: &Value, part: &Value, key: &str, leaves: &mut Vec<Leaf>) {
     if let Some(Value::String(path)) = schema.remove("$ref") {
         let mut target = root.pointer(&path[1..]).unwrap().as_object().unwrap().clone();
         target.extend(schema);
+        return collect(root, &target.into(), key, leaves);
+    }
+    // One of some words, or unset.
+    if let Some(Value::Array(either)) = schema.get("anyOf")
+        && let [one, unset] = either.as_slice()
+        && unset["type"] == "null"
+    {
+        let mut target = one.as_object().unwrap().clone();
+        schema.remove("anyOf");
+        target.extend(schema);
+        target.insert(MAY_BE_UNSET.into(), true.into());
         return collect(root, &target.into(), key, leaves);
     }
     match schema.get("properties").and_then(Value::as_object) {
@@ -78,7 +92,8 @@ impl Leaf {
     pub(crate) fn allows(&self, value: &Value) -> bool {
         if value.is_null() {
             // Only keys that may be left out have no value.
-            return matches!(self.schema.get("type"), Some(Value::Array(kinds)) if kinds.iter().any(|kind| kind == "null"));
+            let is_null = |kinds: &Value| kinds.as_array().is_some_and(|kinds| kinds.iter().any(|kind| kind == "null"));
+            return self.schema.contains_key(MAY_BE_UNSET) || self.schema.get("type").is_some_and(is_null);
         }
         match self.kind() {
             "number" => {
