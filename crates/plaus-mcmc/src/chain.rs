@@ -2,7 +2,7 @@
 
 use crate::adapt::{Adaptation, Scales};
 use crate::moves::{Mixture, Move, MoveId, Proposal};
-use crate::target::{ModelError, Simulated, State, StateOf, Target};
+use crate::target::{ModelError, Simulated, State, StateOf, Target, at_most, most_of};
 use crate::tempered::floor_seen;
 use plaus_dist::{ChainStreams, LogDensity, LogPotential, LogRatio, Purpose, math, open_unit};
 use serde::{Deserialize, Serialize};
@@ -272,11 +272,7 @@ impl<'a, T: Target> Chain<'a, T> {
         let most = log_ratio.times(later.unwrap_or(LogRatio::ONE))?;
         let Some(floor) = floor(ln_u, most, log_p, log_prior)? else { return Ok(Verdict::RejectedByPrior) };
         let Some(seen) = floor_seen(floor, self.beta) else { return Ok(Verdict::RejectedEarly) };
-        let simulated = self.target.simulate(&self.candidate, Some(&self.state), seen, &mut self.scratch)?;
-        let Simulated::Complete(outcome) = simulated else {
-            self.target.settle(false, &mut self.scratch);
-            return Ok(Verdict::RejectedEarly);
-        };
+        let Some(outcome) = self.simulated(seen)? else { return Ok(Verdict::RejectedEarly) };
         let log_constraint = self.target.log_constraint(&outcome)?;
         let accepted = if later.is_none() {
             self.accept_above(floor, outcome, log_prior, log_constraint)?
@@ -293,6 +289,16 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
     }
 
+    /// The candidate's outcome; `None`, and the target is told, where its constraint cannot exceed `floor`.
+    fn simulated(&mut self, floor: LogPotential) -> Result<Option<T::Outcome>, ModelError> {
+        let simulated = self.target.simulate(&self.candidate, Some(&self.state), floor, &mut self.scratch)?;
+        let Simulated::Complete(outcome) = simulated else {
+            self.target.settle(false, &mut self.scratch);
+            return Ok(None);
+        };
+        Ok(Some(outcome))
+    }
+
     /// The accept step of rejection: a draw of the prior is kept with probability `(p_c / M)^β`, whatever the current
     /// state. The flow from a to b, `p_w(a) p_c(a)^β · p_w(b) (p_c(b) / M)^β`, is that from b to a.
     fn judge_anew(&mut self, next: u64) -> Result<Verdict, ModelError> {
@@ -300,24 +306,12 @@ impl<'a, T: Target> Chain<'a, T> {
         if log_prior.is_zero() {
             return Ok(Verdict::RejectedByPrior);
         }
-        let Some(most) = self.target.most() else {
-            return Err(ModelError::new("its constraint has no bound that is known: no draw of the prior can be kept"));
-        };
+        let most = most_of(self.target)?;
         let ln_u = math::ln(open_unit(&mut self.streams.at(next, Purpose::ACCEPT)));
         let floor = LogPotential::new(ln_u + most.tempered(self.beta)?.value())?;
         let Some(seen) = floor_seen(floor, self.beta) else { return Ok(Verdict::RejectedEarly) };
-        let simulated = self.target.simulate(&self.candidate, Some(&self.state), seen, &mut self.scratch)?;
-        let Simulated::Complete(outcome) = simulated else {
-            self.target.settle(false, &mut self.scratch);
-            return Ok(Verdict::RejectedEarly);
-        };
-        let log_constraint = self.target.log_constraint(&outcome)?;
-        if log_constraint > most {
-            let (found, most) = (log_constraint.value(), most.value());
-            return Err(ModelError::new(format!(
-                "a log constraint of {found} exceeds the most it said, {most}: a bug"
-            )));
-        }
+        let Some(outcome) = self.simulated(seen)? else { return Ok(Verdict::RejectedEarly) };
+        let log_constraint = at_most(self.target.log_constraint(&outcome)?, most)?;
         let accepted = self.accept_above(floor, outcome, log_prior, log_constraint)?;
         self.target.settle(accepted, &mut self.scratch);
         Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })

@@ -2,7 +2,7 @@
 
 use crate::chance::prior;
 use crate::moves::{Mixture, Move, Path, Proposal};
-use crate::target::{Goal, ModelError, Simulated, State, StateOf, Target};
+use crate::target::{Goal, ModelError, Simulated, State, StateOf, Target, at_most, most_of};
 use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math, open_unit};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -76,9 +76,7 @@ impl Tried {
 /// # Errors
 /// [`ModelError`] where the model fails, or its constraint has no bound that is known.
 pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result<Tried, ModelError> {
-    let Some(most) = target.most() else {
-        return Err(ModelError::new("its constraint has no bound that is known: no draw of the prior can be kept"));
-    };
+    let most = most_of(target)?;
     let streams = seed.chain(1 << 62);
     let one = |scratch: &mut T::Scratch, number| -> Result<Tried, ModelError> {
         let state = prior(target, &mut streams.at(number, TRIAL), scratch)?;
@@ -97,9 +95,7 @@ pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result
 /// # Errors
 /// As [`try_draws`]; also where a log constraint exceeds its bound.
 pub fn keep_draws<T: Target>(target: &T, seed: Seed, numbers: Range<u64>) -> Result<Vec<StateOf<T>>, ModelError> {
-    let Some(most) = target.most() else {
-        return Err(ModelError::new("its constraint has no bound that is known: no draw of the prior can be kept"));
-    };
+    let most = most_of(target)?;
     let streams = seed.chain(1 << 62 | 1);
     let one = |scratch: &mut T::Scratch, number| -> Result<Option<StateOf<T>>, ModelError> {
         let mut stream = streams.at(number, TRIAL);
@@ -110,10 +106,7 @@ pub fn keep_draws<T: Target>(target: &T, seed: Seed, numbers: Range<u64>) -> Res
         }
         let floor = LogPotential::new(math::ln(open_unit(&mut stream)) + most.value())?;
         let Simulated::Complete(outcome) = target.simulate(&draw, None, floor, scratch)? else { return Ok(None) };
-        let log_constraint = target.log_constraint(&outcome)?;
-        if log_constraint > most {
-            return Err(ModelError::new("a log constraint exceeds the most that its target said: a bug"));
-        }
+        let log_constraint = at_most(target.log_constraint(&outcome)?, most)?;
         Ok((log_constraint > floor).then_some(State { draw, outcome, log_prior, log_constraint }))
     };
     let made: Vec<_> = numbers.into_par_iter().map_init(T::Scratch::default, one).collect::<Result<_, _>>()?;

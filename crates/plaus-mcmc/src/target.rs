@@ -185,3 +185,18 @@ impl<D, O> State<D, O> {
         }
     }
 }
+
+/// The largest log constraint that the target says there is.
+pub(crate) fn most_of<T: Target>(target: &T) -> Result<LogPotential, ModelError> {
+    let message = "its constraint has no bound that is known: no draw of the prior can be kept";
+    target.most().ok_or_else(|| ModelError::new(message))
+}
+
+/// A log constraint, held against that.
+pub(crate) fn at_most(log_constraint: LogPotential, most: LogPotential) -> Result<LogPotential, ModelError> {
+    if log_constraint > most {
+        let (found, most) = (log_constraint.value(), most.value());
+        return Err(ModelError::new(format!("a log constraint of {found} exceeds the most it said, {most}: a bug")));
+    }
+    Ok(log_constraint)
+}

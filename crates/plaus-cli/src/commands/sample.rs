@@ -177,11 +177,11 @@ impl Watching {
                     &json!({ "event": "end", "ending": "interrupted", "iteration": monitor.done() }).to_string(),
                 )?;
             }
-            let done = grouped(monitor.done());
-            console::note_line(&format!(
-                "interrupted after iteration {done}, with a checkpoint; go on: plaus resume {}",
-                quoted(path)
-            ));
+            let left = match monitor.done() {
+                0 => "before all chains had started, so nothing is kept".to_owned(),
+                done => format!("after iteration {}, with a checkpoint", grouped(done)),
+            };
+            console::note_line(&format!("interrupted {left}; go on: plaus resume {}", quoted(path)));
             return Ok(Outcome::Interrupted);
         }
         let run = Run::open(folder)?;
