@@ -2,9 +2,8 @@
 //!
 //! A corner that turns against a face that turns too needs shorter steps than a corner on a table, and what one body's contacts are off, the next body's undo.
 
-use super::contact::Touch;
-use super::pair::PairTouch;
-use super::step::{CLOSE, KEEP, PUSH, RigidScratch};
+use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch};
+use super::touch::{PairTouch, Touch};
 use super::{Rigid, Skin};
 
 /// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values make fast turning in contact dearer, as their inverse root.
