@@ -3,9 +3,10 @@
 //!
 //! Chains that agree may all be at the same part of what they should sample. Draws of the prior know nothing of the
 //! chains. Each that is kept is an independent draw of the target, so the share of them between two values of a
-//! variable is that of the chains there, but for chance. Cells between such values, each with an equal share of the kept draws,
-//! are held against the chains by Fisher's exact test, the chains taken for as many draws as their effective sample
-//! size. A cell in which chains hardly ever were, though draws were kept there, is something that they missed.
+//! variable is that of the chains there, but for chance. Cells between such values, each with an equal share of the
+//! kept draws, are held against the chains by Fisher's exact test, the chains taken for as many draws as their
+//! effective sample size. A cell in which chains hardly ever were, though draws were kept there, is something that they
+//! missed.
 //!
 //! It sees what shows in one variable or outcome by itself and holds more than a few of the kept draws. Where the prior
 //! hardly ever gets there, nothing is kept, and nothing is known.

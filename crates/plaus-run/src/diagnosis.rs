@@ -1,7 +1,8 @@
 //! Whether a run has converged: the diagnostics of every scalar, the variables of the draw first.
 
 use crate::error::RunFileError;
-use crate::read::{Phase, RunOf};
+use crate::read::RunOf;
+use crate::sample_id::Phase;
 use crate::streamed::Moments;
 use crate::tally::Tally;
 use plaus_mcmc::diagnose::{DiagnoseError, Summary, ess_where, summarize};
@@ -10,7 +11,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt;
 
-/// Numbers held in memory at once while scalars are read; of longer runs, and of runs of very many chains, ranks are looked at in every n-th draw.
+/// Numbers held in memory at once while scalars are read; of longer runs, and of runs of very many chains, ranks are
+/// looked at in every n-th draw.
 const HELD: u64 = 1 << 25;
 /// Rank-normalised R̂ above this says that the chains disagree (Vehtari et al. 2021).
 pub const MAX_RHAT: f64 = 1.01;
@@ -121,8 +123,8 @@ impl fmt::Display for Finding {
 }
 
 impl Diagnosis {
-    /// Diagnoses the sampling phase of a run, from every draw, or, where that is more than `most` a chain or more than memory is for, from every
-    /// n-th. Means and standard deviations are always those of all draws.
+    /// Diagnoses the sampling phase of a run, from every draw, or, where that is more than `most` a chain or more than
+    /// memory is for, from every n-th. Means and standard deviations are always those of all draws.
     ///
     /// # Errors
     /// [`RunFileError`] where the records are damaged.

@@ -5,10 +5,9 @@ use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::manifest::{Manifest, stored_scalars};
 use crate::records::{self, Blocks, Extent};
-use crate::tally::SampleId;
+use crate::sample_id::{Phase, SampleId};
 use plaus_mcmc::{Entry, Snapshot, Target};
 use plaus_scenes::{Scenario, Scene, Visitor};
-use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// A run that was found on the disk.
@@ -26,25 +25,6 @@ pub trait RunVisitor {
     type Output;
     /// Does it.
     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output;
-}
-
-/// A part of a chain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Phase {
-    /// Before sampling, while moves and ladders are adapted: kept out of tables and diagnostics.
-    Warmup,
-    /// What is sampled. Its recorded draws are numbered from 0.
-    #[default]
-    Sampling,
-}
-
-impl Phase {
-    /// Whether its draws are what statistics are made of.
-    #[must_use]
-    pub fn is_sampling(&self) -> bool {
-        *self == Self::Sampling
-    }
 }
 
 /// A run of a known scene.
@@ -141,7 +121,8 @@ impl<'a, S: Scene> RunOf<'a, S> {
         let end = |chain: &ChainOf<S>| chain.snapshot.as_ref().map(|snapshot| snapshot.end_iteration);
         if let Some(newest) = chains.iter().filter_map(end).max() {
             for (chain, _) in run.manifest.chains().zip(&chains).filter(|(_, chain)| chain.snapshot.is_none()) {
-                // One that is about to take its place is there in a run that was killed as its checkpoints were replaced.
+                // One that is about to take its place is there in a run that was killed as its checkpoints were
+                // replaced.
                 if !run.folder.next_checkpoint(chain).exists() {
                     let problem = RunFileProblem::Gone { newest };
                     return Err(RunFileError::new(run.folder.checkpoint(chain), problem).into());
@@ -151,7 +132,8 @@ impl<'a, S: Scene> RunOf<'a, S> {
         Ok(Self { run, scene, chains })
     }
 
-    /// Per chain that has any: bytes at the end of its records that cannot be read. None unless the run is read for salvage.
+    /// Per chain that has any: bytes at the end of its records that cannot be read. None unless the run is read for
+    /// salvage.
     #[must_use]
     pub fn lost(&self) -> Vec<(u32, u64)> {
         self.chains().zip(&self.chains).map(|(chain, of)| (chain, of.lost)).filter(|(_, lost)| *lost > 0).collect()

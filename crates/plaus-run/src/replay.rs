@@ -2,7 +2,7 @@
 
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::read::RunOf;
-use crate::tally::SampleId;
+use crate::sample_id::SampleId;
 use plaus_mcmc::{State, StateOf};
 use plaus_scenes::{AccuracyPreset, Animation, Scene, Until};
 use rayon::prelude::*;
@@ -52,7 +52,8 @@ pub fn replay<S: Scene>(run: &RunOf<'_, S>, sample: SampleId) -> Result<Replay, 
     rebuild(run, sample, &entry.state, entry.class.is_some(), Until::Rest)
 }
 
-/// What becomes of a recorded draw at another accuracy. That the recorded state is what this program makes of the draw at the run's own is made sure first.
+/// What becomes of a recorded draw at another accuracy. That the recorded state is what this program makes of the draw
+/// at the run's own is made sure first.
 ///
 /// # Errors
 /// As [`replay`], and where the scene has no accuracy to choose.
@@ -74,7 +75,8 @@ pub(crate) fn at_accuracy<S: Scene>(scene: &S, name: &str, accuracy: AccuracyPre
     })
 }
 
-/// Rebuilds many draws, each chain's records being read once, and hands each to `make`, on all threads: what `make` gives, in the order of `samples`.
+/// Rebuilds many draws, each chain's records being read once, and hands each to `make`, on all threads: what `make`
+/// gives, in the order of `samples`.
 ///
 /// # Errors
 /// As [`replay`].

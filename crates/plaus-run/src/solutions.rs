@@ -2,7 +2,7 @@
 
 use crate::error::RunFileError;
 use crate::read::RunOf;
-use crate::tally::SampleId;
+use crate::sample_id::SampleId;
 use plaus_mcmc::SolutionClass;
 use plaus_scenes::Scene;
 use rayon::prelude::*;
