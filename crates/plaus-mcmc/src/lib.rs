@@ -59,6 +59,7 @@ pub mod ladder;
 pub mod law;
 pub mod library;
 pub mod moves;
+pub mod parallel;
 pub mod record;
 pub mod redraw;
 pub mod replicas;

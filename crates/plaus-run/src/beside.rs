@@ -16,8 +16,8 @@ use crate::error::Error;
 use crate::read::RunOf;
 use plaus_dist::math;
 use plaus_mcmc::keep_draws;
+use plaus_mcmc::parallel;
 use plaus_scenes::Scene;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// Most draws; there are no more than the run has iterations.
@@ -112,7 +112,7 @@ impl Beside {
             let chains = columns(run, number, 1, diagnosis.stride)?.concat().concat();
             Ok(worst(name, &mut exact[number].clone(), chains, ess, cells))
         };
-        let all = (0..scalars.len()).into_par_iter().map(look).collect::<Result<Vec<_>, _>>()?;
+        let all = parallel::try_map(scalars.len(), look)?;
         let worst = all.into_iter().flatten().reduce(|a, b| if b.p < a.p { b } else { a });
         let missed = worst.map(|worst| Missed { p: (worst.p * tests).min(1.0), ..worst }).filter(|one| one.p < ALARM);
         Ok(Some(Self { missed, ..found }))

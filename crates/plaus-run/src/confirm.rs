@@ -12,8 +12,8 @@ use crate::sample_id::Phase;
 use crate::sample_id::SampleId;
 use crate::solutions::{Solution, distinct};
 use plaus_mcmc::State;
+use plaus_mcmc::parallel;
 use plaus_scenes::{AccuracyPreset, Scenario, Scene, Visitor};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 
@@ -98,7 +98,7 @@ impl Confirmation {
             if !go_on(solutions.len(), found.len()) {
                 return Ok(None);
             }
-            let checked: Vec<Checked> = pool.install(|| check(run, &scene, some))?;
+            let checked: Vec<Checked> = parallel::install(&pool, || check(run, &scene, some))?;
             solutions.extend(checked);
         }
         let manifest = run.run().manifest();
@@ -172,5 +172,5 @@ fn check<S: Scene>(run: &RunOf<'_, S>, scene: &S, solutions: &[Solution]) -> Res
             log_p_there: log_p_there.is_finite().then_some(log_p_there),
         })
     };
-    found.par_iter().map(check).collect()
+    parallel::try_map(found.len(), |k| check(&found[k]))
 }

@@ -4,9 +4,9 @@
 use crate::error::RunFileError;
 use crate::records::{Blocks, Extent};
 use plaus_mcmc::diagnose::summarize;
+use plaus_mcmc::parallel;
 use plaus_mcmc::{Block, Plan};
 use plaus_scenes::{Role, Scene};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::path::Path;
 
@@ -107,11 +107,12 @@ impl<'a, S: Scene> Gauge<'a, S> {
         let worth = |chains: &Vec<Vec<f64>>| {
             chains[0].len() >= LEAST && chains.iter().flatten().any(|value| value != &chains[0][0])
         };
-        let look = |((name, _), chains): (&(String, usize), &Vec<Vec<f64>>)| {
+        let look = |k: usize| {
+            let ((name, _), chains) = (&self.outcomes[k], &self.values[k]);
             let summary = summarize(chains).ok().filter(|_| worth(chains))?;
             Some((name.clone(), summary.rhat, summary.ess_bulk.min(summary.ess_tail)))
         };
-        let rows: Vec<_> = self.outcomes.par_iter().zip(&self.values).filter_map(look).collect();
+        let rows: Vec<_> = parallel::map(self.outcomes.len(), look).into_iter().flatten().collect();
         let rhat = rows.iter().filter_map(|(name, rhat, _)| Some((name, (*rhat)?)));
         let rhat = rhat.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(name, rhat)| (name.clone(), rhat));
         let ess = rows.iter().min_by(|a, b| a.2.total_cmp(&b.2)).map(|(name, _, ess)| (name.clone(), *ess))?;

@@ -6,6 +6,7 @@ use crate::folder::Folder;
 use crate::manifest::{Manifest, stored_scalars};
 use crate::records::{self, Blocks, Extent};
 use crate::sample_id::{Phase, SampleId};
+use plaus_mcmc::parallel;
 use plaus_mcmc::{Entry, Snapshot, Target};
 use plaus_scenes::{Scenario, Scene, Visitor};
 use std::ops::Range;
@@ -157,6 +158,15 @@ impl<'a, S: Scene> RunOf<'a, S> {
         self.run.manifest.chains()
     }
 
+    /// What `job` makes of each chain, in their order, on all threads of the current pool.
+    ///
+    /// # Errors
+    /// That of the first chain for which `job` fails.
+    pub fn each_chain<T: Send, E: Send>(&self, job: impl Fn(u32) -> Result<T, E> + Sync) -> Result<Vec<T>, E> {
+        let chains = self.chains();
+        parallel::try_map(chains.len(), |k| job(chains.start + k as u32))
+    }
+
     fn chain(&self, chain: u32) -> Option<&ChainOf<S>> {
         self.chains.get(chain.checked_sub(self.chains().start)? as usize)
     }
@@ -228,6 +238,21 @@ impl<'a, S: Scene> RunOf<'a, S> {
         phase: Phase,
         mut look: impl FnMut(StretchOf<'_, S>) -> Result<(), E>,
     ) -> Result<(), E> {
+        let mut failed = None;
+        self.walk_until(chain, phase, &mut |stretch| {
+            failed = look(stretch).err();
+            failed.is_none()
+        })?;
+        failed.map_or(Ok(()), Err)
+    }
+
+    /// The same until `look` says no; compiled once a scene, whoever looks.
+    fn walk_until(
+        &self,
+        chain: u32,
+        phase: Phase,
+        look: &mut dyn FnMut(StretchOf<'_, S>) -> bool,
+    ) -> Result<(), RunFileError> {
         let range = self.range(phase);
         if range.is_empty() {
             return Ok(());
@@ -238,7 +263,10 @@ impl<'a, S: Scene> RunOf<'a, S> {
                 let (first, end) = (next.max(range.start), (next + entry.draws).min(range.end));
                 if first < end {
                     let accepted = if first == next { entry.accepted } else { 0 };
-                    look(Stretch { draw: first - range.start, draws: end - first, accepted, entry })?;
+                    let goes_on = look(Stretch { draw: first - range.start, draws: end - first, accepted, entry });
+                    if !goes_on {
+                        return Ok(());
+                    }
                 }
                 next += entry.draws;
             }

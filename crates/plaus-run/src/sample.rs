@@ -16,10 +16,10 @@ use crate::trail;
 use crate::trial;
 use crate::watch::Watch;
 use crate::way::Way;
+use plaus_mcmc::parallel;
 use plaus_mcmc::{Distinct, Ending, RunError, Start};
 use plaus_scenes::scenario::Method;
 use plaus_scenes::{Scenario, Scene, Visitor};
-use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
 use std::sync::Arc;
@@ -163,7 +163,7 @@ fn settled<S: Scene>(
     let pulse = sampling.watch.pulse();
     let way = match &manifest.requirement {
         Some(_) => Way { independent: false, why: "no trial asks what a program requires".to_owned() },
-        None => sampling.pool(&manifest)?.install(|| trial::tried(recipe, scene, &pulse))?,
+        None => parallel::install(&sampling.pool(&manifest)?, || trial::tried(recipe, scene, &pulse))?,
     };
     manifest.made(way, scene, &recipe.scenario.sampler.rules)
 }
@@ -287,8 +287,13 @@ fn restore<S: Scene>(
     }
     let done = checkpoints.first().map_or(0, |checkpoint| checkpoint.snapshot.end_iteration);
     cut(&folder.trail(), disk, trail::length_until(&folder.trail(), run, done)?)?;
-    let restore = |checkpoint| restore_chain(folder, manifest, scene, disk, checkpoint);
-    sampling.pool(manifest)?.install(|| checkpoints.into_par_iter().map(restore).collect())
+    let mut checkpoints: Vec<_> = checkpoints.into_iter().map(Some).collect();
+    let restored = parallel::install(&sampling.pool(manifest)?, || {
+        parallel::map_mut(&mut checkpoints, |_, checkpoint| {
+            checkpoint.take().map(|checkpoint| restore_chain(folder, manifest, scene, disk, checkpoint))
+        })
+    });
+    restored.into_iter().flatten().collect()
 }
 
 fn restore_chain<S: Scene>(

@@ -5,7 +5,6 @@ use crate::read::RunOf;
 use crate::sample_id::SampleId;
 use plaus_mcmc::{Climb, Distinct, FirstOfClass, Hits, Ladder, MoveCounts, MoveId, Scales};
 use plaus_scenes::Scene;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// What one chain's records add up to.
@@ -115,8 +114,7 @@ impl Tally {
     /// # Errors
     /// [`RunFileError`] where they are damaged.
     pub fn of<S: Scene>(run: &RunOf<'_, S>) -> Result<Self, RunFileError> {
-        let parts: Vec<(ChainTally, Distinct)> =
-            run.chains().into_par_iter().map(|chain| tally(run, chain)).collect::<Result<_, _>>()?;
+        let parts: Vec<(ChainTally, Distinct)> = run.each_chain(|chain| tally(run, chain))?;
         let mut firsts: Vec<FirstOfClass> =
             parts.iter().flat_map(|(_, distinct)| distinct.firsts().iter().copied()).collect();
         firsts.sort_unstable();

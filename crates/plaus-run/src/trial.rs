@@ -8,9 +8,9 @@ use crate::error::Error;
 use crate::manifest::Recipe;
 use crate::way::Way;
 use plaus_dist::Seed;
+use plaus_mcmc::parallel;
 use plaus_mcmc::{Chain, ChainError, Mixture, Plan, Pulse, Tried, Verdict, try_draws};
 use plaus_scenes::{Role, Scene};
-use rayon::prelude::*;
 
 /// Draws of the prior between two looks at what they come to.
 const AT_A_TIME: u64 = 32;
@@ -89,8 +89,8 @@ impl Trial {
         let plan = recipe.plan();
         let moves = scene.moves(&recipe.scenario.sampler.rules)?;
         let course = Course { scene, moves: &moves, plan, iterations, pulse };
-        let walked = (0..CHAINS).into_par_iter().map(|chain| course.walk(chain));
-        let walked = walked.collect::<Result<Vec<Walked>, _>>().map_err(|error| Error::Sampling(error.to_string()))?;
+        let walked = parallel::try_map(CHAINS as usize, |chain| course.walk(chain as u32));
+        let walked = walked.map_err(|error| Error::Sampling(error.to_string()))?;
         go_on(pulse)?;
         let simulations = walked.iter().map(|one| one.simulations).sum::<u64>() as f64;
         let (satisfied, columns): (Vec<_>, Vec<_>) = walked.into_iter().map(|one| (one.satisfied, one.columns)).unzip();

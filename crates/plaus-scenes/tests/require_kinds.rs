@@ -55,7 +55,8 @@ fn motion() -> (Animation, Cast) {
 #[test]
 fn times_that_are_asked_for_have_words() {
     let landing = 4.0 / G;
-    let cases: &[(&str, &[(&str, Option<f64>)])] = &[
+    type Said<'a> = [(&'a str, Option<f64>)];
+    let cases: &[(&str, &Said<'_>)] = &[
         ("impact = { body = 'a', with = 'floor' }", &[("first impact of a with floor", Some(landing))]),
         ("impact = { body = 'a', nth = 2 }", &[("impact 2 of a", None)]),
         ("impact = { body = '*', nth = -2 }", &[("last impact but 1 of *", Some(0.1))]),
