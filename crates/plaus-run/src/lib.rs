@@ -47,6 +47,7 @@
 //! when the run goes on. So a process that dies at any moment loses at most the iterations since the last checkpoint.
 
 pub mod beside;
+mod beside_scenario;
 pub mod chance;
 pub mod checkpoint;
 pub mod codec;
@@ -75,6 +76,7 @@ mod trail;
 pub mod way;
 
 pub use beside::{Beside, Missed};
+pub use beside_scenario::ScenarioFolder;
 pub use confirm::Confirmation;
 pub use diagnosis::{Diagnosis, Finding, Independent};
 pub use drive::{Alone, Drive, Driven, Journey};
