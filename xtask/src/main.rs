@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "chores talk to the person at the terminal")]
 
 mod arviz;
+mod assets;
 mod clients;
 mod command;
 mod documented;
@@ -38,6 +39,7 @@ usage: cargo xtask CHORE
                        tosses, dice and bowling beside what was published of real ones, into out/plausibility
   accuracy [--out FOLDER] [--quick]
                        how far each preset is from truths of contact, into out/accuracy
+  assets               make the shapes anew that worlds in scenarios/worlds name
   golden               compare golden traces with fresh runs
   golden --bless       make golden traces anew
   tradeoff [...]       compare with peers: cargo run --release -p plaus-tradeoff
@@ -59,6 +61,7 @@ fn main() -> ExitCode {
         Some((&"reproduce-figures", rest)) => figures(rest),
         Some((&"plausibility", rest)) => plausibility(rest),
         Some((&"accuracy", rest)) => accuracy(rest),
+        Some((&"assets", [])) => assets::write(),
         Some((&"golden", rest)) => golden::run(rest),
         Some((&"tradeoff", rest)) => cargo(&["run", "--release", "--package", "plaus-tradeoff", "--"]).args(rest).run(),
         Some((&"bench", rest)) => cargo(&["bench", "--package", "plaus-benches"]).args(rest).run(),

@@ -37,7 +37,7 @@ pub enum Shape {
         /// Painted rings.
         stripes: Vec<Stripe>,
     },
-    /// A convex polyhedron.
+    /// A polyhedron, or several that are one body: what is simulated is convex, or made of convex pieces.
     Solid {
         /// Corners.
         vertices: Vec<DVec3>,

@@ -1,7 +1,7 @@
 //! Scenario files from the disk.
 
 use crate::failure::Failure;
-use plaus_run::Recipe;
+use plaus_run::{Recipe, ScenarioFolder};
 use plaus_scenes::Scenario;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::ScenarioError;
@@ -28,7 +28,7 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
         return Err(refuse(format!("longer than {LONGEST} bytes, which no scenario is")));
     }
     let text = ScenarioError::decode(&shown, bytes)?;
-    let scenario = Scenario::read(&shown, &text, &overrides)?;
+    let scenario = Scenario::read_with(&shown, &text, &overrides, &ScenarioFolder::of(path))?;
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(Recipe { scenario, file, text, overrides, solutions })
 }

@@ -15,6 +15,7 @@ mod jobs;
 mod jobs_of_chances;
 mod mutated;
 mod output;
+mod own_shapes;
 #[cfg(unix)]
 mod pictures;
 mod pieces;

@@ -3,7 +3,8 @@
 use crate::errors::{ScenarioError, of_scenario};
 use crate::wait::{Wait, Watched};
 use plaus_mcmc::ModelError;
-use plaus_run::Recipe;
+use plaus_run::{Recipe, ScenarioFolder};
+use plaus_scenes::files::{Assets, Files, NoFiles};
 use plaus_scenes::require::Tally;
 use plaus_scenes::scenario::ScenarioError as Wrong;
 use plaus_scenes::{Scene, Visitor};
@@ -32,17 +33,23 @@ pub(crate) struct Scenario {
 }
 
 impl Scenario {
-    fn read(py: Python<'_>, shown: String, file: String, text: String, overrides: Vec<String>) -> PyResult<Self> {
-        let read = plaus_scenes::Scenario::read(&shown, &text, &overrides);
+    fn read(
+        py: Python<'_>,
+        (shown, file): (String, String),
+        text: String,
+        overrides: Vec<String>,
+        files: &dyn Files,
+    ) -> PyResult<Self> {
+        let read = plaus_scenes::Scenario::read_with(&shown, &text, &overrides, files);
         let scenario = read.map_err(|error| of_scenario(py, &error))?;
         Ok(Self { recipe: Recipe { scenario, file, text, overrides, solutions: None }, shown })
     }
 
     /// The same with more overrides, in their order.
     pub(crate) fn with(&self, py: Python<'_>, more: Vec<String>) -> PyResult<Self> {
-        let Recipe { file, text, overrides, .. } = &self.recipe;
+        let Recipe { scenario, file, text, overrides, .. } = &self.recipe;
         let all = overrides.iter().cloned().chain(more).collect();
-        Self::read(py, self.shown.clone(), file.clone(), text.clone(), all)
+        Self::read(py, (self.shown.clone(), file.clone()), text.clone(), all, &scenario.world.assets())
     }
 }
 
@@ -86,7 +93,7 @@ impl Watched for Stopped {
 }
 
 /// What a scenario is pickled as: its text, its name, what was set since.
-type Parts = (String, String, Vec<String>);
+type Parts = (String, String, Vec<String>, Vec<(String, Vec<u8>)>);
 
 #[pymethods]
 impl Scenario {
@@ -100,14 +107,14 @@ impl Scenario {
         }
         let text = Wrong::decode(&shown, bytes).map_err(|error| of_scenario(py, &error))?;
         let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        Self::read(py, shown, file, text, Vec::new())
+        Self::read(py, (shown, file), text, Vec::new(), &ScenarioFolder::of(&path))
     }
 
     /// Reads the text of a scenario file; `name` is what it is called in messages and in runs.
     #[staticmethod]
     #[pyo3(signature = (text, name = "scenario.toml"))]
     fn from_text(py: Python<'_>, text: String, name: &str) -> PyResult<Self> {
-        Self::read(py, name.to_owned(), name.to_owned(), text, Vec::new())
+        Self::read(py, (name.to_owned(), name.to_owned()), text, Vec::new(), &NoFiles)
     }
 
     /// A scenario from nested dictionaries, as the tables of a file are: `{"world": {"ball2d": {"target": 2}}}`.
@@ -116,7 +123,7 @@ impl Scenario {
     fn from_dict(py: Python<'_>, tables: &Bound<'_, PyDict>, name: &str) -> PyResult<Self> {
         let text = toml::to_string(&table(tables, "")?)
             .map_err(|error| PyValueError::new_err(format!("the dictionary cannot be written as TOML: {error}")))?;
-        Self::read(py, name.to_owned(), name.to_owned(), text, Vec::new())
+        Self::read(py, (name.to_owned(), name.to_owned()), text, Vec::new(), &NoFiles)
     }
 
     /// The scenario of a scene (`ball2d`, `bowling`, `dice`, `spelling`) with all settings at their defaults.
@@ -126,7 +133,7 @@ impl Scenario {
         let none = || ScenarioError::new_err(format!("there is no scene `{scene}`: the scenes are {known}"));
         let scenario = plaus_scenes::Scenario::default_of(scene).ok_or_else(none)?;
         let name = format!("{scene}.toml");
-        Self::read(py, name.clone(), name, scenario.to_toml(), Vec::new())
+        Self::read(py, (name.clone(), name), scenario.to_toml(), Vec::new(), &NoFiles)
     }
 
     /// The same with some keys changed: `set("sigma_d=0.05")` as on the command line, or `set(sigma_d=0.05)`, or
@@ -209,15 +216,25 @@ impl Scenario {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Parts)> {
         let rebuild = slf.py().import("plaus._plaus")?.getattr("_scenario")?;
-        let Recipe { file, text, overrides, .. } = &slf.get().recipe;
-        Ok((rebuild, (text.clone(), file.clone(), overrides.clone())))
+        let Recipe { scenario, file, text, overrides, .. } = &slf.get().recipe;
+        let files = scenario.world.assets().iter().map(|(path, bytes)| (path.to_owned(), bytes.to_vec())).collect();
+        Ok((rebuild, (text.clone(), file.clone(), overrides.clone(), files)))
     }
 }
 
-/// A scenario as it was pickled.
+/// A scenario as it was pickled, with the files that it names.
 #[pyfunction]
-pub(crate) fn _scenario(py: Python<'_>, text: String, name: String, overrides: Vec<String>) -> PyResult<Scenario> {
-    Scenario::read(py, name.clone(), name, text, overrides)
+#[pyo3(signature = (text, name, overrides, files = Vec::new()))]
+pub(crate) fn _scenario(
+    py: Python<'_>,
+    text: String,
+    name: String,
+    overrides: Vec<String>,
+    files: Vec<(String, Vec<u8>)>,
+) -> PyResult<Scenario> {
+    let mut assets = Assets::default();
+    files.into_iter().for_each(|(path, bytes)| assets.insert(path, bytes));
+    Scenario::read(py, (name.clone(), name), text, overrides, &assets)
 }
 
 fn table(tables: &Bound<'_, PyDict>, within: &str) -> PyResult<Table> {

@@ -50,6 +50,11 @@ pub enum RunFileProblem {
         "the manifest cannot be read: {0}. Without it the records of the chains cannot be read either; the same scenario, seed and version of plaus sample the same run again"
     )]
     Manifest(String),
+    /// The run's copy of a file that its scenario names is another.
+    #[error(
+        "this copy of {0}, which the run's scenario names, was changed after the run was made: put it back as it was, or sample a new run"
+    )]
+    Asset(String),
     /// The folder holds something else than what is to be gone on with.
     #[error("holds another run: {0}; choose another name")]
     OtherRun(String),

@@ -2,6 +2,7 @@
 
 use crate::disk::Disk;
 use crate::error::{RunFileError, RunFileProblem};
+use plaus_scenes::files::{Assets, hash_of};
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
@@ -61,18 +62,26 @@ impl Folder {
         self.0.join("trail")
     }
 
+    /// The run's copy of a file that the scenario names, by its hash.
+    #[must_use]
+    pub fn asset(&self, hash: &str) -> PathBuf {
+        self.0.join(format!("asset-{}", hash.get(..16).unwrap_or(hash)))
+    }
+
     /// Always there and always empty; whoever writes the run holds a lock on it.
     #[must_use]
     pub fn lock(&self) -> PathBuf {
         self.0.join("lock")
     }
 
-    /// Makes a run that holds `manifest`, in one step: it exists wholly or not at all.
+    /// Makes a run that holds `manifest`, and the files that its scenario names, in one step: it exists wholly or not
+    /// at all.
     ///
     /// # Errors
     /// [`RunFileError`] where something of that name exists, or the disk refuses.
-    pub fn create(&self, disk: &dyn Disk, manifest: &[u8]) -> Result<(), RunFileError> {
-        self.make(disk, |draft| draft.fill(disk, manifest).map_err(|error| RunFileError::new(&self.0, error.problem)))
+    pub fn create(&self, disk: &dyn Disk, manifest: &[u8], assets: &Assets) -> Result<(), RunFileError> {
+        let fill = |draft: &Self| draft.fill(disk, manifest, assets);
+        self.make(disk, |draft| fill(draft).map_err(|error| RunFileError::new(&self.0, error.problem)))
     }
 
     /// Makes a run that `fill` fills under another name, in one step: it exists wholly or not at all.
@@ -113,10 +122,13 @@ impl Folder {
     }
 
     /// Writes what every run has.
-    pub(crate) fn fill(&self, disk: &dyn Disk, manifest: &[u8]) -> Result<(), RunFileError> {
-        for (path, bytes) in [(self.lock(), &b""[..]), (self.manifest(), manifest)] {
-            disk.write(&path, bytes).map_err(RunFileError::io(&path, "write"))?;
+    pub(crate) fn fill(&self, disk: &dyn Disk, manifest: &[u8], assets: &Assets) -> Result<(), RunFileError> {
+        let write = |path: PathBuf, bytes: &[u8]| disk.write(&path, bytes).map_err(RunFileError::io(&path, "write"));
+        for (_, bytes) in assets.iter() {
+            write(self.asset(&hash_of(bytes)), bytes)?;
         }
+        write(self.lock(), b"")?;
+        write(self.manifest(), manifest)?;
         disk.sync(&self.0).map_err(RunFileError::io(&self.0, "write"))
     }
 
@@ -172,7 +184,8 @@ fn clear_drafts(path: &Path) {
         let process = draft.strip_prefix(&format!(".{name}.")).and_then(|rest| rest.strip_suffix(".draft"));
         let Some(process) = process.and_then(|text| text.parse::<u32>().ok()) else { continue };
         let ours = |name: &std::ffi::OsStr| {
-            name == "lock" || name == "manifest.json" || name.to_string_lossy().starts_with("chain-")
+            let shown = name.to_string_lossy();
+            name == "lock" || name == "manifest.json" || shown.starts_with("chain-") || shown.starts_with("asset-")
         };
         let files = fs::read_dir(entry.path()).map(|files| files.flatten().all(|file| ours(&file.file_name())));
         if !Path::new("/proc").join(process.to_string()).exists() && files.unwrap_or(false) {
@@ -205,7 +218,7 @@ mod tests {
         make(".run.4194306.draft", "mine.txt");
         make(".other.4194305.draft", "lock");
         make(".run.1.draft", "lock");
-        Folder::new(place.path().join("run")).create(&RealDisk, b"{}").unwrap();
+        Folder::new(place.path().join("run")).create(&RealDisk, b"{}", &Assets::default()).unwrap();
         let left = |name: &str| place.path().join(name).exists();
         assert!(!left(".run.4194305.draft") && left(".run.4194306.draft") && left(".other.4194305.draft"));
         assert!(left(".run.1.draft") && left("run/manifest.json"));

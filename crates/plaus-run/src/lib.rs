@@ -48,6 +48,7 @@
 //! loses at most the iterations since the last checkpoint.
 
 pub mod beside;
+mod beside_scenario;
 pub mod chance;
 pub mod checkpoint;
 pub mod codec;
@@ -79,6 +80,7 @@ mod watch;
 pub mod way;
 
 pub use beside::{Beside, Missed};
+pub use beside_scenario::ScenarioFolder;
 pub use confirm::Confirmation;
 pub use diagnosis::{Diagnosis, Finding, Independent};
 pub use drive::{Alone, Drive, Driven, Journey};

@@ -6,6 +6,7 @@ use crate::folder::Folder;
 use crate::shard::Shard;
 use crate::way::{Way, is_independent, moves_of};
 use plaus_mcmc::{Mixture, Plan};
+use plaus_scenes::files::{Assets, hash_of};
 use plaus_scenes::{Role, Rules, Scenario, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -56,6 +57,12 @@ pub struct Manifest {
     /// How draws are made, and why so; not there where the scenario does not say and chains make them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub way: Option<Way>,
+    /// The files that the scenario names, by their paths, each with its BLAKE3. The run has copies of its own.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub assets: BTreeMap<String, String>,
+    /// What these files hold.
+    #[serde(skip)]
+    pub(crate) contents: Assets,
 }
 
 /// The scenario of a run.
@@ -128,8 +135,9 @@ impl Recipe {
         let rules = &self.scenario.sampler.rules;
         let way = Way::said(&self.scenario);
         let effective = self.scenario.to_toml();
-        let read =
-            Scenario::read(&self.file, &effective, &[]).map_err(|error| Error::StoredScenario(error.to_string()))?;
+        let contents = self.scenario.world.assets();
+        let read = Scenario::read_with(&self.file, &effective, &[], &contents)
+            .map_err(|error| Error::StoredScenario(error.to_string()))?;
         if read != self.scenario {
             return Err(Error::StoredScenario("it changes when it is written and read again".to_owned()));
         }
@@ -149,6 +157,8 @@ impl Recipe {
             scalars: stored_scalars(scene),
             requirement: None,
             way,
+            assets: contents.iter().map(|(path, bytes)| (path.to_owned(), hash_of(bytes))).collect(),
+            contents,
         })
     }
 }
@@ -261,7 +271,22 @@ impl Manifest {
             _ => RunFileError::io(&path, "read")(error),
         })?;
         file.take(LONGEST).read_to_end(&mut json).map_err(RunFileError::io(&path, "read"))?;
-        Self::from_json(&json).map_err(|problem| RunFileError::new(path, problem))
+        let manifest = Self::from_json(&json).map_err(|problem| RunFileError::new(path, problem))?;
+        Ok(Self { contents: manifest.copies(folder)?, ..manifest })
+    }
+
+    /// The run's copies of the files that its scenario names.
+    fn copies(&self, folder: &Folder) -> Result<Assets, RunFileError> {
+        let mut contents = Assets::default();
+        for (name, hash) in &self.assets {
+            let path = folder.asset(hash);
+            let bytes = std::fs::read(&path).map_err(RunFileError::io(&path, "read"))?;
+            if hash_of(&bytes) != *hash {
+                return Err(RunFileError::new(path, RunFileProblem::Asset(name.clone())));
+            }
+            contents.insert(name.clone(), bytes);
+        }
+        Ok(contents)
     }
 
     /// Puts this manifest in place of the run's.
@@ -283,7 +308,7 @@ impl Manifest {
     /// # Errors
     /// [`Error::StoredScenario`] where this version cannot read it, or the plan is not what follows from it.
     pub fn scenario(&self) -> Result<Scenario, Error> {
-        let scenario = Scenario::read(&self.scenario.file, &self.scenario.effective, &[])
+        let scenario = Scenario::read_with(&self.scenario.file, &self.scenario.effective, &[], &self.contents)
             .map_err(|error| Error::StoredScenario(error.to_string()))?;
         let mut planned = plan(&scenario, self.plan.solutions);
         let first = self.extended_from.first().copied().unwrap_or(self.plan.iterations);

@@ -99,7 +99,7 @@ fn begin<D: Drive>(
             let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
             let manifest = settled(manifest, recipe, &scene, &sampling)?;
             let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
-            folder.create(sampling.disk, &json)?;
+            folder.create(sampling.disk, &json, &manifest.contents)?;
             let _claim = folder.claim()?;
             go_on(folder, &manifest, &Arc::new(scene), Vec::new(), sampling, drive)
         }
@@ -245,11 +245,13 @@ fn extend(manifest: &mut Manifest, scenario: &Scenario, more: More) -> Result<bo
             );
             return Err(Error::Request(message));
         }
-        Scenario::read(&manifest.scenario.file, &scenario.to_toml(), &[format!("sampler.iterations={wanted}")])
-            .map_err(|error| {
+        let said = [format!("sampler.iterations={wanted}")];
+        Scenario::read_with(&manifest.scenario.file, &scenario.to_toml(), &said, &manifest.contents).map_err(
+            |error| {
                 let why = error.problems.first().map(|problem| problem.message.as_str()).unwrap_or_default();
                 Error::Request(format!("a run cannot have that many iterations: {why}"))
-            })?;
+            },
+        )?;
         manifest.extended_from.push(planned);
         manifest.plan.iterations = wanted;
     }

@@ -11,6 +11,8 @@ use plaus_mcmc::{Chain, Mixture};
 use plaus_scenes::require::Tally;
 use plaus_scenes::{Scenario, Scene, Visitor};
 use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Draws of the prior that are looked at.
@@ -67,10 +69,16 @@ impl Visitor for Look {
     }
 }
 
+/// Files beside the scenario at a path.
+fn beside(path: &str) -> impl Fn(&str, bool) -> Result<Arc<[u8]>, String> {
+    let folder = Path::new(path).parent().map(Path::to_path_buf).unwrap_or_default();
+    move |file, _| std::fs::read(folder.join(file)).map(Arc::from).map_err(|error| error.to_string())
+}
+
 fn main() {
     for path in std::env::args().skip(1) {
         let said = match std::fs::read_to_string(&path).map_err(|error| error.to_string()) {
-            Ok(text) => match Scenario::read(&path, &text, &[]) {
+            Ok(text) => match Scenario::read_with(&path, &text, &[], &beside(&path)) {
                 Ok(scenario) => {
                     let look = Look { seed: scenario.sampler.seed, chains: scenario.sampler.chains.into() };
                     scenario.visit(look).unwrap_or_else(|error| error.to_string())

@@ -29,6 +29,8 @@ pub mod ball2d;
 pub mod bowling;
 pub mod custom;
 pub mod dice;
+pub mod files;
+pub mod import;
 pub mod model;
 pub mod registry;
 pub mod require;
@@ -42,6 +44,7 @@ mod way;
 pub mod world;
 
 pub use accuracy::AccuracyPreset;
+pub use files::{Assets, Files};
 pub use model::{Member, Moves, Role, Scalar, Weights};
 pub use plaus_animation as animation;
 pub use plaus_animation::Animation;

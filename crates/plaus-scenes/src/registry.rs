@@ -1,5 +1,6 @@
 //! All scenes there are. A new scene is one line here.
 
+use crate::files::{Assets, Files};
 use crate::scene::{ConfigError, Scene};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -66,4 +67,23 @@ scenes! {
     "dice" Dice => dice,
     /// A world of your own: bodies and scenery, what they are made of, and what is uncertain about them.
     "custom" Custom => custom,
+}
+
+impl World {
+    /// Reads the files that it names.
+    pub(crate) fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
+        match self {
+            Self::Custom(config) => config.load(files),
+            _ => Ok(()),
+        }
+    }
+
+    /// The files that it names, as they were read.
+    #[must_use]
+    pub fn assets(&self) -> Assets {
+        match self {
+            Self::Custom(config) => config.assets(),
+            _ => Assets::default(),
+        }
+    }
 }

@@ -108,6 +108,12 @@ pub trait Scene:
         Ok(None)
     }
 
+    /// What a user should know of the world that the scenario does not say: how far a hull departs from the file that
+    /// it is of. One sentence each, without an end.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// What is asked of a state, each in some words, in the order of [`Scene::answers`].
     fn asked(&self) -> Vec<String> {
         vec!["what the scene demands".to_owned()]

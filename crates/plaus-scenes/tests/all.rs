@@ -6,6 +6,8 @@ mod common;
 mod custom_bad;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_exact;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_files;
 mod require_bad;
 mod require_bounds;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

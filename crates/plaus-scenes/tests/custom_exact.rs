@@ -2,11 +2,13 @@
 //! variables, and of where bodies end, agree within three standard errors. A twin that forgets what is required is
 //! found out. And every move of such a world leaves the prior as it is, whatever the law.
 
+use crate::common::shapes;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::check::{OneStep, PriorOnly, Statistic, one_step, prior};
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Chain, ModelError, Move, Path, Proposal, State, StateOf, Target, Variables};
 use plaus_scenes::{Rules, Scenario, Scene, Visitor, World, custom::Custom};
+use std::sync::Arc;
 
 /// Draws from the prior, and iterations of a chain.
 const DRAWS: u64 = 6_000;
@@ -84,13 +86,33 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 0, 31]\nvelocity_m_s = [{ uniform = [0, 2] }, 0, 0]",
         "relative = { body = 'marble_1', to = 'marble_3', y_mm = 15, within_mm = 20, scale_mm = 40 }",
     ],
+    // The hull of a file falls onto the triangles of another; where these are, and how large both are, is uncertain.
+    [
+        "duration_s = 0.2\n[[world.custom.fixed]]\nname = 'roof'\n\
+         shape = { mesh = { file = 'roof.obj', up = 'z', unit_mm = { uniform = [0.8, 1.2] } } }\n\
+         at_mm = [{ normal = [0, 60] }, 0, 0]\n\
+         [[world.custom.bodies]]\nname = 'wedge'\nany_turn = true\nvelocity_m_s = [0, 0, -1.5]\nat_mm = [0, 0, 200]\n\
+         shape = { hull_of = { file = 'wedge.obj', up = 'z', unit_mm = { uniform = [0.7, 1.3] } } }",
+        "at_mm = [0, 1000, 100]",
+        "passes = { body = 'wedge', x_mm = 40, y_mm = 0, z_mm = 140, within_mm = 10, scale_mm = 20 }",
+    ],
+    // A compound of which the place and the weight of a piece are uncertain.
+    [
+        "duration_s = 0.15\n[[world.custom.bodies]]\nname = 'hammer'\nat_mm = [0, 1000, 90]\n\
+         shape = { compound = { pieces = [\n\
+         { shape = { box = { size_mm = [120, 16, 16] } } },\n\
+         { shape = { box = { size_mm = [30, 60, 30] } }, at_mm = [{ uniform = [20, 60] }, 0, 0], \
+         density = { log_normal = { median = 3, spread = 0.5 } } },\n] } }",
+        "at_mm = [0, 0, 100]",
+        "passes = { body = 'hammer', x_mm = 45, y_mm = 1000, z_mm = 60, within_mm = 3, scale_mm = 8 }",
+    ],
 ];
 
 /// The scenario of a case.
 fn scenario([world, ball, required]: &[&str; 3]) -> Scenario {
     let (settings, tables) = world.split_once('\n').unwrap_or((world, ""));
     let text = format!("[world.custom]\n{settings}\n{tables}\n{BALL}{ball}\n[[require]]\n{required}\n");
-    Scenario::read("case.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    Scenario::read_with("case.toml", &text, &[], &shapes()).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 /// Numbers of a state that every state has: all but times of rest, which may never come, and margins.
@@ -237,8 +259,14 @@ fn the_worlds_in_the_folder_are_worlds() {
     let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
+        if path.extension().is_none_or(|ending| ending != "toml") {
+            continue;
+        }
         let text = std::fs::read_to_string(&path).unwrap();
-        let scenario = Scenario::read(&path.to_string_lossy(), &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let beside =
+            |file: &str, _: bool| std::fs::read(path.with_file_name(file)).map(Arc::from).map_err(|e| e.to_string());
+        let scenario = Scenario::read_with(&path.to_string_lossy(), &text, &[], &beside);
+        let scenario = scenario.unwrap_or_else(|error| panic!("{error}"));
         assert!(scenario.visit(Draw).unwrap(), "{}", path.display());
         count += 1;
     }

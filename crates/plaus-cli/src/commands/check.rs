@@ -29,13 +29,13 @@ pub(crate) struct Args {
     quiet: bool,
 }
 
-/// Makes the scene and its moves, and so the manifest a run would have.
+/// Makes the scene and its moves, and so the manifest a run would have, and says what is to be known of the world.
 struct Try<'a>(&'a plaus_run::Recipe);
 
 impl Visitor for Try<'_> {
-    type Output = Result<Manifest, plaus_run::Error>;
+    type Output = Result<(Manifest, Vec<String>), plaus_run::Error>;
     fn visit<S: Scene>(self, scene: S) -> Self::Output {
-        self.0.manifest(&scene)
+        Ok((self.0.manifest(&scene)?, scene.notes()))
     }
 }
 
@@ -45,7 +45,7 @@ impl Args {
         let name = self.scenario.display().to_string();
         let locate = |error| Failure::from(ScenarioError::locate(&name, &recipe.text, &error));
         let manifest = recipe.scenario.visit(Try(&recipe)).map_err(locate)?;
-        let manifest = manifest.map_err(|error| match error {
+        let (manifest, notes) = manifest.map_err(|error| match error {
             plaus_run::Error::Config(error) => locate(error),
             other => other.into(),
         })?;
@@ -64,6 +64,7 @@ impl Args {
                 manifest.moves.join(", "),
                 scalars.join(", ")
             ));
+            notes.iter().for_each(|note| console::note_line(note));
             console::note_line("With all keys in force:");
             output::print(&manifest.scenario.effective)?;
         }

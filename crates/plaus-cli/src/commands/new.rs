@@ -3,6 +3,9 @@
 use crate::console::{self, quoted};
 use crate::failure::{Failure, Outcome};
 use crate::output;
+use plaus_run::ScenarioFolder;
+use plaus_scenes::Files;
+use plaus_scenes::import;
 use plaus_scenes::registry::NAMES;
 use plaus_scenes::scenario::{self, SCHEMA_FILE};
 use std::fs::File;
@@ -12,40 +15,73 @@ use std::path::{Path, PathBuf};
 /// Which scene, and where to.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Name of the scene, e.g. ball2d
-    scene: String,
+    /// Name of the scene, e.g. ball2d; with --from the file to write, else named after the asset and beside it
+    #[arg(required_unless_present = "from")]
+    scene: Option<String>,
     /// File to write; nothing, or `-`, writes to standard output. Never overwritten
+    #[arg(conflicts_with = "from")]
     file: Option<PathBuf>,
+    /// Make a world of this file of shapes (.glb, .obj, .stl), and list what of it could not be taken over
+    #[arg(long, value_name = "ASSET")]
+    from: Option<PathBuf>,
 }
 
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
-        let unknown = || {
-            let near = scenario::nearest(&self.scene, NAMES.iter().copied());
-            let near = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
-            Failure::Message(format!("there is no scene `{}`; {near}known: {}", self.scene, NAMES.join(", ")))
-        };
-        let text = scenario::template(&self.scene).ok_or_else(unknown)?;
-        // Editors that know TOML read the schema that this line names.
-        let text = format!("#:schema ./{SCHEMA_FILE}\n{text}");
-        match self.file.filter(|file| file != Path::new("-")) {
-            None => output::print(&text)?,
-            Some(file) => {
-                let refuse = |error: io::Error| {
-                    let advice = match error.kind() {
-                        io::ErrorKind::AlreadyExists => "exists already; choose another name".to_owned(),
-                        _ => format!("cannot write: {error}"),
-                    };
-                    Failure::Message(format!("{}: {advice}", file.display()))
-                };
-                let mut out = File::create_new(&file).map_err(refuse)?;
-                out.write_all(text.as_bytes()).map_err(refuse)?;
-                write_schema(&file);
-                console::note_line(&format!("wrote {0}; next: plaus sample {0} --out run", quoted(&file)));
-            }
+        if let Some(asset) = &self.from {
+            let file = self.scene.map_or_else(|| asset.with_extension("toml"), PathBuf::from);
+            return of_asset(asset, &file);
         }
-        Ok(Outcome::Done)
+        let name = self.scene.unwrap_or_default();
+        let unknown = || {
+            let near = scenario::nearest(&name, NAMES.iter().copied());
+            let near = near.map(|near| format!("did you mean `{near}`? ")).unwrap_or_default();
+            Failure::Message(format!("there is no scene `{name}`; {near}known: {}", NAMES.join(", ")))
+        };
+        let text = scenario::template(&name).ok_or_else(unknown)?;
+        write(&text, self.file.as_deref())
     }
+}
+
+/// Writes the scenario of a file of shapes.
+fn of_asset(asset: &Path, file: &Path) -> Result<Outcome, Failure> {
+    let refuse = |what: String| Failure::Message(format!("{}: {what}", asset.display()));
+    let (path, anywhere) = from_folder(asset, file).map_err(|error| refuse(format!("it cannot be read: {error}")))?;
+    let bytes = ScenarioFolder::of(file).bytes(&path, anywhere).map_err(refuse)?;
+    let imported = import::scenario(&path, anywhere, &bytes).map_err(|error| refuse(error.to_string()))?;
+    imported.left_out.iter().for_each(|what| console::note_line(&format!("not taken over: {what}")));
+    write(&imported.text, Some(file))
+}
+
+/// An asset as a scenario names it: from its folder where it lies there, else from the root.
+fn from_folder(asset: &Path, scenario: &Path) -> io::Result<(String, bool)> {
+    let folder = scenario.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let (whole, folder) = (asset.canonicalize()?, folder.canonicalize()?);
+    let shown = |path: &Path| path.to_string_lossy().replace('\\', "/");
+    Ok(whole.strip_prefix(&folder).map_or_else(|_| (shown(&whole), true), |inner| (shown(inner), false)))
+}
+
+/// Writes a scenario to a file, or to standard output.
+fn write(text: &str, file: Option<&Path>) -> Result<Outcome, Failure> {
+    // Editors that know TOML read the schema that this line names.
+    let text = format!("#:schema ./{SCHEMA_FILE}\n{text}");
+    match file.filter(|file| *file != Path::new("-")) {
+        None => output::print(&text)?,
+        Some(file) => {
+            let refuse = |error: io::Error| {
+                let advice = match error.kind() {
+                    io::ErrorKind::AlreadyExists => "exists already; choose another name".to_owned(),
+                    _ => format!("cannot write: {error}"),
+                };
+                Failure::Message(format!("{}: {advice}", file.display()))
+            };
+            let mut out = File::create_new(file).map_err(refuse)?;
+            out.write_all(text.as_bytes()).map_err(refuse)?;
+            write_schema(file);
+            console::note_line(&format!("wrote {0}; next: plaus sample {0} --out run", quoted(file)));
+        }
+    }
+    Ok(Outcome::Done)
 }
 
 /// Writes the schema beside a scenario, where there is none: with it an editor completes and explains keys, without

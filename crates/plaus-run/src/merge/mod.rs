@@ -145,7 +145,7 @@ fn write(draft: &Folder, disk: &dyn Disk, chain: u32, checkpoint: &[u8]) -> Resu
 /// Writes what makes the folder a run.
 fn seal(pieces: &Pieces, draft: &Folder, disk: &dyn Disk) -> Result<(), Error> {
     let json = pieces.manifest.to_json().map_err(|problem| RunFileError::new(draft.manifest(), problem))?;
-    Ok(draft.fill(disk, &json)?)
+    Ok(draft.fill(disk, &json, &pieces.manifest.contents)?)
 }
 
 /// Says that a piece is no part of the run.

@@ -55,6 +55,8 @@ measures! {
     Friction: "", 0.0 to 1e3, NotNegative;
     /// A coefficient of restitution.
     Restitution: "", 0.0 to 1.0, Share;
+    /// A density over another.
+    Factor: "", 1e-6 to 1e6, NotNegative;
     /// Of no unit known here.
     Plain: "", -1e9 to 1e9, Any;
 }

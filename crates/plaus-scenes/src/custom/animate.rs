@@ -1,10 +1,10 @@
 //! The animation of a recorded motion. The simulator's z points up; an animation's y does.
 
 use super::flight::{Record, part};
-use super::plan::{Built, Plan, Standing};
-use super::solids::{MM, mesh};
-use super::values::{Drawn, Numbers, vector};
-use crate::animation::{Animation, Contact, Form, Impact, Piece, Prop, Track, Turn, UPRIGHT, upright};
+use super::plan::{Built, Plan};
+use super::standing::Standing;
+use super::values::{Drawn, Numbers};
+use crate::animation::{Animation, Contact, Impact, Piece, Prop, Track, Turn, UPRIGHT, upright};
 use crate::touch::{Toucher, in_order};
 use glam::{DQuat, DVec3};
 use plaus_mcmc::ModelError;
@@ -111,21 +111,7 @@ pub(super) fn props(plan: &Plan, draw: &Drawn, reach: f64) -> Result<Vec<Prop>, 
 }
 
 fn prop(part: &Standing, numbers: &Numbers<'_>, reach: f64) -> Result<Prop, ModelError> {
-    let (at, turn) = (vector(&part.at, numbers) * MM, part.turned(numbers));
-    let form = match &part.form {
-        None => Form::Plane { centre: upright(at), normal: upright(turn * DVec3::Z), half: reach },
-        Some(form) => match form.sharp_box(numbers) {
-            Some(edges) => {
-                Form::Block { centre: upright(at), half: 0.5 * edges, orientation: (UPRIGHT * turn).normalize() }
-            }
-            None => {
-                let made = form.make(numbers).map_err(ModelError::new)?;
-                let (vertices, triangles) = mesh(&made.drawn);
-                let place = |vertex: DVec3| upright(at + turn * (vertex + made.centre));
-                Form::Mesh { vertices: vertices.into_iter().map(place).collect(), triangles }
-            }
-        },
-    };
+    let form = part.drawn(numbers, reach).map_err(ModelError::new)?;
     Ok(Prop::new(part.name.clone(), part.look, form))
 }
 

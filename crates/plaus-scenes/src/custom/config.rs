@@ -2,13 +2,16 @@
 
 use super::amount::{self, Amount};
 use super::driven::Driven;
-use super::forms::{Ball, Plane, Shape, Still};
+use super::forms::{Ball, EachFile, Plane, Shape, Still};
+use super::from_file::{FromFile, Known};
 use super::laws::LawOf;
 use super::moves::CustomMoves;
 use super::quantity::Quantity;
 use crate::accuracy::AccuracyPreset;
 use crate::animation;
+use crate::files::{Assets, Files};
 use crate::model::Weights;
+use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -91,6 +94,43 @@ impl Default for Config {
             driven: Vec::new(),
             weights: Weights::default(),
         }
+    }
+}
+
+impl Config {
+    /// Reads the files that shapes are in.
+    pub(crate) fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
+        let mut known = Known::new();
+        self.for_files(&mut |key, wanted, file| file.load(key, wanted, files, &mut known))
+    }
+
+    /// The files that were read.
+    pub(crate) fn assets(&self) -> Assets {
+        let mut assets = Assets::default();
+        let add = &mut |_: &str, _, file: &mut FromFile| {
+            if let Some(loaded) = &file.loaded {
+                assets.insert(file.file.clone(), loaded.asset.bytes.clone());
+            }
+            Ok(())
+        };
+        // Only looked at: what goes through files to read them does so mutably.
+        let _ = self.clone().for_files(add); // adding cannot fail
+        assets
+    }
+
+    /// Goes through all files that shapes are in, each with its key from the scenario's root.
+    fn for_files(&mut self, each: EachFile<'_>) -> Result<(), ConfigError> {
+        let at = |list: &str, index: usize, key: &str| format!("world.custom.{list}[{index}].shape.{key}");
+        for (index, fixed) in self.fixed.iter_mut().enumerate() {
+            fixed.shape.for_files(&mut |key, wanted, file| each(&at("fixed", index, key), wanted, file))?;
+        }
+        for (index, body) in self.bodies.iter_mut().enumerate() {
+            body.shape.for_files(&mut |key, wanted, file| each(&at("bodies", index, key), wanted, file))?;
+        }
+        for (index, driven) in self.driven.iter_mut().enumerate() {
+            driven.shape.for_files(&mut |key, wanted, file| each(&at("driven", index, key), wanted, file))?;
+        }
+        Ok(())
     }
 }
 

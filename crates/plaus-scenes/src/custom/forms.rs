@@ -1,6 +1,8 @@
 //! Shapes of bodies and of scenery, as scenario files have them.
 
-use super::amount::{Amount, Length, Place, Rounding};
+use super::amount::{Amount, Angle, Factor, Length, Place, Rounding};
+use super::from_file::{FromFile, Wanted};
+use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +22,30 @@ pub enum Shape {
     Capsule(Capsule),
     /// The convex hull of points.
     Hull(Hull),
+    /// Several shapes that are one body.
+    Compound(Compound),
+    /// The convex hull of what a file of triangles holds: hollows are filled.
+    HullOf(FromFile),
+}
+
+/// The shape of a piece of a compound.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Convex {
+    /// A ball.
+    Ball(Ball),
+    /// A box.
+    Box(Cuboid),
+    /// A cylinder about its z axis.
+    Cylinder(Cylinder),
+    /// A cone whose tip points along its z axis.
+    Cone(Cone),
+    /// A rod with round ends along its z axis.
+    Capsule(Capsule),
+    /// The convex hull of points.
+    Hull(Hull),
+    /// The convex hull of what a file of triangles holds.
+    HullOf(FromFile),
 }
 
 /// The shape of what stands still.
@@ -40,6 +66,12 @@ pub enum Still {
     Capsule(Capsule),
     /// The convex hull of points.
     Hull(Hull),
+    /// Several shapes that are one.
+    Compound(Compound),
+    /// The convex hull of what a file of triangles holds: hollows are filled.
+    HullOf(FromFile),
+    /// The triangles of a file as they are, solid behind their faces.
+    Mesh(FromFile),
 }
 
 /// A plane without end.
@@ -108,6 +140,64 @@ pub struct Hull {
     pub rounding_mm: Amount<Rounding>,
 }
 
+/// Several shapes that are one body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Compound {
+    /// What it is put together of. Where pieces overlap their masses add up.
+    #[schemars(length(min = 1, max = 256))]
+    pub pieces: Vec<Piece>,
+}
+
+/// A piece of a compound.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Piece {
+    /// Its shape.
+    pub shape: Convex,
+    /// Where its middle is in the compound.
+    #[serde(default)]
+    pub at_mm: [Amount<Place>; 3],
+    /// How it is turned in the compound: about the x axis, then about y, then about z.
+    #[serde(default)]
+    pub turn_deg: [Amount<Angle>; 3],
+    /// Its density over that of the material.
+    #[serde(default = "one")]
+    pub density: Amount<Factor>,
+}
+
+fn one() -> Amount<Factor> {
+    1.0.into()
+}
+
+impl From<Convex> for Shape {
+    fn from(shape: Convex) -> Self {
+        match shape {
+            Convex::Ball(form) => Self::Ball(form),
+            Convex::Box(form) => Self::Box(form),
+            Convex::Cylinder(form) => Self::Cylinder(form),
+            Convex::Cone(form) => Self::Cone(form),
+            Convex::Capsule(form) => Self::Capsule(form),
+            Convex::Hull(form) => Self::Hull(form),
+            Convex::HullOf(form) => Self::HullOf(form),
+        }
+    }
+}
+
+/// What is done to a file that a shape names, at a key from that shape on.
+pub(super) type EachFile<'a> = &'a mut dyn FnMut(&str, Wanted, &mut FromFile) -> Result<(), ConfigError>;
+
+impl Compound {
+    fn for_files(&mut self, each: EachFile<'_>) -> Result<(), ConfigError> {
+        for (index, piece) in self.pieces.iter_mut().enumerate() {
+            if let Convex::HullOf(file) = &mut piece.shape {
+                each(&format!("compound.pieces[{index}].shape.hull_of"), Wanted::Hull, file)?;
+            }
+        }
+        Ok(())
+    }
+}
+
 impl Shape {
     /// What stands in the file for it.
     pub(super) fn name(&self) -> &'static str {
@@ -118,21 +208,44 @@ impl Shape {
             Self::Cone(_) => "cone",
             Self::Capsule(_) => "capsule",
             Self::Hull(_) => "hull",
+            Self::Compound(_) => "compound",
+            Self::HullOf(_) => "hull_of",
+        }
+    }
+
+    /// Goes through the files that it names.
+    pub(super) fn for_files(&mut self, each: EachFile<'_>) -> Result<(), ConfigError> {
+        match self {
+            Self::HullOf(file) => each("hull_of", Wanted::Hull, file),
+            Self::Compound(compound) => compound.for_files(each),
+            _ => Ok(()),
         }
     }
 }
 
 impl Still {
-    /// The solid; `None` for a plane.
+    /// The solid; `None` for a plane or a mesh.
     pub(super) fn solid(&self) -> Option<Shape> {
         Some(match self.clone() {
-            Self::Plane(_) => return None,
+            Self::Plane(_) | Self::Mesh(_) => return None,
             Self::Ball(form) => Shape::Ball(form),
             Self::Box(form) => Shape::Box(form),
             Self::Cylinder(form) => Shape::Cylinder(form),
             Self::Cone(form) => Shape::Cone(form),
             Self::Capsule(form) => Shape::Capsule(form),
             Self::Hull(form) => Shape::Hull(form),
+            Self::Compound(form) => Shape::Compound(form),
+            Self::HullOf(form) => Shape::HullOf(form),
         })
+    }
+
+    /// Goes through the files that it names.
+    pub(super) fn for_files(&mut self, each: EachFile<'_>) -> Result<(), ConfigError> {
+        match self {
+            Self::Mesh(file) => each("mesh", Wanted::Triangles, file),
+            Self::HullOf(file) => each("hull_of", Wanted::Hull, file),
+            Self::Compound(compound) => compound.for_files(each),
+            _ => Ok(()),
+        }
     }
 }

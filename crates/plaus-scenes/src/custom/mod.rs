@@ -4,11 +4,13 @@
 mod amount;
 mod animate;
 mod config;
+mod corners;
 mod domain;
 mod driven;
 mod flight;
 mod forms;
 mod formula;
+mod from_file;
 mod laws;
 mod moves;
 mod names;
@@ -17,6 +19,7 @@ mod quantities;
 mod quantity;
 mod range;
 mod solids;
+mod standing;
 mod values;
 mod view;
 
@@ -25,11 +28,14 @@ pub use config::{Body, Config, Finish, Fixed, Material, Pair};
 pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Last, Overlap, Work};
-pub use forms::{Ball, Capsule, Cone, Cuboid, Cylinder, Hull, Plane, Shape, Still};
+pub use forms::{Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Hull, Piece, Plane, Shape, Still};
+pub use from_file::{FromFile, Up};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
 pub use quantity::Quantity;
 pub use values::Drawn;
+
+pub(crate) use corners::hull_volume;
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
@@ -257,6 +263,10 @@ impl Scene for Custom {
         let bodies = self.plan.bodies.iter().map(|body| body.name.clone()).collect();
         let fixed = self.plan.parts.iter().map(|part| part.name.clone()).collect();
         Cast { bodies, fixed, longest: self.config.duration_s, faces: false }
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.plan.notes()
     }
 
     fn asked(&self) -> Vec<String> {

@@ -1,18 +1,18 @@
 //! What a scenario describes, with every number as a value: from it the simulator's world of a draw is made.
 
-use super::config::{Body, Config, Fixed, Material};
+use super::config::{Body, Config, Material};
 use super::driven::{Driven, Way};
 use super::names::{Member, check_name, colour, members};
 use super::solids::{Form, MM, Made};
+use super::standing::Standing;
 use super::values::{Collector, Numbers, Owner, Value, Values, Works, vector};
 use crate::animation::Look;
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use plaus_sim::material::{Law, Laws, Material as Kind};
-use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidWorld, SolidPart, Start};
-use plaus_sim::scenery::{Aabb, Plane};
+use plaus_sim::rigid::{BodySpec, Rigid, RigidWorld, Start};
 use plaus_sim::{Accuracy, WorldError};
 use std::collections::BTreeSet;
 
@@ -58,23 +58,9 @@ enum Turned {
     Any(usize),
 }
 
-/// A piece of scenery.
-#[derive(Debug, Clone)]
-pub(super) struct Standing {
-    pub(super) name: String,
-    /// Its table in the file.
-    pub(super) key: String,
-    pub(super) look: Look,
-    /// `None`: a plane.
-    pub(super) form: Option<Form>,
-    substance: usize,
-    pub(super) at: Values,
-    pub(super) turn: Values,
-}
-
 /// A material: density, friction, restitution, resistance to rolling and to spinning.
 #[derive(Debug, Clone)]
-struct Substance {
+pub(super) struct Substance {
     density: Value,
     contact: [Value; 4],
     look: Option<Look>,
@@ -119,7 +105,7 @@ impl Plan {
         }
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
         let (works, is_steady) = (collector.works(), false);
-        let plan = Self { bodies, parts, substances, pairs, works, gravity, duration, accuracy, is_steady };
+        let mut plan = Self { bodies, parts, substances, pairs, works, gravity, duration, accuracy, is_steady };
         plan.check_shapes()?;
         let plan = Self { is_steady: plan.is_steady(), ..plan };
         Ok((plan, collector))
@@ -173,26 +159,32 @@ impl Plan {
         &self.bodies[..self.bodies.partition_point(|body| body.way.is_none())]
     }
 
-    /// Blames shapes that are none on their keys.
-    fn check_shapes(&self) -> Result<(), ConfigError> {
+    /// Blames shapes that are none on their keys, and makes meshes that no draw changes.
+    fn check_shapes(&mut self) -> Result<(), ConfigError> {
         let numbers = self.works.numbers(None);
-        let bodies = self.bodies.iter().map(|body| (&body.key, Some(&body.form)));
-        let parts = self.parts.iter().map(|part| (&part.key, part.form.as_ref()));
-        for (key, form) in bodies.chain(parts) {
-            if let Some(Err(error)) = form.map(|form| form.make(&numbers)) {
-                return Err(ConfigError::new(format!("{key}.shape"), error));
-            }
+        let wrong = |key: &str, error: WorldError| ConfigError::new(format!("{key}.shape"), error);
+        for body in &self.bodies {
+            body.form.make(&numbers).map_err(|error| wrong(&body.key, error))?;
+        }
+        for part in &mut self.parts {
+            part.check(&numbers).map_err(|error| wrong(&part.key, error))?;
         }
         Ok(())
+    }
+
+    /// What of bodies and scenery is drawn but not simulated, in words.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let bodies = self.bodies.iter().filter_map(|body| Some((&body.name, body.form.note()?)));
+        let parts = self.parts.iter().filter_map(|part| Some((&part.name, part.note()?)));
+        bodies.chain(parts).map(|(name, note)| format!("{name} is simulated as {note}")).collect()
     }
 
     fn is_steady(&self) -> bool {
         let said = self.pairs.iter().flat_map(|(_, said)| said).flatten();
         let substances = self.substances.iter().flat_map(|one| one.contact.iter().chain([&one.density]));
-        let places = self.parts.iter().flat_map(|part| part.at.iter().chain(&part.turn));
-        said.chain(substances).chain(places).all(|value| value.is_fixed())
+        said.chain(substances).all(|value| value.is_fixed())
             && self.bodies.iter().all(|body| body.form.is_fixed() && body.way.as_ref().is_none_or(Way::is_fixed))
-            && self.parts.iter().all(|part| part.form.as_ref().is_none_or(Form::is_fixed))
+            && self.parts.iter().all(Standing::is_fixed)
     }
 
     /// The simulator's world of a draw.
@@ -273,7 +265,7 @@ impl Plan {
 }
 
 /// The material of this name.
-fn substance(owner: &Owner<'_>, key: &str, kinds: &[String], name: &str) -> Result<usize, ConfigError> {
+pub(super) fn substance(owner: &Owner<'_>, key: &str, kinds: &[String], name: &str) -> Result<usize, ConfigError> {
     kinds.iter().position(|kind| kind == name).ok_or_else(|| {
         let near = nearest(name, kinds.iter().map(String::as_str));
         let near = near.map(|near| format!("did you mean {near:?}? ")).unwrap_or_default();
@@ -299,54 +291,9 @@ impl Substance {
     }
 
     /// The look of something made of it, with a colour of its own or without.
-    fn look(&self, own: Option<[u8; 3]>, otherwise: Look) -> Look {
+    pub(super) fn look(&self, own: Option<[u8; 3]>, otherwise: Look) -> Look {
         let look = self.look.unwrap_or(otherwise);
         own.map_or(look, |colour| Look::new(colour, look.material))
-    }
-}
-
-impl Standing {
-    fn new(
-        collector: &mut Collector,
-        member: &Member,
-        fixed: &Fixed,
-        kinds: &[String],
-        substances: &[Substance],
-    ) -> Result<Self, ConfigError> {
-        let owner = member.owner();
-        let substance = substance(&owner, "material", kinds, &fixed.material)?;
-        let look = substances[substance].look(colour(&owner, &fixed.colour)?, Look::STONE);
-        let solid = fixed.shape.solid();
-        Ok(Self {
-            name: owner.name.to_owned(),
-            key: member.key.clone(),
-            look,
-            form: solid.map(|solid| Form::new(collector, &owner, &solid)).transpose()?,
-            substance,
-            at: collector.three(&owner, "at_mm", ["x", "y", "z"], &fixed.at_mm)?,
-            turn: collector.three(&owner, "turn_deg", ["turn_x", "turn_y", "turn_z"], &fixed.turn_deg)?,
-        })
-    }
-
-    /// How it is turned.
-    pub(super) fn turned(&self, numbers: &Numbers<'_>) -> DQuat {
-        by_angles(self.turn.map(|angle| angle.of(numbers)))
-    }
-
-    fn make(&self, numbers: &Numbers<'_>) -> Result<Part, WorldError> {
-        let (at, turn, material) = (vector(&self.at, numbers) * MM, self.turned(numbers), Kind(self.substance as u16));
-        let Some(form) = &self.form else { return Ok(Part::Plane(Plane::new(at, turn * DVec3::Z, material)?)) };
-        if let Some(edges) = form.sharp_box(numbers).filter(|_| turn == DQuat::IDENTITY) {
-            let bounds = Aabb { min: at - 0.5 * edges, max: at + 0.5 * edges };
-            return Ok(Part::Block { bounds, material, stretches: Vec::new() });
-        }
-        let made = form.make(numbers)?;
-        Ok(Part::Solid(Box::new(SolidPart {
-            at: at + turn * made.centre,
-            turn: (turn * made.axes).normalize(),
-            shape: made.solid,
-            material,
-        })))
     }
 }
 

@@ -1,14 +1,17 @@
 //! Shapes of a draw: for the simulator, and as they are drawn.
 
-use super::forms::Shape;
+use super::forms::{self, Shape};
+use super::from_file::{FromFile, Loaded};
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
 use crate::animation;
 use crate::scene::ConfigError;
+use crate::turns::by_angles;
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
 use plaus_sim::WorldError;
 use plaus_sim::shape::{Compound, Convex, ConvexHull, Cuboid, Frustum, Member, Shape as Solid};
 use std::f64::consts::{FRAC_PI_2, TAU};
+use std::sync::Arc;
 
 /// Metres of a millimetre.
 pub(super) const MM: f64 = 1e-3;
@@ -26,6 +29,18 @@ pub(super) enum Form {
     Cone(Value, Value),
     Capsule(Value, Value),
     Hull(Vec<Values>, Value),
+    Compound(Vec<Piece>),
+    /// The hull of what a file holds, and how many millimetres its unit is.
+    HullOf(Arc<Loaded>, Value),
+}
+
+/// A piece of a compound.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    form: Form,
+    at: Values,
+    turn: Values,
+    density: Value,
 }
 
 /// A shape of a draw.
@@ -44,34 +59,58 @@ pub(super) struct Made {
 impl Form {
     /// The shape at the key `shape` of `owner`.
     pub(super) fn new(collector: &mut Collector, owner: &Owner<'_>, shape: &Shape) -> Result<Self, ConfigError> {
-        let key = |name: &str| format!("shape.{}.{name}", shape.name());
+        Self::within(collector, owner, "shape", "", shape)
+    }
+
+    /// The same at the key `at` of `owner`; names of variables begin with `prefix`.
+    fn within(
+        collector: &mut Collector,
+        owner: &Owner<'_>,
+        at: &str,
+        prefix: &str,
+        shape: &Shape,
+    ) -> Result<Self, ConfigError> {
+        let key = |name: &str| format!("{at}.{}.{name}", shape.name());
+        let short = |name: &str| format!("{prefix}{name}");
         Ok(match shape {
-            Shape::Ball(ball) => Self::Ball(collector.number(owner, &key("radius_mm"), "radius", &ball.radius_mm)?),
+            Shape::Ball(ball) => {
+                Self::Ball(collector.number(owner, &key("radius_mm"), &short("radius"), &ball.radius_mm)?)
+            }
             Shape::Box(cuboid) => {
-                let names = ["size_x", "size_y", "size_z"];
-                let size = collector.three(owner, &key("size_mm"), names, &cuboid.size_mm)?;
-                Self::Box(size, collector.number(owner, &key("rounding_mm"), "rounding", &cuboid.rounding_mm)?)
+                let names = ["size_x", "size_y", "size_z"].map(short);
+                let size = collector.three(owner, &key("size_mm"), words(&names), &cuboid.size_mm)?;
+                Self::Box(size, collector.number(owner, &key("rounding_mm"), &short("rounding"), &cuboid.rounding_mm)?)
             }
             Shape::Cylinder(form) => Self::Cylinder(
-                collector.number(owner, &key("radius_mm"), "radius", &form.radius_mm)?,
-                collector.number(owner, &key("height_mm"), "height", &form.height_mm)?,
+                collector.number(owner, &key("radius_mm"), &short("radius"), &form.radius_mm)?,
+                collector.number(owner, &key("height_mm"), &short("height"), &form.height_mm)?,
             ),
             Shape::Cone(form) => Self::Cone(
-                collector.number(owner, &key("radius_mm"), "radius", &form.radius_mm)?,
-                collector.number(owner, &key("height_mm"), "height", &form.height_mm)?,
+                collector.number(owner, &key("radius_mm"), &short("radius"), &form.radius_mm)?,
+                collector.number(owner, &key("height_mm"), &short("height"), &form.height_mm)?,
             ),
             Shape::Capsule(form) => Self::Capsule(
-                collector.number(owner, &key("radius_mm"), "radius", &form.radius_mm)?,
-                collector.number(owner, &key("length_mm"), "length", &form.length_mm)?,
+                collector.number(owner, &key("radius_mm"), &short("radius"), &form.radius_mm)?,
+                collector.number(owner, &key("length_mm"), &short("length"), &form.length_mm)?,
             ),
             Shape::Hull(hull) => {
                 let point = |(index, point)| {
-                    let names = ["x", "y", "z"].map(|axis| format!("point_{index}_{axis}"));
-                    let names = [0, 1, 2].map(|axis: usize| names[axis].as_str());
-                    collector.three(owner, &key(&format!("points_mm[{index}]")), names, point)
+                    let names = ["x", "y", "z"].map(|axis| short(&format!("point_{index}_{axis}")));
+                    collector.three(owner, &key(&format!("points_mm[{index}]")), words(&names), point)
                 };
                 let points = hull.points_mm.iter().enumerate().map(point).collect::<Result<_, _>>()?;
-                Self::Hull(points, collector.number(owner, &key("rounding_mm"), "rounding", &hull.rounding_mm)?)
+                Self::Hull(points, collector.number(owner, &key("rounding_mm"), &short("rounding"), &hull.rounding_mm)?)
+            }
+            Shape::Compound(compound) => {
+                let mut pieces = Vec::with_capacity(compound.pieces.len());
+                for (index, piece) in compound.pieces.iter().enumerate() {
+                    pieces.push(Piece::new(collector, owner, &key(&format!("pieces[{index}]")), index, piece)?);
+                }
+                Self::Compound(pieces)
+            }
+            Shape::HullOf(file) => {
+                let (loaded, unit) = opened(collector, owner, &format!("{at}.hull_of"), prefix, file)?;
+                Self::HullOf(loaded, unit)
             }
         })
     }
@@ -83,6 +122,20 @@ impl Form {
             Self::Box(size, rounding) => size.iter().chain([rounding]).all(|value| value.is_fixed()),
             Self::Cylinder(a, b) | Self::Cone(a, b) | Self::Capsule(a, b) => a.is_fixed() && b.is_fixed(),
             Self::Hull(points, rounding) => points.iter().flatten().chain([rounding]).all(|value| value.is_fixed()),
+            Self::Compound(pieces) => pieces.iter().all(Piece::is_fixed),
+            Self::HullOf(_, unit) => unit.is_fixed(),
+        }
+    }
+
+    /// What is drawn of it but not simulated, in words; `None` where that is nothing.
+    pub(super) fn note(&self) -> Option<String> {
+        match self {
+            Self::HullOf(loaded, unit) => loaded.note(*unit),
+            Self::Compound(pieces) => {
+                let notes: Vec<String> = pieces.iter().filter_map(|piece| piece.form.note()).collect();
+                (!notes.is_empty()).then(|| notes.join("; "))
+            }
+            _ => None,
         }
     }
 
@@ -114,7 +167,71 @@ impl Form {
                 let points: Vec<DVec3> = points.iter().map(|point| vector(point, numbers) * MM).collect();
                 Made::hull(ConvexHull::new(&points, metres(rounding))?)
             }
+            Self::Compound(pieces) => Made::compound(pieces, numbers),
+            Self::HullOf(loaded, unit) => Made::of_file(loaded, metres(unit)),
         }
+    }
+}
+
+impl Piece {
+    fn new(
+        collector: &mut Collector,
+        owner: &Owner<'_>,
+        key: &str,
+        index: usize,
+        piece: &forms::Piece,
+    ) -> Result<Self, ConfigError> {
+        let prefix = format!("piece_{}_", index + 1);
+        let named = |names: [&str; 3]| names.map(|name| format!("{prefix}{name}"));
+        let (at, turn) = (named(["x", "y", "z"]), named(["turn_x", "turn_y", "turn_z"]));
+        let shape = piece.shape.clone().into();
+        Ok(Self {
+            form: Form::within(collector, owner, &format!("{key}.shape"), &prefix, &shape)?,
+            at: collector.three(owner, &format!("{key}.at_mm"), words(&at), &piece.at_mm)?,
+            turn: collector.three(owner, &format!("{key}.turn_deg"), words(&turn), &piece.turn_deg)?,
+            density: collector.number(owner, &format!("{key}.density"), &format!("{prefix}density"), &piece.density)?,
+        })
+    }
+
+    fn is_fixed(&self) -> bool {
+        let numbers = self.at.iter().chain(&self.turn).chain([&self.density]);
+        numbers.clone().all(|value| value.is_fixed()) && self.form.is_fixed()
+    }
+}
+
+/// What a file holds, at the key `key` of `owner`, and how many millimetres its unit is.
+pub(super) fn opened(
+    collector: &mut Collector,
+    owner: &Owner<'_>,
+    key: &str,
+    prefix: &str,
+    file: &FromFile,
+) -> Result<(Arc<Loaded>, Value), ConfigError> {
+    let loaded = file.loaded(&format!("{}.{key}", owner.key))?;
+    let unit = match &file.unit_mm {
+        None => Value::Fixed(loaded.unit_mm),
+        Some(unit) => collector.number(owner, &format!("{key}.unit_mm"), &format!("{prefix}unit"), unit)?,
+    };
+    Ok((loaded, unit))
+}
+
+/// Three words to lend.
+fn words(names: &[String; 3]) -> [&str; 3] {
+    [0, 1, 2].map(|k: usize| names[k].as_str())
+}
+
+impl Loaded {
+    /// What a hull fills or cuts off, in words: the unit is so many millimetres.
+    fn note(&self, unit: Value) -> Option<String> {
+        let corners = self.corners.as_ref()?;
+        let (count, of) = (corners.points.len(), corners.of);
+        let out = match unit {
+            Value::Fixed(unit) => format!("{:.3} mm", corners.out * unit),
+            _ => format!("{:.3} of the file's unit", corners.out),
+        };
+        let cut =
+            if corners.out > 0.0 { format!(", beyond which others stand out by up to {out}") } else { String::new() };
+        Some(format!("a convex hull of {of} points, by {count} of them{cut}"))
     }
 }
 
@@ -140,6 +257,55 @@ impl Made {
         let triangles = hull.faces().flat_map(fan).collect();
         let drawn = animation::Shape::Solid { vertices, triangles };
         Ok(Self { solid: Solid::Hull(hull.into()), centre, axes, drawn })
+    }
+
+    /// The hull of what a file holds whose unit is so many metres; the file's own triangles are drawn.
+    fn of_file(loaded: &Loaded, unit: f64) -> Result<Self, WorldError> {
+        let points = loaded.corners.iter().flat_map(|corners| &corners.points);
+        let points: Vec<DVec3> = points.map(|&point| point * unit).collect();
+        let made = Self::hull(ConvexHull::new(&points, 0.0)?)?;
+        let seen = &loaded.triangles;
+        let vertices = seen.corners.iter().map(|&corner| corner * unit - made.centre).collect();
+        let drawn = animation::Shape::Solid { vertices, triangles: seen.faces.clone() };
+        Ok(Self { drawn, ..made })
+    }
+
+    fn compound(pieces: &[Piece], numbers: &Numbers<'_>) -> Result<Self, WorldError> {
+        let (mut members, mut vertices, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+        for piece in pieces {
+            let made = piece.form.make(numbers)?;
+            let at = vector(&piece.at, numbers) * MM;
+            let turn = by_angles(piece.turn.map(|angle| angle.of(numbers)));
+            let (corners, faces) = mesh(&made.drawn);
+            let first = vertices.len() as u32;
+            vertices.extend(corners.into_iter().map(|corner| at + turn * (corner + made.centre)));
+            triangles.extend(faces.into_iter().map(|face| face.map(|corner| first + corner)));
+            let density = piece.density.of(numbers);
+            members.extend(made.members().into_iter().map(|own| Member {
+                at: at + turn * own.at,
+                turn: (turn * own.turn).normalize(),
+                density,
+                ..own
+            }));
+        }
+        let compound = Compound::new(&members)?;
+        let (centre, axes) = (compound.centre(), compound.turn());
+        vertices.iter_mut().for_each(|vertex| *vertex -= centre);
+        let drawn = animation::Shape::Solid { vertices, triangles };
+        Ok(Self { solid: compound.into(), centre, axes, drawn })
+    }
+
+    /// The convex solids that it is made of, about its origin and along its axes.
+    fn members(&self) -> Vec<Member> {
+        let solid = match &self.solid {
+            Solid::Ball(radius) => Convex::Ball(*radius),
+            Solid::Cuboid(cuboid) => Convex::Cuboid(*cuboid),
+            Solid::Hull(hull) => Convex::Hull(Arc::clone(hull)),
+            Solid::Compound(compound) => return compound.members().to_vec(),
+            // No form is made so.
+            Solid::Revolution(_) => return Vec::new(),
+        };
+        vec![Member { turn: self.axes, ..Member::new(solid, self.centre) }]
     }
 }
 
@@ -227,13 +393,25 @@ mod tests {
     fn what_is_drawn_is_what_is_simulated() {
         let (fixed, works) = (Value::Fixed, Collector::default().works());
         let points = [[0.0, 0.0, 0.0], [30.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 50.0]];
+        let piece = |form, x, turned| Piece {
+            form,
+            at: [fixed(x), fixed(5.0), fixed(-3.0)],
+            turn: [fixed(turned), fixed(0.0), fixed(30.0)],
+            density: fixed(1.0),
+        };
+        let hull = || Form::Hull(points.map(|point| point.map(fixed)).to_vec(), fixed(0.0));
         for form in [
+            Form::Compound(vec![
+                piece(hull(), 0.0, 40.0),
+                piece(Form::Cone(fixed(20.0), fixed(50.0)), 100.0, 70.0),
+                piece(Form::Box([fixed(20.0), fixed(30.0), fixed(40.0)], fixed(0.0)), -100.0, 10.0),
+            ]),
             Form::Ball(fixed(20.0)),
             Form::Box([fixed(20.0), fixed(30.0), fixed(40.0)], fixed(0.0)),
             Form::Cylinder(fixed(20.0), fixed(5.0)),
             Form::Cone(fixed(20.0), fixed(50.0)),
             Form::Capsule(fixed(10.0), fixed(40.0)),
-            Form::Hull(points.map(|point| point.map(fixed)).to_vec(), fixed(0.0)),
+            hull(),
         ] {
             let made = form.make(&works.numbers(None)).unwrap();
             let drawn = volume(&mesh(&made.drawn));

@@ -323,6 +323,10 @@ impl<S: Scene> Scene for Asked<S> {
         self.scene.demands().into_iter().chain(said).collect()
     }
 
+    fn notes(&self) -> Vec<String> {
+        self.scene.notes()
+    }
+
     fn asked(&self) -> Vec<String> {
         let said = self.requirements().iter().enumerate().map(|(index, one)| key(index, one));
         self.scene.asked().into_iter().chain(said).collect()

@@ -17,6 +17,7 @@ pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};
 pub use schema::{SCHEMA_FILE, SCHEMA_ID, published_schema, schema};
 
+use crate::files::{Files, NoFiles};
 use crate::registry::{Visitor, World};
 use crate::require::{Asked, Require, agree};
 use crate::rules::Rules;
@@ -144,6 +145,14 @@ impl Scenario {
     /// looked at, and what one key alone does not show (weights that are all zero) is found where each key by itself is
     /// right.
     pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, ScenarioError> {
+        Self::read_with(name, text, overrides, &NoFiles)
+    }
+
+    /// The same of a scenario that may name files: shapes of its own.
+    ///
+    /// # Errors
+    /// As [`Scenario::read`], and where a file cannot be read, or is not what the scenario says.
+    pub fn read_with(name: &str, text: &str, overrides: &[String], files: &dyn Files) -> Result<Self, ScenarioError> {
         let fail = |problems| Err(ScenarioError::new(name, text, problems));
         let (mut tree, syntax) = Tree::parse(text);
         if !syntax.is_empty() {
@@ -160,11 +169,11 @@ impl Scenario {
             return fail(problems);
         }
         let Some(value) = value else { return fail(vec![Problem::new("", "no scenario")]) };
-        let scenario: Self = match value.try_into() {
+        let mut scenario: Self = match value.try_into() {
             Ok(scenario) => scenario,
             Err(error) => return fail(vec![Problem::new("", error.message())]),
         };
-        match scenario.try_building() {
+        match scenario.world.load(files).and_then(|()| scenario.try_building()) {
             Ok(()) => Ok(scenario),
             Err(error) => fail(vec![tree::located(&tree, &error)]),
         }

@@ -3,11 +3,27 @@
 
 #![allow(dead_code, reason = "each test uses its own part")]
 
-use plaus_scenes::scenario;
+use plaus_scenes::{Assets, scenario};
 use serde_json::{Map, Value};
 
 /// The scenario of the paper's figures 1 and 2.
 pub(crate) const BALL2D: &str = include_str!("../../../../scenarios/ball2d.toml");
+
+/// Two slopes that meet in a ridge 120 high along y, each 200 wide: open below.
+pub(crate) const ROOF: &str = "o roof\nv -200 -200 0\nv 0 -200 120\nv 200 -200 0\nv -200 200 0\nv 0 200 120\n\
+                               v 200 200 0\nf 1 2 5 4\nf 2 3 6 5\n";
+
+/// A prism along y whose ends are triangles, 60 wide, 40 long, 35 high.
+pub(crate) const WEDGE: &str = "o wedge\nv -30 -20 -10\nv 30 -20 -10\nv 0 -20 25\nv -30 20 -10\nv 30 20 -10\n\
+                                v 0 20 25\nf 1 2 3\nf 4 6 5\nf 1 4 5 2\nf 2 5 6 3\nf 1 3 6 4\n";
+
+/// Files of shapes that scenarios may name.
+pub(crate) fn shapes() -> Assets {
+    let mut shapes = Assets::default();
+    shapes.insert("roof.obj", ROOF.as_bytes());
+    shapes.insert("wedge.obj", WEDGE.as_bytes());
+    shapes
+}
 
 /// Marks one of some words that may also be left out.
 const MAY_BE_UNSET: &str = "may be unset";

@@ -1,0 +1,214 @@
+//! Binary glTF: nodes with their meshes, keyframes, and what is said of them besides.
+
+mod check;
+mod keys;
+
+pub use keys::{Between, Key};
+
+use super::{AssetError, Object, Triangles};
+use check::is_sound;
+use glam::{DMat3, DMat4, DQuat, DVec3};
+use gltf::mesh::Mode;
+use gltf::{Document, Gltf};
+use plaus_dist::math::powf;
+use serde_json::Value;
+
+/// A file that was read.
+#[derive(Debug)]
+pub struct Glb {
+    document: Document,
+    blob: Vec<u8>,
+    /// The file's JSON, with what the reader does not know.
+    json: Value,
+    /// The nodes that the scene holds, in the order of the tree.
+    nodes: Vec<Placed>,
+}
+
+/// Where a node is.
+#[derive(Debug, Clone, Copy)]
+struct Placed {
+    index: usize,
+    parent: Option<usize>,
+    world: DMat4,
+}
+
+/// A node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node {
+    /// Its name, as [`Object::name`].
+    pub name: String,
+    /// Its place among the file's nodes.
+    pub index: usize,
+    /// That of the node that it hangs on.
+    pub parent: Option<usize>,
+    /// Where its origin is in the file, in m.
+    pub at: DVec3,
+    /// Turns its axes into those of the file.
+    pub turn: DQuat,
+    /// What it is scaled by along its axes.
+    pub scale: DVec3,
+    /// Whether it has a mesh.
+    pub has_mesh: bool,
+    /// Its `extras`; null where there are none.
+    pub extras: Value,
+    /// Its extensions by name; null where there are none.
+    pub extensions: Value,
+    /// How it moves; empty where it does not.
+    pub keys: Vec<Key>,
+    /// How it goes from key to key.
+    pub between: Between,
+    /// What of its motion is left out, in words.
+    pub left_out: Vec<String>,
+}
+
+impl Glb {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`AssetError::Broken`] for what is no GLB, or says what cannot be.
+    pub fn read(bytes: &[u8]) -> Result<Self, AssetError> {
+        let broken = |what: String| AssetError::Broken(format!("it is no GLB that can be read: {what}"));
+        let length = bytes.get(8..12).and_then(|length| length.try_into().ok()).map(u32::from_le_bytes);
+        if !bytes.starts_with(b"glTF") || length.is_none_or(|length| length as usize != bytes.len()) {
+            return Err(broken("its head does not say glTF and how long it is".into()));
+        }
+        let json = gltf::Glb::from_slice(bytes).map_err(|error| broken(error.to_string()))?.json;
+        let json: Value = serde_json::from_slice(&json).map_err(|error| broken(error.to_string()))?;
+        let Gltf { document, blob } = Gltf::from_slice(bytes).map_err(|error| broken(error.to_string()))?;
+        let blob = blob.unwrap_or_default();
+        if let Some(index) = document.accessors().find(|accessor| !is_sound(accessor, &blob)).map(|a| a.index()) {
+            return Err(broken(format!("accessor {index} is sparse, or goes beyond the file's own data")));
+        }
+        let nodes = placed(&document)?;
+        Ok(Self { document, blob, json, nodes })
+    }
+
+    /// What has a mesh.
+    pub(crate) fn objects(&self) -> Result<Vec<Object>, AssetError> {
+        let mut objects = Vec::new();
+        for &Placed { index, world, .. } in &self.nodes {
+            let Some(node) = self.document.nodes().nth(index) else { continue };
+            let Some(mesh) = node.mesh() else { continue };
+            let name = name(&node);
+            let (mut corners, mut faces, mut colour) = (Vec::new(), Vec::new(), None);
+            for primitive in mesh.primitives() {
+                match primitive.mode() {
+                    Mode::Triangles => {}
+                    Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => continue,
+                    mode => {
+                        return Err(AssetError::Broken(format!(
+                            "{name:?} has triangles as {mode:?}: make them single"
+                        )));
+                    }
+                }
+                let reader = primitive.reader(|_| Some(&self.blob[..]));
+                let first = corners.len() as u32;
+                let Some(positions) = reader.read_positions() else { continue };
+                corners.extend(positions.map(|place| DVec3::from_array(place.map(f64::from))));
+                let indices: Vec<u32> = match reader.read_indices() {
+                    Some(indices) => indices.into_u32().collect(),
+                    None => (0..corners.len() as u32 - first).collect(),
+                };
+                let shifted = |index: u32| first.saturating_add(index);
+                faces.extend(indices.chunks_exact(3).map(|face| [face[0], face[1], face[2]].map(shifted)));
+                let base = primitive.material().pbr_metallic_roughness().base_color_factor();
+                let given = primitive.material().index().is_some();
+                colour = colour.or_else(|| given.then(|| [0, 1, 2].map(|k| screen(base[k]))));
+            }
+            let (at, turn) = pose(&world);
+            // What is left of the node's matrix: what it is scaled by. A mirror image turns faces inside out.
+            let rest = DMat4::from_rotation_translation(turn, at).inverse() * world;
+            if DMat3::from_mat4(rest).determinant() < 0.0 {
+                faces.iter_mut().for_each(|face| face.swap(1, 2));
+            }
+            corners.iter_mut().for_each(|corner| *corner = rest.transform_point3(*corner));
+            let triangles = Triangles::new(&name, &corners, &faces)?;
+            objects.push(Object { name, at, turn, triangles, colour });
+        }
+        Ok(objects)
+    }
+
+    /// The nodes of the scene, in the order of its tree.
+    #[must_use]
+    pub fn nodes(&self) -> Vec<Node> {
+        let node = |&Placed { index, parent, ref world }: &Placed| {
+            let node = self.document.nodes().nth(index)?;
+            let (at, turn) = pose(world);
+            let said = |key: &str| self.json["nodes"][index].get(key).cloned().unwrap_or(Value::Null);
+            let (keys, between, left_out) = self.keys(&node, world);
+            Some(Node {
+                name: name(&node),
+                index,
+                parent,
+                at,
+                turn,
+                scale: world.to_scale_rotation_translation().0,
+                has_mesh: node.mesh().is_some(),
+                extras: said("extras"),
+                extensions: said("extensions"),
+                keys,
+                between,
+                left_out,
+            })
+        };
+        self.nodes.iter().filter_map(node).collect()
+    }
+
+    /// The file's JSON of one entry of a list: `nodes`, `meshes`, `materials`; null where there is none.
+    #[must_use]
+    pub fn said(&self, list: &str, index: usize) -> &Value {
+        &self.json[list][index]
+    }
+
+    /// What the file says beyond its nodes, by extension; null where it says nothing.
+    #[must_use]
+    pub fn extension(&self, name: &str) -> &Value {
+        &self.json["extensions"][name]
+    }
+}
+
+/// The name of a node.
+fn name(node: &gltf::Node<'_>) -> String {
+    node.name().filter(|name| !name.is_empty()).map_or_else(|| format!("object_{}", node.index() + 1), String::from)
+}
+
+/// Where a node is, and how it is turned.
+fn pose(world: &DMat4) -> (DVec3, DQuat) {
+    let (scale, turn, at) = world.to_scale_rotation_translation();
+    let is_turn = scale.is_finite() && turn.is_finite() && turn.length() > 0.5;
+    (at, if is_turn { turn.normalize() } else { DQuat::IDENTITY })
+}
+
+/// The nodes of the default scene, or of the first, with where they are.
+fn placed(document: &Document) -> Result<Vec<Placed>, AssetError> {
+    let Some(scene) = document.default_scene().or_else(|| document.scenes().next()) else { return Ok(Vec::new()) };
+    let mut seen = vec![false; document.nodes().len()];
+    let mut found = Vec::new();
+    let mut open: Vec<_> = scene.nodes().map(|node| (node, None, DMat4::IDENTITY)).collect();
+    open.reverse();
+    while let Some((node, parent, around)) = open.pop() {
+        if std::mem::replace(&mut seen[node.index()], true) {
+            return Err(AssetError::Broken(format!("node {} stands in the scene twice", node.index())));
+        }
+        let world = around * matrix(&node);
+        if !world.is_finite() {
+            return Err(AssetError::Broken(format!("node {} has no place: its matrix is not finite", node.index())));
+        }
+        found.push(Placed { index: node.index(), parent, world });
+        let children: Vec<_> = node.children().map(|child| (child, Some(node.index()), world)).collect();
+        open.extend(children.into_iter().rev());
+    }
+    Ok(found)
+}
+
+/// Where a node is in its parent.
+fn matrix(node: &gltf::Node<'_>) -> DMat4 {
+    DMat4::from_cols_array_2d(&node.transform().matrix().map(|column| column.map(f64::from)))
+}
+
+/// A linear channel of a colour as screens have it (IEC 61966-2-1).
+fn screen(linear: f32) -> u8 {
+    let linear = f64::from(linear.clamp(0.0, 1.0));
+    let shown = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * powf(linear, 1.0 / 2.4) - 0.055 };
+    (255.0 * shown).round() as u8
+}

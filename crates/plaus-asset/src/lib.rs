@@ -1,0 +1,137 @@
+//! Files of shapes, GLB, OBJ and STL, as named objects made of triangles.
+//!
+//! ```
+//! let obj = b"o wedge\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+//! let content = plaus_asset::read("wedge.obj", obj)?;
+//! let wedge = content.object("wedge").expect("it has one");
+//! assert_eq!((wedge.triangles.corners.len(), wedge.triangles.faces.len()), (4, 4));
+//! # Ok::<(), plaus_asset::AssetError>(())
+//! ```
+//!
+//! Lengths are in the file's own unit, and axes the file's own, until [`Triangles::upright`] makes z point up. Nothing
+//! here reads a disk, and nothing that a file says is believed before it is checked.
+
+mod error;
+pub mod glb;
+mod obj;
+mod stl;
+mod triangles;
+
+pub use error::AssetError;
+pub use triangles::{Triangles, Up, upright, upright_turn};
+
+use glam::{DQuat, DVec3};
+
+/// Longest file that is read, in bytes: an STL of as many triangles as are served, written as text, has about that.
+pub const MOST_BYTES: usize = 256 << 20;
+
+/// Most triangles of a file: what the simulator takes of one mesh.
+pub const MOST_TRIANGLES: usize = 1 << 20;
+
+/// The formats there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Binary glTF 2.0: nodes with names, keyframes, materials. Metres, y up.
+    Glb,
+    /// Wavefront OBJ: objects and groups with names. No unit; y up in most programs.
+    Obj,
+    /// STL, binary or text: one object without a name. No unit, mostly millimetres; z up in most programs.
+    Stl,
+}
+
+impl Format {
+    /// The format of a file by the ending of its name, whatever its case.
+    ///
+    /// # Errors
+    /// [`AssetError::UnknownFormat`] for any other ending.
+    pub fn of(file: &str) -> Result<Self, AssetError> {
+        let ending = file.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("glb") => Ok(Self::Glb),
+            Some("obj") => Ok(Self::Obj),
+            Some("stl") => Ok(Self::Stl),
+            _ => Err(AssetError::UnknownFormat),
+        }
+    }
+
+    /// How many millimetres its unit of length is, as far as that is usual.
+    #[must_use]
+    pub fn unit_mm(self) -> f64 {
+        match self {
+            Self::Glb => 1000.0,
+            Self::Obj | Self::Stl => 1.0,
+        }
+    }
+
+    /// Which axis usually points up in it.
+    #[must_use]
+    pub fn up(self) -> Up {
+        match self {
+            Self::Glb | Self::Obj => Up::Y,
+            Self::Stl => Up::Z,
+        }
+    }
+}
+
+/// What a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Content {
+    /// Its format.
+    pub format: Format,
+    /// What has triangles, in the order of the file.
+    pub objects: Vec<Object>,
+}
+
+/// Something in a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// Its name; `object_1` and so on, by its place, where the file gives none.
+    pub name: String,
+    /// Where its origin is in the file. Only a GLB places its objects.
+    pub at: DVec3,
+    /// Turns its axes into those of the file.
+    pub turn: DQuat,
+    /// Its triangles about its own origin, along its own axes. What its node is scaled by is in them.
+    pub triangles: Triangles,
+    /// Its colour, red, green and blue, where the file gives one.
+    pub colour: Option<[u8; 3]>,
+}
+
+impl Content {
+    /// The first object of that name.
+    #[must_use]
+    pub fn object(&self, name: &str) -> Option<&Object> {
+        self.objects.iter().find(|object| object.name == name)
+    }
+
+    /// All of it, as it lies in the file.
+    #[must_use]
+    pub fn whole(&self) -> Triangles {
+        let placed = |object: &Object| object.triangles.moved(|corner| object.at + object.turn * corner);
+        Triangles::joined(self.objects.iter().map(placed))
+    }
+}
+
+/// Reads a file called `file`, whose ending says its format.
+///
+/// # Errors
+/// [`AssetError`]: an ending that is none of those, too many bytes or triangles, what is no such file, a corner that is
+/// not finite, and a file without triangles.
+pub fn read(file: &str, bytes: &[u8]) -> Result<Content, AssetError> {
+    let format = Format::of(file)?;
+    if bytes.len() > MOST_BYTES {
+        return Err(AssetError::TooLong { bytes: bytes.len() as u64 });
+    }
+    let objects = match format {
+        Format::Glb => glb::Glb::read(bytes)?.objects()?,
+        Format::Obj => obj::read(bytes)?,
+        Format::Stl => stl::read(bytes)?,
+    };
+    let objects: Vec<Object> = objects.into_iter().filter(|object| !object.triangles.faces.is_empty()).collect();
+    let triangles = objects.iter().map(|object| object.triangles.faces.len()).sum();
+    match triangles {
+        0 => Err(AssetError::Empty),
+        1..=MOST_TRIANGLES => Ok(Content { format, objects }),
+        _ => Err(AssetError::TooMany { triangles }),
+    }
+}

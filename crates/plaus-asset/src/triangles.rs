@@ -1,0 +1,109 @@
+//! Triangles over shared corners.
+
+use super::AssetError;
+use glam::{DQuat, DVec3};
+use std::collections::BTreeMap;
+
+/// Triangles over shared corners: no two corners are in one place.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Triangles {
+    /// Places, in the file's unit.
+    pub corners: Vec<DVec3>,
+    /// Indices of three corners each, anticlockwise as seen from outside.
+    pub faces: Vec<[u32; 3]>,
+}
+
+/// Which axis of a file points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Up {
+    /// Its y axis: −z is away.
+    Y,
+    /// Its z axis.
+    Z,
+}
+
+impl Triangles {
+    /// Triangles over corners of which several may be in one place, as where surfaces of different materials meet:
+    /// these become one.
+    ///
+    /// # Errors
+    /// [`AssetError::NotFinite`] for a corner of the object `name` that is not finite, [`AssetError::Broken`] for an
+    /// index beyond the corners.
+    pub fn new(name: &str, corners: &[DVec3], faces: &[[u32; 3]]) -> Result<Self, AssetError> {
+        if let Some(corner) = corners.iter().position(|corner| !corner.is_finite()) {
+            return Err(AssetError::NotFinite { object: name.to_owned(), corner });
+        }
+        let mut joined = Joined::default();
+        for (index, face) in faces.iter().enumerate() {
+            let mut renamed = [0; 3];
+            for (place, corner) in renamed.iter_mut().zip(face) {
+                let found = corners.get(*corner as usize).ok_or_else(|| {
+                    AssetError::Broken(format!(
+                        "triangle {index} of {name:?} names corner {corner}, which is not there"
+                    ))
+                })?;
+                *place = joined.corner(*found);
+            }
+            joined.triangles.faces.push(renamed);
+        }
+        Ok(joined.triangles)
+    }
+
+    /// Several as one.
+    pub(super) fn joined(all: impl Iterator<Item = Self>) -> Self {
+        let mut joined = Joined::default();
+        for one in all {
+            let names: Vec<u32> = one.corners.iter().map(|&corner| joined.corner(corner)).collect();
+            joined.triangles.faces.extend(one.faces.iter().map(|face| face.map(|corner| names[corner as usize])));
+        }
+        joined.triangles
+    }
+
+    /// The same with corners elsewhere.
+    #[must_use]
+    pub fn moved(&self, to: impl Fn(DVec3) -> DVec3) -> Self {
+        Self { corners: self.corners.iter().map(|&corner| to(corner)).collect(), faces: self.faces.clone() }
+    }
+
+    /// The same along axes of which z points up.
+    #[must_use]
+    pub fn upright(&self, up: Up) -> Self {
+        self.moved(|corner| upright(corner, up))
+    }
+}
+
+/// A place along axes of which z points up.
+#[must_use]
+pub fn upright(place: DVec3, up: Up) -> DVec3 {
+    match up {
+        Up::Y => DVec3::new(place.x, -place.z, place.y),
+        Up::Z => place,
+    }
+}
+
+/// A rotation as it is along axes of which z points up.
+#[must_use]
+pub fn upright_turn(turn: DQuat, up: Up) -> DQuat {
+    let axis = upright(DVec3::new(turn.x, turn.y, turn.z), up);
+    DQuat::from_xyzw(axis.x, axis.y, axis.z, turn.w)
+}
+
+/// Triangles whose corners are told apart by their places.
+#[derive(Debug, Default)]
+struct Joined {
+    triangles: Triangles,
+    known: BTreeMap<[u64; 3], u32>,
+}
+
+impl Joined {
+    fn corner(&mut self, place: DVec3) -> u32 {
+        // −0 is where 0 is.
+        let bits = (place + DVec3::ZERO).to_array().map(f64::to_bits);
+        let next = self.triangles.corners.len() as u32;
+        let index = *self.known.entry(bits).or_insert(next);
+        if index == next {
+            self.triangles.corners.push(place);
+        }
+        index
+    }
+}

@@ -1,0 +1,45 @@
+//! Shapes from files, from the terminal: a world made of one, a run that keeps its own copy.
+
+use crate::common::Place;
+
+/// A prism along y, 60 wide, 40 long, 35 high.
+const WEDGE: &str = "o wedge\nv -30 -20 -10\nv 30 -20 -10\nv 0 -20 25\nv -30 20 -10\nv 30 20 -10\nv 0 20 25\n\
+                     f 1 2 3\nf 4 6 5\nf 1 4 5 2\nf 2 5 6 3\nf 1 3 6 4\n";
+
+const WORLD: &str = "[sampler]\nchains = 1\nwarmup = 2\niterations = 6\n[world.custom]\nduration_s = 0.2\n\
+    [[world.custom.bodies]]\nname = 'wedge'\nshape = { hull_of = { file = 'shapes/wedge.obj' } }\nany_turn = true\n\
+    at_mm = [0, 0, 100]\n";
+
+#[test]
+fn a_run_keeps_the_files_of_its_scenario() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("shapes")).unwrap();
+    place.write("shapes/wedge.obj", WEDGE);
+    place.write("world.toml", WORLD);
+    place.ok("check world.toml").says(&["wedge is simulated as a convex hull of 6 points, by 6 of them"]);
+    place.ok("sample world.toml --out run --quiet");
+    let copy = place.bytes("run").into_keys().find(|name| name.starts_with("asset-")).unwrap();
+    // What lies beside the scenario may change, or go: the run has its own.
+    std::fs::remove_dir_all(place.path("shapes")).unwrap();
+    place.ends("check world.toml", 2).says(&["world.toml:9:32", "hull_of.file", "it cannot be read"]);
+    place.ok("resume run --iterations 9 --quiet");
+    place.ok("export run --format csv --out draws.csv");
+    place.write(&format!("run/{copy}"), WEDGE.replace("25", "26"));
+    for command in ["resume run --iterations 12", "diagnose run", "export run --format csv --out again.csv"] {
+        place.ends(command, 2).says(&["this copy of shapes/wedge.obj", "was changed after the run was made"]);
+    }
+    assert!(!place.path("again.csv").exists());
+}
+
+#[test]
+fn a_file_makes_a_world() {
+    let place = Place::new();
+    place.write("wedge.obj", WEDGE);
+    place.ok("new --from wedge.obj").says(&["wrote wedge.toml"]);
+    place.ok("check wedge.toml").says(&["wedge is simulated as a convex hull"]);
+    place.ends("new --from wedge.obj", 2).says(&["exists already"]);
+    place.write("two.obj", format!("{WEDGE}{}", WEDGE.replace("o wedge", "o other").replace("v ", "v 1")));
+    place.ok("new --from two.obj my.toml").says(&["not taken over: which of the objects move"]);
+    place.ends("new --from none.obj", 2).says(&["none.obj: it cannot be read"]);
+    place.ends("new --from ball.toml", 2).says(&["must end in .glb, .obj or .stl"]);
+}

@@ -1,0 +1,155 @@
+//! Shapes from files.
+
+use super::amount::{Amount, Length};
+use super::corners::{Corners, corners};
+use crate::files::{Asset, Files, leaves_folder};
+use crate::scenario::nearest;
+use crate::scene::ConfigError;
+use plaus_asset::Triangles;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What a file of shapes holds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FromFile {
+    /// The file, `.glb`, `.obj` or `.stl`: its path from the folder of the scenario, with `/` between folders.
+    pub file: String,
+    /// Only the object of this name, about its own origin and along its own axes. Unset: all that is in the file, as it
+    /// lies there.
+    #[serde(default)]
+    pub object: Option<String>,
+    /// How many millimetres the file's unit of length is. Unset: 1000 for `.glb`, 1 for `.obj` and `.stl`.
+    #[serde(default)]
+    pub unit_mm: Option<Amount<Length>>,
+    /// Which axis of the file points up. Unset: y of `.glb` and `.obj`, z of `.stl`.
+    #[serde(default)]
+    pub up: Option<Up>,
+    /// Whether the file may lie outside the scenario's folder.
+    #[serde(default)]
+    pub anywhere: bool,
+    /// BLAKE3 of the file: one with another is refused. A run writes down which it was. Unset: whatever it holds.
+    #[serde(default)]
+    pub hash: Option<String>,
+    /// What was read; not there before.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub(super) loaded: Option<Arc<Loaded>>,
+}
+
+/// Which axis of a file points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Up {
+    /// Its y axis, as in most programs that draw.
+    Y,
+    /// Its z axis, as in most programs that construct.
+    Z,
+}
+
+/// What was read of a file.
+#[derive(Debug)]
+pub(super) struct Loaded {
+    pub(super) asset: Arc<Asset>,
+    /// In the file's unit, z up.
+    pub(super) triangles: Triangles,
+    /// The corners of its convex hull, where that is asked for.
+    pub(super) corners: Option<Corners>,
+    /// How many millimetres the file's unit is where the scenario does not say.
+    pub(super) unit_mm: f64,
+}
+
+/// What was read is the same where the file is: everything else follows from the keys.
+impl PartialEq for Loaded {
+    fn eq(&self, other: &Self) -> bool {
+        self.asset.hash == other.asset.hash
+    }
+}
+
+/// What is asked of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wanted {
+    Triangles,
+    Hull,
+}
+
+/// Files that were read, by their paths.
+pub(super) type Known = BTreeMap<String, Arc<Asset>>;
+
+impl FromFile {
+    /// A file with nothing else said.
+    #[must_use]
+    pub fn new(file: impl Into<String>) -> Self {
+        Self { file: file.into(), object: None, unit_mm: None, up: None, anywhere: false, hash: None, loaded: None }
+    }
+
+    /// Reads it. `key` is where it stands.
+    pub(super) fn load(
+        &mut self,
+        key: &str,
+        wanted: Wanted,
+        files: &dyn Files,
+        known: &mut Known,
+    ) -> Result<(), ConfigError> {
+        let wrong = |name: &str, message: String| ConfigError::new(format!("{key}.{name}"), message);
+        let in_file = |message: String| wrong("file", format!("{}: {message}", self.file));
+        if let Some(why) = leaves_folder(&self.file).filter(|_| !self.anywhere) {
+            return Err(in_file(why));
+        }
+        let asset = match known.get(&self.file) {
+            Some(asset) => Arc::clone(asset),
+            None => {
+                let bytes = files.bytes(&self.file, self.anywhere).map_err(in_file)?;
+                let asset = Asset::read(&self.file, bytes).map_err(|error| in_file(error.to_string()))?;
+                Arc::clone(known.entry(self.file.clone()).or_insert(Arc::new(asset)))
+            }
+        };
+        if let Some(given) = self.hash.as_ref().filter(|given| **given != asset.hash) {
+            let message = format!("{} was changed: its hash is {}, not {given}", self.file, asset.hash);
+            return Err(wrong("hash", message));
+        }
+        let format = asset.content.format;
+        let up = match self.up {
+            Some(Up::Y) => plaus_asset::Up::Y,
+            Some(Up::Z) => plaus_asset::Up::Z,
+            None => format.up(),
+        };
+        let triangles = match &self.object {
+            None => asset.content.whole(),
+            Some(name) => {
+                let names = || asset.content.objects.iter().map(|object| object.name.as_str());
+                let object = asset.content.object(name).ok_or_else(|| {
+                    let near = nearest(name, names()).map(|near| format!("did you mean {near:?}? "));
+                    let some: Vec<&str> = names().take(MOST_NAMES).collect();
+                    let more = if names().count() > MOST_NAMES { ", …" } else { "" };
+                    let there = format!("there are {}{more}", some.join(", "));
+                    let near = near.unwrap_or_default();
+                    wrong("object", format!("{} has no object {name:?}; {near}{there}", self.file))
+                })?;
+                object.triangles.clone()
+            }
+        };
+        let triangles = triangles.upright(up);
+        let hull = match wanted {
+            Wanted::Triangles => None,
+            Wanted::Hull => Some(corners(&triangles.corners).map_err(|error| in_file(error.to_string()))?),
+        };
+        self.hash = Some(asset.hash.clone());
+        let unit_mm = format.unit_mm();
+        self.loaded = Some(Arc::new(Loaded { asset, triangles, corners: hull, unit_mm }));
+        Ok(())
+    }
+
+    /// What was read, for the shape at `key`.
+    pub(super) fn loaded(&self, key: &str) -> Result<Arc<Loaded>, ConfigError> {
+        self.loaded.clone().ok_or_else(|| {
+            let message = format!("{} was not read: a scenario is read with its files", self.file);
+            ConfigError::new(format!("{key}.file"), message)
+        })
+    }
+}
+
+/// Names of objects that a message has at most.
+const MOST_NAMES: usize = 12;

@@ -1,0 +1,114 @@
+//! Files that a scenario names: shapes. Where they are read from, whoever reads the scenario says.
+
+pub use plaus_asset::MOST_BYTES;
+use plaus_asset::{AssetError, Content};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+/// Where the files are read from that a scenario names.
+pub trait Files {
+    /// The bytes of the file at `path`, as the scenario has it: from the folder of the scenario, with `/` between
+    /// folders. It does not leave that folder unless `anywhere` allows it.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in words that follow its name.
+    fn bytes(&self, path: &str, anywhere: bool) -> Result<Arc<[u8]>, String>;
+}
+
+impl<F: Fn(&str, bool) -> Result<Arc<[u8]>, String>> Files for F {
+    fn bytes(&self, path: &str, anywhere: bool) -> Result<Arc<[u8]>, String> {
+        self(path, anywhere)
+    }
+}
+
+/// No files at all: for scenarios that are text alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NoFiles;
+
+impl Files for NoFiles {
+    fn bytes(&self, _: &str, _: bool) -> Result<Arc<[u8]>, String> {
+        Err("a scenario that is read as text alone has no files beside it".into())
+    }
+}
+
+/// Files in memory, by their paths: all that a scenario names, for whoever keeps it.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Assets(BTreeMap<String, Arc<[u8]>>);
+
+impl Assets {
+    /// Adds a file; another of the same path is replaced.
+    pub fn insert(&mut self, path: impl Into<String>, bytes: impl Into<Arc<[u8]>>) {
+        self.0.insert(path.into(), bytes.into());
+    }
+
+    /// All paths, each with its bytes.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, &Arc<[u8]>)> {
+        self.0.iter().map(|(path, bytes)| (path.as_str(), bytes))
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl Files for Assets {
+    fn bytes(&self, path: &str, _: bool) -> Result<Arc<[u8]>, String> {
+        self.0.get(path).cloned().ok_or_else(|| "it is not among the files that the scenario came with".into())
+    }
+}
+
+/// A file that was read.
+pub(crate) struct Asset {
+    pub(crate) bytes: Arc<[u8]>,
+    /// BLAKE3 of the bytes, in hexadecimal digits.
+    pub(crate) hash: String,
+    pub(crate) content: Content,
+}
+
+impl Asset {
+    pub(crate) fn read(path: &str, bytes: Arc<[u8]>) -> Result<Self, AssetError> {
+        let content = plaus_asset::read(path, &bytes)?;
+        Ok(Self { hash: hash_of(&bytes), bytes, content })
+    }
+}
+
+impl fmt::Debug for Asset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Asset({})", self.hash)
+    }
+}
+
+/// BLAKE3 of a file's bytes, in hexadecimal digits: what a scenario's `hash` says.
+#[must_use]
+pub fn hash_of(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
+/// Why a path is none that stays in the scenario's folder; `None` where it does, as far as its text says.
+#[must_use]
+pub fn leaves_folder(path: &str) -> Option<String> {
+    let is_absolute = path.starts_with(['/', '\\']) || path.as_bytes().get(1) == Some(&b':');
+    let goes_up = path.split(['/', '\\']).any(|name| name == "..");
+    (is_absolute || goes_up).then(|| {
+        "it lies outside the scenario's folder: move it there, or allow it by `anywhere = true` in its table".into()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_that_leave_the_folder_are_known() {
+        for path in ["/etc/cup.obj", "../cup.obj", "a/../../cup.obj", "C:/cup.obj", "\\\\host\\cup.obj", "a\\..\\b.obj"]
+        {
+            assert!(leaves_folder(path).is_some(), "{path}");
+        }
+        for path in ["cup.obj", "shapes/cup.obj", "./cup.obj", "cup..obj", "…/cup.obj"] {
+            assert_eq!(leaves_folder(path), None, "{path}");
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! What the nodes of a GLB are in a world.
+
+use super::physics::{Physics, Said};
+use super::write::{Role, Shape, Thing, Things, angles, number, place, rotation};
+use glam::{DQuat, DVec3};
+use plaus_asset::glb::{Between, Glb, Node};
+use plaus_asset::{AssetError, Content};
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What a node is to be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// A thing of its own, with all that hangs on it.
+    Own(Role),
+    /// Scenery, or a piece of what it hangs on.
+    Plain,
+    Ignored,
+}
+
+/// The things of a file.
+pub(super) fn things(content: &Content, bytes: &[u8]) -> Result<Things, AssetError> {
+    let file = Glb::read(bytes)?;
+    let nodes = file.nodes();
+    let mut things = Things::new(content);
+    let physics = Physics::read(&file, &mut things.left_out);
+    let said: BTreeMap<usize, Said> =
+        nodes.iter().map(|node| (node.index, physics.of(node, &mut things.left_out))).collect();
+    let parts: BTreeMap<usize, Part> =
+        nodes.iter().map(|node| (node.index, part(node, &said[&node.index], &mut things.left_out))).collect();
+    let by_index: BTreeMap<usize, &Node> = nodes.iter().map(|node| (node.index, node)).collect();
+    let has_colliders = said.values().any(|said| said.collides);
+    let mut names = BTreeSet::new();
+    let mut pieces: BTreeMap<usize, Vec<(Shape, DVec3, DQuat)>> = BTreeMap::new();
+    for node in &nodes {
+        others(node, &file, &mut things.left_out);
+        let Some(shape) = shape(node, &said[&node.index], has_colliders, &mut names, &mut things.left_out) else {
+            continue;
+        };
+        let mut owner = Some(node);
+        while let Some(above) = owner.filter(|above| parts[&above.index] == Part::Plain) {
+            owner = above.parent.and_then(|parent| by_index.get(&parent).copied());
+        }
+        match owner.map(|owner| (owner, parts[&owner.index])) {
+            Some((_, Part::Ignored)) => {}
+            Some((owner, Part::Own(Role::Body | Role::Driven))) => {
+                let back = owner.turn.inverse();
+                let (at, turn) = (back * (node.at - owner.at), back * node.turn);
+                pieces.entry(owner.index).or_default().push((shape, place(at), rotation(turn)));
+            }
+            _ => things.all.push(thing(node, &node.name, Role::Fixed, shape, content, &said[&node.index])),
+        }
+    }
+    for node in &nodes {
+        let Part::Own(role @ (Role::Body | Role::Driven)) = parts[&node.index] else { continue };
+        let Some(pieces) = pieces.remove(&node.index) else {
+            things.left_out.push(format!("{}: it is said to move, and has no shape", node.name));
+            continue;
+        };
+        let shape = match &pieces[..] {
+            [(shape, at, turn)] if *at == DVec3::ZERO && turn.w.abs() > 1.0 - 1e-12 => shape.clone(),
+            _ => Shape::Pieces(pieces),
+        };
+        let said = &said[&node.index];
+        let mut own = thing(node, &node.name, role, shape, content, said);
+        own.lines.extend(if role == Role::Driven { keys(node) } else { said.lines.clone() });
+        things.left_out.extend(node.left_out.iter().map(|what| format!("{}: {what}", node.name)));
+        things.all.push(own);
+    }
+    Ok(things)
+}
+
+fn thing(node: &Node, name: &str, role: Role, shape: Shape, content: &Content, said: &Said) -> Thing {
+    let colour = content.object(&node.name).and_then(|object| object.colour);
+    let at = if role == Role::Driven { DVec3::ZERO } else { place(node.at) * 1e3 };
+    let (mass, contact) = (said.mass.filter(|_| role == Role::Body), said.contact);
+    Thing { at, turn: rotation(node.turn), colour, mass, contact, ..Thing::new(name, role, shape) }
+}
+
+/// What a node is to be: as its `extras` say, else the extension, else its keys.
+fn part(node: &Node, said: &Said, left_out: &mut Vec<String>) -> Part {
+    let asked = node.extras.get("plaus").map(|asked| (asked, asked.as_str()));
+    match asked {
+        Some((_, Some("body"))) => return Part::Own(Role::Body),
+        Some((_, Some("driven"))) if !node.keys.is_empty() => return Part::Own(Role::Driven),
+        Some((_, Some("fixed"))) => return Part::Own(Role::Fixed),
+        Some((_, Some("ignore"))) => return Part::Ignored,
+        Some((other, _)) => {
+            let why = "`plaus` may be body, fixed, ignore, and where there are keys driven";
+            left_out.push(format!("{}: its extras: {other} means nothing: {why}", node.name));
+        }
+        None => {}
+    }
+    match said.moves {
+        Some(Role::Driven) if node.keys.is_empty() => Part::Own(Role::Fixed),
+        Some(role) => Part::Own(role),
+        None if !node.keys.is_empty() => Part::Own(Role::Driven),
+        None => Part::Plain,
+    }
+}
+
+/// The shape of a node alone, where it has one.
+fn shape(
+    node: &Node,
+    said: &Said,
+    has_colliders: bool,
+    names: &mut BTreeSet<String>,
+    left_out: &mut Vec<String>,
+) -> Option<Shape> {
+    if let Some(shape) = &said.shape {
+        return Some(shape.clone());
+    }
+    if !node.has_mesh {
+        return None;
+    }
+    if has_colliders && !said.collides && node.extras.get("plaus").is_none() {
+        left_out.push(format!("{}: it has a mesh and no collider, so that nothing meets it", node.name));
+        return None;
+    }
+    if !names.insert(node.name.clone()) {
+        left_out.push(format!("a second {:?}: give it a name of its own", node.name));
+        return None;
+    }
+    let object = Some(node.name.clone());
+    Some(if said.is_hull { Shape::Hull { object } } else { Shape::File { object } })
+}
+
+/// The keys of what goes its own way.
+fn keys(node: &Node) -> Vec<String> {
+    let between = match node.between {
+        Between::Step => "step",
+        Between::Linear => "linear",
+        Between::Cubic => "smooth",
+    };
+    let key = |key: &plaus_asset::glb::Key| {
+        let at = (place(key.at) * 1e3).to_array().map(number).join(", ");
+        let turn = angles(rotation(key.turn)).map(number).join(", ");
+        format!("    {{ at_s = {}, at_mm = [{at}], turn_deg = [{turn}] }},\n", number(key.time))
+    };
+    let keys: String = node.keys.iter().map(key).collect();
+    vec![format!("between = \"{between}\""), format!("keys = [\n{keys}]")]
+}
+
+/// What else a node has that a scenario has no words for.
+fn others(node: &Node, file: &Glb, left_out: &mut Vec<String>) {
+    let said = file.said("nodes", node.index);
+    for (key, what) in
+        [("camera", "its camera"), ("skin", "its skin: it stays as it is"), ("weights", "its morph targets")]
+    {
+        if !said[key].is_null() {
+            left_out.push(format!("{}: {what}", node.name));
+        }
+    }
+    if node.between == Between::Cubic {
+        left_out.push(format!("{}: the tangents of its keys: it goes smoothly through them", node.name));
+    }
+    let extensions = node.extensions.as_object().into_iter().flatten();
+    for (name, _) in extensions.filter(|(name, _)| name.as_str() != super::physics::BODIES) {
+        left_out.push(format!("{}: its extension {name}", node.name));
+    }
+    if let Value::Object(extras) = &node.extras {
+        for name in extras.keys().filter(|name| name.as_str() != "plaus") {
+            left_out.push(format!("{}: {name} of its extras", node.name));
+        }
+    }
+}

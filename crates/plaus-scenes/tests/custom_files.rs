@@ -1,0 +1,188 @@
+//! Shapes of one's own: compounds, and what files hold. Each is what the same shape said otherwise is; what is wrong
+//! with a file is said where the scenario names it.
+
+use crate::common::{ROOF, WEDGE, shapes};
+use plaus_dist::{Purpose, Seed};
+use plaus_mcmc::{State, StateOf, Target};
+use plaus_scenes::animation::{Form, Shape};
+use plaus_scenes::custom::{Custom, Ending};
+use plaus_scenes::files::hash_of;
+use plaus_scenes::{Assets, Scenario, Scene, World};
+
+fn read(text: &str, files: &Assets) -> Result<Scenario, String> {
+    Scenario::read_with("world.toml", text, &[], files).map_err(|error| error.to_string())
+}
+
+/// The scene of a text, with the shapes that all tests know.
+fn scene(text: &str) -> Custom {
+    let scenario = read(text, &shapes()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let World::Custom(config) = &scenario.world else { panic!() };
+    Custom::new(config).unwrap()
+}
+
+/// What becomes of the first draw.
+fn state(scene: &Custom) -> StateOf<Custom> {
+    let draw = scene.start(&mut Seed(1).chain(0).at(0, Purpose::START));
+    State::evaluate(scene, draw, &mut Default::default()).unwrap()
+}
+
+/// Where its bodies end.
+fn ends(scene: &Custom) -> Vec<glam::DVec3> {
+    let Ending::Done(done) = state(scene).outcome else { panic!() };
+    done.bodies.iter().map(|last| last.place).collect()
+}
+
+fn world(fixed: &str, shape: &str, rest: &str) -> String {
+    format!(
+        "[world.custom]\nduration_s = 0.6\n{fixed}\n[[world.custom.bodies]]\nname = 'body'\nshape = {shape}\n{rest}\n\
+         [[world.custom.materials]]\nname = 'wood'\nrestitution = 0.3\n"
+    )
+}
+
+const FLIGHT: &str = "at_mm = [30, 10, 150]\nturn_deg = [20, -30, 40]\nvelocity_m_s = [0.4, 0.1, 0]\nmaterial = 'wood'";
+
+/// The wedge as points in the file, as the hull of a file, as a compound of that hull alone, and as a compound turned
+/// back and forth: one motion, but for rounding, which an impact or two make no larger than a micrometre.
+#[test]
+fn one_shape_said_in_several_ways_moves_alike() {
+    let points = "{ hull = { points_mm = [[-30, -20, -10], [30, -20, -10], [0, -20, 25], [-30, 20, -10], \
+                  [30, 20, -10], [0, 20, 25]] } }";
+    let file = "hull_of = { file = 'wedge.obj', up = 'z' }";
+    let said = [
+        points.to_owned(),
+        format!("{{ {file} }}"),
+        "{ hull_of = { file = 'wedge.obj', up = 'z', object = 'wedge', unit_mm = 1 } }".into(),
+        format!("{{ compound = {{ pieces = [{{ shape = {{ {file} }} }}] }} }}"),
+    ];
+    let places: Vec<_> = said.iter().map(|shape| ends(&scene(&world("", shape, FLIGHT)))[0]).collect();
+    for (place, shape) in places.iter().zip(&said) {
+        assert!((*place - places[0]).length() < 1e-6, "{shape}: {place} beside {}", places[0]);
+    }
+    let larger = "{ hull_of = { file = 'wedge.obj', up = 'z', unit_mm = 1.5 } }";
+    let larger = ends(&scene(&world("", larger, FLIGHT)))[0];
+    assert!((larger - places[0]).length() > 1e-3, "another size moves otherwise");
+    let lying = "{ hull_of = { file = 'wedge.obj' } }";
+    let lying = ends(&scene(&world("", lying, FLIGHT)))[0];
+    assert!((lying - places[0]).length() > 1e-4, "an OBJ's y axis is up where nothing else is said");
+}
+
+/// A ball that comes down on the roof rolls off the side that it came down on; on a slope said as a turned box of the
+/// same surface it goes the same way, as near as the two skins are.
+#[test]
+fn meshes_are_what_they_look_like() {
+    let ball = "{ ball = { radius_mm = 20 } }";
+    let rest = "at_mm = [60, 0, 140]\nmaterial = 'wood'";
+    let roof = "[[world.custom.fixed]]\nname = 'roof'\nshape = { mesh = { file = 'roof.obj', up = 'z' } }";
+    let on_mesh = ends(&scene(&world(roof, ball, rest)))[0];
+    // The right slope: from (0, 120) to (200, 0), its normal (3, 5)/√34; the box 40 thick below it.
+    let slope = (120.0_f64 / 200.0).atan();
+    let (middle, down) = ([100.0, 60.0], [slope.sin() * 20.0, slope.cos() * 20.0]);
+    let slab = format!(
+        "[[world.custom.fixed]]\nname = 'slab'\nshape = {{ box = {{ size_mm = [{}, 400, 40] }} }}\n\
+         at_mm = [{}, 0, {}]\nturn_deg = [0, {}, 0]",
+        (200.0_f64 * 200.0 + 120.0 * 120.0).sqrt(),
+        middle[0] - down[0],
+        middle[1] - down[1],
+        slope.to_degrees()
+    );
+    let on_box = ends(&scene(&world(&slab, ball, rest)))[0];
+    assert!(on_mesh.x > 0.15, "it went down the right side: {on_mesh}");
+    assert!((on_mesh - on_box).length() < 1e-4, "{on_mesh} {on_box}");
+}
+
+/// What is drawn is the file's own triangles, where the body is.
+#[test]
+fn files_are_drawn_as_they_are() {
+    let roof = "[[world.custom.fixed]]\nname = 'roof'\nshape = { mesh = { file = 'roof.obj', up = 'z', unit_mm = 2 } }";
+    let scene = scene(&world(roof, "{ hull_of = { file = 'wedge.obj', up = 'z' } }", "at_mm = [0, 0, 400]"));
+    let animation = scene.animate(&state(&scene).draw).unwrap();
+    let Form::Mesh { vertices, triangles } = &animation.scenery[0].form else { panic!() };
+    assert_eq!((vertices.len(), triangles.len()), (6, 4));
+    let top = vertices.iter().map(|vertex| vertex.y).fold(0.0, f64::max);
+    assert!((top - 0.24).abs() < 1e-12, "{top}");
+    let Shape::Solid { vertices, triangles } = &animation.tracks[0].shape else { panic!() };
+    assert_eq!((vertices.len(), triangles.len()), (6, 8));
+    assert_eq!(scene.notes(), ["body is simulated as a convex hull of 6 points, by 6 of them"]);
+}
+
+/// A compound has the mass of its pieces, each by its density, and their common centre.
+#[test]
+fn compounds_balance_where_their_pieces_do() {
+    let pieces = "{ compound = { pieces = [{ shape = { ball = { radius_mm = 20 } }, density = 3 }, \
+                  { shape = { ball = { radius_mm = 20 } }, at_mm = [80, 0, 0] }] } }";
+    let scene = scene(&world("fixed = []", pieces, "at_mm = [0, 0, 100]").replace("0.6", "0.001"));
+    let [x, y, z] = (ends(&scene)[0] * 1e3).to_array();
+    assert!((x - 20.0).abs() < 1e-9 && y.abs() < 1e-9 && (z - 100.0).abs() < 0.01, "{x} {y} {z}");
+}
+
+/// What a scenario in force says reads back with the files it came with; with others it is refused.
+#[test]
+fn what_is_in_force_knows_its_files() {
+    let text = world("", "{ hull_of = { file = 'wedge.obj' } }", "at_mm = [0, 0, 100]");
+    let scenario = read(&text, &shapes()).unwrap();
+    let (effective, files) = (scenario.to_toml(), scenario.world.assets());
+    assert!(effective.contains(&format!("hash = \"{}\"", hash_of(WEDGE.as_bytes()))), "{effective}");
+    assert_eq!(files.iter().map(|(path, _)| path).collect::<Vec<_>>(), ["wedge.obj"]);
+    assert_eq!(read(&effective, &files).unwrap(), scenario);
+    let mut changed = Assets::default();
+    changed.insert("wedge.obj", WEDGE.replace("25", "26").into_bytes());
+    let error = read(&effective, &changed).unwrap_err();
+    assert!(error.contains("hull_of.hash: wedge.obj was changed: its hash is"), "{error}");
+    assert!(read(&text, &changed).is_ok(), "a scenario that pins nothing takes what is there");
+}
+
+/// What is wrong with a file, with the place that is blamed and parts of the message.
+#[test]
+fn bad_files_are_refused_where_they_are_named() {
+    let mut files = shapes();
+    for (name, contents) in [
+        ("broken.obj", "v 1 2\nf 1 2 3".to_owned()),
+        ("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9".into()),
+        ("nan.obj", ROOF.replace("v 0 -200 120", "v nan -200 120")),
+        ("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3".into()),
+        ("needle.obj", format!("{ROOF}v 9 9 9\nv 8 8 8\nf 7 8 8\n")),
+        ("inside_out.obj", ROOF.replace("f 2 3 6 5", "f 2 5 6 3")),
+        ("empty.obj", "# nothing\n".into()),
+        ("noise.glb", "glTF but no more".into()),
+        ("noise.stl", "solid of no facets".into()),
+        ("cup.fbx", String::new()),
+    ] {
+        files.insert(name, contents.into_bytes());
+    }
+    let refused = |shape: &str, place: &str, parts: &[&str]| {
+        let text = format!("[world.custom]\n[[world.custom.fixed]]\nname = 'thing'\nshape = {shape}\n");
+        let error = read(&text, &files).expect_err(&text);
+        let column = shape.find(place).map_or(1, |at| at + "shape = ".len() + 1);
+        assert!(error.starts_with(&format!("world.toml:4:{column}: world.custom.fixed[0].shape")), "{shape}: {error}");
+        parts.iter().for_each(|part| assert!(error.contains(part), "{shape}: {error}"));
+    };
+    let named = |file: &str, parts: &[&str]| {
+        refused(&format!("{{ mesh = {{ file = '{file}' }} }}"), &format!("'{file}'"), &[parts, &[file]].concat());
+    };
+    named("cup.obj", &["mesh.file", "not among the files"]);
+    named("../cup.obj", &["outside the scenario's folder", "anywhere = true"]);
+    named("/etc/passwd", &["outside the scenario's folder"]);
+    named("cup.fbx", &["must end in .glb, .obj or .stl"]);
+    named("broken.obj", &["no OBJ"]);
+    named("far.obj", &["no OBJ"]);
+    named("empty.obj", &["no triangles"]);
+    named("noise.glb", &["no GLB that can be read"]);
+    named("noise.stl", &["no STL"]);
+    named("nan.obj", &["corner 1 of \"roof\" is not finite"]);
+    refused("{ mesh = { file = 'needle.obj' } }", "shape", &["triangle 4 is degenerate"]);
+    refused("{ mesh = { file = 'inside_out.obj' } }", "shape", &["triangle 2", "disagree on which side is outside"]);
+    refused("{ hull_of = { file = 'flat.obj' } }", "'flat.obj'", &["within", "of one plane"]);
+    let other = "{ mesh = { file = 'roof.obj', object = 'rof' } }";
+    refused(other, "'rof'", &["has no object \"rof\"; did you mean \"roof\"? there are roof"]);
+    let odd = "{ mesh = { file = 'roof.obj', unit_mm = { normal = [1, 0.1] } } }";
+    refused(odd, "{ normal", &["mesh.unit_mm", "-inf to inf"]);
+    let piece = "{ compound = { pieces = [{ shape = { hull_of = { file = 'none.obj' } } }] } }";
+    refused(piece, "'none.obj'", &["compound.pieces[0].shape.hull_of.file"]);
+    let piece = "{ compound = { pieces = [{ shape = { ball = { radius_mm = -1 } } }] } }";
+    refused(piece, "-1", &["compound.pieces[0].shape.ball.radius_mm", "out of range"]);
+    refused("{ compound = { pieces = [] } }", "[]", &["a list of 0 is out of range"]);
+    let piece = "{ compound = { pieces = [{ shape = { plane = {} } }] } }";
+    refused(piece, "plane", &["compound.pieces[0].shape", "ball"]);
+    let error = Scenario::read("world.toml", &world("", "{ hull_of = { file = 'wedge.obj' } }", ""), &[]).unwrap_err();
+    assert!(error.to_string().contains("read as text alone"), "{error}");
+}
