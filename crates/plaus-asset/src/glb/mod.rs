@@ -96,7 +96,9 @@ impl Glb {
                     Mode::Triangles => {}
                     Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => continue,
                     mode => {
-                        return Err(AssetError::Broken(format!("{name:?} has triangles as {mode:?}: make them single")));
+                        return Err(AssetError::Broken(format!(
+                            "{name:?} has triangles as {mode:?}: make them single"
+                        )));
                     }
                 }
                 let reader = primitive.reader(|_| Some(&self.blob[..]));
