@@ -129,3 +129,19 @@ fn every_crate_can_be_packaged() {
         }
     }
 }
+
+/// Who takes the simulator or the exporter alone does not build the sampler's random streams with it.
+#[test]
+fn what_draws_nothing_builds_no_streams() {
+    for (name, draws) in [("plaus-sim", false), ("plaus-export", false), ("plaus-mcmc", true)] {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let words = ["tree", "--locked", "--edges", "normal", "--prefix", "none", "--package", name];
+        let output = Command::new(cargo).args(words).current_dir(root()).output().unwrap();
+        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        let built = String::from_utf8(output.stdout).unwrap();
+        for library in ["blake3", "rand"] {
+            let is_built = built.lines().any(|line| line.split(' ').next() == Some(library));
+            assert_eq!(is_built, draws, "{name} and {library}:\n{built}");
+        }
+    }
+}

@@ -14,6 +14,7 @@
 mod clock;
 mod commands;
 mod console;
+mod demanded;
 mod failure;
 mod glossary;
 mod interrupt;

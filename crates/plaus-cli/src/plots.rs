@@ -1,6 +1,7 @@
 //! Pictures of a run's mixing as SVG: of each scalar the trace, the autocorrelation and the ranks of every chain; of
-//! each move how often it was accepted.
+//! each move how often it was accepted; and the times that are asked for beside those found.
 
+use crate::demanded;
 use crate::svg::{Frame, PANEL, Svg};
 use plaus_mcmc::MoveCounts;
 use plaus_mcmc::diagnose::autocorrelation;
@@ -44,6 +45,10 @@ pub(crate) fn write<S: Scene>(run: &RunOf<'_, S>, out: &Path, force: bool) -> Re
             let names = &run.run().manifest().moves;
             save("moves.svg", &of_moves(names, &Tally::of(run)?.counts))?;
             count += 1;
+            if let Some(times) = demanded::plot(run)? {
+                save("times.svg", &times)?;
+                count += 1;
+            }
             save(
                 MARK,
                 &format!(

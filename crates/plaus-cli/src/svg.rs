@@ -82,6 +82,37 @@ impl Svg {
         let _ = writeln!(self.0, "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-opacity=\".75\"/>");
     }
 
+    /// A dashed line from one point to another.
+    pub(crate) fn segment(&mut self, frame: &Frame, from: [f64; 2], to: [f64; 2]) {
+        let ((x, y), (u, v)) = (frame.place(from[0], from[1]), frame.place(to[0], to[1]));
+        let _ = writeln!(self.0, "<path d=\"M{x:.1} {y:.1}L{u:.1} {v:.1}\" stroke=\"#999\" stroke-dasharray=\"4 4\"/>");
+    }
+
+    /// A dot of the n-th colour.
+    pub(crate) fn dot(&mut self, frame: &Frame, number: usize, [x, y]: [f64; 2]) {
+        let (x, y) = frame.place(x, y);
+        let colour = COLOURS[number % COLOURS.len()];
+        let _ = writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{colour}\" fill-opacity=\".6\"/>");
+    }
+
+    /// An upright bar of the n-th colour about `x`, for what is allowed there.
+    pub(crate) fn band(&mut self, frame: &Frame, number: usize, x: f64, [low, high]: [f64; 2]) {
+        let ((x, top), (_, bottom)) = (frame.place(x, high), frame.place(x, low));
+        let (colour, height) = (COLOURS[number % COLOURS.len()], (bottom - top).max(1.0));
+        let _ = writeln!(
+            self.0,
+            "<rect x=\"{:.1}\" y=\"{top:.1}\" width=\"12\" height=\"{height:.1}\" fill=\"{colour}\" fill-opacity=\".15\"/>",
+            x - 6.0
+        );
+    }
+
+    /// A line of a legend at a height, in pixels: what the n-th colour stands for.
+    pub(crate) fn legend(&mut self, number: usize, y: f64, words: &str) {
+        let (x, colour) = (MARGIN[0], COLOURS[number % COLOURS.len()]);
+        let _ = writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{:.1}\" r=\"6\" fill=\"{colour}\"/>", y + 8.0);
+        self.text(x + 14.0, y + 14.0, "start", words);
+    }
+
     /// A horizontal bar with a name before and words behind it.
     pub(crate) fn bar(&mut self, row: usize, name: &str, share: f64, words: &str) {
         let (y, width) = (28.0 + 44.0 * row as f64, 320.0 * share);

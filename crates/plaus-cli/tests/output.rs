@@ -170,3 +170,22 @@ fn a_new_scenario_is_right_and_every_key_is_explained() {
     assert!(place.ok("--help").out.contains("Exit codes: 0 done"));
     place.ends("", 2);
 }
+
+#[test]
+fn times_that_are_asked_for_are_plotted_beside_those_found() {
+    let place = Place::new();
+    let asks = "[[require]]\nimpact = { when = { at_s = 0.3, within_ms = 60 } }\n\
+                [[require]]\nrests = { when = { to_s = 5.0 } }\n";
+    place.write("timed.toml", format!("{}{asks}", crate::common::SCENARIO));
+    for (scenario, plotted) in [("timed", true), ("ball", false)] {
+        place.ok(&format!("sample {scenario}.toml --out {scenario} -q"));
+        let said = place.run(&format!("diagnose {scenario} --plots {scenario}-plots"));
+        assert!(said.err.contains("plots"), "{}", said.err);
+        let picture = std::fs::read_to_string(place.path(&format!("{scenario}-plots/times.svg")));
+        assert_eq!(picture.is_ok(), plotted, "{scenario}");
+        // A window without a beginning has no time that is meant.
+        let Ok(picture) = picture else { continue };
+        assert!(picture.contains("require[0].impact") && !picture.contains("require[1].rests"), "{picture}");
+        assert!(picture.matches("<circle").count() > 3 && !picture.contains("NaN"), "{picture}");
+    }
+}

@@ -36,6 +36,11 @@
 //! Around them: [`log`] keeps normalised densities, unnormalised weights and ratios apart, [`stream`] gives every
 //! random number its key, [`math`] computes the same bits on every platform, [`param`] says what a constructor refuses.
 //!
+//! # Features
+//!
+//! `laws`, on unless switched off: all of the above but [`math`], with `rand` and `blake3`. A simulator needs only
+//! [`math`], which depends on `libm` alone.
+//!
 //! # Invariants
 //!
 //! * A law that is built is sane: parameters are checked once, by the constructor or on deserialisation, and errors
@@ -47,62 +52,9 @@
 //! * What a sampler draws depends on its stream alone, bit for bit; a change of it is value-breaking, and
 //!   pinned by tests.
 
-mod bernoulli;
-mod choice;
-mod gaussian;
-mod gibbs;
-mod isotropic;
-pub mod log;
-mod log_normal;
+#[cfg(feature = "laws")]
+mod laws;
 pub mod math;
-mod normal;
-mod normal_quantile;
-mod number;
-pub mod param;
-mod radial;
-pub mod stream;
-#[cfg(test)]
-mod testing;
-mod triangular;
-mod truncated;
-mod uniform;
-mod uniform_box;
-mod von_mises;
-mod wrapped;
 
-pub use bernoulli::Bernoulli;
-pub use choice::Choice;
-pub use gaussian::Gaussian;
-pub use gibbs::Gibbs;
-pub use isotropic::IsotropicGaussian;
-pub use log::{LogDensity, LogPotential, LogRatio, NotANumber};
-pub use log_normal::LogNormal;
-pub use normal::standard_normal;
-pub use normal_quantile::normal_quantile;
-pub use number::NumberLaw;
-pub use param::ParamError;
-pub use radial::Radial;
-pub use stream::{ChainStreams, Purpose, Seed, Stream, open_unit};
-pub use triangular::Triangular;
-pub use truncated::TruncatedGaussian;
-pub use uniform::Uniform;
-pub use uniform_box::UniformBox;
-pub use von_mises::VonMises;
-pub use wrapped::WrappedUniform;
-
-/// A normalised density (or probability mass) over values `X`.
-pub trait Density<X: ?Sized> {
-    /// Log density at `x`; [`LogDensity::ZERO`] outside the support.
-    ///
-    /// # Errors
-    /// [`NotANumber`] where `x` holds a NaN, or the density there is infinite.
-    fn log_density(&self, x: &X) -> Result<LogDensity, NotANumber>;
-}
-
-/// A law that can be drawn from; where it is a [`Density`] too, the two agree.
-pub trait Sample {
-    /// What one draw is.
-    type Value;
-    /// One draw, using only `stream`.
-    fn sample(&self, stream: &mut Stream) -> Self::Value;
-}
+#[cfg(feature = "laws")]
+pub use laws::*;

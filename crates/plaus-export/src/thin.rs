@@ -35,8 +35,8 @@ pub type TurnKey = (f64, DQuat);
 pub type PlaceKey = (f64, DVec3);
 
 /// Positions between which straight lines stay within [`tolerance`] of the motion: at both ends, at every impact, and
-/// at as few others as that takes, at frames where possible. Of keys that are less than `apart` s from each other one is
-/// left.
+/// at as few others as that takes, at frames where possible. Of keys that are less than `apart` s from each other one
+/// is left.
 #[must_use]
 pub fn places(track: &Track, keys: &[Key], apart: f64) -> Vec<PlaceKey> {
     let most = tolerance(track.shape.reach());
@@ -126,8 +126,8 @@ fn candidates<T>(
     all
 }
 
-/// Keys of which none is nearer than `apart` s to the one before it. Those of higher `rank` stay where others may go, the
-/// first of several where one must; both ends stay.
+/// Keys of which none is nearer than `apart` s to the one before it. Those of higher `rank` stay where others may go,
+/// the first of several where one must; both ends stay.
 fn spaced(keys: &[Key], apart: f64, rank: impl Fn(&Key) -> u8) -> Vec<Key> {
     let mut left: Vec<Key> = Vec::with_capacity(keys.len());
     for (index, key) in keys.iter().enumerate() {

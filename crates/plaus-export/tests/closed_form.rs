@@ -214,8 +214,9 @@ fn animations_without_bodies_or_motion_are_files_too() {
     }
 }
 
-/// Every piece of a motion ends where the next begins. What bodies may jump by is what rest takes: bodies that come to rest are laid flat and lifted out of overlaps of the preset's gap, 1e-4 of
-/// their size at most; of pieces with a wrong velocity the gaps are those of a whole step, hundreds of times as wide.
+/// Every piece of a motion ends where the next begins. What bodies may jump by is what rest takes: bodies that come to
+/// rest are laid flat and lifted out of overlaps of the preset's gap, 1e-4 of their size at most; of pieces with a
+/// wrong velocity the gaps are those of a whole step, hundreds of times as wide.
 #[test]
 fn motion_has_no_gaps() {
     for name in NAMES {

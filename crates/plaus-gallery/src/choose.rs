@@ -1,12 +1,13 @@
 //! Choosing solutions that differ.
 //!
-//! Farthest-first traversal (Gonzalez 1985): each next one is the one farthest from all that were chosen. Any solution left out is then at most
-//! twice as far from a chosen one as in the best choice of that many.
+//! Farthest-first traversal (Gonzalez 1985): each next one is the one farthest from all that were chosen. Any solution
+//! left out is then at most twice as far from a chosen one as in the best choice of that many.
 
 use crate::features::squared;
 use rayon::prelude::*;
 
-/// Chooses up to `count` rows, beginning with `first`; in order of their choice. Rows equal to a chosen one come last, in their own order.
+/// Chooses up to `count` rows, beginning with `first`; in order of their choice. Rows equal to a chosen one come last,
+/// in their own order.
 #[must_use]
 pub fn farthest_first(rows: &[Vec<f32>], first: usize, count: usize) -> Vec<usize> {
     let mut chosen = Vec::new();

@@ -17,8 +17,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`choose`] picks solutions that differ, [`map`] lays them out in the plane, [`features`] says what it is to differ, `pack` makes bytes of closed-form
-//! pieces, `page` makes a page of the bytes. What the page does is in the package's folder `web`.
+//! [`choose`] picks solutions that differ, [`map`] lays them out in the plane, [`features`] says what it is to differ,
+//! `pack` makes bytes of closed-form pieces, `page` makes a page of the bytes. What the page does is in the package's
+//! folder `web`.
 
 pub mod choose;
 pub mod features;

@@ -1,4 +1,5 @@
-//! Classical multidimensional scaling (Torgerson 1952): points in the plane whose distances come as close to given ones as a projection can.
+//! Classical multidimensional scaling (Torgerson 1952): points in the plane whose distances come as close to given ones
+//! as a projection can.
 
 use crate::features::squared;
 use plaus_dist::math::square;

@@ -31,7 +31,7 @@ impl Target for TwoHills {
         Ok(self.strength.log_density(strength)?)
     }
 
-    /// The "simulation". It is cheap here; a dear one would stop as soon as it knows that `floor` is out of reach.
+    /// The "simulation". It is cheap here; an expensive one would stop as soon as it knows that `floor` is out of reach.
     fn simulate(
         &self,
         strength: &f64,

@@ -59,18 +59,20 @@ pub mod ladder;
 pub mod law;
 pub mod library;
 pub mod moves;
+pub mod parallel;
 pub mod record;
 pub mod redraw;
 pub mod replicas;
 pub mod required;
 pub mod run;
+mod scale;
 pub mod solutions;
 pub mod target;
 pub mod tempered;
 pub mod vars;
 pub mod view;
 
-pub use adapt::{Adapted, Scale, Scales};
+pub use adapt::{Adapted, Scales};
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
 pub use independent::{Independent, Tried, keep_draws, try_draws};
 pub use ladder::Ladder;
@@ -84,6 +86,7 @@ pub use run::{
     ChainPulse, Control, Ending, Plan, PlanError, Progress, Pulse, RunError, Sink, Snapshot, Start, run, run_some,
     run_watched, useful_threads,
 };
+pub use scale::Scale;
 pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
 pub use tempered::Tempered;

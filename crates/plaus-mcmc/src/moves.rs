@@ -1,6 +1,6 @@
 //! Moves propose candidates and answer for their own Hastings ratio; a mixture chooses among them.
 
-use crate::adapt::Scale;
+use crate::scale::Scale;
 use crate::target::{ModelError, StateOf, Target};
 use plaus_dist::{LogRatio, Stream, open_unit};
 use serde::{Deserialize, Serialize};

@@ -2,9 +2,8 @@
 //! target made.
 //!
 //! The target's own moves propose for it ([`Required::moves`]), its simulation still stops early, and the requirement
-//! is asked last, only where
-//! its answer can change the decision. So what is dear to judge, a function of a script for one, is judged seldom, and
-//! the chain stays exact.
+//! is asked last, only where its answer can change the decision. So what costs much to judge, a function of a script
+//! for one, is judged seldom, and the chain stays exact.
 
 use crate::chain::ChainError;
 use crate::moves::Mixture;

@@ -211,7 +211,7 @@ pub fn log_density<T: Variables + ?Sized>(target: &T, draw: &T::Draw, var: usize
     let law = &target.vars().get(var).law;
     let Some(values) = target.get(draw, var) else { return Ok(LogDensity::ONE) };
     let shift = target.shift(draw, var);
-    // The usual law, of which a draw of a scene without a simulator has nothing dearer than the density.
+    // The usual law, of which a draw of a scene without a simulator has nothing that costs more than the density.
     if let (Law::Gaussian(gaussian), [value]) = (law, values) {
         return gaussian.log_density(&(value + shift));
     }

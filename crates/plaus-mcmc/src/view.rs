@@ -1,7 +1,7 @@
 //! Targets seen differently: same draws, same outcomes, another weight or another way to simulate.
 
-use crate::adapt::Scale;
 use crate::moves::{Mixture, MixtureError, Move, Path, Proposal};
+use crate::scale::Scale;
 use crate::target::{ModelError, StateOf, Target};
 use plaus_dist::{LogRatio, Stream};
 use std::borrow::Cow;

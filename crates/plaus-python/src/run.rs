@@ -4,12 +4,12 @@ use crate::arrays::frozen;
 use crate::errors::{RunError, of_run, room, volume};
 use crate::motion::Motion;
 use plaus_gallery::Options;
+use plaus_mcmc::parallel;
 use plaus_run::replay::{Replay, replay, replay_at, replay_each};
 use plaus_run::{Diagnosis, Error, Folder, Phase, RunFileProblem, RunOf, RunVisitor, SampleId, solutions};
 use plaus_scenes::{AccuracyPreset, Role, Scalar, Scene};
 use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
 use pyo3::prelude::*;
-use rayon::prelude::*;
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -96,7 +96,9 @@ impl Look for Columns {
             for column in &mut numbers {
                 column.chunks_mut(draws).zip(&mut parts).for_each(|(chunk, part)| part.0.push(chunk));
             }
-            run.chains().into_par_iter().zip(parts).try_for_each(|(chain, part)| self.fill(run, chain, part))?;
+            let first = run.chains().start;
+            let filled = parallel::map_mut(&mut parts, |k, part| self.fill(run, first + k as u32, part));
+            filled.into_iter().collect::<Result<(), _>>()?;
         }
         Ok(Ok(Table { scalars, chains, draws, numbers, satisfied }))
     }
@@ -107,7 +109,7 @@ impl Columns {
         &self,
         run: &RunOf<'_, S>,
         chain: u32,
-        (mut numbers, satisfied): (Vec<&mut [f64]>, &mut [bool]),
+        (numbers, satisfied): &mut (Vec<&mut [f64]>, &mut [bool]),
     ) -> Result<(), Error> {
         let thin = run.run().manifest().plan.thin as f64;
         let count = numbers.len() - 2;

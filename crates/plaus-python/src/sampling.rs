@@ -142,7 +142,9 @@ impl Watched for Board {
 
 /// Samples into `folder`, or goes on with the run there where `scenario` is None; gives how it ended, and seconds.
 #[pyfunction]
-#[pyo3(signature = (scenario, folder, *, overrides, solutions, iterations, threads, fleeting, max_time, asked, others, poll, interval))]
+#[pyo3(signature = (
+    scenario, folder, *, overrides, solutions, iterations, threads, fleeting, max_time, asked, others, poll, interval
+))]
 #[allow(clippy::too_many_arguments, reason = "named in Python, which is the only caller")]
 pub(crate) fn sample<'py>(
     py: Python<'py>,

@@ -3,9 +3,10 @@
 //!
 //! Chains that agree may all be at the same part of what they should sample. Draws of the prior know nothing of the
 //! chains. Each that is kept is an independent draw of the target, so the share of them between two values of a
-//! variable is that of the chains there, but for chance. Cells between such values, each with an equal share of the kept draws,
-//! are held against the chains by Fisher's exact test, the chains taken for as many draws as their effective sample
-//! size. A cell in which chains hardly ever were, though draws were kept there, is something that they missed.
+//! variable is that of the chains there, but for chance. Cells between such values, each with an equal share of the
+//! kept draws, are held against the chains by Fisher's exact test, the chains taken for as many draws as their
+//! effective sample size. A cell in which chains hardly ever were, though draws were kept there, is something that they
+//! missed.
 //!
 //! It sees what shows in one variable or outcome by itself and holds more than a few of the kept draws. Where the prior
 //! hardly ever gets there, nothing is kept, and nothing is known.
@@ -15,8 +16,8 @@ use crate::error::Error;
 use crate::read::RunOf;
 use plaus_dist::math;
 use plaus_mcmc::keep_draws;
+use plaus_mcmc::parallel;
 use plaus_scenes::Scene;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// Most draws; there are no more than the run has iterations.
@@ -111,7 +112,7 @@ impl Beside {
             let chains = columns(run, number, 1, diagnosis.stride)?.concat().concat();
             Ok(worst(name, &mut exact[number].clone(), chains, ess, cells))
         };
-        let all = (0..scalars.len()).into_par_iter().map(look).collect::<Result<Vec<_>, _>>()?;
+        let all = parallel::try_map(scalars.len(), look)?;
         let worst = all.into_iter().flatten().reduce(|a, b| if b.p < a.p { b } else { a });
         let missed = worst.map(|worst| Missed { p: (worst.p * tests).min(1.0), ..worst }).filter(|one| one.p < ALARM);
         Ok(Some(Self { missed, ..found }))

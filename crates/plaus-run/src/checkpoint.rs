@@ -1,8 +1,9 @@
 //! Checkpoints: one a chain, replaced all together.
 //!
-//! A run is resumed with all chains at one iteration, but files can only be replaced one by one. So all next checkpoints are written beside
-//! the valid ones first; only when they are on the disk does each take its place. A run that dies while they do has some chains' new
-//! checkpoints in place and all others' beside them: [`settle`] finishes the replacement.
+//! A run is resumed with all chains at one iteration, but files can only be replaced one by one. So all next
+//! checkpoints are written beside the valid ones first; only when they are on the disk does each take its place. A run
+//! that dies while they do has some chains' new checkpoints in place and all others' beside them: [`settle`] finishes
+//! the replacement.
 
 use crate::codec::{self, FrameError, FrameProblem, Frames, Kind};
 use crate::disk::{Disk, for_each};
@@ -108,7 +109,8 @@ pub(crate) fn encode<D: Serialize, O: Serialize>(
     codec::encode(KIND, checkpoint).map_err(|error| RunFileError::new(path, error.into()))
 }
 
-/// Puts checkpoints of all chains in place of the ones before, such that at any moment either all old or all new ones can be had.
+/// Puts checkpoints of all chains in place of the ones before, such that at any moment either all old or all new ones
+/// can be had.
 ///
 /// # Errors
 /// [`RunFileError`] where the disk refuses; what was valid before then still is.
@@ -132,7 +134,8 @@ pub fn replace<D: Serialize + Sync, O: Serialize + Sync>(
     checkpoints.iter().try_for_each(|checkpoint| promote(folder, disk, checkpoint.chain)).and_then(sync)
 }
 
-/// Reads the checkpoints of all chains, all of one iteration, and finishes a replacement that was cut short. Empty where there is none yet.
+/// Reads the checkpoints of all chains, all of one iteration, and finishes a replacement that was cut short. Empty
+/// where there is none yet.
 ///
 /// # Errors
 /// [`RunFileError`] where a checkpoint is damaged, or they do not fit each other.

@@ -11,8 +11,8 @@
 //! | … | payload: bincode 2, standard configuration (little-endian, variable-length whole numbers) |
 //! | 32 | BLAKE3 of everything before |
 //!
-//! A file is one frame, or frames one after the other. No other module of the project names bincode: its bytes are frozen and
-//! specified, but nobody maintains it any more, so that replacing it must touch one file.
+//! A file is one frame, or frames one after the other. No other module of the project names bincode: its bytes are
+//! frozen and specified, but nobody maintains it any more, so that replacing it must touch one file.
 //!
 //! ```
 //! use plaus_run::codec::{Kind, decode, encode};
@@ -279,7 +279,8 @@ impl<T: DeserializeOwned, R: Read> Iterator for Frames<T, R> {
     }
 }
 
-/// What a frame's value begins with, where its first fields are those of `T`. The frame is one that [`Frames::next_raw`] gave.
+/// What a frame's value begins with, where its first fields are those of `T`. The frame is one that
+/// [`Frames::next_raw`] gave.
 ///
 /// # Errors
 /// [`FrameProblem`] where it does not begin so.

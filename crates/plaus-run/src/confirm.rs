@@ -1,17 +1,19 @@
 //! Which of a run's distinct solutions hold when they are simulated more exactly.
 //!
-//! Records are left as they are: a list beside them says of each solution what became of it, so that nothing is lost, and exports can keep to those that hold.
+//! Records are left as they are: a list beside them says of each solution what became of it, so that nothing is lost,
+//! and exports can keep to those that hold.
 
 use crate::disk::Disk;
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
-use crate::read::{Phase, RunOf};
+use crate::read::RunOf;
 use crate::replay::{at_accuracy, states};
+use crate::sample_id::Phase;
+use crate::sample_id::SampleId;
 use crate::solutions::{Solution, distinct};
-use crate::tally::SampleId;
 use plaus_mcmc::State;
+use plaus_mcmc::parallel;
 use plaus_scenes::{AccuracyPreset, Scenario, Scene, Visitor};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 
@@ -75,8 +77,8 @@ pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Err
 }
 
 impl Confirmation {
-    /// Simulates every distinct solution at `accuracy`, on `threads` threads (0: one a core). Asks `go_on` now and then, with how many are done and how many there
-    /// are; where the answer is no, there is no result.
+    /// Simulates every distinct solution at `accuracy`, on `threads` threads (0: one a core). Asks `go_on` now and
+    /// then, with how many are done and how many there are; where the answer is no, there is no result.
     ///
     /// # Errors
     /// [`Error`] where the scene has no accuracy to choose, the records are damaged or a simulation fails.
@@ -96,7 +98,7 @@ impl Confirmation {
             if !go_on(solutions.len(), found.len()) {
                 return Ok(None);
             }
-            let checked: Vec<Checked> = pool.install(|| check(run, &scene, some))?;
+            let checked: Vec<Checked> = parallel::install(&pool, || check(run, &scene, some))?;
             solutions.extend(checked);
         }
         let manifest = run.run().manifest();
@@ -170,5 +172,5 @@ fn check<S: Scene>(run: &RunOf<'_, S>, scene: &S, solutions: &[Solution]) -> Res
             log_p_there: log_p_there.is_finite().then_some(log_p_there),
         })
     };
-    found.par_iter().map(check).collect()
+    parallel::try_map(found.len(), |k| check(&found[k]))
 }

@@ -1,16 +1,18 @@
 //! Whether a run has converged: the diagnostics of every scalar, the variables of the draw first.
 
 use crate::error::RunFileError;
-use crate::read::{Phase, RunOf};
+use crate::read::RunOf;
+use crate::sample_id::Phase;
 use crate::streamed::Moments;
 use crate::tally::Tally;
 use plaus_mcmc::diagnose::{DiagnoseError, Summary, ess_where, summarize};
+use plaus_mcmc::parallel;
 use plaus_scenes::{Role, Scalar, Scene};
-use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt;
 
-/// Numbers held in memory at once while scalars are read; of longer runs, and of runs of very many chains, ranks are looked at in every n-th draw.
+/// Numbers held in memory at once while scalars are read; of longer runs, and of runs of very many chains, ranks are
+/// looked at in every n-th draw.
 const HELD: u64 = 1 << 25;
 /// Rank-normalised R̂ above this says that the chains disagree (Vehtari et al. 2021).
 pub const MAX_RHAT: f64 = 1.01;
@@ -121,8 +123,8 @@ impl fmt::Display for Finding {
 }
 
 impl Diagnosis {
-    /// Diagnoses the sampling phase of a run, from every draw, or, where that is more than `most` a chain or more than memory is for, from every
-    /// n-th. Means and standard deviations are always those of all draws.
+    /// Diagnoses the sampling phase of a run, from every draw, or, where that is more than `most` a chain or more than
+    /// memory is for, from every n-th. Means and standard deviations are always those of all draws.
     ///
     /// # Errors
     /// [`RunFileError`] where the records are damaged.
@@ -138,22 +140,22 @@ impl Diagnosis {
         for from in (0..all.len()).step_by(usize::try_from(width).unwrap_or(usize::MAX)) {
             let some = &all[from..all.len().min(from.saturating_add(width as usize))];
             let (columns, moments) = streamed(run, from, some.len(), stride)?;
-            let solutions = |(scalar, chains): (&Scalar, &Vec<Vec<f64>>)| {
-                let ess = (scalar.role == Role::Draw).then(|| worth_of(chains, &satisfied));
-                Some(Independent { ess: ess??, scalar: Some(scalar.name.clone()) })
-            };
-            let fewest = some.par_iter().zip(&columns).filter_map(solutions).collect::<Vec<_>>();
-            independent = fewest.into_iter().chain(independent).reduce(|a, b| if b.ess < a.ess { b } else { a });
-            let diagnose = |((scalar, chains), moments): ((&Scalar, Vec<Vec<f64>>), Moments)| {
-                diagnose(scalar, &chains, iterations, (stride > 1).then_some(moments))
-            };
-            scalars.par_extend(some.par_iter().zip(columns).zip(moments).map(diagnose));
+            let looked_at = parallel::map(some.len(), |k| {
+                let (scalar, chains) = (&some[k], &columns[k]);
+                let ess = (scalar.role == Role::Draw).then(|| worth_of(chains, &satisfied)).flatten();
+                let solutions = ess.map(|ess| Independent { ess, scalar: Some(scalar.name.clone()) });
+                (solutions, diagnose(scalar, chains, iterations, (stride > 1).then_some(moments[k])))
+            });
+            let (fewest, diagnosed): (Vec<_>, Vec<_>) = looked_at.into_iter().unzip();
+            let fewest = fewest.into_iter().flatten().chain(independent);
+            independent = fewest.reduce(|a, b| if b.ess < a.ess { b } else { a });
+            scalars.extend(diagnosed);
         }
         if run.run().manifest().is_independent() {
             let kept = kept(run)?;
             independent = (kept > 0).then_some(Independent { ess: kept as f64, scalar: None });
         }
-        scalars.sort_by_key(|scalar: &ScalarDiagnosis| scalar.scalar.role != Role::Draw);
+        variables_first(&mut scalars);
         let tally = Tally::of(run)?;
         let findings = findings(&scalars, &tally);
         let draws = recorded.div_ceil(stride);
@@ -165,6 +167,11 @@ impl Diagnosis {
     pub fn is_healthy(&self) -> bool {
         self.findings.is_empty()
     }
+}
+
+/// Variables of the draw before outcomes.
+fn variables_first(scalars: &mut [ScalarDiagnosis]) {
+    scalars.sort_by_key(|scalar| scalar.scalar.role != Role::Draw);
 }
 
 /// How many independent solutions these values of one variable are worth, per chain, per draw; `None` where that cannot
@@ -183,7 +190,7 @@ fn kept<S: Scene>(run: &RunOf<'_, S>) -> Result<u64, RunFileError> {
         })?;
         Ok(kept)
     };
-    run.chains().into_par_iter().map(chain).sum()
+    Ok(run.each_chain(chain)?.into_iter().sum())
 }
 
 /// Per chain, per draw: whether it satisfies the constraint.
@@ -197,7 +204,7 @@ fn satisfied<S: Scene>(run: &RunOf<'_, S>, stride: u64) -> Result<Vec<Vec<bool>>
         })?;
         Ok(column)
     };
-    run.chains().into_par_iter().map(chain).collect()
+    run.each_chain(chain)
 }
 
 /// The values of `count` scalars from number `from` on: per scalar, per chain, per draw.
@@ -243,8 +250,7 @@ fn streamed<S: Scene>(
         })?;
         Ok((columns, moments))
     };
-    let chains: Vec<(Vec<Vec<f64>>, Vec<Moments>)> =
-        run.chains().into_par_iter().map(chain).collect::<Result<_, _>>()?;
+    let chains: Vec<(Vec<Vec<f64>>, Vec<Moments>)> = run.each_chain(chain)?;
     let (mut scalars, mut all): (Columns, _) = (vec![Vec::new(); count], vec![Moments::default(); count]);
     for (chain, moments) in chains {
         scalars.iter_mut().zip(chain).for_each(|(scalar, column)| scalar.push(column));

@@ -1,11 +1,13 @@
 //! How the chains of a run are driven: by the scene alone, or under something more that is asked of it.
 
 use crate::error::RunFileError;
-use crate::sample::Starts;
-use plaus_mcmc::{Ending, Goal, Mixture, Plan, Pulse, RunError, Sink};
+use plaus_mcmc::{Ending, Goal, Mixture, Plan, Pulse, RunError, Sink, Start, Target};
 use plaus_scenes::Scene;
 use std::ops::Range;
 use std::sync::Arc;
+
+/// Where the chains of a scene go on from.
+pub(crate) type Starts<S> = Vec<Start<<S as Target>::Draw, <S as Target>::Outcome>>;
 
 /// What of a run is not in its scene.
 pub struct Journey<'a, S: Goal> {

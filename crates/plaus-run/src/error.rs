@@ -90,8 +90,8 @@ pub enum RunFileProblem {
     /// The checkpoint of a chain is not there, though those of others are.
     #[error(
         "this checkpoint is gone, while other chains have theirs, of iteration {newest}: the run cannot go on. The records are \
-         not touched by this: `plaus export --salvage` and `plaus gallery --salvage` read them; the same scenario and seed \
-         sample the run again"
+         not touched by this: `plaus export --salvage` and `plaus gallery --salvage` read them; the same scenario and \
+         seed sample the run again"
     )]
     Gone {
         /// Iterations that the others' checkpoints cover.

@@ -170,7 +170,8 @@ pub(crate) fn parent_of(path: &Path) -> PathBuf {
     }
 }
 
-/// Removes the drafts of a run that processes left that were killed while they made it, where the system tells which processes there are.
+/// Removes the drafts of a run that processes left that were killed while they made it, where the system tells which
+/// processes there are.
 fn clear_drafts(path: &Path) {
     let processes = Path::new("/proc/self");
     let Some(name) = path.file_name().map(|name| name.to_string_lossy().into_owned()) else { return };

@@ -1,22 +1,25 @@
-//! How well the outcomes mix, while a run is still sampled: from a thinned copy of their values, so that it stays cheap however long the run gets.
+//! How well the outcomes mix, while a run is still sampled: from a thinned copy of their values, so that it stays cheap
+//! however long the run gets.
 
 use crate::error::RunFileError;
 use crate::records::{Blocks, Extent};
 use plaus_mcmc::diagnose::summarize;
+use plaus_mcmc::parallel;
 use plaus_mcmc::{Block, Plan};
 use plaus_scenes::{Role, Scene};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::path::Path;
 
-/// Most values kept of a chain and outcome: where there are more, every other is dropped, and from then on only half as many come in.
+/// Most values kept of a chain and outcome: where there are more, every other is dropped, and from then on only half as
+/// many come in.
 const MOST: usize = 1024;
 /// Fewest values of a chain and outcome that are worth a look.
 const LEAST: usize = 32;
 /// Outcomes that are looked at: scenes of many bodies have more, which would cost more than they tell at a glance.
 const OUTCOMES: usize = 16;
 
-/// What is known of the outcomes at a moment of a run. It rests on fewer draws than [`Diagnosis`](crate::Diagnosis), at most 1,024 a chain, and on the first 16 outcomes only.
+/// What is known of the outcomes at a moment of a run. It rests on fewer draws than [`Diagnosis`](crate::Diagnosis), at
+/// most 1,024 a chain, and on the first 16 outcomes only.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mixing {
     /// The largest R̂, and the outcome it is of; `None` for one chain.
@@ -98,16 +101,18 @@ impl<'a, S: Scene> Gauge<'a, S> {
         }
     }
 
-    /// R̂ and effective sample sizes of the outcomes that have moved; `None` where none has, or there are too few draws.
+    /// R̂ and effective sample sizes of the outcomes that have moved; `None` where none has, or there are too few
+    /// draws.
     pub(crate) fn mixing(&self) -> Option<Mixing> {
         let worth = |chains: &Vec<Vec<f64>>| {
             chains[0].len() >= LEAST && chains.iter().flatten().any(|value| value != &chains[0][0])
         };
-        let look = |((name, _), chains): (&(String, usize), &Vec<Vec<f64>>)| {
+        let look = |k: usize| {
+            let ((name, _), chains) = (&self.outcomes[k], &self.values[k]);
             let summary = summarize(chains).ok().filter(|_| worth(chains))?;
             Some((name.clone(), summary.rhat, summary.ess_bulk.min(summary.ess_tail)))
         };
-        let rows: Vec<_> = self.outcomes.par_iter().zip(&self.values).filter_map(look).collect();
+        let rows: Vec<_> = parallel::map(self.outcomes.len(), look).into_iter().flatten().collect();
         let rhat = rows.iter().filter_map(|(name, rhat, _)| Some((name, (*rhat)?)));
         let rhat = rhat.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(name, rhat)| (name.clone(), rhat));
         let ess = rows.iter().min_by(|a, b| a.2.total_cmp(&b.2)).map(|(name, _, ess)| (name.clone(), *ess))?;

@@ -42,9 +42,10 @@
 //! | `lock` | empty; locked by the process that writes |
 //! | `trail`, `progress.json` | of a [piece](shard) only: where it could be cut, if it looks for solutions; how far it is, for those who look on |
 //!
-//! The bytes of a folder follow from scenario, seed, plan and version: not from the clock, the number of threads, or how often the run was killed and
-//! resumed. Records are written first, checkpoints after; a checkpoint says how long the records were, and what lies beyond that is cut off
-//! when the run goes on. So a process that dies at any moment loses at most the iterations since the last checkpoint.
+//! The bytes of a folder follow from scenario, seed, plan and version: not from the clock, the number of threads, or
+//! how often the run was killed and resumed. Records are written first, checkpoints after; a checkpoint says how long
+//! the records were, and what lies beyond that is cut off when the run goes on. So a process that dies at any moment
+//! loses at most the iterations since the last checkpoint.
 
 pub mod beside;
 mod beside_scenario;
@@ -66,6 +67,7 @@ pub mod read;
 pub mod records;
 pub mod replay;
 pub mod sample;
+mod sample_id;
 pub mod shard;
 mod siblings;
 mod sink;
@@ -73,6 +75,8 @@ pub mod solutions;
 mod streamed;
 pub mod tally;
 mod trail;
+mod trial;
+mod watch;
 pub mod way;
 
 pub use beside::{Beside, Missed};
@@ -85,11 +89,11 @@ pub use folder::Folder;
 pub use gauge::Mixing;
 pub use manifest::{Manifest, Recipe};
 pub use merge::merge;
-pub use read::{Phase, Run, RunOf, RunVisitor};
-pub use sample::{
-    More, Sampling, Unwatched, Watch, resume, resume_by, sample, sample_by, sample_or_go_on, sample_shard,
-};
+pub use read::{Run, RunOf, RunVisitor};
+pub use sample::{More, Sampling, resume, resume_by, sample, sample_by, sample_or_go_on, sample_shard};
+pub use sample_id::{Phase, SampleId};
 pub use shard::{Shard, ShardError};
 pub use solutions::Solution;
-pub use tally::{SampleId, Tally};
+pub use tally::Tally;
+pub use watch::{Unwatched, Watch};
 pub use way::Way;

@@ -180,7 +180,8 @@ fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
     }
 }
 
-/// The first key of two scenarios in force whose values differ, with both; one is a line of the other's form, as both were written by one program.
+/// The first key of two scenarios in force whose values differ, with both; one is a line of the other's form, as both
+/// were written by one program.
 fn different_key(here: &str, there: &str) -> Option<String> {
     let mut table = String::new();
     let mut lines = (here.lines(), there.lines());
@@ -390,8 +391,8 @@ impl Manifest {
         })
     }
 
-    /// A number that the chains' files bear, so that files of different runs cannot be mixed up. How many chains there are plays no part: what one
-    /// leaves does not depend on the others.
+    /// A number that the chains' files bear, so that files of different runs cannot be mixed up. How many chains there
+    /// are plays no part: what one leaves does not depend on the others.
     pub(crate) fn run_id(&self) -> u64 {
         let (mut hasher, mut of_sampler) = (blake3::Hasher::new(), false);
         for line in self.scenario.effective.split_inclusive('\n') {

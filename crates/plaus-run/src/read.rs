@@ -5,10 +5,10 @@ use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
 use crate::manifest::{Manifest, stored_scalars};
 use crate::records::{self, Blocks, Extent};
-use crate::tally::SampleId;
+use crate::sample_id::{Phase, SampleId};
+use plaus_mcmc::parallel;
 use plaus_mcmc::{Entry, Snapshot, Target};
 use plaus_scenes::{Scenario, Scene, Visitor};
-use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// A run that was found on the disk.
@@ -26,25 +26,6 @@ pub trait RunVisitor {
     type Output;
     /// Does it.
     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output;
-}
-
-/// A part of a chain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Phase {
-    /// Before sampling, while moves and ladders are adapted: kept out of tables and diagnostics.
-    Warmup,
-    /// What is sampled. Its recorded draws are numbered from 0.
-    #[default]
-    Sampling,
-}
-
-impl Phase {
-    /// Whether its draws are what statistics are made of.
-    #[must_use]
-    pub fn is_sampling(&self) -> bool {
-        *self == Self::Sampling
-    }
 }
 
 /// A run of a known scene.
@@ -141,7 +122,8 @@ impl<'a, S: Scene> RunOf<'a, S> {
         let end = |chain: &ChainOf<S>| chain.snapshot.as_ref().map(|snapshot| snapshot.end_iteration);
         if let Some(newest) = chains.iter().filter_map(end).max() {
             for (chain, _) in run.manifest.chains().zip(&chains).filter(|(_, chain)| chain.snapshot.is_none()) {
-                // One that is about to take its place is there in a run that was killed as its checkpoints were replaced.
+                // One that is about to take its place is there in a run that was killed as its checkpoints were
+                // replaced.
                 if !run.folder.next_checkpoint(chain).exists() {
                     let problem = RunFileProblem::Gone { newest };
                     return Err(RunFileError::new(run.folder.checkpoint(chain), problem).into());
@@ -151,7 +133,8 @@ impl<'a, S: Scene> RunOf<'a, S> {
         Ok(Self { run, scene, chains })
     }
 
-    /// Per chain that has any: bytes at the end of its records that cannot be read. None unless the run is read for salvage.
+    /// Per chain that has any: bytes at the end of its records that cannot be read. None unless the run is read for
+    /// salvage.
     #[must_use]
     pub fn lost(&self) -> Vec<(u32, u64)> {
         self.chains().zip(&self.chains).map(|(chain, of)| (chain, of.lost)).filter(|(_, lost)| *lost > 0).collect()
@@ -173,6 +156,15 @@ impl<'a, S: Scene> RunOf<'a, S> {
     #[must_use]
     pub fn chains(&self) -> Range<u32> {
         self.run.manifest.chains()
+    }
+
+    /// What `job` makes of each chain, in their order, on all threads of the current pool.
+    ///
+    /// # Errors
+    /// That of the first chain for which `job` fails.
+    pub fn each_chain<T: Send, E: Send>(&self, job: impl Fn(u32) -> Result<T, E> + Sync) -> Result<Vec<T>, E> {
+        let chains = self.chains();
+        parallel::try_map(chains.len(), |k| job(chains.start + k as u32))
     }
 
     fn chain(&self, chain: u32) -> Option<&ChainOf<S>> {
@@ -246,6 +238,21 @@ impl<'a, S: Scene> RunOf<'a, S> {
         phase: Phase,
         mut look: impl FnMut(StretchOf<'_, S>) -> Result<(), E>,
     ) -> Result<(), E> {
+        let mut failed = None;
+        self.walk_until(chain, phase, &mut |stretch| {
+            failed = look(stretch).err();
+            failed.is_none()
+        })?;
+        failed.map_or(Ok(()), Err)
+    }
+
+    /// The same until `look` says no; compiled once a scene, whoever looks.
+    fn walk_until(
+        &self,
+        chain: u32,
+        phase: Phase,
+        look: &mut dyn FnMut(StretchOf<'_, S>) -> bool,
+    ) -> Result<(), RunFileError> {
         let range = self.range(phase);
         if range.is_empty() {
             return Ok(());
@@ -256,7 +263,10 @@ impl<'a, S: Scene> RunOf<'a, S> {
                 let (first, end) = (next.max(range.start), (next + entry.draws).min(range.end));
                 if first < end {
                     let accepted = if first == next { entry.accepted } else { 0 };
-                    look(Stretch { draw: first - range.start, draws: end - first, accepted, entry })?;
+                    let goes_on = look(Stretch { draw: first - range.start, draws: end - first, accepted, entry });
+                    if !goes_on {
+                        return Ok(());
+                    }
                 }
                 next += entry.draws;
             }

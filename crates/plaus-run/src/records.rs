@@ -132,8 +132,8 @@ impl<D: DeserializeOwned, O: DeserializeOwned> Iterator for Blocks<D, O> {
 /// What a stored block begins with: run, chain, first iteration and one past the last.
 type Head = (u64, u32, u64, u64);
 
-/// Hands on the bytes of a chain's records in large parts, whole frames whose checksums, places and number of iterations
-/// were found right; what they hold is not looked at.
+/// Hands on the bytes of a chain's records in large parts, whole frames whose checksums, places and number of
+/// iterations were found right; what they hold is not looked at.
 ///
 /// # Errors
 /// [`RunFileError`] where they are damaged or belong elsewhere, or as `take`.

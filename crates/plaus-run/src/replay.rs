@@ -2,10 +2,10 @@
 
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::read::RunOf;
-use crate::tally::SampleId;
+use crate::sample_id::SampleId;
+use plaus_mcmc::parallel;
 use plaus_mcmc::{State, StateOf};
 use plaus_scenes::{AccuracyPreset, Animation, Scene, Until};
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// A recorded draw, simulated again.
@@ -52,7 +52,8 @@ pub fn replay<S: Scene>(run: &RunOf<'_, S>, sample: SampleId) -> Result<Replay, 
     rebuild(run, sample, &entry.state, entry.class.is_some(), Until::Rest)
 }
 
-/// What becomes of a recorded draw at another accuracy. That the recorded state is what this program makes of the draw at the run's own is made sure first.
+/// What becomes of a recorded draw at another accuracy. That the recorded state is what this program makes of the draw
+/// at the run's own is made sure first.
 ///
 /// # Errors
 /// As [`replay`], and where the scene has no accuracy to choose.
@@ -74,7 +75,8 @@ pub(crate) fn at_accuracy<S: Scene>(scene: &S, name: &str, accuracy: AccuracyPre
     })
 }
 
-/// Rebuilds many draws, each chain's records being read once, and hands each to `make`, on all threads: what `make` gives, in the order of `samples`.
+/// Rebuilds many draws, each chain's records being read once, and hands each to `make`, on all threads: what `make`
+/// gives, in the order of `samples`.
 ///
 /// # Errors
 /// As [`replay`].
@@ -97,10 +99,10 @@ pub fn replay_each_until<S: Scene, T: Send>(
     make: impl Fn(Replay) -> T + Sync,
 ) -> Result<Vec<T>, Error> {
     let states = states(run, samples)?;
-    let rebuilt = states
-        .par_iter()
-        .map(|(index, state, satisfied)| rebuild(run, samples[*index], state, *satisfied, until).map(&make));
-    rebuilt.collect()
+    parallel::try_map(states.len(), |k| {
+        let (index, state, satisfied) = &states[k];
+        rebuild(run, samples[*index], state, *satisfied, until).map(&make)
+    })
 }
 
 /// A recorded state with its place in a list, and whether it satisfies the constraint.
@@ -108,16 +110,15 @@ pub(crate) type Found<S> = (usize, StateOf<S>, bool);
 
 /// The recorded states of many draws, in their order, each chain's records being read once.
 pub(crate) fn states<S: Scene>(run: &RunOf<'_, S>, samples: &[SampleId]) -> Result<Vec<Found<S>>, Error> {
-    let mut order: Vec<usize> = (0..samples.len()).collect();
-    order.sort_by_key(|&index| samples[index]);
-    let mut states = Vec::with_capacity(samples.len());
+    let order = in_order(samples);
+    let mut states: Vec<Option<Found<S>>> = samples.iter().map(|_| None).collect();
     let part = |index: usize| (samples[index].chain, samples[index].phase);
     for wanted in order.chunk_by(|&a, &b| part(a) == part(b)) {
         let mut wanted = wanted.iter().copied().peekable();
         let Some((chain, phase)) = wanted.peek().map(|&index| part(index)) else { continue };
         run.walk(chain, phase, |stretch| -> Result<(), Error> {
             while let Some(index) = wanted.next_if(|&index| samples[index].draw < stretch.draw + stretch.draws) {
-                states.push((index, stretch.entry.state.clone(), stretch.entry.class.is_some()));
+                states[index] = Some((index, stretch.entry.state.clone(), stretch.entry.class.is_some()));
             }
             Ok(())
         })?;
@@ -126,8 +127,14 @@ pub(crate) fn states<S: Scene>(run: &RunOf<'_, S>, samples: &[SampleId]) -> Resu
             run.sample(samples[missing])?;
         }
     }
-    states.sort_by_key(|&(index, ..)| index);
-    Ok(states)
+    Ok(states.into_iter().flatten().collect())
+}
+
+/// Places of samples in the order in which they were recorded.
+fn in_order(samples: &[SampleId]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..samples.len()).collect();
+    order.sort_by_key(|&index| samples[index]);
+    order
 }
 
 fn rebuild<S: Scene>(

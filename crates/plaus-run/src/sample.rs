@@ -2,10 +2,10 @@
 
 use crate::checkpoint::{self, Checkpoint};
 use crate::disk::{Disk, RealDisk};
-use crate::drive::{Alone, Drive, Journey};
+use crate::drive::{Alone, Drive, Journey, Starts};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
-use crate::gauge::{Gauge, Mixing};
+use crate::gauge::Gauge;
 use crate::manifest::{Manifest, Recipe, VERSION, stored_scalars};
 use crate::records::{self, Extent};
 use crate::replay::evaluate_again;
@@ -13,71 +13,19 @@ use crate::shard::Shard;
 use crate::siblings::Siblings;
 use crate::sink::{FolderSink, Hunt, Place};
 use crate::trail;
-use crate::way::{self, Way};
-use plaus_mcmc::{Control, Distinct, Ending, Progress, Pulse, RunError, Start, Target};
+use crate::trial;
+use crate::watch::Watch;
+use crate::way::Way;
+use plaus_mcmc::parallel;
+use plaus_mcmc::{Distinct, Ending, RunError, Start};
 use plaus_scenes::scenario::Method;
 use plaus_scenes::{Scenario, Scene, Visitor};
-use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
 use std::sync::Arc;
 
 /// What is said of a requirement that is not given.
 const BY_ITS_MAKER: &str = "go on with it from the program that gave it";
-
-/// Where the chains of a scene go on from.
-pub(crate) type Starts<S> = Vec<Start<<S as Target>::Draw, <S as Target>::Outcome>>;
-
-/// Looks on while a run is sampled, and may stop it.
-pub trait Watch {
-    /// Called before the first round; `done` iterations of each chain are done already.
-    fn begin(&mut self, _manifest: &Manifest, _done: u64) {}
-
-    /// Called after each round; says whether to go on.
-    fn round(&mut self, progress: &Progress<'_>) -> Control;
-
-    /// Whether what was sampled since the last checkpoint is worth writing one. The final bytes do not depend on the answers; what
-    /// a killed process loses does.
-    fn checkpoint_due(&mut self) -> bool {
-        true
-    }
-
-    /// Called after a checkpoint was written.
-    fn checkpoint_done(&mut self) {}
-
-    /// What the chains report to while they are at work, and are stopped by.
-    fn pulse(&self) -> Arc<Pulse> {
-        Arc::default()
-    }
-
-    /// Whether to keep, in memory, what [`Watch::mixing`] takes.
-    fn looks_at_mixing(&self) -> bool {
-        false
-    }
-
-    /// Whether to find out now how well the outcomes mix; asked after each round where [`Watch::looks_at_mixing`] says so.
-    fn mixing_due(&mut self) -> bool {
-        false
-    }
-
-    /// Called with what was found; `None` where there is too little to tell.
-    fn mixing(&mut self, _mixing: Option<Mixing>) {}
-
-    /// Called again and again while another process writes the run that is to be gone on with; says whether to wait.
-    fn locked(&mut self, _folder: &Folder) -> bool {
-        false
-    }
-}
-
-/// Watches nothing: runs to the end, with a checkpoint after every round.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Unwatched;
-
-impl Watch for Unwatched {
-    fn round(&mut self, _: &Progress<'_>) -> Control {
-        Control::Continue
-    }
-}
 
 /// How to sample, beside what.
 pub struct Sampling<'a> {
@@ -159,8 +107,8 @@ fn begin<D: Drive>(
     recipe.scenario.visit(Begin(folder, recipe, shard, sampling, drive))?
 }
 
-/// Samples a new run, or a piece of one, into `folder`; where that holds this very run already, goes on with it. So a job that is started again and
-/// again comes to its end.
+/// Samples a new run, or a piece of one, into `folder`; where that holds this very run already, goes on with it. So a
+/// job that is started again and again comes to its end.
 ///
 /// # Errors
 /// As [`sample_shard`] and [`resume`], and where the folder holds another run.
@@ -215,7 +163,7 @@ fn settled<S: Scene>(
     let pulse = sampling.watch.pulse();
     let way = match &manifest.requirement {
         Some(_) => Way { independent: false, why: "no trial asks what a program requires".to_owned() },
-        None => sampling.pool(&manifest)?.install(|| way::tried(recipe, scene, &pulse))?,
+        None => parallel::install(&sampling.pool(&manifest)?, || trial::tried(recipe, scene, &pulse))?,
     };
     manifest.made(way, scene, &recipe.scenario.sampler.rules)
 }
@@ -240,7 +188,8 @@ pub struct More {
 /// Goes on with a run from its last checkpoint, to its planned end or as far as `more` says.
 ///
 /// # Errors
-/// [`Error`] where the run is damaged, made by another version or being written, `more` is less than planned, or as [`sample`].
+/// [`Error`] where the run is damaged, made by another version or being written, `more` is less than planned, or as
+/// [`sample`].
 pub fn resume(folder: &Folder, more: More, sampling: Sampling<'_>) -> Result<Ending, Error> {
     resume_by(folder, more, sampling, &Alone)
 }
@@ -340,8 +289,13 @@ fn restore<S: Scene>(
     }
     let done = checkpoints.first().map_or(0, |checkpoint| checkpoint.snapshot.end_iteration);
     cut(&folder.trail(), disk, trail::length_until(&folder.trail(), run, done)?)?;
-    let restore = |checkpoint| restore_chain(folder, manifest, scene, disk, checkpoint);
-    sampling.pool(manifest)?.install(|| checkpoints.into_par_iter().map(restore).collect())
+    let mut checkpoints: Vec<_> = checkpoints.into_iter().map(Some).collect();
+    let restored = parallel::install(&sampling.pool(manifest)?, || {
+        parallel::map_mut(&mut checkpoints, |_, checkpoint| {
+            checkpoint.take().map(|checkpoint| restore_chain(folder, manifest, scene, disk, checkpoint))
+        })
+    });
+    restored.into_iter().flatten().collect()
 }
 
 fn restore_chain<S: Scene>(

@@ -6,13 +6,13 @@ use crate::error::RunFileError;
 use crate::folder::Folder;
 use crate::gauge::Gauge;
 use crate::records;
-use crate::sample::Watch;
 use crate::siblings::Siblings;
 use crate::trail;
+use crate::watch::Watch;
+use plaus_mcmc::parallel;
 use plaus_mcmc::{Block, Control, FirstOfClass, Progress, Sink, Snapshot, Target};
 use plaus_scenes::Scene;
 use rayon::ThreadPool;
-use rayon::prelude::*;
 
 /// Where a run is written, and by whom.
 pub(crate) struct Place<'a> {
@@ -125,12 +125,13 @@ impl<'a, S: Scene> FolderSink<'a, S> {
 
     fn write_blocks(&mut self) -> Result<(), RunFileError> {
         let Place { folder, disk, run, first, ref pool } = self.place;
-        let encode = |(chain, block): (u32, BlockOf<S>)| {
-            let bytes = records::encode(run, chain, &block);
-            bytes.map(|bytes| (chain, bytes)).map_err(|error| RunFileError::new(folder.records(chain), error.into()))
-        };
         let blocks = std::mem::take(&mut self.blocks);
-        let frames: Vec<_> = pool.install(|| blocks.into_par_iter().map(encode).collect::<Result<_, _>>())?;
+        let encode = |k: usize| {
+            let (chain, block) = &blocks[k];
+            let bytes = records::encode(run, *chain, block);
+            bytes.map(|bytes| (*chain, bytes)).map_err(|error| RunFileError::new(folder.records(*chain), error.into()))
+        };
+        let frames = parallel::install(pool, || parallel::try_map(blocks.len(), encode))?;
         for (chain, frame) in frames {
             let path = folder.records(chain);
             disk.append(&path, &frame).map_err(RunFileError::io(&path, "write"))?;
@@ -169,7 +170,7 @@ impl<S: Scene> Sink<S::Draw, S::Outcome> for FolderSink<'_, S> {
         if let Some(gauge) = &mut self.gauge {
             gauge.thin_out();
             if self.watch.mixing_due() {
-                let mixing = self.place.pool.install(|| gauge.mixing());
+                let mixing = parallel::install(&self.place.pool, || gauge.mixing());
                 self.watch.mixing(mixing);
             }
         }

@@ -2,10 +2,9 @@
 
 use crate::error::RunFileError;
 use crate::read::RunOf;
-use crate::tally::SampleId;
+use crate::sample_id::SampleId;
 use plaus_mcmc::SolutionClass;
 use plaus_scenes::Scene;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
@@ -26,14 +25,17 @@ pub struct Solution {
 /// # Errors
 /// [`RunFileError`] where the records are damaged.
 pub fn distinct<S: Scene>(run: &RunOf<'_, S>) -> Result<Vec<Solution>, RunFileError> {
-    let parts: Vec<BTreeMap<SolutionClass, Solution>> =
-        run.chains().into_par_iter().map(|chain| of_chain(run, chain)).collect::<Result<_, _>>()?;
-    let mut all: Vec<(SolutionClass, Solution)> = parts.into_iter().flatten().collect();
+    let parts: Vec<BTreeMap<SolutionClass, Solution>> = run.each_chain(|chain| of_chain(run, chain))?;
+    Ok(firsts(parts.into_iter().flatten().collect()))
+}
+
+/// The first of each class, in the order in which they were found.
+fn firsts(mut all: Vec<(SolutionClass, Solution)>) -> Vec<Solution> {
     all.sort_by_key(|(class, solution)| (*class, solution.iteration, solution.sample));
     all.dedup_by_key(|(class, _)| *class);
     let mut solutions: Vec<Solution> = all.into_iter().map(|(_, solution)| solution).collect();
     solutions.sort_by_key(|solution| (solution.iteration, solution.sample));
-    Ok(solutions)
+    solutions
 }
 
 fn of_chain<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<BTreeMap<SolutionClass, Solution>, RunFileError> {

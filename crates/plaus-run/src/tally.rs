@@ -1,43 +1,11 @@
 //! What the records of a run add up to.
 
 use crate::error::RunFileError;
-use crate::read::{Phase, RunOf};
+use crate::read::RunOf;
+use crate::sample_id::SampleId;
 use plaus_mcmc::{Climb, Distinct, FirstOfClass, Hits, Ladder, MoveCounts, MoveId, Scales};
 use plaus_scenes::Scene;
-use rayon::prelude::*;
 use serde::Serialize;
-
-/// A recorded draw. As text, `0:17` is draw 17 of chain 0, and `0:w17` the one of its warm-up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub struct SampleId {
-    /// Its chain.
-    pub chain: u32,
-    /// Where it was recorded.
-    #[serde(skip_serializing_if = "Phase::is_sampling")]
-    pub phase: Phase,
-    /// Its number in that phase, from 0: as in the table of `plaus export`.
-    pub draw: u64,
-}
-
-impl std::fmt::Display for SampleId {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mark = if self.phase.is_sampling() { "" } else { "w" };
-        write!(f, "{}:{mark}{}", self.chain, self.draw)
-    }
-}
-
-impl std::str::FromStr for SampleId {
-    type Err = String;
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parse = |(chain, draw): (&str, &str)| {
-            let (phase, draw) = draw.strip_prefix('w').map_or((Phase::Sampling, draw), |draw| (Phase::Warmup, draw));
-            Some(Self { chain: chain.parse().ok()?, phase, draw: draw.parse().ok()? })
-        };
-        let wrong =
-            || format!("`{text}` names no sample: write CHAIN:DRAW, e.g. 0:17, or 0:w17 for one of the warm-up");
-        text.split_once(':').and_then(parse).ok_or_else(wrong)
-    }
-}
 
 /// What one chain's records add up to.
 #[derive(Debug, Clone, Serialize)]
@@ -146,8 +114,7 @@ impl Tally {
     /// # Errors
     /// [`RunFileError`] where they are damaged.
     pub fn of<S: Scene>(run: &RunOf<'_, S>) -> Result<Self, RunFileError> {
-        let parts: Vec<(ChainTally, Distinct)> =
-            run.chains().into_par_iter().map(|chain| tally(run, chain)).collect::<Result<_, _>>()?;
+        let parts: Vec<(ChainTally, Distinct)> = run.each_chain(|chain| tally(run, chain))?;
         let mut firsts: Vec<FirstOfClass> =
             parts.iter().flat_map(|(_, distinct)| distinct.firsts().iter().copied()).collect();
         firsts.sort_unstable();

@@ -167,7 +167,8 @@ fn recorded_draws_are_counted_not_divided() {
     let place = tempfile::tempdir().unwrap();
     let folder = Folder::new(place.path().join("run"));
     let mut short = recipe(None);
-    (short.scenario.sampler.warmup, short.scenario.sampler.iterations) = (299, 4); // records 300 and, with thin 3, 301..303: none
+    // Records 300 and, with thin 3, 301..303: none.
+    (short.scenario.sampler.warmup, short.scenario.sampler.iterations) = (299, 4);
     sample(&folder, &short, Sampling::new(1, &mut Unwatched)).unwrap();
     let (recorded, satisfying) = Run::open(&folder).unwrap().visit(Recorded).unwrap().unwrap();
     assert_eq!(recorded, 1);

@@ -56,7 +56,7 @@ pub trait Scene:
     }
 
     /// Bodies and impacts of [`Scene::animate`], for those who need not see what stands still. A scene in which that is
-    /// dear to build overrides this.
+    /// expensive to build overrides this.
     ///
     /// # Errors
     /// As [`Scene::animate`].
@@ -100,7 +100,7 @@ pub trait Scene:
     }
 
     /// Bodies and impacts of [`Scene::motion`] before `time`, as far as a simulation that ends there tells; `None`
-    /// where it would be as dear as the whole.
+    /// where it would be as expensive as the whole.
     ///
     /// # Errors
     /// As [`Scene::animate`].

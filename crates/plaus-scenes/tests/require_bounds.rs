@@ -142,6 +142,29 @@ fn who_takes_a_beginning_for_the_whole_is_found_out() {
 }
 
 /// A simulation that ends early tells the same of its beginning as the whole one does.
+/// What asks for times is met where each is found in its window, and only there.
+#[test]
+fn what_asks_for_times_is_met_where_they_are_found() {
+    fn met<S: Scene>(scene: &S, texts: &[&str], draws: u64) {
+        let (cast, timely) = (scene.cast(), ["impact", "rests", "touches", "beats"]);
+        let mut seen = [0; 2];
+        for one in texts.iter().map(|text| requirement(text)).filter(|one| timely.contains(&one.name())) {
+            for nth in 0..draws {
+                let draw = scene.start(&mut Seed(8).chain(0).at(nth, Purpose::START));
+                let motion = scene.motion(&draw).unwrap();
+                let probe = Probe::whole(&motion, &cast);
+                let times = one.times(&probe);
+                let inside = times.iter().all(|at| at.found.is_some_and(|t| at.wanted.from <= t && t <= at.wanted.to));
+                assert_eq!(one.reach(&probe).most.met(), inside, "{one:?}: {times:?}");
+                seen[usize::from(inside)] += 1;
+            }
+        }
+        assert!(seen[0] > 0 && seen[1] > 0, "{seen:?}");
+    }
+    met(&balls(), OF_A_BALL, 150);
+    met(&two_dice(), OF_DICE, 12);
+}
+
 #[test]
 fn a_simulation_that_ends_early_bounds_the_whole() {
     let scene = two_dice();

@@ -53,6 +53,39 @@ fn motion() -> (Animation, Cast) {
 }
 
 #[test]
+fn times_that_are_asked_for_have_words() {
+    let landing = 4.0 / G;
+    type Said<'a> = [(&'a str, Option<f64>)];
+    let cases: &[(&str, &Said<'_>)] = &[
+        ("impact = { body = 'a', with = 'floor' }", &[("first impact of a with floor", Some(landing))]),
+        ("impact = { body = 'a', nth = 2 }", &[("impact 2 of a", None)]),
+        ("impact = { body = '*', nth = -2 }", &[("last impact but 1 of *", Some(0.1))]),
+        ("rests = { body = 'a' }", &[("rest of a", Some(landing))]),
+        (
+            "touches = { body = 'die_1', with = 'rail', when = { from_s = 0.15 } }",
+            &[("die_1 touches rail", Some(0.15))],
+        ),
+        (
+            "beats = { body = '*', times_s = [0.11, 0.6], each = 'beat' }",
+            &[("beat 1", Some(0.1)), ("beat 2", Some(landing))],
+        ),
+        ("beats = { body = 'die_*', nth = -1, every_s = 0.09, each = 'body' }", &[("last impact of die_1", Some(0.1))]),
+        (
+            "count = { of = '*', at_least = 1, that = { impact = {} } }",
+            &[("first impact of a", Some(landing)), ("first impact of b", None), ("first impact of die_1", Some(0.1))],
+        ),
+        ("not = { impact = { body = 'a' } }", &[]),
+    ];
+    let (motion, cast) = motion();
+    for (text, wanted) in cases {
+        let require: Require = toml::from_str(text).unwrap();
+        let times = require.times(&Probe::whole(&motion, &cast));
+        let said: Vec<(&str, Option<f64>)> = times.iter().map(|at| (at.what.as_str(), at.found)).collect();
+        assert_eq!(&said, wanted, "{text}");
+    }
+}
+
+#[test]
 fn margins_are_those_computed_by_hand() {
     let landing = 4.0 / G;
     let top = 2.0 * 2.0 / (2.0 * G);

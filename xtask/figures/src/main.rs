@@ -1,8 +1,9 @@
-//! The paper's figures and claims, sampled anew: `cargo xtask reproduce-figures`; and what is simulated beside what was published of the real thing: `cargo xtask plausibility`; and how exact contact is:
-//! `cargo xtask accuracy`.
+//! The paper's figures and claims, sampled anew: `cargo xtask reproduce-figures`; and what is simulated beside what was
+//! published of the real thing: `cargo xtask plausibility`; and how exact contact is: `cargo xtask accuracy`.
 //!
-//! Each scene is a folder of its own that adds figures and rows of the report; [`SCENES`] lists them, [`plausibility::SCENES`] those of the second. Everything but the times that are measured follows from fixed
-//! seeds, so the same version makes the same files.
+//! Each scene is a folder of its own that adds figures and rows of the report; [`SCENES`] lists them,
+//! [`plausibility::SCENES`] those of the second. Everything but the times that are measured follows from fixed seeds,
+//! so the same version makes the same files.
 
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 

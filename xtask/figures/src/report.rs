@@ -17,7 +17,8 @@ pub struct Claim {
 /// What the report of the paper's figures begins with.
 pub const THE_PAPER: &str = "# The paper's figures and claims, sampled anew\n\n\
     S. Chenney, D. A. Forsyth, \"Sampling Plausible Solutions to Multi-body Constraint Problems\", SIGGRAPH 2000.\n\
-    This file and the figures beside it are made by one command, from fixed seeds; a second run of the same version gives the same\n\
+    This file and the figures beside it are made by one command, from fixed seeds; a second run of the same version \
+    gives the same\n\
     bytes, but for times, which are those of the machine:\n\n    cargo xtask reproduce-figures\n\n";
 
 /// The report as it grows.

@@ -96,7 +96,8 @@ impl<S: Scene> Sampler<S> {
         Ok((columns, counts))
     }
 
-    /// For each of `chains` chains the first iteration that satisfies the constraint; `None` where none up to `limit` does.
+    /// For each of `chains` chains the first iteration that satisfies the constraint; `None` where none up to `limit`
+    /// does.
     pub(crate) fn first_hits(&self, seed: u64, chains: u64, limit: u64) -> Result<Vec<Option<u64>>> {
         let first = |chain| -> Result<Option<u64>> {
             let mut chain = Chain::start(&self.scene, &self.moves, Seed(seed).chain(chain))?;

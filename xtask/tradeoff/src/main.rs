@@ -1,6 +1,8 @@
-//! What each preset of the simulator costs and what it gives, beside rapier3d at several time steps: `cargo xtask tradeoff`.
+//! What each preset of the simulator costs and what it gives, beside rapier3d at several time steps:
+//! `cargo xtask tradeoff`.
 //!
-//! A world is one file of `worlds` that implements [`World`](world::World); `peer` builds the same worlds in rapier. Cases with an exact answer are in `exact`.
+//! A world is one file of `worlds` that implements [`World`](world::World); `peer` builds the same worlds in rapier.
+//! Cases with an exact answer are in `exact`.
 #![allow(clippy::print_stderr, reason = "progress is for the person who waits")]
 #![allow(clippy::disallowed_methods, reason = "it measures time")]
 
@@ -22,11 +24,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use world::Way;
 
-const USAGE: &str = "usage: cargo xtask tradeoff [--worlds A,B] [--draws N] [--seconds S] [--rates A,B] [--out FOLDER] [--quick]
+const USAGE: &str =
+    "usage: cargo xtask tradeoff [--worlds A,B] [--draws N] [--seconds S] [--rates A,B] [--out FOLDER] [--quick]
 
     --worlds A,B   which worlds; all by default: bins, hi, acm, die, die-bumpy, bowling
     --draws N      draws per simulator and world, 2000 by default
-    --seconds S    seconds of computing after which a simulator gets no further draws of a world, 12 by default (three times that for bowling)
+    --seconds S    seconds of computing after which a simulator gets no further draws of a world, 12 by default
+                   (three times that for bowling)
     --rates A,B    the peer's steps a second, 60,240,1000 by default; multiples of 20
     --out FOLDER   where the files go, out/tradeoff by default
     --quick        60 draws and 1 second: shows that everything works, its numbers mean little";
@@ -119,7 +123,8 @@ fn trade(Options { out, worlds, plan }: Options) -> Result<()> {
 fn page(plan: &Plan, summaries: &[Vec<String>], exact: &str, sections: &str) -> String {
     let mut text = format!(
         "# What exactness costs\n\nMade by `cargo xtask tradeoff`. Draws and outcomes follow from fixed seeds ({} draws at most, fewer where {} s of computing were over, three times that for bowling). Times are seconds \
-         of processor time of one thread, all simulators in one process by turns, so that a busy machine slows them alike. The simulator computes in f64 throughout: event times are compared \
+         of processor time of one thread, all simulators in one process by turns, so that a busy machine slows them \
+         alike. The simulator computes in f64 throughout: event times are compared \
          across bodies, and an f32 holds 2 s to no better than 1e-7 s, in which a marble moves more than the fine preset's tolerances; there is no f32 variant to compare.\n",
         plan.draws, plan.seconds
     );

@@ -34,10 +34,12 @@ const COMPARED: u64 = 100;
 const SHARE: f64 = 0.25;
 /// Rounds in which simulators take turns, so that whatever slows the machine down slows all of them.
 const ROUNDS: u64 = 10;
-/// Where the draws of the reference, and those of the peer's finest step, begin: what is compared are independent samples.
+/// Where the draws of the reference, and those of the peer's finest step, begin: what is compared are independent
+/// samples.
 const APART: u64 = 1 << 32;
 
-/// Times at which places are compared, in s: every twentieth, which is a whole number of steps at 60, 240 and 1000 a second.
+/// Times at which places are compared, in s: every twentieth, which is a whole number of steps at 60, 240 and 1000 a
+/// second.
 pub(crate) fn times() -> Vec<f64> {
     (1..=30).map(|k| f64::from(k) / 20.0).collect()
 }

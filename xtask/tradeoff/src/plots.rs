@@ -29,7 +29,8 @@ fn label(area: &canvas::Area<'_>, chart: &Chart<'_>, words: &str, at: (f64, f64)
     write(area, words, &text(11.0, colour), HPos::Left, (f64::from(i) / unit + 7.0, f64::from(j) / unit - 7.0))
 }
 
-/// One point per simulator: time across, distance of the outcome's law from the reference up, and a bar from the mean to the 95 % quantile of what sampling alone gives.
+/// One point per simulator: time across, distance of the outcome's law from the reference up, and a bar from the mean
+/// to the 95 % quantile of what sampling alone gives.
 pub(crate) fn cost_and_distance(folder: &Path, world: &dyn World, rows: &[Row], distances: &[Distances]) -> Result<()> {
     canvas::save(folder, world.name(), SIZE, |area| {
         let across: Vec<f64> = rows.iter().map(|r| log10(1000.0 * r.time(0.5))).collect();

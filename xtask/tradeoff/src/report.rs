@@ -100,7 +100,8 @@ fn laws(readings: &[Reading], rows: &[Row], distances: &[Distances]) -> String {
 /// Fewest draws from which it is said how near two laws are: chance alone then gives a twentieth or so.
 const ENOUGH: usize = 200;
 
-/// How much faster than the peer, at 1/240 and where the peer is as near to its own finest step as the standard preset is to the reference.
+/// How much faster than the peer, at 1/240 and where the peer is as near to its own finest step as the standard preset
+/// is to the reference.
 fn verdict(rows: &[Row], distances: &[Distances], finest: Option<Way>, reading: &str) -> String {
     let pair = |way: Way| rows.iter().zip(distances).find(|(row, _)| row.way == way);
     let (Some((standard, ours)), Some(finest)) = (pair(Way::STANDARD), finest) else { return String::new() };

@@ -14,9 +14,9 @@ use crate::report;
 use crate::table::{grouped, rate};
 use crate::why::{self, OfRun};
 use plaus_mcmc::{Ending, Plan};
-use plaus_run::{Diagnosis, Error, Folder, Manifest, Run, Sampling};
+use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, Sampling};
 use plaus_scenes::scenario::ScenarioError;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -170,29 +170,15 @@ impl Watching {
     }
 
     fn sum_up(&self, folder: &Folder, monitor: &Monitor, ending: Ending) -> Result<Outcome, Failure> {
-        let path = folder.path();
+        let path = quoted(folder.path());
         if monitor.stop() == Some(Stop::Interrupted) && ending == Ending::Stopped {
-            if self.json {
-                output::print_line(
-                    &json!({ "event": "end", "ending": "interrupted", "iteration": monitor.done() }).to_string(),
-                )?;
-            }
-            let left = match monitor.done() {
-                0 => "before all chains had started, so nothing is kept".to_owned(),
-                done => format!("after iteration {}, with a checkpoint", grouped(done)),
-            };
-            console::note_line(&format!("interrupted {left}; go on: plaus resume {}", quoted(path)));
-            return Ok(Outcome::Interrupted);
+            return self.interrupted(&path, monitor);
         }
         let run = Run::open(folder)?;
-        let plan = run.manifest().plan;
         let diagnosis = report::diagnose(&run, Some(SUMMARISED / run.manifest().chains().len().max(1) as u64))?;
         let confirmed = if self.confirm {
             let Some(list) = confirm::confirm(&run, self.threads(), !self.json && !self.quiet)? else {
-                console::note_line(&format!(
-                    "interrupted while confirming; go on: plaus resume {} --confirm",
-                    quoted(path)
-                ));
+                console::note_line(&format!("interrupted while confirming; go on: plaus resume {path} --confirm"));
                 return Ok(Outcome::Interrupted);
             };
             Some(list)
@@ -200,18 +186,7 @@ impl Watching {
             None
         };
         if self.json {
-            let mut end = report::to_json(run.manifest(), &diagnosis);
-            end["event"] = json!("end");
-            end["ending"] = json!(ending_in_words(ending));
-            end["seconds"] = json!(monitor.seconds());
-            end["iterations_per_second"] = json!(monitor.rate());
-            if !diagnosis.tally.is_satisfied() {
-                end["asked"] = why::to_json(&run.visit(OfRun)??);
-            }
-            if let Some(list) = &confirmed {
-                let (held, checked) = (list.held, list.solutions.len());
-                end["confirmed"] = json!({ "accuracy": list.accuracy.name(), "checked": checked, "held": held });
-            }
+            let end = end_as_json(&run, &diagnosis, monitor, ending, confirmed.as_ref())?;
             output::print_line(&end.to_string())?;
         } else if !self.quiet {
             output::print(&summary(&run, &diagnosis, monitor, ending))?;
@@ -222,36 +197,86 @@ impl Watching {
         if run.manifest().shard.is_some() {
             return self.end_of_piece(&run, ending);
         }
-        let missing = plan.solutions.filter(|&wanted| diagnosis.tally.distinct < wanted);
-        if let Some(wanted) = missing {
-            let found = diagnosis.tally.distinct;
-            let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };
-            console::note_line(&format!(
-                "only {found} of the {wanted} distinct solutions were found; go on: plaus resume {}{more}",
-                quoted(path)
-            ));
-        }
+        let is_satisfied = self.tell_what_is_missing(&run, &diagnosis, monitor, ending)?;
         if diagnosis.draws == 0 && ending == Ending::Complete {
             return Ok(Outcome::Unsatisfied); // the summary has said why
-        }
-        if !diagnosis.tally.is_satisfied() && monitor.done() <= plan.warmup && ending == Ending::Stopped {
-            console::note_line(&format!(
-                "still in the warm-up, and no iteration has satisfied the constraint yet; go on: plaus resume {}",
-                quoted(path)
-            ));
-        } else if !diagnosis.tally.is_satisfied() {
-            if !self.json && !self.quiet {
-                console::note_line(&why::in_words(&run.visit(OfRun)??, "recorded states"));
-            }
-            console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
         }
         if let Some(list) = confirmed.as_ref().filter(|_| !self.json) {
             console::note_line(&confirm::in_words(&run, list));
         }
         let holds = confirmed.is_none_or(|list| list.held > 0);
-        let satisfied = diagnosis.tally.is_satisfied() && missing.is_none() && holds;
-        Ok(if satisfied { Outcome::Done } else { Outcome::Unsatisfied })
+        Ok(if is_satisfied && holds { Outcome::Done } else { Outcome::Unsatisfied })
     }
+
+    fn interrupted(&self, path: &str, monitor: &Monitor) -> Result<Outcome, Failure> {
+        if self.json {
+            let end = json!({ "event": "end", "ending": "interrupted", "iteration": monitor.done() });
+            output::print_line(&end.to_string())?;
+        }
+        let left = match monitor.done() {
+            0 => "before all chains had started, so nothing is kept".to_owned(),
+            done => format!("after iteration {}, with a checkpoint", grouped(done)),
+        };
+        console::note_line(&format!("interrupted {left}; go on: plaus resume {path}"));
+        Ok(Outcome::Interrupted)
+    }
+
+    /// Whether the run found what it was asked for; where it did not, says what is missing, and how to go on.
+    fn tell_what_is_missing(
+        &self,
+        run: &Run,
+        diagnosis: &Diagnosis,
+        monitor: &Monitor,
+        ending: Ending,
+    ) -> Result<bool, Failure> {
+        let (plan, tally, path) = (run.manifest().plan, &diagnosis.tally, quoted(run.folder().path()));
+        let missing = plan.solutions.filter(|&wanted| tally.distinct < wanted);
+        if let Some(wanted) = missing {
+            let found = tally.distinct;
+            let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };
+            console::note_line(&format!(
+                "only {found} of the {wanted} distinct solutions were found; go on: plaus resume {path}{more}"
+            ));
+        }
+        let has_ended_empty = diagnosis.draws == 0 && ending == Ending::Complete;
+        if tally.is_satisfied() || has_ended_empty {
+            return Ok(missing.is_none());
+        }
+        if monitor.done() <= plan.warmup && ending == Ending::Stopped {
+            console::note_line(&format!(
+                "still in the warm-up, and no iteration has satisfied the constraint yet; go on: plaus resume {path}"
+            ));
+            return Ok(false);
+        }
+        if !self.json && !self.quiet {
+            console::note_line(&why::in_words(&run.visit(OfRun)??, "recorded states"));
+        }
+        console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
+        Ok(false)
+    }
+}
+
+/// The last line of `--json`.
+fn end_as_json(
+    run: &Run,
+    diagnosis: &Diagnosis,
+    monitor: &Monitor,
+    ending: Ending,
+    confirmed: Option<&Confirmation>,
+) -> Result<Value, Failure> {
+    let mut end = report::to_json(run.manifest(), diagnosis);
+    end["event"] = json!("end");
+    end["ending"] = json!(ending_in_words(ending));
+    end["seconds"] = json!(monitor.seconds());
+    end["iterations_per_second"] = json!(monitor.rate());
+    if !diagnosis.tally.is_satisfied() {
+        end["asked"] = why::to_json(&run.visit(OfRun)??);
+    }
+    if let Some(list) = confirmed {
+        let (held, checked) = (list.held, list.solutions.len());
+        end["confirmed"] = json!({ "accuracy": list.accuracy.name(), "checked": checked, "held": held });
+    }
+    Ok(end)
 }
 
 impl Watching {

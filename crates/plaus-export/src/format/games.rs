@@ -26,8 +26,8 @@ impl Exporter for Json {
             ending: "json",
             about: "compact motion for games: whole numbers, a throw of a die in a few kB",
             help: "Per clip and body, keys as differences of whole numbers: times in parts of 1/128 ms, \
-                positions in steps of `step` metres, quaternions in parts of 32767; straight lines between them, as for \
-                glb. docs/engines.md has a reader of 40 lines.",
+                positions in steps of `step` metres, quaternions in parts of 32767; straight lines between them, as \
+                for glb. docs/engines.md has a reader of 40 lines.",
         }
     }
 

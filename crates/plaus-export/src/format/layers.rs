@@ -19,8 +19,9 @@ impl Exporter for Gltf {
             ending: "glb",
             about: "animated glTF 2.0: Blender, Godot, Unity, Unreal, browsers",
             help: "Straight lines between keys, right to 0.2 mm and 0.03 degrees in every program; with --keys exact \
-                cubic splines, which programs that follow glTF play exactly, and Blender does not. A key at every impact. \
-                Beside it PATH.import, which has Godot sample it densely enough. With --into, one clip a sample.",
+                cubic splines, which programs that follow glTF play exactly, and Blender does not. A key at every \
+                impact. Beside it PATH.import, which has Godot sample it densely enough. With --into, one clip a \
+                sample.",
         }
     }
 
@@ -60,9 +61,9 @@ impl Exporter for Usd {
             ending: "usda",
             about: "USD as text: usdview, Houdini, Omniverse, Maya, Blender",
             help: "An animated Xform a body, meshes with materials, and physics' collision attributes on what stands still. \
-                24 time codes a second, so that Blender, whose scenes have 24 frames a second and which takes a time code \
-                for a frame, plays it in the right time; for a scene of 60, --time-codes 60. With --into, one variant of \
-                the variant set `solution` a sample.",
+                24 time codes a second, so that Blender, whose scenes have 24 frames a second and which takes a time \
+                code for a frame, plays it in the right time; for a scene of 60, --time-codes 60. With --into, one \
+                variant of the variant set `solution` a sample.",
         }
     }
 

@@ -42,8 +42,8 @@ impl Exporter for Events {
             about: "impacts and lasting contacts, for sound: CSV, or JSON where PATH ends in .json",
             help: "One row an impact: t (s), the pair as names of nodes, what each is made of, point (m), normal, speed \
                 of approach (m/s), impulse (N s). One row a contact that lasts: t and end, and means of the speeds of \
-                slipping and rolling (m/s) and of the force between the two (N). --min-impulse leaves out weak impacts, \
-                --merge joins those of one pair that follow each other closely.",
+                slipping and rolling (m/s) and of the force between the two (N). --min-impulse leaves out weak \
+                impacts, --merge joins those of one pair that follow each other closely.",
         }
     }
 

@@ -2,7 +2,8 @@
 //! and drops keys it thinks superfluous.
 
 /// How often Godot is to sample a motion, in Hz. At 60 Hz impacts are rounded off by up to 10 mm (Godot 4.6.3), at this
-/// by what bodies fall short of in an eighth of a millisecond. Its dialogue offers at most 120; the file may ask for more.
+/// by what bodies fall short of in an eighth of a millisecond. Its dialogue offers at most 120; the file may ask for
+/// more.
 const RATE: u32 = 3840;
 
 /// Text of `NAME.glb.import`, to lie beside `NAME.glb`. Godot adds what it knows when it first imports the file.

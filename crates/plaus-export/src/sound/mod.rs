@@ -9,9 +9,9 @@
 //! - **Rings**: modes of free spheres, bars and panels, with the frequencies that size and stiffness give and the loss
 //!   of what they are made of, radiate as small pistons (van den Doel & Pai, *Presence* 7, 1998, for modal synthesis;
 //!   Rayleigh for the piston).
-//! - **Rolling and slipping**: roughness that is run over presses the contact in and out: a random force whose pitch goes
-//!   with the speed, and whose strength is the roughness of both times the stiffness of their contact (after Thompson,
-//!   *Railway Noise and Vibration*, 2009, chapter 2, above the contact's resonance).
+//! - **Rolling and slipping**: roughness that is run over presses the contact in and out: a random force whose pitch
+//!   goes with the speed, and whose strength is the roughness of both times the stiffness of their contact (after
+//!   Thompson, *Railway Noise and Vibration*, 2009, chapter 2, above the contact's resonance).
 //!
 //! The pressure is that at a metre. A file is turned up or down so that its loudest moment is at −1 dB: nothing clips.
 //! Noise comes from a counter, sines from [`plaus_dist::math`]: the same bytes everywhere.
@@ -220,8 +220,8 @@ fn reduced(a: &Sounding, b: &Sounding) -> [f64; 2] {
     [1.0 / (soft(a) + soft(b)), 1.0 / (1.0 / a.radius + 1.0 / b.radius)]
 }
 
-/// The force of roughness on two things that a force presses together, N: what grains of both push the contact in, times
-/// how stiff it is (Hertz, `(6 E² R F)^(1/3)`). Not more than the force itself, or they would part.
+/// The force of roughness on two things that a force presses together, N: what grains of both push the contact in,
+/// times how stiff it is (Hertz, `(6 E² R F)^(1/3)`). Not more than the force itself, or they would part.
 fn roughly(a: &Sounding, b: &Sounding, force: f64) -> f64 {
     let [modulus, radius] = reduced(a, b);
     let stiffness = cbrt(6.0 * square(modulus) * radius * force);

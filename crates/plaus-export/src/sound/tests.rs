@@ -60,8 +60,8 @@ fn rolls([start, end]: [f64; 2], roll: f64, force: f64) -> Contact {
     Contact { start, end, body: "body".into(), other: "table".into(), point: DVec3::ZERO, slip: 0.0, roll, force }
 }
 
-/// A bowling ball of 6.8 kg on planed maple, by hand: the reduced modulus is 3.44e9 Pa, Hertz says 8.00e6 N/m, grains of
-/// 4 µm and 1 µm are 4.12 µm together, so the force is 33.0 N.
+/// A bowling ball of 6.8 kg on planed maple, by hand: the reduced modulus is 3.44e9 Pa, Hertz says 8.00e6 N/m, grains
+/// of 4 µm and 1 µm are 4.12 µm together, so the force is 33.0 N.
 #[test]
 fn roughness_presses_as_hard_as_the_contact_is_stiff() {
     let ball = Track::new("ball", Shape::Sphere { radius: 0.108, holes: true }, Look::nth(1), vec![]);

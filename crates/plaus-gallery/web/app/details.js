@@ -8,9 +8,11 @@ class Details {
 
   show() {
     const { app, box } = this, { a, b, meta } = app;
+    const at = (time) => (Number.isFinite(time) ? `at ${time.toFixed(3)} s` : 'never');
     const rows = [
       ['log p', a.log_p, b?.log_p], ['  prior', a.log_prior, b?.log_prior], ['  constraint', a.log_constraint, b?.log_constraint],
       ['chain', a.chain, b?.chain], ['iteration', a.iteration, b?.iteration], ['impacts', a.hits, b?.hits], ['duration', `${a.duration.toFixed(2)} s`, b && `${b.duration.toFixed(2)} s`],
+      ...a.asked.map(({ what, found }) => [what, at(found), b && at(b.asked.find((one) => one.what === what)?.found)]),
       ...meta.scalars.map(({ name, unit }, k) => [`${name}${unit ? ` (${unit})` : ''}`, a.scalars[k], b?.scalars[k]]),
     ];
     const show = (value) => (typeof value === 'number' && !Number.isInteger(value) ? value.toFixed(3) : String(value ?? '–'));

@@ -20,8 +20,11 @@ class Filters {
       { name: 'iteration', of: (s) => s.iteration, whole: true }, { name: 'duration', unit: 's', of: (s) => s.duration },
     ];
     const scalars = meta.scalars.map(({ name, unit, draw }, k) => ({ name, unit, draw, of: (s) => s.scalars[k] ?? NaN }));
+    const asked = [...new Set(this.app.solutions.flatMap((s) => s.asked.map(({ what }) => what)))].map((what) => ({
+      name: what, unit: 's', of: (s) => s.asked.find((one) => one.what === what)?.found ?? NaN,
+    }));
     // Results of the simulation before random variables.
-    return [...fixed, ...scalars.filter((s) => !s.draw), ...scalars.filter((s) => s.draw)].map((v) => this.ranged(v));
+    return [...fixed, ...asked, ...scalars.filter((s) => !s.draw), ...scalars.filter((s) => s.draw)].map((v) => this.ranged(v));
   }
 
   ranged(variable) {

@@ -118,7 +118,7 @@ class Player {
     return { canvas: this.canvas, camera: this.camera, solution: app.a, other: app.b, time: this.time, trails: app.trails, until: true, flash: true, moving: this.playing || this.turning };
   }
 
-  // Impacts as ticks: taller where bodies meet faster.
+  // Impacts as ticks: taller where bodies meet faster. Times that are asked for as diamonds, their windows as bars.
   drawMarks() {
     const { marks, app } = this, ratio = window.devicePixelRatio || 1, width = marks.clientWidth, height = marks.clientHeight;
     if (!width) return;
@@ -139,6 +139,24 @@ class Player {
         pen.fillRect(x - 0.75, side < 0 ? height / 2 - tall : height / 2, 1.5, tall);
       }
       pen.globalAlpha = 1;
+      this.drawAsked(pen, solution, (time) => handle + ((width - 2 * handle) * time) / this.duration, height, side);
+    }
+  }
+
+  drawAsked(pen, { asked }, place, height, side) {
+    const edge = side < 0 ? 4 : height - 4, clamp = (time, open) => Math.min(Math.max(time ?? open, 0), this.duration);
+    for (const { from, to, found } of asked) {
+      if (from !== null || to !== null) {
+        const left = place(clamp(from, 0)), right = place(clamp(to, this.duration));
+        pen.globalAlpha = 0.3;
+        pen.fillRect(left, edge - 2, Math.max(right - left, 1), 4);
+        pen.globalAlpha = 1;
+      }
+      if (!Number.isFinite(found)) continue;
+      const x = place(found);
+      pen.beginPath();
+      for (const [dx, dy] of [[0, -4], [4, 0], [0, 4], [-4, 0]]) pen.lineTo(x + dx, edge + dy);
+      pen.fill();
     }
   }
 }

@@ -11,6 +11,7 @@
 
 use super::{ChanceError, ChancePulse, at_least};
 use crate::moves::Mixture;
+use crate::parallel;
 use crate::redraw::Redraw;
 use crate::replicas::{Course, Replicas, Tempering};
 use crate::target::Goal;
@@ -95,7 +96,7 @@ pub fn stones<T: Goal>(
     // Batches are what runs side by side. Within one, replicas that are handed from thread to thread after each
     // iteration would cost more than what they do.
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    alone.install(|| lay(target, moves, seed, batch, plan, pulse))
+    parallel::install(&alone, || lay(target, moves, seed, batch, plan, pulse))
 }
 
 fn lay<T: Goal>(

@@ -1,8 +1,8 @@
 //! A set of variables shifted together.
 
 use super::{Sizes, is_adapted, marked, walk};
-use crate::adapt::Scale;
 use crate::moves::{Move, Path, Proposal};
+use crate::scale::Scale;
 use crate::target::{ModelError, StateOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream, standard_normal};

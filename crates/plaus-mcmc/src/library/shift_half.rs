@@ -1,7 +1,7 @@
 //! About half of the variables shifted.
 
-use crate::adapt::Scale;
 use crate::moves::{Move, Path, Proposal};
+use crate::scale::Scale;
 use crate::target::{ModelError, StateOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream, open_unit};

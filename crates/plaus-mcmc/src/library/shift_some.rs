@@ -1,8 +1,8 @@
 //! Some variables shifted.
 
 use super::{happens, walk_var};
-use crate::adapt::Scale;
 use crate::moves::{Move, Path, Proposal};
+use crate::scale::Scale;
 use crate::target::{ModelError, StateOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream};

@@ -1,6 +1,6 @@
 //! Sizes of steps.
 
-use crate::adapt;
+use crate::scale::Scale;
 use plaus_dist::{Stream, math, open_unit, standard_normal};
 
 /// How far the sizes of an adapted step reach to either side of its scale, in their logarithm: a factor e.
@@ -40,10 +40,10 @@ impl Sizes {
 
     /// As the chain is told of it; it should accept so many steps.
     #[must_use]
-    pub fn declared(self, name: &'static str, target: f64) -> adapt::Scale {
+    pub fn declared(self, name: &'static str, target: f64) -> Scale {
         let (low, high) = (self.from.min(self.to), self.from.max(self.to));
         let [start, least, most] = [0.5 * (low + high), low, high].map(math::exp);
-        adapt::Scale { name, start, least, most, target }
+        Scale { name, start, least, most, target }
     }
 
     /// A size, and whether it comes from the whole range.

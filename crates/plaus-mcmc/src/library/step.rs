@@ -2,9 +2,9 @@
 
 use super::sizes::normal_step;
 use super::{Sizes, is_adapted, marked, unmarked};
-use crate::adapt::Scale;
 use crate::law::Law;
 use crate::moves::{Move, Path, Proposal};
+use crate::scale::Scale;
 use crate::target::{ModelError, StateOf};
 use crate::vars::Variables;
 use plaus_dist::stream::below;

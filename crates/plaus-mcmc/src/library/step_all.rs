@@ -2,8 +2,8 @@
 
 use super::step::{ratio, step_by};
 use super::{Sizes, is_adapted, marked};
-use crate::adapt::Scale;
 use crate::moves::{Move, Path, Proposal};
+use crate::scale::Scale;
 use crate::target::{ModelError, StateOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream};

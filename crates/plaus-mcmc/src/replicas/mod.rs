@@ -16,10 +16,11 @@ pub use climb::{Climb, RungStatistics, Tempering};
 use crate::adapt::Scales;
 use crate::chain::{Chain, ChainError, MoveCounts, Step};
 use crate::moves::Mixture;
+use crate::parallel::{self, lock};
 use crate::target::{State, StateOf, Target};
 use plaus_dist::{ChainStreams, Purpose, Seed, math, open_unit};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::sync::Mutex;
 
 /// Replicas between two iterations: all that their future follows from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -141,12 +142,11 @@ impl<'a, T: Target> Replicas<'a, T> {
     /// [`ChainError`] where a chain cannot start.
     pub fn start(course: Course<'a, T>, seed: Seed, chain: u32) -> Result<Self, ChainError> {
         let climb = Climb::new(course.tempering.rungs.max(1));
-        let start = |(replica, &beta): (usize, &f64)| {
+        let betas = climb.ladder.betas();
+        let chains = parallel::try_map(betas.len(), |replica| {
             let started = Chain::start(course.target, course.moves_of(replica), streams(seed, chain, replica))?;
-            Ok(started.at(beta))
-        };
-        let betas: Vec<(usize, &f64)> = climb.ladder.betas().iter().enumerate().collect();
-        let chains = betas.into_par_iter().map(start).collect::<Vec<_>>().into_iter().collect::<Result<_, _>>()?;
+            Ok(started.at(betas[replica]))
+        })?;
         Ok(Self { course, chains, climb, swaps: streams(seed, chain, 0) })
     }
 
@@ -258,20 +258,20 @@ impl<'a, T: Target> Replicas<'a, T> {
         goes_on: &(impl Fn() -> bool + Sync),
         watch: &mut (impl FnMut(&Chain<'a, T>, TopStep) + Send),
     ) -> Result<bool, ChainError> {
-        let mut top =
-            |chain: &mut Chain<'a, T>| stride(chain, steps, goes_on, |chain, step| watch(chain, TopStep::Step(step)));
         if let [only] = self.chains.as_mut_slice() {
-            return top(only);
+            return stride(only, steps, goes_on, |chain, step| watch(chain, TopStep::Step(step)));
         }
-        let index = self.top_replica();
-        let (before, rest) = self.chains.split_at_mut(index);
-        let Some((chain, after)) = rest.split_first_mut() else { return Ok(true) };
-        let walk = |chain: &mut Chain<'a, T>| stride(chain, steps, goes_on, |_, _| ());
-        let mut others: Vec<_> = before.iter_mut().chain(after).collect();
-        let (first, others) =
-            rayon::join(|| top(chain), || others.par_iter_mut().map(|chain| walk(chain)).collect::<Vec<_>>());
+        let (index, watch) = (self.top_replica(), Mutex::new(watch));
+        let mut walked = parallel::map_mut(&mut self.chains, |replica, chain| {
+            if replica != index {
+                return stride(chain, steps, goes_on, |_, _| ());
+            }
+            let mut watch = lock(&watch);
+            stride(chain, steps, goes_on, |chain, step| watch(chain, TopStep::Step(step)))
+        });
         // The failure reported does not depend on which came first.
-        others.into_iter().try_fold(first?, |all, one| Ok(all && one?))
+        let first = walked.remove(index);
+        walked.into_iter().try_fold(first?, |all, one| Ok(all && one?))
     }
 
     /// Proposes the swaps due after iteration `now`, and adapts the ladder where that is due.

@@ -15,6 +15,7 @@ pub use pulse::{ChainPulse, Pulse};
 use crate::adapt::Scales;
 use crate::chain::{ChainError, MoveCounts};
 use crate::moves::{Mixture, MoveId};
+use crate::parallel;
 use crate::record::Block;
 use crate::redraw::Redraw;
 use crate::replicas::{Climb, ReplicasSnapshot, Tempering};
@@ -23,7 +24,6 @@ use crate::target::{Goal, State, Target};
 use bounds::end_of_block;
 use hunt::Hunt;
 use plaus_dist::Seed;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use worker::{Job, Made, Worker};
@@ -302,7 +302,7 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     let fresh = Mixture::of(Box::new(Redraw));
     let mut fleet = Fleet::new(Job { target, moves, fresh: &fresh, plan, first: some.start }, some, starts, pulse);
     while fleet.done < plan.end() && !fleet.has_enough() {
-        let round = pool.install(|| fleet.round());
+        let round = parallel::install(&pool, || fleet.round());
         let made = round.map_err(|Failed { chain, source }| RunError::Chain { chain, source })?;
         let Some(made) = made else { return Ok(Ending::Stopped) };
         for (worker, made) in fleet.workers.iter().zip(made) {
@@ -369,7 +369,7 @@ impl<'a, T: Goal> Fleet<'a, T> {
         let (job, pulse) = (&self.job, self.pulse);
         let missing = wanted.map(|wanted| wanted.saturating_sub(self.distinct.firsts().len()).max(1));
         let hunt = Hunt::new(pulse, &self.distinct, missing);
-        let mut made: Vec<_> = self.workers.par_iter_mut().map(|worker| worker.advance(job, end, &hunt)).collect();
+        let mut made: Vec<_> = parallel::map_mut(&mut self.workers, |_, worker| worker.advance(job, end, &hunt));
         self.merge(made.iter().flat_map(|made| made.firsts.iter().copied()).collect());
         if let Some(last) = self.completed() {
             // Some chains ran past the iteration that completed the demanded number: they redo the round up to there,
@@ -377,14 +377,14 @@ impl<'a, T: Goal> Fleet<'a, T> {
             end = last + 1;
             self.distinct.truncate(last);
             let (job, hunt) = (&self.job, Hunt::new(pulse, &self.distinct, None));
-            let redo = |((worker, before), made): ((&mut Worker<'a, T>, _), &mut MadeOf<T>)| {
+            let mut all: Vec<_> = self.workers.iter_mut().zip(before).zip(&mut made).collect();
+            parallel::map_mut(&mut all, |_, ((worker, before), made)| {
                 let failed = made.failure.as_ref().is_some_and(|failure| failure.iteration() > last);
                 if worker.books.end_iteration > end || failed {
-                    *worker = before;
-                    *made = worker.advance(job, end, &hunt);
+                    std::mem::swap(*worker, before);
+                    **made = worker.advance(job, end, &hunt);
                 }
-            };
-            self.workers.par_iter_mut().zip(before).zip(&mut made).for_each(redo);
+            });
         }
         pulse.set_distinct(self.distinct.count());
         let failures =

@@ -137,8 +137,8 @@ pub(super) fn go_on(path: &Path, mut begun: Chance, knows_methods: bool) -> Resu
     }
 }
 
-/// The files at these paths, each one or a folder of some; `None` where one of them is no file, and no folder that holds
-/// files alone: runs, say.
+/// The files at these paths, each one or a folder of some; `None` where one of them is no file, and no folder that
+/// holds files alone: runs, say.
 ///
 /// # Errors
 /// [`Error`] where a folder cannot be read.

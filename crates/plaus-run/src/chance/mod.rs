@@ -17,9 +17,9 @@ use plaus_dist::Seed;
 use plaus_mcmc::chance::{
     ChanceError, ChancePulse, Counted, Method, Parts, Split, Splitting, Stoned, Stones, count, split, stones,
 };
+use plaus_mcmc::parallel;
 use plaus_mcmc::{Mixture, StateOf};
 use plaus_scenes::{Scene, Visitor};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -209,9 +209,9 @@ impl<S: Scene> Asked<'_, '_, S> {
             shown(&chance);
             Ok(())
         };
-        let done: Vec<Result<(), Error>> = pool.install(|| {
+        let done: Vec<Result<(), Error>> = parallel::install(&pool, || {
             let guarded = |task: &Task| one(task).inspect_err(|_| pulse.stop());
-            tasks.par_iter().map(guarded).collect()
+            parallel::map(tasks.len(), |k| guarded(&tasks[k]))
         });
         done.into_iter().collect::<Result<(), Error>>()?;
         Ok(held.into_inner().unwrap_or_else(PoisonError::into_inner))

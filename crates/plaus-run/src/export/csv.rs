@@ -1,10 +1,12 @@
 //! A table of the sampling phase: one row per chain and draw.
 //!
-//! Columns: `chain`, `draw` (from 0), `log_p`, `satisfied` (`true` or `false`), then one a scalar of the scene, in the scene's units. Numbers are the
-//! shortest that read back as the same bits; rows are ordered by chain, then draw; lines end with `\n`.
+//! Columns: `chain`, `draw` (from 0), `log_p`, `satisfied` (`true` or `false`), then one a scalar of the scene, in the
+//! scene's units. Numbers are the shortest that read back as the same bits; rows are ordered by chain, then draw; lines
+//! end with `\n`.
 
 use crate::error::Error;
-use crate::read::{Phase, RunOf};
+use crate::read::RunOf;
+use crate::sample_id::Phase;
 use plaus_scenes::Scene;
 use std::fmt::Write as _;
 use std::fs::File;

@@ -1,4 +1,5 @@
-//! Where an export goes: made under another name first, so that it exists wholly or not at all, and nothing is overwritten unasked.
+//! Where an export goes: made under another name first, so that it exists wholly or not at all, and nothing is
+//! overwritten unasked.
 
 use crate::error::{RunFileError, RunFileProblem};
 use crate::folder::draft_of;
@@ -6,7 +7,8 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Makes the file `out` by `write`. Replaces a file there was only with `force`, and only where `is_ours` says that it was made here.
+/// Makes the file `out` by `write`. Replaces a file there was only with `force`, and only where `is_ours` says that it
+/// was made here.
 ///
 /// # Errors
 /// As `write`, or [`RunFileError`] where something stands in the way or the disk refuses.
@@ -31,7 +33,8 @@ pub fn file<E: From<RunFileError>>(
     made
 }
 
-/// Makes the folder `out`, which `fill` fills. Replaces a folder there was only with `force`, and only where `is_ours` says that it was made here.
+/// Makes the folder `out`, which `fill` fills. Replaces a folder there was only with `force`, and only where `is_ours`
+/// says that it was made here.
 ///
 /// # Errors
 /// As `fill`, or [`RunFileError`] where something stands in the way or the disk refuses.

@@ -1,15 +1,16 @@
-//! A Zarr v3 folder that ArviZ reads: groups `posterior` and `sample_stats`, and `warmup_posterior` and `warmup_sample_stats` where there is a
-//! warm-up, all with dimensions (chain, draw). Scalars of one name that are numbered, `x_1`, `x_2` and so on, are one
-//! variable `x` with a third dimension,
-//! named after what is numbered, as the scene says: `x[die]`. Whole numbers are stored as such.
+//! A Zarr v3 folder that ArviZ reads: groups `posterior` and `sample_stats`, and `warmup_posterior` and
+//! `warmup_sample_stats` where there is a warm-up, all with dimensions (chain, draw). Scalars of one name that are
+//! numbered, `x_1`, `x_2` and so on, are one variable `x` with a third dimension, named after what is numbered, as the
+//! scene says: `x[die]`. Whole numbers are stored as such.
 //!
-//! Chunks are raw little-endian numbers, one chain each, so that any language reads them without a library. Metadata is consolidated:
-//! `zarr.json` at the root describes every array.
+//! Chunks are raw little-endian numbers, one chain each, so that any language reads them without a library. Metadata is
+//! consolidated: `zarr.json` at the root describes every array.
 
 use super::variables::{self, Variable};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::manifest::Manifest;
-use crate::read::{Phase, RunOf, StretchOf};
+use crate::read::{RunOf, StretchOf};
+use crate::sample_id::Phase;
 use plaus_mcmc::StateOf;
 use plaus_scenes::Scene;
 use serde_json::{Map, Value, json};

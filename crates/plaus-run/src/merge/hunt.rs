@@ -12,12 +12,13 @@ use crate::checkpoint;
 use crate::error::{Error, RunFileError};
 use crate::folder::Folder;
 use crate::read::{Run, RunOf, RunVisitor};
-use crate::sample::{More, Sampling, Unwatched, resume};
+use crate::sample::{More, Sampling, resume};
+use crate::watch::Unwatched;
 use crate::{tally, trail};
+use plaus_mcmc::parallel;
 use plaus_mcmc::{Distinct, Ending, FirstOfClass};
 use plaus_scenes::Scene;
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// The iteration that recorded the last demanded solution; `None` where none were demanded, or the pieces went to the
@@ -31,7 +32,7 @@ pub(super) fn end(pieces: &Pieces, pool: &ThreadPool) -> Result<Option<u64>, Err
     let least = ends.iter().copied().min().unwrap_or(0);
     let mut firsts: Vec<FirstOfClass> = Vec::new();
     for piece in &pieces.all {
-        let found = pool.install(|| Run::open(&piece.folder)?.visit(Firsts))??;
+        let found = parallel::install(pool, || Run::open(&piece.folder)?.visit(Firsts))??;
         firsts.extend(found.into_iter().filter(|first| first.iteration < least));
     }
     firsts.sort_unstable();
@@ -75,7 +76,7 @@ impl RunVisitor for Firsts {
     type Output = Result<Vec<FirstOfClass>, RunFileError>;
     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
         let chain = |chain| tally::firsts(&run, chain).map(|distinct| distinct.firsts().to_vec());
-        let found: Vec<Vec<FirstOfClass>> = run.chains().into_par_iter().map(chain).collect::<Result<_, _>>()?;
+        let found: Vec<Vec<FirstOfClass>> = run.each_chain(chain)?;
         Ok(found.into_iter().flatten().collect())
     }
 }
@@ -94,7 +95,7 @@ pub(super) fn merge(
         for piece in pieces.all.iter().filter(|_| cut > 0) {
             merging.pulse.go_on()?;
             let run = Run::open(&piece.folder)?;
-            bytes += pool.install(|| run.visit(Cut { pieces, piece, cut, draft, merging }))??;
+            bytes += parallel::install(pool, || run.visit(Cut { pieces, piece, cut, draft, merging }))??;
         }
         seal(pieces, draft, merging.disk)?;
         let sampling = Sampling { threads: merging.threads, disk: merging.disk, watch: &mut Unwatched };
@@ -148,6 +149,6 @@ impl RunVisitor for Cut<'_> {
             write(draft, merging.disk, one.chain, &bytes)?;
             Ok(one.records)
         };
-        checkpoints.par_iter().map(copy).try_reduce(|| 0, |a, b| Ok(a + b))
+        Ok(parallel::try_map(checkpoints.len(), |k| copy(&checkpoints[k]))?.into_iter().sum())
     }
 }

@@ -33,6 +33,7 @@ mod place;
 mod probe;
 mod score;
 mod tally;
+mod timed;
 mod ways;
 mod when;
 
@@ -44,6 +45,7 @@ pub use kinds::*;
 pub use probe::Probe;
 pub use score::{Band, FAR, Mark, Reach, Span};
 pub use tally::{Clause, Tally};
+pub use timed::Timed;
 pub use when::{When, Window};
 
 /// Most requirements in one another.

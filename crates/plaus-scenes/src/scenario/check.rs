@@ -2,9 +2,9 @@
 
 use super::bounds::Bounds;
 use super::nearest::{any_of, nearest, shown};
-use super::problem::{Problem, SHOWN};
-use super::shape::{Kind, Shape, again, join};
-use super::tree::{Data, Tree};
+use super::problem::{Problem, SHOWN, Source};
+use super::shape::{Kind, Shape, again, scenario};
+use super::tree::{Data, Tree, join};
 use super::value;
 use crate::require::DEEPEST;
 use std::collections::BTreeMap;
@@ -15,6 +15,27 @@ pub(super) fn check(shape: &Shape, tree: &Tree) -> (Option<Value>, Vec<Problem>)
     let mut check = Check { paths: shape.paths(Some(tree)), problems: Vec::new(), depth: 0 };
     let value = check.value(shape, tree, "");
     (value, check.problems)
+}
+
+/// Syntax errors reported of one file: those after are mostly the echo of the first.
+const MAX_SYNTAX_PROBLEMS: usize = 10;
+
+/// What cannot be read of the file `text`.
+pub(super) fn syntax_problems(text: &str, errors: &[toml::de::Error]) -> Vec<Problem> {
+    errors.iter().take(MAX_SYNTAX_PROBLEMS).map(|error| syntax_problem(text, error)).collect()
+}
+
+/// A syntax error; a duplicate key is named where its name is known.
+fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
+    let span = error.span().unwrap_or(text.len()..text.len());
+    let mut key = String::new();
+    if error.message() == "duplicate key" {
+        let name = text.get(span.clone()).unwrap_or_default().trim_matches(['"', '\'']);
+        let paths = scenario().paths(None);
+        let mut known = paths.iter().filter(|path| path.rsplit('.').next() == Some(name));
+        key = known.next().filter(|_| known.next().is_none()).cloned().unwrap_or_else(|| shown(name));
+    }
+    Problem::new(key, error.message()).at(&Source::File, Some(span))
 }
 
 struct Check {

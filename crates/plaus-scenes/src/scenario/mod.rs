@@ -156,7 +156,7 @@ impl Scenario {
         let fail = |problems| Err(ScenarioError::new(name, text, problems));
         let (mut tree, syntax) = Tree::parse(text);
         if !syntax.is_empty() {
-            return fail(syntax);
+            return fail(check::syntax_problems(text, &syntax));
         }
         let shape = shape::scenario();
         let mut problems = Vec::new();
@@ -175,7 +175,7 @@ impl Scenario {
         };
         match scenario.world.load(files).and_then(|()| scenario.try_building()) {
             Ok(()) => Ok(scenario),
-            Err(error) => fail(vec![problem::located(&tree, &error)]),
+            Err(error) => fail(vec![tree::located(&tree, &error)]),
         }
     }
 

@@ -2,7 +2,8 @@
 
 use super::nearest::{any_of, nearest, shown};
 use super::problem::{Problem, Source};
-use super::shape::{Kind, Shape, join};
+use super::shape::{Kind, Shape};
+use super::tree::join;
 use super::tree::{Data, Place, Tree};
 use std::collections::BTreeMap;
 use toml::de::DeValue;

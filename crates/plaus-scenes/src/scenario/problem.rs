@@ -1,7 +1,5 @@
 //! What is wrong with a scenario, and where.
 
-use super::tree::{Data, Tree};
-use crate::scene::ConfigError;
 use std::fmt;
 use std::ops::Range;
 
@@ -130,13 +128,6 @@ impl ScenarioError {
         Self { name: name.into(), text: text.into(), problems }
     }
 
-    /// An error that a scene found later, blamed on its key's place in the file, or on the table that lacks the key.
-    #[must_use]
-    pub fn locate(name: &str, text: &str, error: &ConfigError) -> Self {
-        let (tree, _) = Tree::parse(text);
-        Self::new(name, text, vec![located(&tree, error)])
-    }
-
     /// The text of a file called `name`, for [`Scenario::read`](super::Scenario::read).
     ///
     /// # Errors
@@ -150,19 +141,6 @@ impl ScenarioError {
                 .at(&Source::File, Some(start..start + 1));
             Self::new(name, &String::from_utf8_lossy(error.as_bytes()), vec![problem])
         })
-    }
-}
-
-/// A scene's complaint about a key of `tree`.
-pub(super) fn located(tree: &Tree, error: &ConfigError) -> Problem {
-    let (found, value) = tree.nearest(&error.key);
-    let problem = Problem::new(error.key.clone(), error.message.clone());
-    let is_value = found == error.key && !matches!(value.data, Data::Table(_));
-    // What stands in a list has no key of its own.
-    if is_value || value.place.key.is_none() {
-        value.place.blame_value(problem)
-    } else {
-        value.place.blame_key(problem)
     }
 }
 

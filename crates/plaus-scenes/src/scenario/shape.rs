@@ -3,7 +3,7 @@
 
 use super::bounds::Bounds;
 use super::schema::schema;
-use super::tree::{Data, Tree};
+use super::tree::{Data, Tree, join};
 use super::{Scenario, nearest};
 use crate::registry;
 use serde_json::{Map, Value, json};
@@ -323,9 +323,4 @@ fn paragraphs(text: &str) -> String {
         .map(|paragraph| paragraph.split_whitespace().collect::<Vec<_>>().join(" "))
         .collect::<Vec<_>>()
         .join("\n\n")
-}
-
-/// The dotted key of `name` in the table `path`.
-pub(super) fn join(path: &str, name: &str) -> String {
-    if path.is_empty() { name.into() } else { format!("{path}.{name}") }
 }

@@ -1,13 +1,11 @@
 //! TOML as a tree in which every value knows where it comes from.
 
+use super::problem::ScenarioError;
 use super::problem::{Problem, Source};
-use super::shape::{join, scenario};
+use crate::scene::ConfigError;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
-
-/// Syntax errors reported of one file: those after are mostly the echo of the first.
-const MAX_SYNTAX_PROBLEMS: usize = 10;
 
 /// A value and its origin.
 #[derive(Debug, Clone)]
@@ -63,11 +61,10 @@ impl Place {
 
 impl Tree {
     /// The tree of a file, as far as it can be read, and what cannot.
-    pub(super) fn parse(text: &str) -> (Self, Vec<Problem>) {
+    pub(super) fn parse(text: &str) -> (Self, Vec<toml::de::Error>) {
         let (table, errors) = DeTable::parse_recoverable(text);
-        let problems = errors.iter().take(MAX_SYNTAX_PROBLEMS).map(|error| syntax_problem(text, error)).collect();
         let place = Place { source: Source::File, key: None, value: None };
-        (Self { data: Data::of_table(table.get_ref(), &place), place }, problems)
+        (Self { data: Data::of_table(table.get_ref(), &place), place }, errors)
     }
 
     /// The tree of a value that an override gives.
@@ -167,15 +164,29 @@ impl Place {
     }
 }
 
-/// A syntax error; a duplicate key is named where its name is known.
-fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
-    let span = error.span().unwrap_or(text.len()..text.len());
-    let mut key = String::new();
-    if error.message() == "duplicate key" {
-        let name = text.get(span.clone()).unwrap_or_default().trim_matches(['"', '\'']);
-        let paths = scenario().paths(None);
-        let mut known = paths.iter().filter(|path| path.rsplit('.').next() == Some(name));
-        key = known.next().filter(|_| known.next().is_none()).cloned().unwrap_or_else(|| super::nearest::shown(name));
+impl ScenarioError {
+    /// An error that a scene found later, blamed on its key's place in the file, or on the table that lacks the key.
+    #[must_use]
+    pub fn locate(name: &str, text: &str, error: &ConfigError) -> Self {
+        let (tree, _) = Tree::parse(text);
+        Self::new(name, text, vec![located(&tree, error)])
     }
-    Problem::new(key, error.message()).at(&Source::File, Some(span))
+}
+
+/// A scene's complaint about a key of `tree`.
+pub(super) fn located(tree: &Tree, error: &ConfigError) -> Problem {
+    let (found, value) = tree.nearest(&error.key);
+    let problem = Problem::new(error.key.clone(), error.message.clone());
+    let is_value = found == error.key && !matches!(value.data, Data::Table(_));
+    // What stands in a list has no key of its own.
+    if is_value || value.place.key.is_none() {
+        value.place.blame_value(problem)
+    } else {
+        value.place.blame_key(problem)
+    }
+}
+
+/// The dotted key of `name` in the table `path`.
+pub(super) fn join(path: &str, name: &str) -> String {
+    if path.is_empty() { name.into() } else { format!("{path}.{name}") }
 }

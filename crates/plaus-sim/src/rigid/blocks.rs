@@ -2,7 +2,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "rows and columns of matrices go by their numbers")]
 
-use super::solve::Contact;
+use super::coulomb::Contact;
 use glam::{DMat3, DVec3};
 
 /// A pivot over the largest entry of its block below which a matrix counts as singular.

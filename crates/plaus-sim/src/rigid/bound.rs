@@ -1,9 +1,15 @@
 //! A lower bound on the gap of two pieces along a direction, while their bodies move: what conservative advancement
 //! goes by (see `hunt.rs`).
 
-use super::detect::earliest;
-use super::hunt::Scene;
+use super::body::Pose;
+use crate::roots::earliest;
 use glam::DVec3;
+
+/// Where both are.
+pub(super) struct Scene {
+    pub(super) a: Pose,
+    pub(super) b: Pose,
+}
 
 /// Rounds of closing in on the root of a bound.
 const ROUNDS: usize = 4;

@@ -2,7 +2,7 @@
 
 use super::Spec;
 use super::body::Pose;
-use super::detect::earliest;
+use crate::roots::earliest;
 use glam::DVec3;
 
 /// Distance of the capsules around two bodies, a lower bound on their gap, and a time within which they do not come nearer than `level`: along the direction between them no end of

@@ -1,58 +1,16 @@
 //! Which points of a body touch what stands still, and its impact there.
 
 use super::body::{MOST_TOUCHES, Motion, Phase, Pose, Turning};
+use super::coulomb::{Contact, Member, response};
 use super::part::{Part, farthest_side};
-use super::solve::{Contact, Member};
-use super::spots::Spot;
-use super::step::{RigidScratch, TOUCHING};
+use super::scratch::{RigidScratch, TOUCHING};
 use super::strike::{Point, strike};
+use super::touch::{Spot, Touch};
 use super::{Rigid, Spec};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::scenery::Surface;
-use glam::{DMat3, DVec3};
-
-/// A point of a body on a part.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Touch {
-    /// Its name, and the part that it is of.
-    pub(crate) surface: Surface,
-    pub(crate) part: u16,
-    /// From the centre of gravity to the point of contact, in world axes.
-    pub(crate) arm: DVec3,
-    /// Unit normal out of the part.
-    pub(crate) normal: DVec3,
-    pub(crate) gap: f64,
-}
-
-impl Touch {
-    /// A touch by a numbered point of a body.
-    pub(crate) fn of_point(part: u16, point: u16, arm: DVec3, normal: DVec3, gap: f64) -> Self {
-        Self { surface: Surface::Part { part, point }, part, arm, normal, gap }
-    }
-
-    /// The number of the body's point, if it has one.
-    #[inline]
-    pub(crate) fn point(&self) -> Option<usize> {
-        match self.surface {
-            Surface::Part { point, .. } => Some(usize::from(point)),
-            _ => None,
-        }
-    }
-}
-
-/// The matrix that takes the cross product with a vector from the left.
-#[inline]
-fn cross(r: DVec3) -> DMat3 {
-    DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0))
-}
-
-/// Velocity change at `arm` per impulse there, in world axes.
-#[inline]
-pub(crate) fn response(inverse_mass: f64, inverse_inertia: &DMat3, arm: DVec3) -> DMat3 {
-    let cross = cross(arm);
-    DMat3::from_diagonal(DVec3::splat(inverse_mass)) - cross * *inverse_inertia * cross
-}
+use glam::DVec3;
 
 impl Rigid {
     /// A point of a body, wherever it is.

@@ -10,7 +10,8 @@
 
 use super::Spec;
 use super::body::{Pose, Turning};
-use super::detect::earliest;
+use super::scratch::TOUCHING;
+use crate::roots::earliest;
 use crate::shape::cuboid_pair::Meeting;
 use glam::DVec3;
 
@@ -106,7 +107,7 @@ impl<P: ConvexPair> Held<P> {
     fn newest(&self, bodies: &P, nearest: &Meeting<P::Feature>, poses: [&Pose; 2], level: f64) -> New {
         let mut new = New { gap: f64::INFINITY, rate: f64::INFINITY };
         // The same points as steps see, of which those within the gap count.
-        bodies.touching(nearest, super::step::TOUCHING * level, |m| {
+        bodies.touching(nearest, TOUCHING * level, |m| {
             if m.gap <= level && !self.has(m.feature) {
                 new.gap = new.gap.min(m.gap);
                 new.rate = new.rate.min(rate(&m, poses));
@@ -199,7 +200,7 @@ impl Quest<'_> {
             if linked && advance == 0 {
                 // The points that the step was made with.
                 let sag = super::heap::sag(bodies.iter().all(|b| b.in_heap), s.size.min(t.size));
-                held = Held::new(&placed, &nearest, super::step::TOUCHING * level + sag);
+                held = Held::new(&placed, &nearest, TOUCHING * level + sag);
             }
             if nearest.gap <= level {
                 let new = held.newest(&placed, &nearest, [&a, &b], level);

@@ -4,9 +4,10 @@
 //! with a torque of at most ρ N R against the part of the angular velocity across its normal (rolling) and σ N R against that along it (spinning), ρ and σ being the law's. Without it a pin that was nudged runs around on the rim of its foot, and one that lies rolls, for ever: nothing else takes
 //! their energy.
 
-use super::contact::Touch;
-use super::solve::{Contact, Enough, Member, solve};
-use super::step::{KEEP, Place, RigidScratch};
+use super::coulomb::{Contact, Member};
+use super::scratch::{KEEP, Place, RigidScratch};
+use super::solve::{Enough, solve};
+use super::touch::Touch;
 use super::{Rigid, Spec};
 use glam::{DQuat, DVec3};
 

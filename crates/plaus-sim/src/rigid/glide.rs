@@ -11,8 +11,8 @@
 //! Source: textbook, e.g. Hopkins & Patterson, "Bowling frames: Paths of a bowling ball", Am. J. Phys. 45 (1977).
 
 use super::body::{NEVER, Phase, Turning};
-use super::contact::Touch;
 use super::part::Part;
+use super::touch::Touch;
 use super::{Rigid, Spec};
 use crate::material::Law;
 use crate::roots::roots_of_quadratic;
@@ -174,13 +174,4 @@ fn next_line(part: &Part, body: &Turning) -> Option<(f64, (u8, f64))> {
         line(axis, bounds.max[axis]);
     }
     soonest
-}
-
-/// A stretch of a part along y with its own friction, up to the next.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Stretch {
-    /// Where it begins, in m.
-    pub from: f64,
-    /// Coulomb's coefficient there; `None`: that of the materials.
-    pub friction: Option<f64>,
 }

@@ -6,9 +6,9 @@
 
 use super::Rigid;
 use super::body::{NEVER, Phase, Turning};
-use super::contact::Touch;
 use super::pile::SAG;
-use super::step::{Place, RigidScratch, TOUCHING};
+use super::scratch::{Place, RigidScratch, TOUCHING};
+use super::touch::Touch;
 use crate::links::Links;
 
 /// Members from which a group counts as a heap. Default 13: more than ten pins and a ball.

@@ -10,13 +10,15 @@
 //! Bodies in lasting contact are looked at [`LOOKS`] times within a step, for points away from those that it is made
 //! of: the steps deal with these.
 
+use super::Spec;
 use super::body::{Pose, Turning};
-use super::bound::Bound;
-use super::detect::earliest;
-use super::spots::{Spot, for_elements};
+use super::bound::{Bound, Scene};
+use super::scratch::TOUCHING;
+use super::spots::for_elements;
 use super::still::Ground;
+use super::touch::Spot;
 use super::tumble::Tumble;
-use super::{Spec, step};
+use crate::roots::earliest;
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use glam::{DMat3, DVec3};
 
@@ -64,12 +66,6 @@ pub(super) struct Hunt<'w> {
     pub(super) until: f64,
     /// Whether they are in lasting contact.
     pub(super) linked: bool,
-}
-
-/// Where both are.
-pub(super) struct Scene {
-    pub(super) a: Pose,
-    pub(super) b: Pose,
 }
 
 /// What pieces that are looked at do next.
@@ -380,7 +376,7 @@ impl Hunt<'_> {
     fn looked(&self, tumbles: &mut [Option<Tumble>; 2]) -> Option<(f64, Spot)> {
         let (mut near, mut held) = (Vec::new(), Vec::new());
         let scene = self.scene(tumbles, self.from);
-        self.for_points(&scene, &mut near, step::TOUCHING * self.level, |at, _, _| held.push(at));
+        self.for_points(&scene, &mut near, TOUCHING * self.level, |at, _, _| held.push(at));
         let reach = PART_OF_IT * self.spec.size;
         let mut newest = |time: f64| {
             let scene = self.scene(tumbles, time);

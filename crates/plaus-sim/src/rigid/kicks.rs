@@ -2,11 +2,12 @@
 
 use super::Rigid;
 use super::body::Pose;
-use super::contact::{Touch, response};
+use super::coulomb::{Contact, response};
 use super::energy::resist;
-use super::pair::{PairTouch, to_middle};
-use super::solve::{Contact, Enough, solve};
-use super::step::{CLOSE, KEEP, PASSES, PASSES_OF_CUBOIDS, PUSH, RigidScratch, TOUCHING};
+use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch, TOUCHING};
+use super::solve::{Enough, solve};
+use super::step::{PASSES, PASSES_OF_CUBOIDS};
+use super::touch::{PairTouch, Touch, to_middle};
 use crate::shape::Feeler;
 use glam::DVec3;
 

@@ -4,12 +4,13 @@
 //! box's corners on each of its faces, edges and corners, then each of its edges with each of the box's.
 
 use super::body::{Phase, Pose, Start, Turning};
-use super::contact::Touch;
 use super::convex::Quest;
 use super::detect::Search;
 use super::part::{Part, farthest_side};
+use super::scratch::TOUCHING;
 use super::spec::{Skin, Spec};
-use super::{BodySpec, Rigid, RigidWorld, step};
+use super::touch::Touch;
+use super::{BodySpec, Rigid, RigidWorld};
 use crate::error::WorldError;
 use crate::scenery::{Aabb, Surface};
 use crate::shape::hull_pair::{Feature, HullPair, Placed};
@@ -202,7 +203,7 @@ impl Search<'_> {
         let Some(pair) = ledge.pair(spec, &pose) else { return };
         let nearest = pair.nearest(None);
         let mut fastest = (f64::INFINITY, nearest.feature);
-        pair.touching(&nearest, step::TOUCHING * spec.gap, |m| {
+        pair.touching(&nearest, TOUCHING * spec.gap, |m| {
             let rate = pose.velocity(m.arms[0]).dot(m.normal);
             if rate < fastest.0 && !self.lasts(part, usize::from(number(core, m.feature))) {
                 fastest = (rate, m.feature);

@@ -56,6 +56,7 @@ mod boxes;
 mod capsule;
 mod contact;
 mod convex;
+mod coulomb;
 mod detect;
 mod drive;
 mod energy;
@@ -76,6 +77,7 @@ mod rest;
 mod revolved;
 mod rim;
 mod rows;
+mod scratch;
 mod slip;
 mod solve;
 mod spec;
@@ -83,17 +85,18 @@ mod spots;
 mod step;
 mod still;
 mod strike;
+mod touch;
 mod tumble;
 
 pub use body::{Phase, Start, Turning};
 use drive::Drive;
 pub use drive::{Between, Key, Keyframes, Track};
 pub use forces::Forces;
-pub use glide::Stretch;
+
 use ledges::Ledge;
-pub use part::{Part, SolidPart, Table};
+pub use part::{Part, SolidPart, Stretch, Table};
+pub use scratch::RigidScratch;
 use spec::{RIM_POINTS, Skin, Spec};
-pub use step::RigidScratch;
 use still::Still;
 
 use crate::accuracy::Accuracy;

@@ -10,7 +10,7 @@
 //! The shift is renewed from the slip found until nothing changes any more (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)).
 
 use super::blocks::Blocks;
-use super::solve::{Contact, Member};
+use super::coulomb::{Contact, Member};
 use glam::{DMat3, DVec3};
 
 /// Compliance of a contact over its response to an impulse. Default 1e-7: smaller values lose digits to rounding, larger ones take more rounds.

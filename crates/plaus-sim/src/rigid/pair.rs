@@ -5,62 +5,14 @@
 
 use super::body::{Motion, Phase, Pose, Turning};
 use super::capsule::capsules;
-use super::detect::earliest;
-use super::spots::Spot;
-use super::step::{RigidScratch, pair_contact};
+use super::scratch::{KEEP, PUSH, RigidScratch, TOUCHING, pair_contact};
 use super::strike::{Point, strike};
-use super::{Rigid, Skin, Spec, step};
+use super::touch::{PairTouch, to_middle};
+use super::{Rigid, Skin, Spec};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
-use crate::shape::{cuboid_pair, hull_pair};
+use crate::roots::earliest;
 use glam::DVec3;
-
-/// What meets at a point of two bodies with flat faces.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Feature {
-    Cuboids(cuboid_pair::Feature),
-    Hulls(hull_pair::Feature),
-    Pieces(Spot),
-}
-
-/// The nearest points of two bodies.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct PairTouch {
-    /// Unit normal towards the first.
-    pub(crate) normal: DVec3,
-    /// From each centre of gravity to its nearest point.
-    pub(crate) arms: [DVec3; 2],
-    pub(crate) gap: f64,
-    /// What meets there, of bodies that are looked at by their faces, edges and corners.
-    pub(crate) feature: Option<Feature>,
-}
-
-impl PairTouch {
-    /// Rate of the gap.
-    #[inline]
-    pub(crate) fn rate(&self, a: &Pose, b: &Pose) -> f64 {
-        (a.velocity(self.arms[0]) - b.velocity(self.arms[1])).dot(self.normal)
-    }
-}
-
-/// Arms from centres of gravity at `x` to the point half way between where they end: where impulses act on both bodies at one point, these keep their angular momentum.
-pub(super) fn to_middle(arms: [DVec3; 2], x: [DVec3; 2]) -> [DVec3; 2] {
-    let half = ((x[0] + arms[0]) - (x[1] + arms[1])) * 0.5;
-    [arms[0] - half, arms[1] + half]
-}
-
-impl From<cuboid_pair::Meeting> for PairTouch {
-    #[inline]
-    fn from(m: cuboid_pair::Meeting) -> Self {
-        Self { normal: m.normal, arms: m.arms, gap: m.gap, feature: Some(Feature::Cuboids(m.feature)) }
-    }
-}
-
-impl From<hull_pair::Meeting> for PairTouch {
-    fn from(m: hull_pair::Meeting) -> Self {
-        Self { normal: m.normal, arms: m.arms, gap: m.gap, feature: Some(Feature::Hulls(m.feature)) }
-    }
-}
 
 /// Most advancements of one search; then the time reached is handed on as an event.
 const MOST_ADVANCES: usize = 100;
@@ -110,8 +62,8 @@ impl Rigid {
 
     /// The gap that a point of contact of two bodies is to have at the end of a step of `h` seconds: an overlap is undone at a limited speed.
     pub(super) fn pair_goal(&self, [i, j]: [usize; 2], gap: f64, h: f64) -> f64 {
-        let fastest = step::PUSH * self.accuracy.settle * self.specs[i].speed.min(self.specs[j].speed);
-        (step::KEEP * self.pair_gap([i, j])).min(gap + fastest * h)
+        let fastest = PUSH * self.accuracy.settle * self.specs[i].speed.min(self.specs[j].speed);
+        (KEEP * self.pair_gap([i, j])).min(gap + fastest * h)
     }
 
     /// First time in `[from, until]` at which two bodies touch while approaching, for rows that look at balls and rings.
@@ -212,7 +164,7 @@ impl Rigid {
         let (time, hurried) = (a.path.t, a.is_hurried() || b.is_hurried());
         let (p, q) = (a.pose(), b.pose());
         let law = self.pair_law(pair);
-        let (settles, within) = (self.pair_settle_speed(pair), step::TOUCHING * self.pair_gap(pair));
+        let (settles, within) = (self.pair_settle_speed(pair), TOUCHING * self.pair_gap(pair));
         let mut members = [RigidScratch::member(s, &p.r, p.v, p.w), RigidScratch::member(t, &q.r, q.v, q.w)];
         let mut points = Vec::new();
         self.for_pair_touches(pair, [&p, &q], within, |touch| {

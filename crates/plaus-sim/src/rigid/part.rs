@@ -1,6 +1,5 @@
 //! What stands still: half spaces, boxes, tables with a spline surface, solids of any shape at any angle, and triangle meshes.
 
-use super::glide::Stretch;
 use crate::error::WorldError;
 use crate::field::Spline;
 use crate::material::{Law, Laws, Material};
@@ -29,6 +28,15 @@ pub enum Part {
     Solid(Box<SolidPart>),
     /// A triangle mesh, solid behind its faces, whose corners run anticlockwise seen from outside; its triangles have the materials. It need not be closed. Edges between triangles in one plane are not felt.
     Mesh(Arc<Mesh>),
+}
+
+/// A stretch of a part along y with its own friction, up to the next.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Stretch {
+    /// Where it begins, in m.
+    pub from: f64,
+    /// Coulomb's coefficient there; `None`: that of the materials.
+    pub friction: Option<f64>,
 }
 
 /// A shape that stands still.

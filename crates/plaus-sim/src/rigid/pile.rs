@@ -2,16 +2,15 @@
 //!
 //! A corner that turns against a face that turns too needs shorter steps than a corner on a table, and what one body's contacts are off, the next body's undo.
 
-use super::contact::Touch;
-use super::pair::PairTouch;
-use super::step::{CLOSE, KEEP, PUSH, RigidScratch};
+use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch};
+use super::touch::{PairTouch, Touch};
 use super::{Rigid, Skin};
 
-/// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values make fast turning in contact dearer, as their inverse root.
+/// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values make fast turning in contact cost more, as their inverse root.
 pub(super) const SAG: f64 = 1e-3;
 
 /// How much deeper, over the gap at which they touch, bodies other than cuboids may end a step than they were to. Default 300, 40 µm for a pin at the standard preset;
-/// looked at more closely, steps of pins get shorter and dearer by half.
+/// looked at more closely, steps of pins get shorter and cost half as much again.
 const ROUGH: f64 = 300.0;
 
 impl RigidScratch {

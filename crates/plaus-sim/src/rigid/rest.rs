@@ -1,9 +1,9 @@
 //! Rest: slow bodies that their contacts can hold.
 
 use super::body::Pose;
-use super::contact::Touch;
+use super::scratch::{Place, RigidScratch};
 use super::solve::{Enough, solve};
-use super::step::{Place, RigidScratch};
+use super::touch::Touch;
 use super::tumble::rotation;
 use super::{Rigid, Spec};
 use glam::{DMat3, DVec3};

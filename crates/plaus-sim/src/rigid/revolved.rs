@@ -2,7 +2,8 @@
 
 use super::Spec;
 use super::body::Pose;
-use super::pair::{PairTouch, balls, nearer};
+use super::pair::{balls, nearer};
+use super::touch::PairTouch;
 use crate::shape::{Feeler, Ring};
 use glam::DVec3;
 

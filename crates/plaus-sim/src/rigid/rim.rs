@@ -1,6 +1,6 @@
 //! The lowest point of a ring that turns with its body: not a point of the body, so its own second derivative has no bound, but every point of the ring has one.
 
-use super::detect::earliest;
+use crate::roots::earliest;
 use glam::DVec2;
 
 /// A ring over a plane. A point of it in direction `u` (in body axes, across the axis) has the gap `middle + circle p·u`, its rate is `rate + circle q·u`, and its

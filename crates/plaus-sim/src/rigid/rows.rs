@@ -4,8 +4,9 @@
 //! What is new in a row: a line here, and its answer in each of the functions below. The compiler asks for both.
 
 use super::body::{Pose, Turning};
-use super::pair::{Feature, PairTouch, balls, cuboid_and_balls, swapped};
+use super::pair::{balls, cuboid_and_balls, swapped};
 use super::revolved::{revolved_and_ball, two_revolved};
+use super::touch::{Feature, PairTouch};
 use super::{Rigid, Skin};
 use glam::DVec3;
 

@@ -1,8 +1,9 @@
 //! What follows from a body's shape and mass.
 
 use super::drive::Drive;
+use super::scratch::TOUCHING;
 use super::tumble::Inertia;
-use super::{BodySpec, Part, RigidWorld, hulls, step};
+use super::{BodySpec, Part, RigidWorld, hulls};
 use crate::accuracy::Accuracy;
 use crate::error::WorldError;
 use crate::material::Material;
@@ -32,7 +33,7 @@ pub(crate) struct Spec {
     pub(crate) speed: f64,
     /// Time in s within which many events make its contacts last: `accuracy.rattle · √(size/g)`.
     pub(crate) rattle: f64,
-    /// Gap at which it touches, in m: the preset's over [`step::TOUCHING`].
+    /// Gap at which it touches, in m: the preset's over [`TOUCHING`].
     pub(crate) gap: f64,
     pub(crate) wobble: f64,
     pub(crate) is_ball: bool,
@@ -102,7 +103,7 @@ impl Spec {
             feelers.extend(b.shape.feelers_between(spacing));
         }
         let (size, inertia) = (b.shape.size(), Inertia::new(inertia));
-        let (speed, gap) = ((strength * size).sqrt(), world.accuracy.gap * size / step::TOUCHING);
+        let (speed, gap) = ((strength * size).sqrt(), world.accuracy.gap * size / TOUCHING);
         // Without gravity there is no time scale but that of the speeds, which is not known here.
         let rattle = if strength > 0.0 { world.accuracy.rattle * (size / strength).sqrt() } else { 0.0 };
         let (reach, wobble) = (b.shape.reach(), inertia.wobble());

@@ -1,38 +1,14 @@
 //! Where convex pieces touch: of two bodies, or of a body and what stands still.
 
 use super::body::Pose;
-use super::contact::Touch;
-use super::pair::{Feature, PairTouch, balls};
+use super::pair::balls;
 use super::still::{Ground, Still};
+use super::touch::{Feature, PairTouch, Spot, Touch};
 use super::{Rigid, Spec};
 use crate::scenery::Surface;
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::piece::{Core, Piece};
 use glam::{DMat3, DVec3};
-
-/// The name of a point of contact: a piece of each, and what of them meets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Spot {
-    pub(super) own: u8,
-    pub(super) other: u32,
-    pub(super) mark: Mark,
-}
-
-/// Bits of the own piece's index in a packed name.
-const OWN: u32 = 32 - crate::shape::convex_pair::BITS;
-
-impl Spot {
-    /// The name of a point of a body on a part.
-    pub(super) fn surface(self, part: u16) -> Surface {
-        let point = u32::from(self.own) | self.mark.number() << OWN;
-        Surface::Spot { part, piece: self.other, point }
-    }
-
-    /// What such a name says.
-    pub(super) fn of_surface(piece: u32, point: u32) -> Self {
-        Self { own: (point & ((1 << OWN) - 1)) as u8, other: piece, mark: Mark::of_number(point >> OWN) }
-    }
-}
 
 /// Distance over a body's size within which points of contact on several pieces of a part count as one. Default 1e-6: a
 /// corner over the edge between two triangles.

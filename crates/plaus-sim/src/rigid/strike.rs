@@ -8,8 +8,9 @@
 //!
 //! Several pairs of bodies are struck pair by pair, as an impact goes on from body to body: so the balls of a cradle hand it on.
 
+use super::coulomb::{Contact, Member};
 use super::newton::Newton;
-use super::solve::{Contact, Enough, Member, solve};
+use super::solve::{Enough, solve};
 use crate::material::Law;
 use crate::mechanics::{Impact, Other};
 use crate::resolve::{ContactMatrix, stronge_impulse};

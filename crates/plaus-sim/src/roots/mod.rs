@@ -13,6 +13,7 @@ mod quadratic;
 mod quartic;
 
 pub use bracket::refine;
+pub(crate) use quadratic::earliest;
 pub use quadratic::{fall_of_quadratic, roots_of_quadratic};
 pub(crate) use quartic::first_fall_of_quartic;
 pub use quartic::{fall_of_quartic, falls_of_quartic, squared_distance};

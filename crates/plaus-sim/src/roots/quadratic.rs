@@ -53,6 +53,29 @@ pub fn fall_of_quadratic(c: [f64; 3], until: f64) -> Option<f64> {
     (time <= until).then_some(time)
 }
 
+/// Time until a gap `f` with rate `rate` and acceleration at least `-m` can be gone.
+#[inline]
+pub(crate) fn earliest(f: f64, rate: f64, m: f64) -> f64 {
+    if f > 0.0 {
+        let root = (rate * rate + 2.0 * m * f).sqrt();
+        if rate < 0.0 {
+            2.0 * f / (root - rate)
+        } else if m > 0.0 {
+            (rate + root) / m
+        } else {
+            f64::INFINITY
+        }
+    } else if rate <= 0.0 {
+        0.0
+    } else if m > 0.0 {
+        // Overlapping but opening: not before the rate has turned.
+        let discriminant = rate * rate + 2.0 * m * f;
+        (rate + discriminant.max(0.0).sqrt()) / m
+    } else {
+        f64::INFINITY
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

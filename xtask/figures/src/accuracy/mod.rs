@@ -1,6 +1,7 @@
 //! How far presets are from truths that the simulator has no part in: `cargo xtask accuracy`.
 //!
-//! The measuring is done by the example `convergence` of `plaus-sim`, which leaves its table in the folder; this draws it.
+//! The measuring is done by the example `convergence` of `plaus-sim`, which leaves its table in the folder; this draws
+//! it.
 
 mod plot;
 

@@ -41,8 +41,9 @@ pub(super) fn make(work: &mut Work, reference: &Reference) -> Result<()> {
     let mut text = table(&head, rows);
     text += &format!(
         "\nShare: samples within 0.1 D at σ_d = 0.1 D, from {} weighted prior draws (seed {REFERENCE_SEED}). Lost: of {} chains (seed {SEED}) those that never came within 0.1 D in {} iterations.\n\n\
-         {} of prior draws hold a bounce after which the ball would move into the table; the paper does not say what happens then. The rules change \
-         the law little, but some leave chains of the paper's move where the first bounce has no vertical speed, far from the target, and no small step helps. \
+         {} of prior draws hold a bounce after which the ball would move into the table; the paper does not say what \
+         happens then. The rules change the law little, but some leave chains of the paper's move where the first \
+         bounce has no vertical speed, far from the target, and no small step helps. \
          \"Height of 4.5 D\" may be the centre's, which then falls 4 D, or the fall itself; x is proportional to it.\n",
         thousands(reference.draws),
         thousands(chains),

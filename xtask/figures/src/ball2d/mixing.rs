@@ -47,8 +47,8 @@ pub(super) fn make(work: &mut Work, traces: &[Traces]) -> Result<()> {
         "figure-2-mixing",
         format!(
             "What figure 2 hides. Above: the first normal's angle over 1,000 and 10,000 iterations, with the paper's move (left; the very chain of figure 2) and with \
-             the default moves (right; the same start). Below: autocorrelation and effective samples per 1,000 iterations, from the long chains of the table of claims. \
-             Paper's move: {}. Default moves: {}.",
+             the default moves (right; the same start). Below: autocorrelation and effective samples per 1,000 \
+             iterations, from the long chains of the table of claims. Paper's move: {}. Default moves: {}.",
             list(&shown[0]),
             list(&shown[1]),
         ),

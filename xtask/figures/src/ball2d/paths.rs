@@ -36,8 +36,9 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         "figure-1",
         format!(
             "Three sample paths of the ball's centre, with the table's normals at the bounces (red) and the target (green), as the paper's figure 1. \
-             Iterations {} of one chain of {SAMPLES} samples with the default moves (seed {FIGURE_SEED}), drawn at random (seed {CHOICE_SEED}) from its {} \
-             satisfying samples; a sample that bounces in the same cells of 0.5 D as one drawn before was passed over.",
+             Iterations {} of one chain of {SAMPLES} samples with the default moves (seed {FIGURE_SEED}), drawn at \
+             random (seed {CHOICE_SEED}) from its {} satisfying samples; a sample that bounces in the same cells of \
+             0.5 D as one drawn before was passed over.",
             iterations.join(", "),
             satisfying.len(),
         ),

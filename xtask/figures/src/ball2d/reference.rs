@@ -121,7 +121,8 @@ fn draw(stream: &mut Stream) -> [(f64, f64); 5] {
     std::array::from_fn(|_| math::sin_cos(standard_normal(stream) * 10.0_f64.to_radians()))
 }
 
-/// The sixth collision's place, in D and with gravity 1 (paper, section 5.1), and whether a rule had to decide. NaN: rejected.
+/// The sixth collision's place, in D and with gravity 1 (paper, section 5.1), and whether a rule had to decide. NaN:
+/// rejected.
 fn rest(normals: &[(f64, f64)], height: f64, rule: Downward) -> (f64, bool) {
     let (mut x, mut vx, mut vy) = (0.0, 0.0, -(2.0 * height).sqrt());
     let mut decided = false;

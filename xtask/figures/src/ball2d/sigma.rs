@@ -139,8 +139,9 @@ fn roughness(work: &mut Work, measured: &[Measured], kept: &[Traces], how: &str)
         verdict: if hidden {
             format!(
                 "**holds for x only**: x is rough because it is what the moves jiggle; the first bounce, which decides what the animation looks like, is kept for \
-                 thousands of iterations. 1,000 iterations hold {} independent first bounces by what one chain sees, and {} once chains are compared, since some \
-                 keep to steep first bounces that the others never find; with the default moves {}",
+                 thousands of iterations. 1,000 iterations hold {} independent first bounces by what one chain sees, \
+                 and {} once chains are compared, since some keep to steep first bounces that the others never find; \
+                 with the default moves {}",
                 significant(paper.first_angle.within, 2),
                 significant(paper.first_angle.value, 2),
                 significant(ours.first_angle.value, 2),
@@ -178,8 +179,9 @@ fn sections(work: &mut Work, measured: &[Measured], reference: &Reference, how: 
     let mut text = table(&head, rows);
     text += &format!(
         "\n{how}; arrivals from {} chains, seed {}. ESS in brackets: from either half of the chains alone.\n\n\
-         A smaller σ_d makes every sample a good one and the paper's move rarely accepted; a larger one the reverse. The middle is the paper's choice of 0.1 D, and the \
-         loss on either side is smooth: in that sense the exact value matters little. No width makes the paper's move mix θ₁.\n",
+         A smaller σ_d makes every sample a good one and the paper's move rarely accepted; a larger one the reverse. \
+         The middle is the paper's choice of 0.1 D, and the loss on either side is smooth: in that sense the exact \
+         value matters little. No width makes the paper's move mix θ₁.\n",
         thousands(work.size(2_000, 50)),
         arrival::SEED,
     );

@@ -1,4 +1,5 @@
-//! Figure 4's set-up: the lane, where the pins stand, and how a ball comes to them; with the seven-ten split's two pins marked.
+//! Figure 4's set-up: the lane, where the pins stand, and how a ball comes to them; with the seven-ten split's two pins
+//! marked.
 
 use super::plan;
 use super::shots::{Bowler, SEVEN_TEN, STRIKE};
@@ -19,7 +20,8 @@ const SCALE: f64 = 240.0;
 const MARKED: RGBColor = RGBColor(250, 200, 190);
 const PALE: RGBColor = RGBColor(255, 252, 244);
 
-/// A delivery that hooks into the pocket as professionals' do, and one without spin: middle values of the two presets but for place, direction and spin.
+/// A delivery that hooks into the pocket as professionals' do, and one without spin: middle values of the two presets
+/// but for place, direction and spin.
 fn delivery(bowler: &Bowler, values: &[(Quantity, f64)]) -> Shot {
     let mut draw = bowler.scene.start(&mut Seed(1).chain(0).at(0, Purpose::START));
     draw.pins.fill([0.0; 2]);
@@ -82,8 +84,10 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     work.report.figure(
         "figure-4",
         "The set-up of the paper's figure 4, drawn from the scene's own numbers. Left: the deck with gutters, kickbacks (dark), pit and cushion; pins with their numbers, 7 and 10 marked. Dotted: how \
-         the 7-10 split is converted: the seven, struck on its outer side, must come back from the kickback and slide across the deck into the ten. Right: the whole lane from the foul line, stretched across; ways of the middle of two \
-         simulated balls. The hooking ball slides straight on while the lane is oiled (shaded) and turns where it is dry."
+         the 7-10 split is converted: the seven, struck on its outer side, must come back from the kickback and slide \
+         across the deck into the ten. Right: the whole lane from the foul line, stretched across; ways of the middle \
+         of two simulated balls. The hooking ball slides straight on while the lane is oiled (shaded) and turns where \
+         it is dry."
             .to_owned(),
     );
     Ok(())

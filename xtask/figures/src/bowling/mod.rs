@@ -1,4 +1,5 @@
-//! Bowling: figures 3 and 4, what the paper did not show (different strikes, paths of the ball, pins that fall), and how soon shots are found.
+//! Bowling: figures 3 and 4, what the paper did not show (different strikes, paths of the ball, pins that fall), and
+//! how soon shots are found.
 
 mod falls;
 mod first;

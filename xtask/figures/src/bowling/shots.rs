@@ -115,7 +115,8 @@ pub(super) fn by_chain(
     Ok(haul)
 }
 
-/// What independent draws of the prior bring; a shot ends as soon as it cannot be a solution any more, as those of a chain do.
+/// What independent draws of the prior bring; a shot ends as soon as it cannot be a solution any more, as those of a
+/// chain do.
 pub(super) fn by_rejection(bowler: &Bowler, seed: u64, until: Until) -> Result<Haul> {
     let (begin, scene) = (seconds(), &bowler.scene);
     let (mut haul, mut work) = (Haul::default(), Work::default());

@@ -18,7 +18,8 @@ const SCALE: f64 = 200.0;
 const SHOWN: f64 = 0.9;
 const PALE: RGBColor = RGBColor(255, 252, 244);
 
-/// Three solutions that differ most: the first, the one that shares the fewest pins struck by the ball, in order, with it, and the one that shares the fewest with both.
+/// Three solutions that differ most: the first, the one that shares the fewest pins struck by the ball, in order, with
+/// it, and the one that shares the fewest with both.
 fn choose(bowler: &Bowler, most: u64) -> Result<Vec<StateOf<Bowling>>> {
     let mut found: Vec<StateOf<Bowling>> = Vec::new();
     by_chain(bowler, SEED, Until::Draws(most), |state| {
@@ -39,7 +40,8 @@ fn choose(bowler: &Bowler, most: u64) -> Result<Vec<StateOf<Bowling>>> {
     Ok(chosen)
 }
 
-/// How different two shots are: pins that the ball struck in one only, and where it met the first one, in ball's widths.
+/// How different two shots are: pins that the ball struck in one only, and where it met the first one, in ball's
+/// widths.
 fn distance(a: &StateOf<Bowling>, b: &StateOf<Bowling>) -> f64 {
     let [p, q] = [a, b].map(|state| &state.outcome.struck);
     let only = p.iter().filter(|pin| !q.contains(pin)).count() + q.iter().filter(|pin| !p.contains(pin)).count();

@@ -69,7 +69,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         "figure-9",
         format!(
             "{} of one exact chain of `scenarios/dice-six.toml` (seed {SEED}, iteration {}), as the paper's figure 9: die k is to come to rest with its middle near its mark (standard deviation 5 mm, \
-             within 10 mm) with face k up. Each was thrown alone onto a random table of its own (bumps of 0.1 mm on a grid of 8 mm); at each place the table of the die with the nearest mark is drawn. \
+             within 10 mm) with face k up. Each was thrown alone onto a random table of its own (bumps of 0.1 mm on a \
+             grid of 8 mm); at each place the table of the die with the nearest mark is drawn. \
              Paler poses are earlier ones.",
             if is_solution { "The first solution" } else { "A state, no solution," },
             thousands(iteration)

@@ -10,7 +10,8 @@ use plaus_mcmc::{Chain, Goal, State, StateOf, Target};
 use plaus_scenes::dice::{Dice, Field, LARGEST_SCORE, Site, Work as Memory};
 use rayon::prelude::*;
 
-/// The posterior, given the throw and the rest of the table, of the height at a place that a solution touches: over throws the root mean square of the mean, and the mean of the standard deviation.
+/// The posterior, given the throw and the rest of the table, of the height at a place that a solution touches: over
+/// throws the root mean square of the mean, and the mean of the standard deviation.
 pub(super) struct Fixed {
     pub(super) shift: Row,
     pub(super) spread: Row,
@@ -34,7 +35,8 @@ fn lifts(scene: &Dice, state: &StateOf<Dice>) -> [Option<f64>; KINDS] {
     })
 }
 
-/// Chains that keep all of a solution but the sixteen control points under one of its contacts: which place that is, the solution that they start from decides.
+/// Chains that keep all of a solution but the sixteen control points under one of its contacts: which place that is,
+/// the solution that they start from decides.
 pub(super) fn given_the_throw(work: &Work, thrown: &Thrown) -> Result<Fixed> {
     let scene = &thrown.scene;
     let (throws, iterations): (u64, u64) = work.size((24, 300), (1, 3));
@@ -64,8 +66,8 @@ pub(super) fn given_the_throw(work: &Work, thrown: &Thrown) -> Result<Fixed> {
     Ok(Fixed { shift: std::array::from_fn(shift), spread: std::array::from_fn(spread) })
 }
 
-/// The height at a place along a chain that changes the control points under it alone: autoregressive steps of all sizes, which leave their law as it is, accepted with
-/// the ratio of the constraints.
+/// The height at a place along a chain that changes the control points under it alone: autoregressive steps of all
+/// sizes, which leave their law as it is, accepted with the ratio of the constraints.
 fn heights(
     scene: &Dice,
     mut state: StateOf<Dice>,

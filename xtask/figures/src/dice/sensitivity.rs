@@ -21,8 +21,8 @@ pub(super) struct Felt {
     pub(super) note: String,
 }
 
-/// One state with a point redrawn near a contact of each kind: how far the resting place moves in mm (NaN where there is no such contact, or either does not come to
-/// rest), whether another face is up, and the chance of acceptance.
+/// One state with a point redrawn near a contact of each kind: how far the resting place moves in mm (NaN where there
+/// is no such contact, or either does not come to rest), whether another face is up, and the chance of acceptance.
 type Tried = [Option<(f64, bool, f64)>; KINDS];
 
 pub(super) fn measure(work: &Work, thrown: &Thrown) -> Result<Felt> {

@@ -1,4 +1,5 @@
-//! Which bumps steer a die: the paper says that control points near the first few collisions bring it about, and later ones refine where it lies (section 5.4).
+//! Which bumps steer a die: the paper says that control points near the first few collisions bring it about, and later
+//! ones refine where it lies (section 5.4).
 
 use super::{ONE, Thrown, posterior, sensitivity};
 use crate::canvas::{self, Area, HPos, bold, colour, pen, px, text, write};
@@ -19,7 +20,8 @@ pub(super) const CLASSES: [(usize, usize, &str); 7] =
 /// How many kinds of contacts are told apart: the classes, and the last.
 pub(super) const KINDS: usize = CLASSES.len() + 1;
 
-/// The contact of a kind of an animation with `count` contacts; `pick` chooses among several. None where it has none: the last is of no other kind.
+/// The contact of a kind of an animation with `count` contacts; `pick` chooses among several. None where it has none:
+/// the last is of no other kind.
 pub(super) fn contact(kind: usize, count: usize, pick: f64) -> Option<usize> {
     let Some(&(from, until, _)) = CLASSES.get(kind) else { return count.checked_sub(1) };
     let until = until.min(count.saturating_sub(1));
@@ -42,7 +44,8 @@ pub(super) fn basis(x: f64, y: f64, cell: f64) -> impl Iterator<Item = ([i32; 2]
     (0..16).map(move |k| ([i + k / 4, j + k % 4], across[k as usize / 4] * up[k as usize % 4]))
 }
 
-/// The height of a table at a place, over its standard deviation there: a standard normal number, wherever the place is chosen without looking.
+/// The height of a table at a place, over its standard deviation there: a standard normal number, wherever the place is
+/// chosen without looking.
 pub(super) fn lift(table: &Realisation, sites: &[([i32; 2], f64)]) -> f64 {
     let (sum, squares) = sites.iter().fold((0.0, 0.0), |(sum, squares), &([i, j], weight)| {
         (sum + weight * table.score(Site { field: Field::Height, i, j }), squares + math::square(weight))
@@ -71,7 +74,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         "dice-steering",
         format!(
             "What control points near the n-th contact with the table do, for bumps of {} (blue) and {} mm (orange) standard deviation; bars are one standard error. How far the resting place moves when one point is \
-             drawn anew (median over throws of the prior); how often such a change of a solution is accepted; shift and spread of the height at the n-th contact of a solution in the posterior given its throw and all other \
+             drawn anew (median over throws of the prior); how often such a change of a solution is accepted; shift \
+             and spread of the height at the n-th contact of a solution in the posterior given its throw and all other \
              points, in prior standard deviations (the prior: 0 and 1).",
             BUMPS[0], BUMPS[1]
         ),

@@ -1,4 +1,5 @@
-//! A solution's table: its height, many times exaggerated, and its restitution and friction, with the places where the die touched it.
+//! A solution's table: its height, many times exaggerated, and its restitution and friction, with the places where the
+//! die touched it.
 
 use super::steering::basis;
 use super::{ONE, Thrown};

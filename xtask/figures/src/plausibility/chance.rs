@@ -28,7 +28,8 @@ impl Count {
         (self.share() * (1.0 - self.share()) / self.of as f64).sqrt()
     }
 
-    /// Shares that are within one standard error of what was seen: Wilson's score interval, which does not shrink to nothing where nothing was seen.
+    /// Shares that are within one standard error of what was seen: Wilson's score interval, which does not shrink to
+    /// nothing where nothing was seen.
     pub(super) fn interval(self) -> (f64, f64) {
         let (n, p) = (self.of as f64, self.share());
         let middle = (p + 0.5 / n) / (1.0 + 1.0 / n);
@@ -58,7 +59,8 @@ impl Count {
         if error > 0.0 { (self.share() - other.share()) / error } else { 0.0 }
     }
 
-    /// Probability of counts at least as improbable as these two, if both are samples of one probability: Fisher's exact test.
+    /// Probability of counts at least as improbable as these two, if both are samples of one probability: Fisher's
+    /// exact test.
     pub(super) fn p(self, other: Self) -> f64 {
         let hits = self.hits + other.hits;
         // Of all `hits`, `k` in this sample.

@@ -1,7 +1,8 @@
 //! What is simulated beside what was published of the real thing: `cargo xtask plausibility`.
 //!
-//! Plausible in the paper's own sense (section 3.3): a simulation that is drawn from the prior should be as often this or that as the real thing is. Counts of either are
-//! compared, each with its error, and what is not published and had to be chosen is varied in the open.
+//! Plausible in the paper's own sense (section 3.3): a simulation that is drawn from the prior should be as often this
+//! or that as the real thing is. Counts of either are compared, each with its error, and what is not published and had
+//! to be chosen is varied in the open.
 
 mod bowling;
 mod chance;

@@ -129,7 +129,8 @@ impl Chains {
         all.acceptance()
     }
 
-    /// Share of balls in one bin both before and `lag` hundreds of iterations later, among those in a bin before; NaN where chains are too short.
+    /// Share of balls in one bin both before and `lag` hundreds of iterations later, among those in a bin before; NaN
+    /// where chains are too short.
     pub(super) fn overlap(&self, lag: usize) -> f64 {
         let (mut same, mut all) = (0_u64, 0_u64);
         for pair in self.0.iter().flat_map(|seen| seen.bins.iter().zip(seen.bins.iter().skip(lag))) {

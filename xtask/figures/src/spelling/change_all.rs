@@ -54,8 +54,9 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     let text = table(&head, rows)
         + &format!(
             "\n{how}. A sharp drop is an iteration that lowers k by five or more. As printed, a change of everything is accepted as if it were symmetric, and fresh offsets have \
-             a Gaussian length rather than Gaussian coordinates: both favour it by tens of nats against vertices that have wandered. With the true ratios it is left to the \
-             constraint, and a full word is given up about once in e⁴³ tries. Exact chains go from word to word by other moves, or are restarted by tempering.\n"
+             a Gaussian length rather than Gaussian coordinates: both favour it by tens of nats against vertices that \
+             have wandered. With the true ratios it is left to the constraint, and a full word is given up about once \
+             in e⁴³ tries. Exact chains go from word to word by other moves, or are restarted by tempering.\n"
         );
     work.report.section("The change-all effect", &text);
     let [printed, exact, _] = [seen[0], seen[1], seen[2]];

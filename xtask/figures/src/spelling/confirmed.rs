@@ -56,7 +56,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     let text = table(&head, rows)
         + &format!(
             "\nFull words of exact chains at standard accuracy (seeds 0, 1, …; at least {APART} iterations apart). Their last bounces depend on the size of the steps in which lasting \
-             contact is solved, and balls that hit each other amplify any difference, so some draws spell only as they were simulated. `plaus sample --confirm` makes this check for all \
+             contact is solved, and balls that hit each other amplify any difference, so some draws spell only as they \
+             were simulated. `plaus sample --confirm` makes this check for all \
              distinct solutions of a run and lists those that hold; to sample at a finer accuracy, set `accuracy`.\n"
         );
     work.report.section("Solutions at reference accuracy", &text);

@@ -37,7 +37,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     one(work, "figure-8", &acm(|_| ())?, "ACM", (520.0, 285.0))
 }
 
-/// Two full words of one chain: the first that it finds and, of what follows, the one with fewest balls in the same bins.
+/// Two full words of one chain: the first that it finds and, of what follows, the one with fewest balls in the same
+/// bins.
 fn choose(word: &Word, looks: u64) -> Result<(Vec<Solution>, usize)> {
     let mut chain = Chain::start(&word.scene, &word.moves, Seed(SEED).chain(0))?;
     let mut found: Vec<Solution> = Vec::new();
@@ -101,7 +102,8 @@ fn one(work: &mut Work, name: &str, word: &Word, text_of: &str, panel: (f64, f64
         name,
         format!(
             "Two of the full words of one exact chain (default moves, seed {SEED}), as the paper's {}: the first that it finds, and, of those every {APART} iterations later, the one \
-             that has fewest balls in the same bins ({common} of {balls}). A ball has the same colour in all pictures (eight colours in turn), so colours show in which order bins are \
+             that has fewest balls in the same bins ({common} of {balls}). A ball has the same colour in all pictures \
+             (eight colours in turn), so colours show in which order bins are \
              filled. Left: on the way; green plates are the designated bins.",
             name.replace('-', " "),
         ),

@@ -26,9 +26,12 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     let text = table(&["", "median", "95%", "worst"], rows)
         + &format!(
             "\nSeconds of one core, as the operating system counts them for the thread, whatever else the machine did. HI: 20 seeds, ACM: 10, {} iterations, default moves, exact. \
-             Solutions are distinct where some ball lies in another bin. Overlap: share of the balls in a bin that lie in the same bin so many iterations later, from the first full word \
-             on; by chance it would be the reciprocal of the number of balls, {} and {}. Restarts: parallel tempering over ln λ with {RUNGS} rungs and swaps every {SWAP_EVERY} iterations, \
-             the ladder adapted in a warm-up that does not count; a restart brings a state to the target's rung that was drawn anew at the first rung since it was there before, \
+             Solutions are distinct where some ball lies in another bin. Overlap: share of the balls in a bin that lie \
+             in the same bin so many iterations later, from the first full word \
+             on; by chance it would be the reciprocal of the number of balls, {} and {}. Restarts: parallel tempering \
+             over ln λ with {RUNGS} rungs and swaps every {SWAP_EVERY} iterations, \
+             the ladder adapted in a warm-up that does not count; a restart brings a state to the target's rung that \
+             was drawn anew at the first rung since it was there before, \
              and is fruitful where a full word comes before the next one.\n",
             thousands(iterations),
             0.1,

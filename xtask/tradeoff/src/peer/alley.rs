@@ -94,10 +94,12 @@ impl AlleyParts {
     }
 }
 
-/// A pin as convex pieces about its centre of gravity: belly, five slices of the neck where the profile is hollow, head.
+/// A pin as convex pieces about its centre of gravity: belly, five slices of the neck where the profile is hollow,
+/// head.
 fn compound(pin: &Revolution) -> Result<peer::ColliderBuilder> {
     let profile = Profile::pin();
-    // Height over the foot, radius: the foot's rim, then the skin's balls as far as they reach, chords of the profile elsewhere.
+    // Height over the foot, radius: the foot's rim, then the skin's balls as far as they reach, chords of the profile
+    // elsewhere.
     let radius = |z: f64| {
         let ball = |f: &plaus_sim::shape::Feeler| {
             let up = z - pin.balance() - f.centre.z;

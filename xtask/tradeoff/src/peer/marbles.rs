@@ -13,7 +13,8 @@ use rapier3d_f64::prelude as peer;
 /// Quads along a side of a bin by which bowls are made.
 const FACETS: usize = 8;
 
-/// The same partitions and walls, bowls of flat facets, no resistance to rolling (it knows none), continuous collision detection on.
+/// The same partitions and walls, bowls of flat facets, no resistance to rolling (it knows none), continuous collision
+/// detection on.
 pub(crate) struct MarblePeer {
     steps: Steps,
     starts: Vec<Start>,
@@ -72,7 +73,8 @@ impl MarblePeer {
     }
 }
 
-/// A pair's coefficients: the larger of the two friction values, the smaller restitution, so that marbles can differ among themselves.
+/// A pair's coefficients: the larger of the two friction values, the smaller restitution, so that marbles can differ
+/// among themselves.
 fn dress(collider: peer::ColliderBuilder, law: &Law) -> peer::ColliderBuilder {
     collider
         .friction(law.friction)

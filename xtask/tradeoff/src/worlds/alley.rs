@@ -67,7 +67,8 @@ impl World for Shots {
     fn about(&self) -> String {
         format!(
             "A 15 lb ball rolls from {DISTANCE} m before the head pin, at 7 to 8.5 m/s and −1 to 6 degrees, towards the pocket; {DURATION} s, less where everything rests. Read: how many pins fell; of \
-             each pin whether it stands. The peer has the same lane, gutters, kickbacks and pit, the same masses, inertias, friction and restitution for each pair, pins made of seven convex pieces \
+             each pin whether it stands. The peer has the same lane, gutters, kickbacks and pit, the same masses, \
+             inertias, friction and restitution for each pair, pins made of seven convex pieces \
              with 20 corners around (belly, five slices of the neck, head), and continuous collision detection. Timed: the simulation of a world that is ready."
         )
     }

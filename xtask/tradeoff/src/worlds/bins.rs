@@ -63,7 +63,8 @@ impl World for MarblesOverBins {
 
     fn about(&self) -> String {
         "12 mm glass marbles, one every 0.1 s, into 20 mm bins with bowls and 2 mm × 12 mm partitions; 2 s. Read: how many bins are filled; the bin of each marble. The peer has the same \
-         partitions and walls, bowls of flat facets, no resistance to rolling (it knows none) and continuous collision detection; marbles are put in when they are released. Timed: the \
+         partitions and walls, bowls of flat facets, no resistance to rolling (it knows none) and continuous collision \
+         detection; marbles are put in when they are released. Timed: the \
          simulation of a world that is ready."
             .into()
     }

@@ -12,7 +12,8 @@ use plaus_sim::{Accuracy, Preset, Scratch};
 
 /// Longest throw in s.
 const DURATION: f64 = 20.0;
-/// Side of the strips of the table by which places are read, across the throw's direction, in m; and how many there are.
+/// Side of the strips of the table by which places are read, across the throw's direction, in m; and how many there
+/// are.
 const STRIP: f64 = 0.1;
 const STRIPS: usize = 8;
 /// Spread of a bumpy table's control heights over the grid's spacing.
@@ -89,7 +90,8 @@ impl World for Throws {
         };
         format!(
             "A 16 mm die from about 10 cm at up to 1.5 m/s and 30 rad/s an axis onto {table}; until it rests, 20 s at most. Read: the face up together with the place along the throw, in {STRIPS} \
-             strips of {STRIP} m; the face alone. The peer has continuous collision detection, and ends when speed and spin have been below ours at rest for 0.1 s. Timed: of ours the making of \
+             strips of {STRIP} m; the face alone. The peer has continuous collision detection, and ends when speed and \
+             spin have been below ours at rest for 0.1 s. Timed: of ours the making of \
              the world and the throw, of the peer stepping alone."
         )
     }

@@ -92,7 +92,8 @@ impl Word {
         Ok((MarblePeer::new(&self.bins, &mesh, starts, rate)?, drops))
     }
 
-    /// The peer's balls as the scene sees them: in the bin over whose floor one lies with its lowest point less than halfway up the partitions.
+    /// The peer's balls as the scene sees them: in the bin over whose floor one lies with its lowest point less than
+    /// halfway up the partitions.
     fn rest(&self, drops: &Drops, places: &Places) -> Rest {
         let bin = |x: &DVec3| {
             let low = x.z - self.bins.marble < 0.5 * self.bins.height;
@@ -128,7 +129,8 @@ impl World for Word {
     fn about(&self) -> String {
         format!(
             "The scene's prior: of {} balls each is dropped or not, one every {} s at a random place over {} × {} bins whose partitions' vertices are off by 0.1 mm an axis; {} s. Read: how many \
-             of the word's bins are filled (k); the bin of each ball. The peer has the same world as for ten marbles. Timed: all that the scene does for a draw without knowing another, groups of balls \
+             of the word's bins are filled (k); the bin of each ball. The peer has the same world as for ten marbles. \
+             Timed: all that the scene does for a draw without knowing another, groups of balls \
              and moved vertices included; of the peer, stepping alone.",
             self.scenes[0].1.balls(),
             self.scenes[0].1.config().drop_interval_s,

@@ -5,6 +5,8 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
+use crate::require::timed::{Timed, known, words};
+use crate::require::when::Window;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -89,6 +91,23 @@ impl Beats {
         }
     }
 
+    /// The beat nearest to a time, in s; the first where there is no time.
+    fn nearest(&self, time: Option<f64>) -> f64 {
+        let time = time.unwrap_or(0.0);
+        match self.every_s {
+            Some(every) => self.offset_s + ((time - self.offset_s) / every).round().max(0.0) * every,
+            None => {
+                self.times_s.iter().copied().min_by(|a, b| (time - a).abs().total_cmp(&(time - b).abs())).unwrap_or(0.0)
+            }
+        }
+    }
+
+    /// What came of a beat.
+    fn timed(&self, what: String, beat: f64, found: Option<f64>) -> Timed {
+        let within = 1e-3 * self.within_ms;
+        Timed { what, wanted: Window { from: beat - within, to: beat + within }, found }
+    }
+
     fn margin(&self, off: f64) -> f64 {
         ((1e-3 * self.within_ms - off) / (1e-3 * self.scale_ms)).max(-FAR)
     }
@@ -150,6 +169,32 @@ impl Ask for Beats {
                 Err(place.at("offset_s").wrong(&format!("the first beat is after the end, {longest} s")))
             }
             _ => Ok(()),
+        }
+    }
+
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        let hits = || probe.hits(&self.body, &self.with, self.faster_than).map(|hit| hit.time);
+        match self.each {
+            Each::Body => {
+                let bodies = probe.cast().matching(probe.name(&self.body));
+                let one = |body: &str| {
+                    let event = self.event(body);
+                    let found = known(&event, probe);
+                    self.timed(words(&event, probe), self.nearest(found), found)
+                };
+                bodies.map(one).collect()
+            }
+            Each::Impact => (1..)
+                .zip(hits())
+                .map(|(k, time)| self.timed(format!("impact {k}"), self.nearest(Some(time)), Some(time)))
+                .collect(),
+            Each::Beat => (1..)
+                .zip(&self.times_s)
+                .map(|(k, &beat)| {
+                    let found = hits().min_by(|a, b| (a - beat).abs().total_cmp(&(b - beat).abs()));
+                    self.timed(format!("beat {k}"), beat, found)
+                })
+                .collect(),
         }
     }
 

@@ -5,6 +5,7 @@ use crate::require::kinds::{Ask, Require};
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
+use crate::require::timed::Timed;
 use crate::scene::ConfigError;
 use plaus_dist::math::ln_add_exp;
 use schemars::JsonSchema;
@@ -60,6 +61,11 @@ fn put_together(of: &[Require], probe: &Probe<'_>, together: impl Fn(&[Mark]) ->
     Reach { least: end(|reach| reach.least), most: end(|reach| reach.most) }
 }
 
+/// The times that all of them ask for.
+fn times(of: &[Require], probe: &Probe<'_>) -> Vec<Timed> {
+    of.iter().flat_map(|one| one.times(probe)).collect()
+}
+
 impl Ask for All {
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         check(&self.0, place)
@@ -70,6 +76,10 @@ impl Ask for All {
             margin: marks.iter().map(|mark| mark.margin).fold(FAR, f64::min),
             log: marks.iter().fold(0.0, |sum, mark| sum + mark.log),
         })
+    }
+
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        times(&self.0, probe)
     }
 
     fn moment(&self) -> Option<f64> {
@@ -92,6 +102,10 @@ impl Ask for AnyOf {
             margin: marks.iter().map(|mark| mark.margin).fold(-FAR, f64::max),
             log: marks.iter().fold(f64::NEG_INFINITY, |sum, mark| ln_add_exp(sum, mark.log)),
         })
+    }
+
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        times(&self.0, probe)
     }
 
     fn moment(&self) -> Option<f64> {
@@ -127,6 +141,10 @@ impl Ask for AtLeast {
             let margins: Vec<f64> = marks.iter().map(|mark| mark.margin).collect();
             Mark::of(kth_best(&margins, self.count as usize))
         })
+    }
+
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        times(&self.of, probe)
     }
 
     fn moment(&self) -> Option<f64> {

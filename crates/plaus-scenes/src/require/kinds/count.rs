@@ -5,6 +5,7 @@ use crate::require::kinds::{Ask, Require};
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Mark, Reach};
+use crate::require::timed::Timed;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -55,6 +56,11 @@ impl Ask for Count {
         let ((low, too_low), (high, too_high)) = (mark(|reach| reach.least), mark(|reach| reach.most));
         let limit = |too: f64| if self.at_most.is_some() { (-too).next_down() } else { FAR };
         Reach::between(low.min(limit(too_high)), high.min(limit(too_low)))
+    }
+
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        let bodies = probe.cast().matching(probe.name(&self.of));
+        bodies.flat_map(|body| self.that.times(&probe.about(body))).collect()
     }
 
     fn moment(&self) -> Option<f64> {

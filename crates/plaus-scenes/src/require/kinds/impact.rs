@@ -6,6 +6,7 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::Reach;
+use crate::require::timed::Timed;
 use crate::require::when::When;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
@@ -51,6 +52,10 @@ impl Ask for Impact {
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.when.band().reach(self.event().time(probe))
+    }
+
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        vec![Timed::of_event(&self.event(), &self.when, probe)]
     }
 
     fn moment(&self) -> Option<f64> {

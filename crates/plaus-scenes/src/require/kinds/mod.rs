@@ -46,6 +46,7 @@ use super::claim::Claim;
 use super::place::Place;
 use super::probe::Probe;
 use super::score::Reach;
+use super::timed::Timed;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -62,6 +63,11 @@ pub(super) trait Ask {
     /// only the end says.
     fn moment(&self) -> Option<f64> {
         None
+    }
+
+    /// The times that it asks for, and what came of each in a motion that is known to its end.
+    fn times(&self, _probe: &Probe<'_>) -> Vec<Timed> {
+        Vec::new()
     }
 
     /// What it claims that others may contradict.
@@ -149,6 +155,13 @@ impl Require {
     #[must_use]
     pub fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.ask().reach(probe)
+    }
+
+    /// The times that it asks for, and what came of each in a motion that is known to its end; empty for kinds that are
+    /// not about one moment. Of `not` there are none: what must not be has no time.
+    #[must_use]
+    pub fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        self.ask().times(probe)
     }
 
     pub(super) fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {

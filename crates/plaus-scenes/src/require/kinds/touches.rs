@@ -5,6 +5,7 @@ use crate::require::kinds::Ask;
 use crate::require::place::Place;
 use crate::require::probe::Probe;
 use crate::require::score::{FAR, Reach};
+use crate::require::timed::Timed;
 use crate::require::ways;
 use crate::require::when::When;
 use crate::scene::ConfigError;
@@ -38,15 +39,17 @@ impl Default for Touches {
 }
 
 impl Touches {
-    fn touched(&self, probe: &Probe<'_>) -> bool {
+    /// The first time in the window at which it touches, as far as the motion is known.
+    fn first(&self, probe: &Probe<'_>) -> Option<f64> {
         let window = self.when.window();
         let body = probe.name(&self.body);
         let fits = |one: &str, other: &str| matches(body, one) && (self.with.is_empty() || matches(&self.with, other));
         let contacts = probe.motion().contacts.iter().filter(|contact| contact.start < probe.known());
-        let mut contacts = contacts.filter(|contact| contact.end >= window.from && contact.start <= window.to);
-        let mut hits = probe.hits(&self.body, &self.with, 0.0);
-        hits.any(|hit| hit.time >= window.from && hit.time <= window.to)
-            || contacts.any(|contact| fits(&contact.body, &contact.other) || fits(&contact.other, &contact.body))
+        let contacts = contacts.filter(|contact| contact.end >= window.from && contact.start <= window.to);
+        let ours = contacts.filter(|one| fits(&one.body, &one.other) || fits(&one.other, &one.body));
+        let hits = probe.hits(&self.body, &self.with, 0.0).map(|hit| hit.time);
+        let hits = hits.filter(|time| *time >= window.from && *time <= window.to);
+        hits.chain(ours.map(|contact| contact.start.max(window.from))).reduce(f64::min)
     }
 
     /// How far apart the two stay, at least, in mm, as balls about them: 0 where that is not known.
@@ -76,13 +79,19 @@ impl Ask for Touches {
     }
 
     fn reach(&self, probe: &Probe<'_>) -> Reach {
-        if self.touched(probe) {
+        if self.first(probe).is_some() {
             return Reach::certain(self.nats);
         }
         if !probe.sees_all(self.when.window()) {
             return Reach::between(-FAR, self.nats);
         }
         Reach::certain(-self.nats - self.gap(probe) / self.scale_mm)
+    }
+
+    fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
+        let named = |name: &str| if name.is_empty() { "anything".to_owned() } else { name.to_owned() };
+        let what = format!("{} touches {}", probe.name(&self.body), named(&self.with));
+        vec![Timed { what: what.trim_start().to_owned(), wanted: self.when.window(), found: self.first(probe) }]
     }
 
     fn moment(&self) -> Option<f64> {

@@ -9,7 +9,50 @@ use crate::scenery::Aabb;
 use crate::shape::Feeler;
 use glam::{DMat3, DVec2, DVec3};
 
+/// Least part of the way to a box that an advancement goes, at the speed that the body then has. Default 1e-3.
+const LEAST: f64 = 1e-3;
+
+/// Difference of two gaps, over the gap at which bodies touch, that is rounding. Default 1e-6.
+const SAME: f64 = 1e-6;
+
+/// Where a body is, and how it moves.
+struct Placed {
+    x: DVec3,
+    v: DVec3,
+    r: DMat3,
+    w: DVec3,
+    /// Acceleration of its centre of gravity, in m/s².
+    pull: f64,
+}
+
+/// What of a body touches first, of the points looked at so far.
+struct Soonest {
+    /// How long nothing touches, in s.
+    step: f64,
+    /// The point that may touch then, and its gap now.
+    point: usize,
+    gap: f64,
+}
+
+impl Soonest {
+    /// A point touches now; where several do, the deepest counts.
+    fn touches(&mut self, point: usize, gap: f64) {
+        self.step = 0.0;
+        if gap < self.gap {
+            (self.point, self.gap) = (point, gap);
+        }
+    }
+
+    /// A point touches no sooner than after `time`.
+    fn comes(&mut self, point: usize, gap: f64, time: f64) {
+        if time < self.step {
+            *self = Self { step: time, point, gap };
+        }
+    }
+}
+
 impl Search<'_> {
+    /// When the body first touches a box.
     pub(super) fn block(&mut self, part: u16, block: &Part) {
         let Part::Block { bounds, .. } = block else { return };
         let (spec, path) = (self.spec, &self.body.path);
@@ -35,101 +78,101 @@ impl Search<'_> {
         let mut tumble = self.body.tumble(spec);
         for _ in 0..MOST_ADVANCES {
             let (x, v) = (path.after(t), path.velocity_after(t));
-            let nearest = x.clamp(bounds.min, bounds.max);
-            let offset = x - nearest;
+            let offset = x - x.clamp(bounds.min, bounds.max);
             let away = offset.length() - spec.reach;
-            let mut step;
-            if away > 0.0 {
+            t += if away > 0.0 {
                 // The sphere around the body, whose centre only falls.
                 let n = offset / offset.length();
-                step = earliest(away, n.dot(v), pull)
-                    .max(1e-3 * away / (v.length() + pull * away).max(f64::MIN_POSITIVE).sqrt().max(v.length()));
+                let least = LEAST * away / (v.length() + pull * away).max(f64::MIN_POSITIVE).sqrt().max(v.length());
+                earliest(away, n.dot(v), pull).max(least)
             } else {
-                let r = tumble.at(t);
-                let w = self.spin_at(&tumble, t);
-                if let Some(apart) = self.beside(bounds, &(x, v, w, r), pull) {
-                    t += apart;
-                    if t >= self.until || t.is_nan() {
-                        return;
+                let at = Placed { x, v, r: tumble.at(t), w: self.spin_at(&tumble, t), pull };
+                if let Some(apart) = self.beside(bounds, &at) {
+                    apart
+                } else {
+                    let mut soonest = Soonest { step: self.until - t, point: 0, gap: f64::INFINITY };
+                    self.feelers_at_block(part, block, &at, &mut soonest);
+                    self.rings_at_block(part, block, &at, &mut soonest);
+                    if soonest.step == 0.0 {
+                        return self.hit(t, part, soonest.point);
                     }
-                    continue;
+                    soonest.step
                 }
-                step = self.until - t;
-                let mut first = (0, f64::INFINITY);
-                let (speed, spin) = (v.length(), w.length());
-                // How far a point at this distance from the centre of gravity can come within a time.
-                let way = |arm: f64, time: f64| {
-                    (speed + spin * arm + 0.5 * (pull + self.turning * arm) * time) * time + spec.gap
-                };
-                for (k, feeler) in spec.feelers[..spec.hull].iter().enumerate() {
-                    let arm = r * feeler.centre;
-                    if outside(bounds, x + arm) - feeler.radius > way(spec.arms[k], step) {
-                        continue;
-                    }
-                    let foot = block.foot(x + arm, feeler.radius);
-                    let f = foot.distance - feeler.radius - 0.5 * spec.gap;
-                    let rate = foot.normal.dot(v + w.cross(arm));
-                    if self.lasts(part, k) {
-                        continue;
-                    }
-                    if f <= 0.5 * spec.gap && rate < 0.0 {
-                        step = 0.0;
-                        if f < first.1 {
-                            first = (k, f);
-                        }
-                        continue;
-                    }
-                    let time = earliest(f, rate, pull + self.axial * spec.arms[k]);
-                    if time < step {
-                        step = time;
-                        first = (k, f);
-                    }
-                }
-                for (index, ring) in spec.rings.iter().enumerate() {
-                    let near = outside(bounds, x + r.z_axis * ring.height) - ring.circle - ring.radius;
-                    if near > way(spec.ring_arms[index], step) {
-                        continue;
-                    }
-                    let up = block.up_at_ring(ring, x, &r);
-                    let (up, swing) = (r.transpose() * up, r.transpose() * up.cross(w));
-                    let first_of = spec.points_of(index).start;
-                    for k in spec.points_of(index) {
-                        let (feeler, quarter) = spec.ring_point(k, up, swing);
-                        let foot = block.foot(x + r * feeler.centre, feeler.radius);
-                        let (lever, swing) = (r.transpose() * foot.normal, r.transpose() * foot.normal.cross(w));
-                        let height = foot.distance - lever.dot(feeler.centre) - 0.5 * spec.gap;
-                        let fall = foot.normal.dot(v);
-                        let gap = ring_gap(&feeler, quarter, (lever, swing), height, fall, (pull, self.turning));
-                        let (p, q) = (lever.truncate(), swing.truncate());
-                        if k == first_of && p != DVec2::ZERO && !self.lasts(part, k) {
-                            // The box is behind the plane through the foot, and so farther from all of the ring than that plane.
-                            let middle = height + lever.z * ring.height - ring.radius;
-                            let m = pull + self.turning * spec.ring_arms[index];
-                            let low =
-                                rim::Low { middle, rate: fall + swing.z * ring.height, circle: ring.circle, p, q, m };
-                            if gap[0] - low.at(0.0) <= 1e-6 * spec.gap {
-                                self.ring_by_plane(k, gap, &low, &mut step, &mut first);
-                            } else {
-                                self.ring_at_edge(part, k, gap, &mut step, &mut first);
-                            }
-                            if self.body.phase == Phase::Flight {
-                                break;
-                            }
-                            continue;
-                        }
-                        self.ring_at_edge(part, k, gap, &mut step, &mut first);
-                    }
-                }
-                if step == 0.0 {
-                    return self.hit(t, part, first.0);
-                }
-            }
-            t += step;
+            };
             if t >= self.until || t.is_nan() {
                 return;
             }
         }
         self.hit(t, part, 0);
+    }
+
+    /// How far a point at this distance from the centre of gravity can come within a time.
+    fn way(&self, at: &Placed, arm: f64, time: f64) -> f64 {
+        (at.v.length() + at.w.length() * arm + 0.5 * (at.pull + self.turning * arm) * time) * time + self.spec.gap
+    }
+
+    /// When the points of a body come to a box that are not on rings.
+    fn feelers_at_block(&self, part: u16, block: &Part, at: &Placed, soonest: &mut Soonest) {
+        let Part::Block { bounds, .. } = block else { return };
+        let spec = self.spec;
+        for (k, feeler) in spec.feelers[..spec.hull].iter().enumerate() {
+            let arm = at.r * feeler.centre;
+            if outside(bounds, at.x + arm) - feeler.radius > self.way(at, spec.arms[k], soonest.step) {
+                continue;
+            }
+            let foot = block.foot(at.x + arm, feeler.radius);
+            let f = foot.distance - feeler.radius - 0.5 * spec.gap;
+            let rate = foot.normal.dot(at.v + at.w.cross(arm));
+            if self.lasts(part, k) {
+                continue;
+            }
+            if f <= 0.5 * spec.gap && rate < 0.0 {
+                soonest.touches(k, f);
+            } else {
+                soonest.comes(k, f, earliest(f, rate, at.pull + self.axial * spec.arms[k]));
+            }
+        }
+    }
+
+    /// When the points of a body's rings come to a box.
+    fn rings_at_block(&self, part: u16, block: &Part, at: &Placed, soonest: &mut Soonest) {
+        let Part::Block { bounds, .. } = block else { return };
+        let Placed { x, v, r, w, pull } = *at;
+        let spec = self.spec;
+        for (index, ring) in spec.rings.iter().enumerate() {
+            let near = outside(bounds, x + r.z_axis * ring.height) - ring.circle - ring.radius;
+            if near > self.way(at, spec.ring_arms[index], soonest.step) {
+                continue;
+            }
+            let up = block.up_at_ring(ring, x, &r);
+            let (up, swing) = (r.transpose() * up, r.transpose() * up.cross(w));
+            let first_of = spec.points_of(index).start;
+            for k in spec.points_of(index) {
+                let (feeler, quarter) = spec.ring_point(k, up, swing);
+                let foot = block.foot(x + r * feeler.centre, feeler.radius);
+                let (lever, swing) = (r.transpose() * foot.normal, r.transpose() * foot.normal.cross(w));
+                let height = foot.distance - lever.dot(feeler.centre) - 0.5 * spec.gap;
+                let fall = foot.normal.dot(v);
+                let gap = ring_gap(&feeler, quarter, (lever, swing), height, fall, (pull, self.turning));
+                let (p, q) = (lever.truncate(), swing.truncate());
+                if k != first_of || p == DVec2::ZERO || self.lasts(part, k) {
+                    self.ring_at_edge(part, k, gap, soonest);
+                    continue;
+                }
+                // The box is behind the plane through the foot, and so farther from all of the ring than that plane.
+                let middle = height + lever.z * ring.height - ring.radius;
+                let m = pull + self.turning * spec.ring_arms[index];
+                let low = rim::Low { middle, rate: fall + swing.z * ring.height, circle: ring.circle, p, q, m };
+                if gap[0] - low.at(0.0) <= SAME * spec.gap {
+                    self.ring_by_plane(k, gap, &low, soonest);
+                } else {
+                    self.ring_at_edge(part, k, gap, soonest);
+                }
+                if self.body.phase == Phase::Flight {
+                    break;
+                }
+            }
+        }
     }
 
     /// Whether a point of the body is within the edges of a box's side.
@@ -145,49 +188,28 @@ impl Search<'_> {
     }
 
     /// Whether the lowest point of a ring comes first, against the plane through its foot.
-    fn ring_by_plane(
-        &self,
-        k: usize,
-        [f, rate, ..]: [f64; 4],
-        low: &rim::Low,
-        step: &mut f64,
-        first: &mut (usize, f64),
-    ) {
+    fn ring_by_plane(&self, k: usize, [f, rate, ..]: [f64; 4], low: &rim::Low, soonest: &mut Soonest) {
         let is_now = f <= 0.5 * self.spec.gap && rate < 0.0;
-        let time = if is_now { 0.0 } else { low.earliest(*step) };
-        if time < *step || (is_now && f < first.1) {
-            (*step, *first) = (time, (k, f));
+        let time = if is_now { 0.0 } else { low.earliest(soonest.step) };
+        if time < soonest.step || (is_now && f < soonest.gap) {
+            *soonest = Soonest { step: time, point: k, gap: f };
         }
     }
 
     /// Whether a point of a ring comes first.
-    fn ring_at_edge(
-        &self,
-        part: u16,
-        k: usize,
-        [f, rate, slowest, m]: [f64; 4],
-        step: &mut f64,
-        first: &mut (usize, f64),
-    ) {
+    fn ring_at_edge(&self, part: u16, k: usize, [f, rate, slowest, m]: [f64; 4], soonest: &mut Soonest) {
         if self.lasts(part, k) {
             return;
         }
         if f <= 0.5 * self.spec.gap && rate < 0.0 {
-            *step = 0.0;
-            if f < first.1 {
-                *first = (k, f);
-            }
-            return;
+            return soonest.touches(k, f);
         }
         let time = if f > 0.5 * self.spec.gap { earliest(f, slowest, m) } else { earliest(f, rate, m / LEANS) };
-        if time < *step {
-            *step = time;
-            *first = (k, f);
-        }
+        soonest.comes(k, f, time);
     }
 
     /// Where the capsule around the body is beyond one side of a box: for how long at least it stays there.
-    fn beside(&self, bounds: &Aabb, (x, v, w, r): &(DVec3, DVec3, DVec3, DMat3), pull: f64) -> Option<f64> {
+    fn beside(&self, bounds: &Aabb, &Placed { x, v, r, w, pull }: &Placed) -> Option<f64> {
         let [low, high, radius] = self.spec.capsule;
         let arms = [r.z_axis * low, r.z_axis * high];
         let mut longest: Option<f64> = None;

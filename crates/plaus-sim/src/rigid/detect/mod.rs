@@ -13,35 +13,12 @@ use super::body::{Phase, Turning};
 use super::part::Part;
 use super::tumble::Tumble;
 use super::{Rigid, Skin, Spec};
-use crate::roots::fall_of_quadratic;
+use crate::roots::{earliest, fall_of_quadratic};
 use crate::scenery::Surface;
 use glam::DVec3;
 
 /// Most advancements of one search. Where they are spent the nearest point's time is handed on as an event: the body is looked at anew.
 const MOST_ADVANCES: usize = 200;
-
-/// Time until a gap `f` with rate `rate` and acceleration at least `-m` can be gone.
-#[inline]
-pub(super) fn earliest(f: f64, rate: f64, m: f64) -> f64 {
-    if f > 0.0 {
-        let root = (rate * rate + 2.0 * m * f).sqrt();
-        if rate < 0.0 {
-            2.0 * f / (root - rate)
-        } else if m > 0.0 {
-            (rate + root) / m
-        } else {
-            f64::INFINITY
-        }
-    } else if rate <= 0.0 {
-        0.0
-    } else if m > 0.0 {
-        // Overlapping but opening: not before the rate has turned.
-        let discriminant = rate * rate + 2.0 * m * f;
-        (rate + discriminant.max(0.0).sqrt()) / m
-    } else {
-        f64::INFINITY
-    }
-}
 
 /// A search for the first contact of one body.
 pub(in crate::rigid) struct Search<'s> {

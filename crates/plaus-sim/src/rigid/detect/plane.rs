@@ -3,7 +3,7 @@
 use super::{LEANS, MOST_ADVANCES, Search, earliest};
 use crate::rigid::body::Phase;
 use crate::rigid::part::is_over;
-use crate::rigid::step::TOUCHING;
+use crate::rigid::scratch::TOUCHING;
 use crate::rigid::tumble::Tumble;
 use crate::rigid::{RIM_POINTS, rim};
 use crate::roots::fall_of_quadratic;

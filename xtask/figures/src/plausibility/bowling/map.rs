@@ -30,7 +30,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         "bowling-entry",
         format!(
             "Strikes over the board that the ball's centre would cross in the head pin's row (20 is the middle) and its angle of entry; left as a map, right for three angles, with bars of one \
-             standard error. The dot is the published best line, the bar beneath the boards where a ball at 6° is said to strike nearly always. A rolling ball of 15 lb at 8 ± 0.2 m/s, pins set at \
+             standard error. The dot is the published best line, the bar beneath the boards where a ball at 6° is said \
+             to strike nearly always. A rolling ball of 15 lb at 8 ± 0.2 m/s, pins set at \
              random as the scene has it; {shots} shots of each of {count} lines.",
         ),
     );
@@ -55,7 +56,8 @@ fn windows(work: &mut Work, scene: &Bowling, rows: &[Row], shots: u64) -> Result
     let best = along(scene, at, seed, |_| Line::new(BEST.0, BEST.1))?;
     text += &format!(
         "\n{shots} shots of each line. A board is where the ball's centre would cross the head pin's row on a straight way; it meets the pin some 16 cm earlier, at 6° 0.6 boards farther to the right, and \
-         the publication does not say which it means.\n\nOn the published best line, board {} at {}°: {} % strikes of {} (seed {seed}), left: {}. The ball itself struck pins 1, 3, 5 and 9 and no \
+         the publication does not say which it means.\n\nOn the published best line, board {} at {}°: {} % strikes of \
+         {} (seed {seed}), left: {}. The ball itself struck pins 1, 3, 5 and 9 and no \
          other in {} %: that is what the perfect strike is said to do.\n",
         BEST.0,
         BEST.1,

@@ -1,4 +1,5 @@
-//! First balls of professionals: the regulation prior about a good player's delivery, its spread fitted to the published strike rate alone, the leaves held out.
+//! First balls of professionals: the regulation prior about a good player's delivery, its spread fitted to the
+//! published strike rate alone, the leaves held out.
 
 use super::SEED;
 use super::published::{FIRST_BALLS, STRIKES, leaves};
@@ -12,8 +13,9 @@ use plaus_scenes::bowling::{Bowling, Config, Contact, Delivery, Release};
 /// Spreads that are tried, over [`delivery`]'s at 1.
 const SPREADS: [f64; 6] = [0.2, 0.4, 0.6, 0.8, 1.0, 1.3];
 
-/// A right-hander's delivery that meets the pins, in the mean, on the published best line, with 8.1 m/s and 39 rad/s at the foul line: in the middle of what PBA players are reported to
-/// have. `spread` scales all standard deviations together; their proportions are guesses (at 1: 2 cm/s across, which is 1.6 boards at the pins, 0.1 m/s, 1 rad/s).
+/// A right-hander's delivery that meets the pins, in the mean, on the published best line, with 8.1 m/s and 39 rad/s at
+/// the foul line: in the middle of what PBA players are reported to have. `spread` scales all standard deviations
+/// together; their proportions are guesses (at 1: 2 cm/s across, which is 1.6 boards at the pins, 0.1 m/s, 1 rad/s).
 fn delivery(spread: f64) -> Release {
     Release {
         // One ball of 15 lb.
@@ -87,7 +89,8 @@ fn one(work: &Work, name: &str, contact: Contact, balls: u64, seed: u64) -> Resu
     Ok(text)
 }
 
-/// The spread at which straight lines through the strike rates first fall to the published one; the last where they do not.
+/// The spread at which straight lines through the strike rates first fall to the published one; the last where they do
+/// not.
 fn fitted(tried: &[(f64, Tally)]) -> f64 {
     let rate = |k: usize| tried[k].1.strikes().share();
     let crossing = (1..tried.len()).find(|&k| rate(k - 1) >= STRIKES && rate(k) < STRIKES);

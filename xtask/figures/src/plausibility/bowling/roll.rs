@@ -69,7 +69,8 @@ impl Leave {
 /// The straight line along which a ball rolls onto the pins.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
-    /// Board over which the ball's centre would cross the head pin's row, counted from the right, 20 being the middle one's centre.
+    /// Board over which the ball's centre would cross the head pin's row, counted from the right, 20 being the middle
+    /// one's centre.
     pub(super) board: f64,
     /// Angle of entry in degrees, from the right.
     pub(super) angle: f64,
@@ -220,7 +221,8 @@ mod tests {
         assert_eq!(Leave::STRIKE.name(), "strike");
     }
 
-    /// The ball meets the head pin on the line it was sent along: the angle to rounding, the place to the pin's own offset, of which five standard deviations are 5 mm.
+    /// The ball meets the head pin on the line it was sent along: the angle to rounding, the place to the pin's own
+    /// offset, of which five standard deviations are 5 mm.
     #[test]
     fn balls_take_their_line() {
         let scene = scene(Contact::default()).unwrap();
@@ -232,7 +234,8 @@ mod tests {
             let entry = rest.entry.unwrap();
             let side = if from_left { -1.0 } else { 1.0 };
             assert!((entry.angle + side * angle).abs() < 1e-9, "{}", entry.angle);
-            // At contact the ball is as far before the row as the sum of the radii allows: 168 to 169 mm from the pin's axis.
+            // At contact the ball is as far before the row as the sum of the radii allows: 168 to 169 mm from the pin's
+            // axis.
             let before = (entry.across * side - (20.0 - board) * BOARD) / math::tan(angle.to_radians());
             if angle > 0.0 {
                 let reach = math::hypot(before, entry.across);

@@ -1,4 +1,5 @@
-//! Coefficients that are not published, searched for in the open: on the boards where balls strike, the leaves held out.
+//! Coefficients that are not published, searched for in the open: on the boards where balls strike, the leaves held
+//! out.
 
 use super::SEED;
 use super::published::{STRAIGHT, WINDOW};
@@ -84,7 +85,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         (25, Boards(16.0, 19.5, 0.25), Boards(16.5, 19.0, 0.25)),
         (1, Boards(17.0, 18.0, 0.5), Boards(17.0, 18.0, 0.5)),
     );
-    // The same seeds for all, so that sets are compared on the same placements of pins; then others for the scene's own, which says how much of a misfit is chance.
+    // The same seeds for all, so that sets are compared on the same placements of pins; then others for the scene's
+    // own, which says how much of a misfit is chance.
     let mut all: Vec<(Contact, u64)> = one_at_a_time().into_iter().chain(together()).map(|set| (set, 0)).collect();
     all.extend((1..=2).map(|again| (Contact::default(), 1_000 * again)));
     if work.quick {
@@ -120,7 +122,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     let mut text = table(&head, rows);
     text += &format!(
         "\nBoards on which at least nine of ten balls strike; published: {}–{} at 6°, less than {STRAIGHT} boards wide for a straight ball. The misfit is how far both ends of the first are off, in \
-         boards, plus by how much the second is too wide. {} shots of each line, a line every quarter of a board, seeds from {} on, the same for all sets but the last two. The first row is the scene's \
+         boards, plus by how much the second is too wide. {} shots of each line, a line every quarter of a board, \
+         seeds from {} on, the same for all sets but the last two. The first row is the scene's \
          set, and so are the last two with other seeds: what they differ by is chance. No leave entered the search. Least misfit: {}. Restitution of ball and pin is kept within what the rules allow, 0.65 to 0.78.\n",
         WINDOW.0,
         WINDOW.1,

@@ -1,5 +1,5 @@
-//! Whether the simulation is sound where statistics depend on it: balls from the left leave, as often, the mirror images of what balls from the right leave; and a finer accuracy leaves
-//! the same.
+//! Whether the simulation is sound where statistics depend on it: balls from the left leave, as often, the mirror
+//! images of what balls from the right leave; and a finer accuracy leaves the same.
 
 use super::SEED;
 use super::published::BEST;
@@ -56,7 +56,8 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     Ok(())
 }
 
-/// Rows of each leave that is frequent and of what it corresponds to in the other tally, then of all others; and the sum in words.
+/// Rows of each leave that is frequent and of what it corresponds to in the other tally, then of all others; and the
+/// sum in words.
 fn compare(ours: &Tally, other: &Tally, image: fn(Leave) -> Leave) -> (Vec<Vec<String>>, String) {
     let both = |leave: Leave| [ours.of(leave), other.of(image(leave))];
     let leaves = ours.most().into_iter().map(|(leave, _)| (leave.name(), both(leave)));

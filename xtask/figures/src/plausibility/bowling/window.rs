@@ -34,7 +34,8 @@ impl Row {
         Ok(Self { angle, strikes: boards.all().enumerate().map(on).collect::<Result<_>>()? })
     }
 
-    /// The longest run of boards on which at least nine in ten are strikes, by straight lines between the boards; of no length at the best board where there is none.
+    /// The longest run of boards on which at least nine in ten are strikes, by straight lines between the boards; of no
+    /// length at the best board where there is none.
     pub(super) fn window(&self) -> (f64, f64) {
         let rate = |k: usize| (self.strikes[k].0, self.strikes[k].1.share() - OFTEN);
         let best =
@@ -78,7 +79,8 @@ impl Row {
     }
 }
 
-/// How far, in boards, windows at 6° and of a straight ball are from the published ones: both ends of the one, and by how much the other is too wide.
+/// How far, in boards, windows at 6° and of a straight ball are from the published ones: both ends of the one, and by
+/// how much the other is too wide.
 pub(super) fn misfit(hooked: &Row, straight: &Row) -> f64 {
     let (from, to) = hooked.window();
     (from - WINDOW.0).abs() + (to - WINDOW.1).abs() + (straight.width() - STRAIGHT).max(0.0)

@@ -1,4 +1,5 @@
-//! Cuboids x × y × y that are thrown at random: how often a square face comes up, beside rolls of real ones; and whether a cube is fair.
+//! Cuboids x × y × y that are thrown at random: how often a square face comes up, beside rolls of real ones; and
+//! whether a cube is fair.
 
 mod cube;
 mod plot;
@@ -77,8 +78,10 @@ fn compare(work: &mut Work, rolled: &[Rolled], defaults: &Compared, chosen: &Com
     let (least, freedom) = smooth::misfit(rolled);
     text += &format!(
         "\nHow often a square face was uppermost; {} throws of each, y = 16 mm, edges sharp by default, seeds {SEED} and {} on. Errors are binomial. z: difference in standard errors of both; p: Fisher's exact \
-         test. Published: fifteen cuboids cut out of a steel bar and rolled by students (The Mathematical Gazette, March 2013, note 97.16); how and onto what is not said. Conditions were chosen by the \
-         cuboids with † alone (below); chosen: {}.\n\nΣ z² (how many), probability of more by chance:\n\n{}\n\nNor does a smooth curve agree: the best polynomial of fourth degree in ln(x/y) for \
+         test. Published: fifteen cuboids cut out of a steel bar and rolled by students (The Mathematical Gazette, \
+         March 2013, note 97.16); how and onto what is not said. Conditions were chosen by the \
+         cuboids with † alone (below); chosen: {}.\n\nΣ z² (how many), probability of more by chance:\n\n{}\n\nNor \
+         does a smooth curve agree: the best polynomial of fourth degree in ln(x/y) for \
          ln(p/(1 − p)), with a cube's third, leaves {least:.1} with {freedom} degrees of freedom (more by chance: {}).\n",
         thousands(throws),
         SEED + 2_000,

@@ -11,8 +11,9 @@ pub(super) struct Rolled {
     pub(super) square: Count,
 }
 
-/// Edge x over y, share of rolls with a square face uppermost, number of rolls: table 1 of "97.16 Probability analysis for rolls of a square cuboidal die", The Mathematical
-/// Gazette, March 2013. Fifteen cuboids were cut out of a steel bar and rolled by students. How, and onto what, is not said.
+/// Edge x over y, share of rolls with a square face uppermost, number of rolls: table 1 of "97.16 Probability analysis
+/// for rolls of a square cuboidal die", The Mathematical Gazette, March 2013. Fifteen cuboids were cut out of a steel
+/// bar and rolled by students. How, and onto what, is not said.
 const TABLE: [(f64, f64, u64); 15] = [
     (0.47, 0.916, 332),
     (0.63, 0.738, 840),

@@ -6,7 +6,8 @@ use plaus_dist::math;
 /// Terms of the curve: ln(p / (1 − p)) is a polynomial of ln(x/y) of this degree that gives a cube its third.
 const DEGREE: usize = 4;
 
-/// Damped rounds of Newton's method on the likelihood, which has one summit. Default 200: halving the step each time leaves 2⁻²⁰⁰ of where it began.
+/// Damped rounds of Newton's method on the likelihood, which has one summit. Default 200: halving the step each time
+/// leaves 2⁻²⁰⁰ of where it began.
 const ROUNDS: usize = 200;
 
 /// Σ (k − n p)² / (n p (1 − p)) about the curve of largest likelihood, and its degrees of freedom.
@@ -61,7 +62,8 @@ mod tests {
     use super::*;
     use crate::plausibility::chance::Count;
 
-    /// Counts on a curve of that form, rounded: what is left is rounding, at most a quarter of a count squared over the variance, which is above 6,000, for each.
+    /// Counts on a curve of that form, rounded: what is left is rounding, at most a quarter of a count squared over the
+    /// variance, which is above 6,000, for each.
     #[test]
     fn a_curve_of_that_form_is_found() {
         let of = |ratio: f64| {

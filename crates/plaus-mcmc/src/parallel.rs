@@ -1,0 +1,108 @@
+//! Jobs on all threads of the current pool.
+//!
+//! Iterators of rayon are compiled anew for each closure, and all closures here anew for each scene: that was half of
+//! the machine code, and of the time to build it. Here only what a job makes is generic; who does it when is not.
+
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What `job` makes on a thread of `pool`, whose threads are then those of the functions here.
+///
+/// ```
+/// # fn main() -> Result<(), rayon::ThreadPoolBuildError> {
+/// use plaus_mcmc::parallel;
+///
+/// let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build()?;
+/// assert_eq!(parallel::install(&pool, || parallel::map(3, |k| k + 1)), [1, 2, 3]);
+/// # Ok(())
+/// # }
+/// ```
+pub fn install<T: Send>(pool: &ThreadPool, job: impl FnOnce() -> T + Send) -> T {
+    let (mut job, mut made) = (Some(job), None);
+    enter(pool, &mut || made = job.take().map(|job| job()));
+    made.unwrap_or_else(|| unreachable!("a job that does not panic makes something"))
+}
+
+fn enter(pool: &ThreadPool, job: &mut (dyn FnMut() + Send)) {
+    pool.install(job);
+}
+
+/// Does a job for each number below `count`.
+fn each(count: usize, job: &(dyn Fn(usize) + Sync)) {
+    if count < 2 || rayon::current_num_threads() == 1 {
+        return (0..count).for_each(job);
+    }
+    (0..count).into_par_iter().with_max_len(1).for_each(job);
+}
+
+/// What a job that panicked leaves is as good as any: the panic goes on.
+pub(crate) fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What `job` makes of each number below `count`, in their order.
+///
+/// ```
+/// assert_eq!(plaus_mcmc::parallel::map(4, |k| k * k), [0, 1, 4, 9]);
+/// ```
+pub fn map<T: Send>(count: usize, job: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let made: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
+    each(count, &|k| {
+        let one = job(k);
+        *lock(&made[k]) = Some(one);
+    });
+    made.into_iter().filter_map(|one| one.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
+}
+
+/// The same where jobs may fail. Jobs that have not begun when one of a smaller number fails are left.
+///
+/// # Errors
+/// That of the job of the smallest number that fails, whoever was faster.
+pub fn try_map<T: Send, E: Send>(count: usize, job: impl Fn(usize) -> Result<T, E> + Sync) -> Result<Vec<T>, E> {
+    let failed = AtomicUsize::new(usize::MAX);
+    let made = map(count, |k| {
+        if k > failed.load(Relaxed) {
+            return None;
+        }
+        let one = job(k);
+        if one.is_err() {
+            failed.fetch_min(k, Relaxed);
+        }
+        Some(one)
+    });
+    made.into_iter().flatten().collect()
+}
+
+/// What `job` makes of each of `items`, which it may change, in their order.
+pub fn map_mut<T: Send, R: Send>(items: &mut [T], job: impl Fn(usize, &mut T) -> R + Sync) -> Vec<R> {
+    let items: Vec<Mutex<&mut T>> = items.iter_mut().map(Mutex::new).collect();
+    map(items.len(), |k| job(k, &mut lock(&items[k])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_failure_is_told_whoever_was_faster() {
+        for _ in 0..50 {
+            let tried = try_map(200, |k| if k % 7 == 5 { Err(k) } else { Ok(k) });
+            assert_eq!(tried, Err(5));
+        }
+        assert_eq!(try_map(3, Ok::<usize, ()>), Ok(vec![0, 1, 2]));
+    }
+
+    #[test]
+    fn each_item_is_changed_once() {
+        let mut items: Vec<u64> = (0..100).collect();
+        let before = map_mut(&mut items, |k, item| {
+            let was = *item;
+            *item += 1000 * k as u64;
+            was
+        });
+        assert_eq!(before, (0..100).collect::<Vec<u64>>());
+        assert!(items.iter().zip(0..).all(|(item, k)| *item == 1001 * k));
+    }
+}

@@ -1,0 +1,152 @@
+//! The trial that finds out whether chains or independent draws of the prior make independent solutions sooner.
+//!
+//! A trial is a function of scenario and seed alone: it counts simulations and looks at no clock. So every piece of a
+//! run, and the run that is begun anew, finds the same; what it found lies in the manifest.
+
+use crate::diagnosis::worth_of;
+use crate::error::Error;
+use crate::manifest::Recipe;
+use crate::way::Way;
+use plaus_dist::Seed;
+use plaus_mcmc::parallel;
+use plaus_mcmc::{Chain, ChainError, Mixture, Plan, Pulse, Tried, Verdict, try_draws};
+use plaus_scenes::{Role, Scene};
+
+/// Draws of the prior between two looks at what they come to.
+const AT_A_TIME: u64 = 32;
+/// Draws of the prior in a trial that finds too few solutions: one for so many of the run's iterations, within bounds.
+const ONE_FOR: u64 = 50;
+const DRAWS: [u64; 2] = [64, 2048];
+/// Most of them where only some solutions are looked for, which should come soon.
+const DRAWS_FOR_SOME: u64 = 128;
+/// Solutions that a trial looks for: their number is then known to a half.
+const ENOUGH: f64 = 4.0;
+/// Where the prior needs fewer draws than this for a solution, no chain is tried. Of the scenes that come with plaus no
+/// chain was measured to make an independent solution in fewer than 60 iterations.
+const FEW: f64 = 40.0;
+/// The same of who looks for some solutions only: they end before a chain would have been tried.
+const FEW_FOR_SOME: f64 = 100.0;
+/// Independent solutions that the prior would make in as many simulations as a trial gives to chains after their
+/// warm-up. Chains that never get anywhere seem to make one or two each.
+const RIVAL: f64 = 12.0;
+/// Chains of a trial.
+const CHAINS: u32 = 4;
+/// The part of the run's iterations that the trial of chains may take.
+const SHARE: f64 = 0.1;
+
+/// Finds out by a trial, on the current pool of threads.
+///
+/// # Errors
+/// [`Error`] where the model fails, or `pulse` was stopped.
+pub(crate) fn tried<S: Scene>(recipe: &Recipe, scene: &S, pulse: &Pulse) -> Result<Way, Error> {
+    let plan = recipe.plan();
+    let total = plan.end().saturating_mul(u64::from(plan.chains));
+    let most = if plan.solutions.is_some() { DRAWS_FOR_SOME } else { DRAWS[1] };
+    let most = (total / ONE_FOR).clamp(DRAWS[0], most);
+    let mut found = Tried::default();
+    while found.draws < most && found.kept < ENOUGH {
+        go_on(pulse)?;
+        let made = try_draws(scene, plan.seed, found.draws..found.draws + AT_A_TIME.min(most - found.draws));
+        found = found.and(made.map_err(|error| Error::Sampling(error.to_string()))?);
+    }
+    let Tried { draws, hits, kept } = found;
+    let one_in = draws as f64 / kept;
+    let seen = format!("{hits} of {draws} draws of the prior are solutions");
+    let kept_words = format!("{seen}, and one in {one_in:.0} draws makes one that counts");
+    let because = |independent, why: String| Ok(Way { independent, why });
+    if hits == 0 {
+        return because(false, format!("none of {draws} draws of the prior is a solution"));
+    }
+    if one_in <= if plan.solutions.is_some() { FEW_FOR_SOME } else { FEW } {
+        return because(true, format!("{kept_words}, fewer than the iterations that chains are known to need"));
+    }
+    let iterations = (RIVAL * one_in / f64::from(CHAINS)).ceil();
+    if plan.solutions.is_some() || 2.0 * iterations * f64::from(CHAINS) > SHARE * total as f64 {
+        return because(false, format!("{kept_words}: too few to try whether chains need as many iterations"));
+    }
+    let rival = Trial::of(scene, recipe, iterations as u64, pulse)?;
+    let each = rival.simulations / rival.independent;
+    let of_chains = if each.is_finite() { format!("{each:.0} simulations") } else { "more than were tried".into() };
+    because(one_in <= each, format!("{kept_words}, while a trial of chains needed {of_chains} for one"))
+}
+
+fn go_on(pulse: &Pulse) -> Result<(), Error> {
+    let message = "stopped while it was tried how draws are best made, so nothing was written";
+    if pulse.is_stopped() { Err(Error::Request(message.to_owned())) } else { Ok(()) }
+}
+
+/// What chains came to in a trial.
+struct Trial {
+    /// Independent solutions.
+    independent: f64,
+    /// Simulations that they took.
+    simulations: f64,
+}
+
+impl Trial {
+    /// Walks chains through a warm-up of `iterations`, and as many that count.
+    fn of<S: Scene>(scene: &S, recipe: &Recipe, iterations: u64, pulse: &Pulse) -> Result<Self, Error> {
+        let plan = recipe.plan();
+        let moves = scene.moves(&recipe.scenario.sampler.rules)?;
+        let course = Course { scene, moves: &moves, plan, iterations, pulse };
+        let walked = parallel::try_map(CHAINS as usize, |chain| course.walk(chain as u32));
+        let walked = walked.map_err(|error| Error::Sampling(error.to_string()))?;
+        go_on(pulse)?;
+        let simulations = walked.iter().map(|one| one.simulations).sum::<u64>() as f64;
+        let (satisfied, columns): (Vec<_>, Vec<_>) = walked.into_iter().map(|one| (one.satisfied, one.columns)).unzip();
+        let variables = columns.first().map_or(0, Vec::len);
+        let of_variable = |var: usize| columns.iter().map(|chain| chain[var].clone()).collect::<Vec<_>>();
+        let worth = (0..variables).filter_map(|var| worth_of(&of_variable(var), &satisfied));
+        Ok(Self { independent: worth.reduce(f64::min).unwrap_or(0.0), simulations })
+    }
+}
+
+/// What the chains of a trial share.
+struct Course<'a, S: Scene> {
+    scene: &'a S,
+    moves: &'a Mixture<S>,
+    plan: Plan,
+    iterations: u64,
+    pulse: &'a Pulse,
+}
+
+/// What is looked at of a chain after its warm-up.
+struct Walked {
+    /// Per variable of the draw, per iteration.
+    columns: Vec<Vec<f64>>,
+    satisfied: Vec<bool>,
+    simulations: u64,
+}
+
+impl<S: Scene> Course<'_, S> {
+    fn walk(&self, chain: u32) -> Result<Walked, ChainError> {
+        // No run has a seed of 2⁶³ or more, so none has these chains.
+        let streams = Seed(!self.plan.seed.0).chain(u64::from(chain));
+        let mut chain = Chain::start(self.scene, self.moves, streams)?;
+        if self.plan.adapt {
+            chain = chain.adapting(self.iterations);
+        }
+        let scalars = self.scene.scalars();
+        let variables: Vec<usize> = (0..scalars.len()).filter(|&k| scalars[k].role == Role::Draw).collect();
+        let mut values = vec![0.0; scalars.len()];
+        let mut walked = Walked { columns: vec![Vec::new(); variables.len()], satisfied: Vec::new(), simulations: 0 };
+        let mut is_hit = false;
+        for iteration in 1..=2 * self.iterations {
+            if self.pulse.is_stopped() {
+                break; // the whole trial is dropped
+            }
+            let verdict = chain.step()?.verdict;
+            if iteration <= self.iterations {
+                continue;
+            }
+            walked.simulations += u64::from(!matches!(verdict, Verdict::Stayed | Verdict::RejectedByPrior));
+            if verdict == Verdict::Accepted || walked.satisfied.is_empty() {
+                self.scene.write_scalars(chain.state(), &mut values);
+                is_hit = self.scene.class(chain.state()).is_some();
+            }
+            walked.columns.iter_mut().zip(&variables).for_each(|(column, &var)| column.push(values[var]));
+            walked.satisfied.push(is_hit);
+        }
+        Ok(walked)
+    }
+}

@@ -1,0 +1,59 @@
+//! Who looks on while a run is sampled.
+
+use crate::folder::Folder;
+use crate::gauge::Mixing;
+use crate::manifest::Manifest;
+use plaus_mcmc::{Control, Progress, Pulse};
+use std::sync::Arc;
+
+/// Looks on while a run is sampled, and may stop it.
+pub trait Watch {
+    /// Called before the first round; `done` iterations of each chain are done already.
+    fn begin(&mut self, _manifest: &Manifest, _done: u64) {}
+
+    /// Called after each round; says whether to go on.
+    fn round(&mut self, progress: &Progress<'_>) -> Control;
+
+    /// Whether what was sampled since the last checkpoint is worth writing one. The final bytes do not depend on the
+    /// answers; what a killed process loses does.
+    fn checkpoint_due(&mut self) -> bool {
+        true
+    }
+
+    /// Called after a checkpoint was written.
+    fn checkpoint_done(&mut self) {}
+
+    /// What the chains report to while they are at work, and are stopped by.
+    fn pulse(&self) -> Arc<Pulse> {
+        Arc::default()
+    }
+
+    /// Whether to keep, in memory, what [`Watch::mixing`] takes.
+    fn looks_at_mixing(&self) -> bool {
+        false
+    }
+
+    /// Whether to find out now how well the outcomes mix; asked after each round where [`Watch::looks_at_mixing`] says
+    /// so.
+    fn mixing_due(&mut self) -> bool {
+        false
+    }
+
+    /// Called with what was found; `None` where there is too little to tell.
+    fn mixing(&mut self, _mixing: Option<Mixing>) {}
+
+    /// Called again and again while another process writes the run that is to be gone on with; says whether to wait.
+    fn locked(&mut self, _folder: &Folder) -> bool {
+        false
+    }
+}
+
+/// Watches nothing: runs to the end, with a checkpoint after every round.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Unwatched;
+
+impl Watch for Unwatched {
+    fn round(&mut self, _: &Progress<'_>) -> Control {
+        Control::Continue
+    }
+}

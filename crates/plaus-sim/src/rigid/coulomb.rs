@@ -1,0 +1,257 @@
+//! A contact of bodies in a group, and the impulse there that obeys Coulomb's law with all others as they are.
+
+use super::slip::{Asked, Slip, WEDGED};
+use glam::{DMat3, DVec3};
+
+/// A body while its contacts are solved.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Member {
+    pub(crate) inverse_mass: f64,
+    pub(crate) inverse_inertia: DMat3,
+    pub(crate) v: DVec3,
+    pub(crate) w: DVec3,
+    /// Largest distance of a point from the centre of gravity.
+    pub(crate) reach: f64,
+    /// Velocities a round ago.
+    pub(crate) last: [DVec3; 2],
+}
+
+/// A contact between a member and a fixed part or another member.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Contact {
+    pub(crate) a: usize,
+    pub(crate) b: Option<usize>,
+    pub(crate) arms: [DVec3; 2],
+    /// Unit normal towards `a`.
+    pub(crate) normal: DVec3,
+    pub(crate) friction: f64,
+    /// Least normal velocity after solving.
+    pub(crate) target: f64,
+    /// What is added to the velocity at the point to get the one that is meant: its mean over a drift, say.
+    pub(crate) bias: DVec3,
+    /// The direction of the slip that friction is to oppose as long as it slides that way; else that of what slip is left.
+    pub(crate) held_slip: Option<DVec3>,
+    /// Velocity change per impulse.
+    k: DMat3,
+    k_inverse: DMat3,
+    kn: DVec3,
+    along: f64,
+    /// At least the largest response across the normal.
+    stiff: f64,
+    /// Impulse on `a` so far.
+    pub(crate) impulse: DVec3,
+    slip: Option<Slip>,
+    /// Whether it slid when it was looked at last.
+    slides: bool,
+    /// Whether it obeyed Coulomb's law after that, the direction of its slip included.
+    pub(super) is_right: bool,
+}
+
+/// How near to the edge of its cone an impulse counts as sliding: rounding of the projection.
+const AT_EDGE: f64 = 1e-12;
+
+/// How well a slip's direction is looked for: the angle in radians by which it may be off, and rounds.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Look {
+    pub(super) turn: f64,
+    pub(super) rounds: u32,
+}
+
+impl Contact {
+    pub(crate) fn new(a: usize, b: Option<usize>, arms: [DVec3; 2], normal: DVec3, friction: f64, k: DMat3) -> Self {
+        let kn = k * normal;
+        let along = normal.dot(kn);
+        let stiff = k.x_axis.x + k.y_axis.y + k.z_axis.z - along;
+        let k_inverse = k.inverse();
+        Self {
+            a,
+            b,
+            arms,
+            normal,
+            friction,
+            target: 0.0,
+            bias: DVec3::ZERO,
+            held_slip: None,
+            k,
+            k_inverse,
+            kn,
+            along,
+            stiff,
+            impulse: DVec3::ZERO,
+            slip: None,
+            slides: false,
+            is_right: false,
+        }
+    }
+
+    /// Mean velocity change per impulse.
+    pub(crate) fn compliance(&self) -> f64 {
+        (self.along + self.stiff) * (1.0 / 3.0)
+    }
+
+    /// Velocity change per impulse.
+    pub(crate) fn response(&self) -> DMat3 {
+        self.k
+    }
+
+    /// Relative velocity at the contact.
+    #[inline]
+    pub(crate) fn velocity(&self, members: &[Member]) -> DVec3 {
+        self.relative(|k| [members[k].v, members[k].w])
+    }
+
+    /// The same of members with these velocities.
+    #[inline]
+    pub(super) fn relative(&self, of: impl Fn(usize) -> [DVec3; 2]) -> DVec3 {
+        let at = |k: usize, arm: DVec3| {
+            let [v, w] = of(k);
+            v + w.cross(arm)
+        };
+        let u = at(self.a, self.arms[0]);
+        self.b.map_or(u, |b| u - at(b, self.arms[1]))
+    }
+
+    /// What of the velocity at the contact is not to be: slip, and what the normal part differs from its target by.
+    #[inline]
+    pub(super) fn wrong(&self, members: &[Member]) -> DVec3 {
+        self.velocity(members) + self.bias - self.normal * self.target
+    }
+
+    #[inline]
+    pub(crate) fn push(&self, members: &mut [Member], impulse: DVec3) {
+        let a = &mut members[self.a];
+        a.v += impulse * a.inverse_mass;
+        a.w += a.inverse_inertia * self.arms[0].cross(impulse);
+        if let Some(b) = self.b {
+            let b = &mut members[b];
+            b.v -= impulse * b.inverse_mass;
+            b.w -= b.inverse_inertia * self.arms[1].cross(impulse);
+        }
+    }
+
+    /// Gives this contact the impulse that it needs with all others as they are; returns the change of velocity that this meant.
+    #[inline]
+    pub(crate) fn solve(&mut self, members: &mut [Member], look: Look) -> f64 {
+        let u = self.velocity(members) + self.bias;
+        let n = self.normal;
+        let wanted = n * self.target - u;
+        if self.impulse == DVec3::ZERO && wanted.dot(n) <= 0.0 {
+            self.is_right = true;
+            return 0.0;
+        }
+        let next = self.sliding_as_held(u).or_else(|| self.still_sliding(u, look)).unwrap_or_else(|| {
+            // No slip is left, and the impulse lies in the cone; or else it slides.
+            let next = self.impulse + self.k_inverse * wanted;
+            let load = next.dot(n);
+            let across = (next - n * load).length_squared();
+            self.slides = load <= 0.0 || across > self.friction * self.friction * load * load;
+            self.is_right = true;
+            if self.slides { self.sliding(u - self.k * self.impulse, look) } else { next }
+        });
+        let change = next - self.impulse;
+        self.push(members, change);
+        self.impulse = next;
+        change.length() * self.along
+    }
+
+    /// The unit vector of its slip, where it slides under load.
+    pub(crate) fn slip_direction(&self) -> Option<DVec3> {
+        let load = self.impulse.dot(self.normal);
+        let across = self.impulse - self.normal * load;
+        if self.slides && load > 0.0 { (-across).try_normalize() } else { None }
+    }
+
+    /// Notes whether its impulse is at the edge of its cone, where it slides.
+    pub(super) fn note_slide(&mut self) {
+        let load = self.impulse.dot(self.normal);
+        let across = self.impulse - self.normal * load;
+        self.slides = load > 0.0 && across.length() >= self.friction * load * (1.0 - AT_EDGE);
+        self.is_right = true;
+    }
+
+    /// Has friction oppose the slip in this direction as long as there is any.
+    pub(crate) fn hold_slip(&mut self, direction: Option<DVec3>) {
+        let n = self.normal;
+        self.held_slip = direction.and_then(|d| (d - n * d.dot(n)).try_normalize());
+    }
+
+    /// The impulse against the slip that is held, if it goes on.
+    fn sliding_as_held(&mut self, u: DVec3) -> Option<DVec3> {
+        let s = self.held_slip?;
+        let free = u - self.k * self.impulse;
+        let missing = self.target - free.dot(self.normal);
+        (self.slides, self.is_right) = (true, true);
+        if missing <= 0.0 {
+            return Some(DVec3::ZERO);
+        }
+        let gain = self.along - self.friction * self.kn.dot(s);
+        if gain > WEDGED * self.along {
+            let next = (self.normal - s * self.friction) * (missing / gain);
+            if (free + self.k * next).dot(s) > 0.0 {
+                return Some(next);
+            }
+        }
+        // It comes to a stop or turns round.
+        self.held_slip = None;
+        None
+    }
+
+    /// The impulse of a contact that slid when it was looked at last and goes on sliding: Coulomb's law then holds with it.
+    #[inline]
+    fn still_sliding(&mut self, u: DVec3, look: Look) -> Option<DVec3> {
+        let mut slip = self.slip.filter(|_| self.slides)?;
+        let free = u - self.k * self.impulse;
+        let missing = self.target - free.dot(self.normal);
+        self.is_right = true;
+        if missing <= 0.0 {
+            return Some(DVec3::ZERO);
+        }
+        let slide = slip.slide(free, &self.asked(missing, look)).filter(|s| s.goes_on)?;
+        (self.slip, self.is_right) = (Some(slip), slide.is_right);
+        Some((self.normal - slide.slip * self.friction) * slide.load)
+    }
+
+    fn asked(&self, missing: f64, Look { turn, rounds }: Look) -> Asked {
+        Asked { friction: self.friction, missing, along: self.along, stiff: self.stiff, turn, rounds }
+    }
+
+    /// The impulse after which a contact with velocity `free`, that cannot stick, obeys Coulomb's law: the friction opposes the slip that is left.
+    fn sliding(&mut self, free: DVec3, look: Look) -> DVec3 {
+        let n = self.normal;
+        let missing = self.target - free.dot(n);
+        if missing <= 0.0 {
+            return DVec3::ZERO;
+        }
+        if self.slip.is_none() && self.friction > 0.0 {
+            let across = free - n * free.dot(n) + (self.kn - n * self.along) * (missing / self.along);
+            self.slip = Slip::new(across, n, &self.k, self.kn);
+        }
+        let asked = self.asked(missing, look);
+        let Some(slip) = &mut self.slip else { return n * (missing / self.along) };
+        let Some(slide) = slip.slide(free, &asked) else { return self.wedged(free, missing) };
+        self.is_right = slide.is_right;
+        (n - slide.slip * self.friction) * slide.load
+    }
+
+    /// The sticking impulse where the cone allows its normal part at all, else one without friction: neither gains energy.
+    fn wedged(&self, free: DVec3, missing: f64) -> DVec3 {
+        let n = self.normal;
+        let stick = self.k_inverse * (n * missing - (free - n * free.dot(n)));
+        let load = stick.dot(n);
+        let side = stick - n * load;
+        if load > 0.0 && side.length() <= self.friction * load { stick } else { n * (missing / self.along) }
+    }
+}
+
+/// The matrix that takes the cross product with a vector from the left.
+#[inline]
+fn cross(r: DVec3) -> DMat3 {
+    DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0))
+}
+
+/// Velocity change at `arm` per impulse there, in world axes.
+#[inline]
+pub(crate) fn response(inverse_mass: f64, inverse_inertia: &DMat3, arm: DVec3) -> DMat3 {
+    let cross = cross(arm);
+    DMat3::from_diagonal(DVec3::splat(inverse_mass)) - cross * *inverse_inertia * cross
+}

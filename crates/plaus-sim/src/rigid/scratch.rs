@@ -1,0 +1,104 @@
+//! Work space of a group's step: its bodies, the points at which they touch, and the gaps that these are to have.
+
+use super::body::{Phase, Pose, Turning};
+use super::coulomb::{Contact, Member, response};
+use super::newton::Newton;
+use super::touch::{PairTouch, Touch};
+use super::tumble::{drift, rotation};
+use super::{Rigid, Spec};
+use glam::{DMat3, DQuat, DVec3};
+
+/// Gap that lasting contacts keep, over the gap at which bodies touch. Default 0.75; below 1, so that they go on touching.
+pub(super) const KEEP: f64 = 0.75;
+
+/// Gap up to which a point counts as touching, over the gap at which bodies touch: what a step leaves is not looked at as a new impact. This is the preset's gap.
+pub(super) const TOUCHING: f64 = 2.0;
+
+/// Distance from the gap that is to be kept within which a step needs no correction, over the gap. Default 0.2.
+pub(super) const CLOSE: f64 = 0.2;
+
+/// Largest speed with which a point is pushed out of an overlap, over that below which bounces last. Default 1; only the drift has it, not the velocities.
+pub(super) const PUSH: f64 = 1.0;
+
+/// Work space of a group's step.
+#[derive(Debug, Default)]
+pub struct RigidScratch {
+    pub(super) members: Vec<Member>,
+    pub(super) places: Vec<Place>,
+    /// Points on fixed parts.
+    pub(super) touches: Vec<(usize, Touch)>,
+    /// Forces at those points in the last step.
+    pub(super) loads: Vec<DVec3>,
+    /// Points that touch but separate.
+    pub(super) leaving: Vec<(usize, Touch)>,
+    /// Points between bodies.
+    pub(super) pairs: Vec<([usize; 2], PairTouch)>,
+    /// Points between bodies in lasting contact that touch but separate.
+    pub(super) parting: Vec<([usize; 2], PairTouch)>,
+    /// Of the touches first, then of the pairs.
+    pub(super) contacts: Vec<Contact>,
+    /// The same with the impulses of a step's first kick.
+    pub(super) firsts: Vec<Contact>,
+    /// Part of the push out of overlaps that is made.
+    pub(super) push: f64,
+    pub(super) newton: Newton,
+}
+
+/// A member's pose and orientation at the start and at the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) body: usize,
+    /// With the velocities before the first kick.
+    pub(super) start: Pose,
+    pub(super) turn: DQuat,
+    /// Angular velocity at the start of the drift.
+    pub(super) spin: DVec3,
+    /// With the velocities at the end of the drift.
+    pub(super) end: Pose,
+    pub(super) end_turn: DQuat,
+    /// Acceleration of one that goes its own way.
+    pub(super) drive: DVec3,
+}
+
+impl Place {
+    pub(super) fn of(body: &Turning, index: usize) -> Self {
+        let (pose, turn) = (body.pose(), body.turn);
+        let drive = if body.phase == Phase::Driven { body.path.a } else { DVec3::ZERO };
+        Self { body: index, start: pose, turn, spin: pose.w, end: pose, end_turn: turn, drive }
+    }
+
+    /// Pose and orientation after a drift from these velocities: straight, with free rotation.
+    pub(super) fn drifted(&self, spec: &Spec, v: DVec3, w: DVec3, h: f64) -> (Pose, DQuat) {
+        let (turn, w) = if spec.is_driven() {
+            ((rotation(w * h) * self.turn).normalize(), w)
+        } else {
+            drift(&spec.inertia, self.turn, w, h)
+        };
+        (Pose { x: self.start.x + v * h, r: DMat3::from_quat(turn), v, w }, turn)
+    }
+
+    /// The start with the velocities of the drift.
+    pub(super) fn begin(&self) -> Pose {
+        Pose { v: self.end.v, w: self.spin, ..self.start }
+    }
+}
+
+impl RigidScratch {
+    pub(super) fn pair_contact(&self, world: &Rigid, ab: [usize; 2], arms: [DVec3; 2], normal: DVec3) -> Contact {
+        pair_contact(&self.members, ab, arms, normal, world.pair_law(ab.map(|k| self.places[k].body)).friction)
+    }
+}
+
+/// A point of contact of two members.
+pub(super) fn pair_contact(
+    members: &[Member],
+    [a, b]: [usize; 2],
+    arms: [DVec3; 2],
+    normal: DVec3,
+    friction: f64,
+) -> Contact {
+    let (m, n) = (&members[a], &members[b]);
+    let k =
+        response(m.inverse_mass, &m.inverse_inertia, arms[0]) + response(n.inverse_mass, &n.inverse_inertia, arms[1]);
+    Contact::new(a, Some(b), arms, normal, friction, k)
+}
