@@ -134,7 +134,7 @@ fn both_spellings_of_the_physics_extension_are_one_world() {
 fn what_is_made_is_valid_whatever_overlaps() {
     let body = json!([
         { "name": "hill", "mesh": 0 },
-        { "name": "stone", "mesh": 0, "scale": [0.1, 0.1, 0.1], "translation": [0.1, 0.5, 0.5],
+        { "name": "stone", "mesh": 0, "scale": [0.1, 0.1, 0.1], "translation": [0.3, 0.6, 1.0],
           "extras": { "plaus": "body" } },
     ]);
     let (made, _) = imported(&glb(&body, &json!({})));
