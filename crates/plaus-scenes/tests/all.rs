@@ -8,6 +8,7 @@ mod custom_bad;
 mod custom_exact;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_files;
+mod imported;
 mod require_bad;
 mod require_bounds;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]

@@ -175,7 +175,7 @@ fn bad_files_are_refused_where_they_are_named() {
     let other = "{ mesh = { file = 'roof.obj', object = 'rof' } }";
     refused(other, "'rof'", &["has no object \"rof\"; did you mean \"roof\"? there are roof"]);
     let odd = "{ mesh = { file = 'roof.obj', unit_mm = { normal = [1, 0.1] } } }";
-    refused(odd, "{ normal", &["mesh.unit_mm", "-inf to inf"]);
+    refused(odd, "unit_mm", &["mesh.unit_mm", "-inf to inf"]);
     let piece = "{ compound = { pieces = [{ shape = { hull_of = { file = 'none.obj' } } }] } }";
     refused(piece, "'none.obj'", &["compound.pieces[0].shape.hull_of.file"]);
     let piece = "{ compound = { pieces = [{ shape = { ball = { radius_mm = -1 } } }] } }";

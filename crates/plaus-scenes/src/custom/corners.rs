@@ -34,7 +34,12 @@ pub(super) fn corners(all: &[DVec3]) -> Result<Corners, WorldError> {
     let middle = all.iter().fold(DVec3::ZERO, |sum, &p| sum + p) / all.len().max(1) as f64;
     let extent = all.iter().map(|&p| (p - middle).length()).fold(0.0, f64::max);
     let mut points = first_four(all);
-    let mut hull = ConvexHull::new(&points, 0.0)?;
+    let thickness = NEAR * extent;
+    let mut hull = match ConvexHull::new(&points, 0.0) {
+        Ok(hull) => hull,
+        Err(_) if all.len() >= points.len() => return Err(WorldError::FlatHull { points: all.len(), thickness }),
+        Err(error) => return Err(error),
+    };
     let mut open: Vec<DVec3> = all.to_vec();
     let mut given_up: Vec<DVec3> = Vec::new();
     while points.len() < MOST && given_up.len() < MOST_GIVEN_UP {
@@ -78,7 +83,7 @@ pub(crate) fn hull_volume(all: &[DVec3]) -> Result<f64, WorldError> {
 /// Four points that are far from each other, and from one plane.
 fn first_four(all: &[DVec3]) -> Vec<DVec3> {
     let far = |of: &dyn Fn(DVec3) -> f64| all.iter().copied().max_by(|&a, &b| of(a).total_cmp(&of(b)));
-    let Some(a) = far(&|p| -p.x) else { return Vec::new() };
+    let Some(a) = far(&|p| -p.x).filter(|_| all.len() >= 4) else { return all.to_vec() };
     let b = far(&|p| (p - a).length()).unwrap_or(a);
     let c = far(&|p| (p - a).cross(b - a).length()).unwrap_or(a);
     let normal = (b - a).cross(c - a);

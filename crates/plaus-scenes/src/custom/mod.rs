@@ -20,6 +20,7 @@ mod quantity;
 mod range;
 mod solids;
 mod standing;
+mod substances;
 mod values;
 mod view;
 

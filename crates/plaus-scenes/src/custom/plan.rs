@@ -5,9 +5,9 @@ use super::driven::{Driven, Way};
 use super::names::{Member, check_name, colour, members};
 use super::solids::{Form, MM, Made};
 use super::standing::Standing;
+use super::substances::{Substance, substance};
 use super::values::{Collector, Numbers, Owner, Value, Values, Works, vector};
 use crate::animation::Look;
-use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
 use glam::DVec3;
@@ -56,14 +56,6 @@ enum Turned {
     Angles(Values),
     /// As the orientation of the draw with this index.
     Any(usize),
-}
-
-/// A material: density, friction, restitution, resistance to rolling and to spinning.
-#[derive(Debug, Clone)]
-pub(super) struct Substance {
-    density: Value,
-    contact: [Value; 4],
-    look: Option<Look>,
 }
 
 /// What is made for a draw, or for all.
@@ -261,39 +253,6 @@ impl Plan {
             }
         };
         self.bodies.iter().zip(shapes).map(start).collect()
-    }
-}
-
-/// The material of this name.
-pub(super) fn substance(owner: &Owner<'_>, key: &str, kinds: &[String], name: &str) -> Result<usize, ConfigError> {
-    kinds.iter().position(|kind| kind == name).ok_or_else(|| {
-        let near = nearest(name, kinds.iter().map(String::as_str));
-        let near = near.map(|near| format!("did you mean {near:?}? ")).unwrap_or_default();
-        let known = kinds[1..].join(", ");
-        let there = if known.is_empty() { "there are none".into() } else { format!("there are {known}") };
-        owner.wrong(key, format!("there is no material {name:?}; {near}{there}"))
-    })
-}
-
-impl Substance {
-    fn new(collector: &mut Collector, owner: &Owner<'_>, material: &Material) -> Result<Self, ConfigError> {
-        let colour = colour(owner, &material.colour)?;
-        Ok(Self {
-            density: collector.number(owner, "density", "density", &material.density)?,
-            contact: [
-                collector.number(owner, "friction", "friction", &material.friction)?,
-                collector.number(owner, "restitution", "restitution", &material.restitution)?,
-                collector.number(owner, "rolling", "rolling", &material.rolling)?,
-                collector.number(owner, "spinning", "spinning", &material.spinning)?,
-            ],
-            look: colour.map(|colour| Look::new(colour, material.finish.material())),
-        })
-    }
-
-    /// The look of something made of it, with a colour of its own or without.
-    pub(super) fn look(&self, own: Option<[u8; 3]>, otherwise: Look) -> Look {
-        let look = self.look.unwrap_or(otherwise);
-        own.map_or(look, |colour| Look::new(colour, look.material))
     }
 }
 

@@ -1,0 +1,144 @@
+//! Scenarios made of files: what nodes of a GLB are in them, what is listed as left out, and that each is valid.
+
+use plaus_scenes::custom::{Shape, Still};
+use plaus_scenes::{Assets, Scenario, World, custom, import};
+use serde_json::{Value, json};
+
+/// A GLB with these nodes; mesh 0 is a wedge of 1 × 2 × 3 m, accessor 2 holds the times 0.5 and 1.5 s, accessor 3 the
+/// places (0, 0, 0) and (0, 0, 4).
+fn glb(nodes: &Value, more: &Value) -> Vec<u8> {
+    let corners = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]];
+    let faces = [[0_u32, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let mut bin: Vec<u8> = corners.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    bin.extend(faces.iter().flatten().flat_map(|k| k.to_le_bytes()));
+    bin.extend([0.5_f32, 1.5, 0.0, 0.0, 0.0, 0.0, 0.0, 4.0].iter().flat_map(|x| x.to_le_bytes()));
+    let view = |offset: usize, length: usize| json!({ "buffer": 0, "byteOffset": offset, "byteLength": length });
+    let mut file = json!({
+        "asset": { "version": "2.0" }, "scene": 0, "nodes": nodes,
+        "scenes": [{ "nodes": (0..nodes.as_array().unwrap().len()).collect::<Vec<_>>() }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
+        "buffers": [{ "byteLength": bin.len() }],
+        "bufferViews": [view(0, 48), view(48, 48), view(96, 8), view(104, 24)],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 2, 3] },
+            { "bufferView": 1, "componentType": 5125, "count": 12, "type": "SCALAR" },
+            { "bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0.5], "max": [1.5] },
+            { "bufferView": 3, "componentType": 5126, "count": 2, "type": "VEC3" },
+        ],
+    });
+    more.as_object().unwrap().iter().for_each(|(key, value)| file[key] = value.clone());
+    let mut text = serde_json::to_vec(&file).unwrap();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let number = |n: usize| (n as u32).to_le_bytes();
+    let head = [number(2), number(28 + text.len() + bin.len()), number(text.len())];
+    [&b"glTF"[..], head.as_flattened(), b"JSON", &text, &number(bin.len()), b"BIN\0", &bin].concat()
+}
+
+/// What is made of a file, and its configuration.
+fn imported(bytes: &[u8]) -> (import::Imported, custom::Config) {
+    let made = import::scenario("a.glb", false, bytes).unwrap_or_else(|error| panic!("{error}"));
+    let mut files = Assets::default();
+    files.insert("a.glb", bytes);
+    let scenario = Scenario::read_with("a.toml", &made.text, &[], &files).unwrap_or_else(|error| panic!("{error}"));
+    let World::Custom(config) = scenario.world else { panic!() };
+    (made, *config)
+}
+
+fn is_left_out(made: &import::Imported, what: &str) {
+    assert!(made.left_out.iter().any(|line| line.contains(what)), "{what}: {:?}", made.left_out);
+    assert!(made.text.contains(what), "{what}");
+}
+
+/// By their extras and keys: a node stands still, moves with what hangs on it, goes its own way, or is left out.
+#[test]
+fn nodes_are_what_they_say() {
+    let nodes = json!([
+        { "name": "hill", "mesh": 0, "camera": 0 },
+        { "name": "a b", "mesh": 0, "translation": [5, 1, 0], "extras": { "plaus": "body", "weight": 3 } },
+        { "name": "gate", "mesh": 0, "translation": [20, 0, 0] },
+        { "name": "cloud", "mesh": 0, "extras": { "plaus": "ignore" } },
+        { "name": "cart", "extras": { "plaus": "body" }, "translation": [-5, 1, 0], "children": [5, 6] },
+        { "name": "box", "mesh": 0 },
+        { "name": "knob", "mesh": 0, "translation": [2, 0, 0] },
+        { "name": "odd", "mesh": 0, "translation": [0, 0, 50], "extras": { "plaus": "boddy" } },
+    ]);
+    let more = json!({
+        "scenes": [{ "nodes": [0, 1, 2, 3, 4, 7] }],
+        "cameras": [{ "type": "perspective", "perspective": { "yfov": 1.0, "znear": 0.1 } }],
+        "animations": [{ "samplers": [{ "input": 2, "output": 3 }],
+                         "channels": [{ "sampler": 0, "target": { "node": 2, "path": "translation" } }] }],
+    });
+    let (made, config) = imported(&glb(&nodes, &more));
+    let fixed: Vec<&str> = config.fixed.iter().map(|fixed| fixed.name.as_str()).collect();
+    assert_eq!(fixed, ["hill", "odd"]);
+    assert!(matches!(config.fixed[0].shape, Still::Mesh(_)));
+    let bodies: Vec<&str> = config.bodies.iter().map(|body| body.name.as_str()).collect();
+    assert_eq!(bodies, ["a_b", "cart"]);
+    assert!(matches!(config.bodies[0].shape, Shape::HullOf(_)));
+    let Shape::Compound(cart) = &config.bodies[1].shape else { panic!() };
+    assert_eq!((cart.pieces.len(), cart.pieces[1].at_mm[0].clone()), (2, 2000.0.into()));
+    // y is up in the file.
+    assert_eq!(config.bodies[0].at_mm[2], 1000.0.into());
+    let [gate] = &config.driven[..] else { panic!() };
+    assert_eq!((gate.name.as_str(), gate.keys.len()), ("gate", 2));
+    assert_eq!((gate.keys[1].at_s.clone(), gate.keys[1].at_mm[1].clone()), (1.5.into(), (-4000.0).into()));
+    for what in ["hill: its camera", "weight of its extras", "\"boddy\" means nothing"] {
+        is_left_out(&made, what);
+    }
+}
+
+/// By the extension for physics, in both of its spellings: one world.
+#[test]
+fn both_spellings_of_the_physics_extension_are_one_world() {
+    let world = |shapes: &str, collider: &dyn Fn(Value) -> Value| {
+        let ball = json!({ "motion": { "mass": 2.0, "linearVelocity": [1, 2, 0], "gravityFactor": 0.5 },
+                           "collider": collider(json!({ "shape": 0 })) });
+        let nodes = json!([
+            { "name": "ground", "mesh": 0, "extensions": { "KHR_physics_rigid_bodies": { "collider": {} } } },
+            { "name": "ball", "translation": [9, 5, 0], "extensions": { "KHR_physics_rigid_bodies": ball } },
+            { "name": "seen", "mesh": 0 },
+        ]);
+        let named = json!({
+            shapes: { "shapes": [{ "type": "sphere", "sphere": { "radius": 0.5 } }] },
+            "KHR_physics_rigid_bodies": { "physicsMaterials": [{ "dynamicFriction": 0.25, "restitution": 0.75 }] },
+        });
+        let (made, config) = imported(&glb(
+            &nodes,
+            &json!({ "extensionsUsed": ["KHR_physics_rigid_bodies", shapes], "extensions": named }),
+        ));
+        is_left_out(&made, "gravityFactor");
+        is_left_out(&made, "seen: it has a mesh and no collider");
+        made.text + &format!("{:?}", config.bodies.len())
+    };
+    let material = |mut collider: Value| {
+        collider["physicsMaterial"] = 0.into();
+        collider
+    };
+    let new = world("KHR_implicit_shapes", &|shape| material(json!({ "geometry": shape })));
+    let old = world("KHR_collision_shapes", &|shape| material(shape));
+    assert_eq!(new, old);
+    // 2 kg in a ball of half a metre; z is up here, so that the file's (1, 2, 0) is (1, 0, 2).
+    let density = 2.0 / (4.0 / 3.0 * std::f64::consts::PI * 0.125);
+    for line in [
+        "shape = { ball = { radius_mm = 500 } }",
+        "velocity_m_s = [1, 0, 2]",
+        "friction = 0.25\nrestitution = 0.75",
+        &format!("density = {}", (density * 1e6).round() / 1e6),
+    ] {
+        assert!(new.contains(line), "{line}\n{new}");
+    }
+}
+
+/// What stands in what it stands on is lifted out of it; what moves nowhere gets a ball to fall on it.
+#[test]
+fn what_is_made_is_valid_whatever_overlaps() {
+    let body = json!([
+        { "name": "hill", "mesh": 0 },
+        { "name": "stone", "mesh": 0, "scale": [0.1, 0.1, 0.1], "translation": [0.3, 0.6, 1.0],
+          "extras": { "plaus": "body" } },
+    ]);
+    let (made, _) = imported(&glb(&body, &json!({})));
+    assert!(made.text.contains("# lifted by"), "{}", made.text);
+    let (made, config) = imported(&glb(&json!([{ "name": "hill", "mesh": 0 }]), &json!({})));
+    assert!(made.text.contains("Nothing in the file moves") && config.bodies[0].name == "ball", "{}", made.text);
+}
