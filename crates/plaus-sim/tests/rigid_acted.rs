@@ -83,6 +83,19 @@ fn damped_flight_is_its_closed_form() {
     }
 }
 
+/// `Forces::angular_damping` says how many legs there are, to a factor of two: shapes are longer or rounder.
+#[test]
+fn legs_are_as_many_as_is_said() {
+    for shape in &shapes()[1..] {
+        let mut world = world(std::slice::from_ref(shape), 0.3, Preset::Standard);
+        world.act_on(0, Forces { angular_damping: 1.0, ..Forces::default() }).unwrap();
+        let mut state = world.state(&[Start { spin: DVec3::Z * 10.0, ..start(50.0) }]).unwrap();
+        go(&world, &mut state, 0.2);
+        let legs = state.counts().expiries as f64 / 0.2;
+        assert!((250.0..1000.0).contains(&legs), "{legs} a second");
+    }
+}
+
 /// Orientation and angular momentum after `t` by classic Runge–Kutta with `n` steps.
 fn by_small_steps(inertia: DVec3, s: &Start, torque: DVec3, d: f64, t: f64, n: usize) -> (DMat3, DVec3) {
     let rate = |r: DMat3, l: DVec3| {
