@@ -24,8 +24,8 @@ pub struct Which<'a> {
 /// ```
 ///
 /// # Errors
-/// [`AssetError`] where the name does not end in `.csv`, `.mid` or `.midi`, the file is not what that says, or there are
-/// no such times in it.
+/// [`AssetError`] where the name does not end in `.csv`, `.mid` or `.midi`, the file is not what that says, or there
+/// are no such times in it.
 pub fn onsets(file: &str, bytes: &[u8], which: &Which<'_>) -> Result<Vec<f64>, AssetError> {
     let ending = file.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
     let mut times = match ending.as_deref() {
