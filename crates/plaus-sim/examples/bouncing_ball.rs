@@ -1,4 +1,5 @@
-//! A ball that falls, bounces and rests, against the exact answer: `cargo run -p plaus-sim --example bouncing_ball -- [PATH]`.
+//! A ball that falls, bounces and rests, against the exact answer:
+//! `cargo run -p plaus-sim --example bouncing_ball -- [PATH]`.
 #![allow(clippy::print_stdout, reason = "an example: it prints")]
 
 mod measure;

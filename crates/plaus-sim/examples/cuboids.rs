@@ -1,8 +1,10 @@
-//! How often square cuboids x × y × y land on a square face, for several coefficients, beside a published experiment (Math. Gazette 97.16, 2013).
+//! How often square cuboids x × y × y land on a square face, for several coefficients, beside a published experiment
+//! (Math. Gazette 97.16, 2013).
 //!
 //! `cargo run --release -p plaus-sim --example cuboids -- [throws per number]`
 //!
-//! Nothing here is fitted: the experiment's coefficients and throws are not known, and the rows show what they do to the law.
+//! Nothing here is fitted: the experiment's coefficients and throws are not known, and the rows show what they do to
+//! the law.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a measuring program: it prints")]
 
 use glam::DVec3;

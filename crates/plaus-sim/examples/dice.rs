@@ -1,8 +1,10 @@
-//! Throws several dice together many times, and prints how it ended, how deep any two of them or a die and the table ever overlapped, and how long it took.
+//! Throws several dice together many times, and prints how it ended, how deep any two of them or a die and the table
+//! ever overlapped, and how long it took.
 //!
 //! `cargo run --release -p plaus-sim --example dice -- [throws] [dice] [bumps] [preset] [first throw]`
 //!
-//! Overlaps are looked for whenever a die begins a new motion, at that time and half way from the last one, by the distance of the skins: not only at the end.
+//! Overlaps are looked for whenever a die begins a new motion, at that time and half way from the last one, by the
+//! distance of the skins: not only at the end.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stdout,

@@ -1,6 +1,8 @@
-//! Random ten-marble drops into bins, checked for tunnelling and for valid rest, with timing: `cargo run --release -p plaus-sim --example drops -- 100000 standard`.
+//! Random ten-marble drops into bins, checked for tunnelling and for valid rest, with timing:
+//! `cargo run --release -p plaus-sim --example drops -- 100000 standard`.
 //!
-//! Further arguments: how many marbles, seconds between them, and `time` for time alone, the fastest of nine runs of each draw: `-- 1000 standard 10 0.1 time`.
+//! Further arguments: how many marbles, seconds between them, and `time` for time alone, the fastest of nine runs of
+//! each draw: `-- 1000 standard 10 0.1 time`.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stdout,

@@ -1,4 +1,5 @@
-//! Rolls a ball at ten pins many times, and counts how deep any two bodies, or a body and lane, walls or pit, ever were in each other: over the whole time, not only at the end.
+//! Rolls a ball at ten pins many times, and counts how deep any two bodies, or a body and lane, walls or pit, ever were
+//! in each other: over the whole time, not only at the end.
 //!
 //! `cargo run --release -p plaus-sim --example overlaps_of_pins -- [shots] [preset] [first shot]`
 //!

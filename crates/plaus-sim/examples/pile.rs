@@ -1,4 +1,5 @@
-//! A cube of 6³ balls falls onto a floor (SimBenchmark's "666"); prints how deep balls reach into each other, and what the pile costs.
+//! A cube of 6³ balls falls onto a floor (SimBenchmark's "666"); prints how deep balls reach into each other, and what
+//! the pile costs.
 //!
 //! `cargo run --release -p plaus-sim --example pile -- [seconds] [preset]`
 #![allow(
@@ -45,7 +46,8 @@ fn starts() -> Vec<Start> {
         .collect()
 }
 
-/// Deepest overlaps of two balls over the radius: in lasting contact, where a step of theirs begins; in lasting contact, now; of others, now.
+/// Deepest overlaps of two balls over the radius: in lasting contact, where a step of theirs begins; in lasting
+/// contact, now; of others, now.
 fn deepest(state: &State<Marble>) -> [f64; 3] {
     let mut worst = [0.0_f64; 3];
     let bodies = state.bodies();

@@ -1,5 +1,7 @@
-//! Throws a d4, a d8, a d20 and a random rock onto a flat and a bumpy table, each alone and then all together, and prints how they fell and what that cost. The first throw of all together
-//! is written as JSON, all its motions and impacts; with them go the corners and faces of the bodies, and where these are among the points that they were made from.
+//! Throws a d4, a d8, a d20 and a random rock onto a flat and a bumpy table, each alone and then all together, and
+//! prints how they fell and what that cost. The first throw of all together is written as JSON, all its motions and
+//! impacts; with them go the corners and faces of the bodies, and where these are among the points that they were made
+//! from.
 //!
 //! `cargo run --release -p plaus-sim --example polyhedra -- [throws] [bumps] [--trace PATH]`
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]

@@ -1,4 +1,5 @@
-//! What can be wrong with a world before any stepping. Running out of events is no error but an [`Outcome`](crate::Outcome).
+//! What can be wrong with a world before any stepping. Running out of events is no error but an
+//! [`Outcome`](crate::Outcome).
 
 use glam::DVec3;
 

@@ -13,12 +13,15 @@ pub struct Material(pub u16);
 pub struct Law {
     /// Coulomb's coefficient, static and kinetic alike; in [0, ∞).
     pub friction: f64,
-    /// Restitution of the normal motion; in [0, 1]. Newton's ratio for spheres, Stronge's energetic ratio for other bodies (the two agree for spheres).
+    /// Restitution of the normal motion; in [0, 1]. Newton's ratio for spheres, Stronge's energetic ratio for other
+    /// bodies (the two agree for spheres).
     pub restitution: f64,
-    /// Restitution of the tangential motion of a sphere; in [0, 1]. 0 sticks (the usual case), 1 is Garwin's super-ball.
+    /// Restitution of the tangential motion of a sphere; in [0, 1]. 0 sticks (the usual case), 1 is Garwin's
+    /// super-ball.
     pub tangential: f64,
-    /// Rolling resistance: the resisting torque is at most this × normal force × radius; in [0, ∞). Glass on wood: 0.001–0.02. It acts while the ball rolls, and where it is at least
-    /// `friction` it keeps a ball that slides without turning from turning.
+    /// Rolling resistance: the resisting torque is at most this × normal force × radius; in [0, ∞). Glass on wood:
+    /// 0.001–0.02. It acts while the ball rolls, and where it is at least `friction` it keeps a ball that slides
+    /// without turning from turning.
     pub rolling: f64,
     /// Resistance to spinning about the normal: torque = this × normal force × radius; in [0, ∞).
     pub spinning: f64,
@@ -97,7 +100,8 @@ impl Laws {
     /// Gives one unordered pair its own law.
     ///
     /// # Errors
-    /// [`WorldError::BadLaw`] where a number is out of its range or NaN, [`WorldError::UnknownMaterial`] where the table lacks a material.
+    /// [`WorldError::BadLaw`] where a number is out of its range or NaN, [`WorldError::UnknownMaterial`] where the
+    /// table lacks a material.
     pub fn set(&mut self, a: Material, b: Material, law: Law) -> Result<(), WorldError> {
         self.require(a)?;
         self.require(b)?;

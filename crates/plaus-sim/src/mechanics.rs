@@ -1,6 +1,7 @@
 //! The seam between the event loop and the kinds of bodies: what a kind must be able to say about its bodies.
 //!
-//! The loop is compiled once per kind, so a world of marbles holds no orientation, no shape and no code for turning bodies.
+//! The loop is compiled once per kind, so a world of marbles holds no orientation, no shape and no code for turning
+//! bodies.
 
 use crate::links::Links;
 use crate::scenery::{Aabb, Surface};
@@ -47,7 +48,8 @@ pub trait Mechanics {
     /// Whether bodies in lasting contact with each other can meet at more points while it lasts.
     const WATCHES_LINKED: bool = false;
 
-    /// From how many bodies on an event's group counts as a heap, whose events of one time are resolved before it settles.
+    /// From how many bodies on an event's group counts as a heap, whose events of one time are resolved before it
+    /// settles.
     const HEAP: usize = usize::MAX;
 
     /// How many bodies there are.
@@ -71,7 +73,8 @@ pub trait Mechanics {
     fn is_resting(&self, body: &Self::Body) -> bool;
     /// Whether all numbers are finite.
     fn is_finite(&self, body: &Self::Body) -> bool;
-    /// Which of two bodies, with these indices, comes first where an impact goes on through both at once. By index, unless a kind knows an order that labels have no part in.
+    /// Which of two bodies, with these indices, comes first where an impact goes on through both at once. By index,
+    /// unless a kind knows an order that labels have no part in.
     fn order(&self, [i, j]: [u32; 2], _bodies: [&Self::Body; 2]) -> Ordering {
         i.cmp(&j)
     }
@@ -90,7 +93,8 @@ pub trait Mechanics {
         None
     }
 
-    /// Collides a body with a surface, both at the body's clock; records the contact where it lasts. Reports the impacts, one a point that is struck; whether there were any.
+    /// Collides a body with a surface, both at the body's clock; records the contact where it lasts. Reports the
+    /// impacts, one a point that is struck; whether there were any.
     fn hit_surface(
         &self,
         index: usize,
@@ -98,7 +102,8 @@ pub trait Mechanics {
         surface: Surface,
         report: &mut dyn FnMut(&Impact),
     ) -> bool;
-    /// Collides two bodies, as above; where they did collide, says whether they are to be linked. `linked` says whether they are already.
+    /// Collides two bodies, as above; where they did collide, says whether they are to be linked. `linked` says whether
+    /// they are already.
     fn hit_body(
         &self,
         pair: [usize; 2],
@@ -108,7 +113,7 @@ pub trait Mechanics {
     ) -> Option<bool>;
     /// The lasting surface contacts of a body.
     fn contacts<'b>(&self, body: &'b Self::Body) -> &'b [Surface];
-    /// Decides what a group of bodies in lasting contact with each other (`links` among `members`, all clocks equal) does next: gives each a closed form. Drops
-    /// contacts and links that have ended.
+    /// Decides what a group of bodies in lasting contact with each other (`links` among `members`, all clocks equal)
+    /// does next: gives each a closed form. Drops contacts and links that have ended.
     fn settle(&self, members: &[u32], bodies: &mut [Self::Body], links: &mut Links, scratch: &mut Self::Scratch);
 }

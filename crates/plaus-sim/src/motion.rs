@@ -4,7 +4,8 @@ use crate::scenery::{Aabb, greater, lesser};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Centre `x + v τ + a τ²/2` with `τ = time − t`. Free flight, sliding, rolling, rest and the steps of a contact group are all of this form, so detection knows only it.
+/// Centre `x + v τ + a τ²/2` with `τ = time − t`. Free flight, sliding, rolling, rest and the steps of a contact group
+/// are all of this form, so detection knows only it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Parabola {
     /// The body's own clock: the time from which the motion is valid, in s.
@@ -47,7 +48,8 @@ impl Parabola {
     }
 }
 
-/// A motion and when its coordinates turn, in seconds after its clock, and where: for boxes around many stretches of it.
+/// A motion and when its coordinates turn, in seconds after its clock, and where: for boxes around many stretches of
+/// it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Course<'p> {
     path: &'p Parabola,

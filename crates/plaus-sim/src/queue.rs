@@ -1,7 +1,8 @@
 //! The event queue: one slot per body, holding its earliest event, under a tournament tree.
 //!
-//! An event that a change elsewhere has made stale is recognised by the partner's generation when it comes up; the body is then looked at anew. That
-//! loses nothing, since everything later of that body was left out only because the stale event came first.
+//! An event that a change elsewhere has made stale is recognised by the partner's generation when it comes up; the body
+//! is then looked at anew. That loses nothing, since everything later of that body was left out only because the stale
+//! event came first.
 
 use crate::scenery::Surface;
 use serde::{Deserialize, Serialize};
@@ -34,8 +35,8 @@ pub struct Event {
     pub happening: Happening,
 }
 
-/// What orders bodies whose events are due at the same time: the numbers in turn, then the index. A kind of bodies that gives each its own numbers, from how it starts, makes ties
-/// independent of labels.
+/// What orders bodies whose events are due at the same time: the numbers in turn, then the index. A kind of bodies that
+/// gives each its own numbers, from how it starts, makes ties independent of labels.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Place(pub [f64; 4]);
 
@@ -56,7 +57,8 @@ impl Event {
         }
     }
 
-    /// Whether this event of `body` comes before `other` of `rival`: by time, then by those involved, so that ties never depend on bookkeeping.
+    /// Whether this event of `body` comes before `other` of `rival`: by time, then by those involved, so that ties
+    /// never depend on bookkeeping.
     #[inline]
     #[must_use]
     pub fn precedes(&self, body: u32, other: &Self, rival: u32, places: &[Place]) -> bool {

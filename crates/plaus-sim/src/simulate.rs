@@ -1,4 +1,5 @@
-//! The loop: take the earliest event, bring the bodies it concerns to its time, resolve it, let the groups they belong to settle, and look ahead again.
+//! The loop: take the earliest event, bring the bodies it concerns to its time, resolve it, let the groups they belong
+//! to settle, and look ahead again.
 //!
 //! Nothing else moves. A body far from others is touched only at its own events.
 
@@ -100,7 +101,8 @@ pub fn simulate<M: Mechanics>(
     if run.state.all_resting(mechanics) { Outcome::AllAtRest } else { Outcome::TimeReached }
 }
 
-/// Appends the bodies in lasting contact with `seed`, itself among them, in ascending order; nothing where it is marked already.
+/// Appends the bodies in lasting contact with `seed`, itself among them, in ascending order; nothing where it is marked
+/// already.
 fn add_group(links: &Links, seed: u32, marks: &mut Marks, members: &mut Vec<u32>) {
     let start = members.len();
     let mut next = start;
@@ -124,7 +126,8 @@ struct Run<'r, M: Mechanics, O> {
     observer: &'r mut O,
 }
 
-/// Most impacts resolved within one event before the rest of them is left to the queue: ten per contact of a body with eight.
+/// Most impacts resolved within one event before the rest of them is left to the queue: ten per contact of a body with
+/// eight.
 const MOST_AT_ONCE: usize = 80;
 
 impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {

@@ -19,7 +19,8 @@ impl Observer<plaus_sim::marbles::Marbles> for Finite {
     }
 }
 
-/// Runs a world and checks what must always hold; `grows` is the energy that steps of lasting contact may seem to add, over the total.
+/// Runs a world and checks what must always hold; `grows` is the energy that steps of lasting contact may seem to add,
+/// over the total.
 fn check(world: World, starts: &[Start]) -> State<plaus_sim::marbles::Marble> {
     let world = world.build();
     let mut state = world.state(starts).unwrap();

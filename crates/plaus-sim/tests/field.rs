@@ -53,7 +53,8 @@ proptest! {
         prop_assert_eq!(f.value(x, y), f.at(x, y).value);
     }
 
-    /// Central differences over h = 1e-4 spacings: truncation h² f‴/6 is below 1e-6 of the derivatives' scale 1/spacing, rounding below 1e-11.
+    /// Central differences over h = 1e-4 spacings: truncation h² f‴/6 is below 1e-6 of the derivatives' scale
+    /// 1/spacing, rounding below 1e-11.
     #[test]
     fn derivatives_agree_with_differences(x in -5.0..5.0_f64, y in -5.0..5.0_f64) {
         let (f, h) = (field(), 1e-4 * SPACING);

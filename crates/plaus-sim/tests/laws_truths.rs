@@ -38,7 +38,8 @@ fn lasting_contact_converges_to_the_truth() {
             let bound = coarse * (steps[k] / steps[1]) + 3.0 * unknown;
             assert!(off[k] <= bound, "{}: {off:?} at {}, truth known to {unknown:.1e}", toss.name, steps[k]);
         }
-        // A law that is off is seen: the truth of a floor with a twentieth more friction is farther away than reference.
+        // A law that is off is seen: the truth of a floor with a twentieth more friction is farther away than
+        // reference.
         let mut rough = toss.clone();
         rough.law.friction *= 1.05;
         let (twin, ..) = rough.truth_and_doubt(&toss.starts[0], STEP);
@@ -86,9 +87,9 @@ fn pins_and_dice_converge_to_the_truth() {
     assert!(off[3] <= bound, "{}: {off:?}, truth known to {unknown:.1e}", toss.name);
 }
 
-/// The impact law itself, by two makes: random bodies struck at random points. Nine in ten agree to a tenth of the square
-/// of the turn that a preset allows the slip in one step: found so at all four presets. Where the slip nearly stops and
-/// then goes on another way, less is known: the last in a hundred is only asked to be within the turn.
+/// The impact law itself, by two makes: random bodies struck at random points. Nine in ten agree to a tenth of the
+/// square of the turn that a preset allows the slip in one step: found so at all four presets. Where the slip nearly
+/// stops and then goes on another way, less is known: the last in a hundred is only asked to be within the turn.
 #[test]
 fn two_makes_of_an_impact_agree() {
     let law = |turn: f64| (0..200).map(move |k| impact_off(k, turn, 1.0));

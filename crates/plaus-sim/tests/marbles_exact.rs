@@ -221,7 +221,8 @@ fn six_cubed_balls_do_not_penetrate() {
     for until in [0.5, 1.0] {
         let (at, outcome, state) = run(&world, &starts, until);
         assert!(matches!(outcome, Outcome::TimeReached | Outcome::AllAtRest), "{outcome:?} {:?}", state.counts());
-        // The collapse interrupts steps before their corrections take effect (see the module `group`); a pair that only bounces is exact, but may have just left a step. Both bounds are twice what was seen.
+        // The collapse interrupts steps before their corrections take effect (see the module `group`); a pair that only
+        // bounces is exact, but may have just left a step. Both bounds are twice what was seen.
         let [lasting, others, floor] = deepest(&at, &state);
         assert!(lasting < 5e-3 && others < 1e-3 && floor < 1e-4, "{lasting} {others} {floor} at {until}");
     }

@@ -67,7 +67,8 @@ fn relabelling_permutes_the_result() {
     }
 }
 
-/// Ten marbles dropped into two bins lie on and roll over each other: whatever their labels, they do the same to the last bit.
+/// Ten marbles dropped into two bins lie on and roll over each other: whatever their labels, they do the same to the
+/// last bit.
 #[test]
 fn relabelling_ten_marbles_in_contact_permutes_the_result() {
     const COUNT: usize = 10;

@@ -83,7 +83,8 @@ fn damped_flight_is_its_closed_form() {
     }
 }
 
-/// `Forces::angular_damping` says between which bounds; in the time the spin falls by a fifth, and so the legs by a tenth.
+/// `Forces::angular_damping` says between which bounds; in the time the spin falls by a fifth, and so the legs by a
+/// tenth.
 #[test]
 fn legs_are_as_many_as_is_said() {
     for shape in &shapes()[1..] {

@@ -33,7 +33,8 @@ fn dice(count: usize, law: Law) -> Rigid {
     world(&vec![(DVec3::splat(0.016), 0.0); count], law, 9.81, Preset::Standard)
 }
 
-/// A cuboid that spins about z with its middle fixed sweeps its corner over a circle: it meets a wall of another when `ρ cos θ` is the wall's distance.
+/// A cuboid that spins about z with its middle fixed sweeps its corner over a circle: it meets a wall of another when
+/// `ρ cos θ` is the wall's distance.
 #[test]
 fn a_turning_corner_meets_a_face_when_it_should() {
     for rounding in [0.0, 0.1] {
@@ -57,8 +58,8 @@ fn a_turning_corner_meets_a_face_when_it_should() {
     }
 }
 
-/// Without friction and with restitution 1 an impact keeps energy, and any impact keeps momentum and angular momentum, but for what a gap between the two points of contact
-/// times a tangential impulse turns.
+/// Without friction and with restitution 1 an impact keeps energy, and any impact keeps momentum and angular momentum,
+/// but for what a gap between the two points of contact times a tangential impulse turns.
 #[test]
 fn impacts_keep_what_they_must() {
     for (law, rounding) in [(Law::new(0.0, 1.0), 0.0), (Law::new(0.0, 1.0), 0.002), (Law::new(0.4, 0.6), 0.0)] {
@@ -153,7 +154,8 @@ fn a_die_pushes_another() {
     let (mu, v) = (0.2, 0.3);
     let world = dice(2, Law::new(mu, 0.0));
     let at = |x: f64| Start { velocity: DVec3::X * v, ..Start::at_rest(DVec3::new(x, 0.0, 0.008)) };
-    // The second stands: the impact leaves both half of the speed, and the rest of the way goes by their common friction.
+    // The second stands: the impact leaves both half of the speed, and the rest of the way goes by their common
+    // friction.
     let mut state = world.state(&[at(0.0), Start::at_rest(DVec3::new(0.0161, 0.0005, 0.008))]).unwrap();
     let outcome = world.run(&mut state, &mut Scratch::default(), 5.0, &mut ()).unwrap();
     assert_eq!(outcome, Outcome::AllAtRest);
@@ -163,7 +165,8 @@ fn a_die_pushes_another() {
     assert!((moved / way - 1.0).abs() < 0.1, "{moved} for {way}");
 }
 
-/// The example counts many more. 5e-3: five times the sag that a step of lasting contact may have half way (`SAG` of the steps).
+/// The example counts many more. 5e-3: five times the sag that a step of lasting contact may have half way (`SAG` of
+/// the steps).
 #[test]
 fn thrown_together_dice_end_at_rest_and_are_never_in_each_other() {
     for (bumps, throws) in [(0.0, 40), (0.1, 8)] {
@@ -196,7 +199,8 @@ fn overlaps_at_the_start_are_named() {
     assert!(matches!(sunk, WorldError::OverlapsScenery { body: 1, .. }), "{sunk}");
 }
 
-/// Two shots in which a pin once went through another: its far end came first while its nearest point receded. 20 mm would be through the neck.
+/// Two shots in which a pin once went through another: its far end came first while its nearest point receded. 20 mm
+/// would be through the neck.
 #[test]
 fn pins_are_seen_whose_far_ends_meet() {
     let alley = Alley::default();

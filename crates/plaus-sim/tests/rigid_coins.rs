@@ -35,8 +35,8 @@ fn toss(k: u64, preset: Preset) -> (Rigid, Start) {
     (Rigid::new(world).unwrap(), start)
 }
 
-/// A disk that wobbles does so faster and faster; before it was laid flat where its energy is below that of the preset's
-/// rest speed, a quarter of the tosses spent their 20,000 events on that.
+/// A disk that wobbles does so faster and faster; before it was laid flat where its energy is below that of the
+/// preset's rest speed, a quarter of the tosses spent their 20,000 events on that.
 #[test]
 fn tossed_coins_come_to_lie() {
     let mut flat = 0;

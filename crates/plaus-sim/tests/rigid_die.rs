@@ -114,7 +114,8 @@ struct Energy<'w> {
 impl Observer<Rigid> for Energy<'_> {
     fn motion(&mut self, index: usize, body: &Turning) {
         let now = self.world.energy(index, body);
-        // What a step left in the table is pushed out again, which lifts the body: by less than a thousandth of its size at the standard preset, and never into motion.
+        // What a step left in the table is pushed out again, which lifts the body: by less than a thousandth of its
+        // size at the standard preset, and never into motion.
         assert!(now <= self.last + 1e-3 * self.scale, "{} to {now} at {}: {body:?}", self.last, body.path.t);
         self.last = now;
     }

@@ -1,4 +1,5 @@
-//! Turning bodies with numbers far out: energy never grows, nothing turns NaN, every run ends in an outcome; and worlds that must behave alike to the last bit.
+//! Turning bodies with numbers far out: energy never grows, nothing turns NaN, every run ends in an outcome; and worlds
+//! that must behave alike to the last bit.
 
 use crate::common::turning::same_when_relabelled;
 use glam::{DQuat, DVec3};
@@ -34,7 +35,8 @@ fn world(bodies: Vec<BodySpec>, law: Law) -> RigidWorld {
     }
 }
 
-/// Sums the bodies' energies whenever the time has moved on, each at its own clock: flight keeps it, and bodies of a group share one.
+/// Sums the bodies' energies whenever the time has moved on, each at its own clock: flight keeps it, and bodies of a
+/// group share one.
 struct Energy<'w> {
     world: &'w Rigid,
     each: Vec<f64>,
@@ -67,7 +69,8 @@ fn check_within(world: RigidWorld, starts: &[Start], rise: f64) -> State<Turning
     let world = Rigid::new(world).unwrap();
     let mut state = world.state(starts).unwrap();
     let each: Vec<f64> = state.bodies().iter().enumerate().map(|(k, b)| world.energy(k, b)).collect();
-    // The error of a step of lasting contact, as in `common/laws/checks.rs`: a twentieth of the step's square at the standard preset.
+    // The error of a step of lasting contact, as in `common/laws/checks.rs`: a twentieth of the step's square at the
+    // standard preset.
     let scale: f64 = specs.iter().map(|(m, r)| m * G * r).sum::<f64>() * rise;
     let slack = scale + 1e-12 * each.iter().map(|e| e.abs()).sum::<f64>();
     let mut energy = Energy { world: &world, each, time: 0.0, last: f64::INFINITY, slack };
@@ -157,7 +160,8 @@ fn a_die_exactly_on_an_edge_and_on_a_corner() {
     }
 }
 
-/// Four dice fly face to face into a fifth at once, which stands exactly on the table: all at the same instant, all faces parallel.
+/// Four dice fly face to face into a fifth at once, which stands exactly on the table: all at the same instant, all
+/// faces parallel.
 #[test]
 fn exactly_simultaneous_impacts() {
     for e in [0.0, 0.5, 1.0] {
@@ -201,7 +205,8 @@ fn scaling_keeps_the_bits_of_dice_that_meet() {
     }
 }
 
-/// Two relabelled bodies do the same to the last bit. Of more, each other's stale predictions decide from where a search starts, and it ends anywhere within the preset's gap.
+/// Two relabelled bodies do the same to the last bit. Of more, each other's stale predictions decide from where a
+/// search starts, and it ends anywhere within the preset's gap.
 #[test]
 fn relabelling_permutes_flights_and_impacts() {
     let mut impacts = 0;

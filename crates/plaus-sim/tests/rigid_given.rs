@@ -101,8 +101,8 @@ fn solids_without_volume_are_refused() {
     }
 }
 
-/// Lengths by 4ⁿ and times by 2ⁿ with the same gravity: the same motion to the last bit, from a micrometre to a thousand
-/// kilometres. No tolerance is a length.
+/// Lengths by 4ⁿ and times by 2ⁿ with the same gravity: the same motion to the last bit, from a micrometre to a
+/// thousand kilometres. No tolerance is a length.
 #[test]
 fn sizes_do_not_count() {
     let shapes = |s: f64| -> Vec<Shape> {
@@ -139,8 +139,8 @@ fn sizes_do_not_count() {
     }
 }
 
-/// A body that floats, one that rises, one that is pushed: as their closed forms say; and what is pushed along the floor
-/// rests against its friction, or does not.
+/// A body that floats, one that rises, one that is pushed: as their closed forms say; and what is pushed along the
+/// floor rests against its friction, or does not.
 #[test]
 fn forces_act_on_one_body() {
     let mut world = world(&vec![Shape::Ball(0.1); 3], vec![floor()]).unwrap();

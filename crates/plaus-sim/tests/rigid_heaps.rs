@@ -41,8 +41,8 @@ fn comes_to_rest(shape: Shape, places: &[DVec3], preset: Preset, most: u64) -> u
 }
 
 /// Rims of cans that stand half over each other cross. A point there is as near to the side of the other can as to its
-/// top: when it was taken for one on the side, five cans found no rest in 170 events and ten seconds, their clock having
-/// got to 0.1 ms.
+/// top: when it was taken for one on the side, five cans found no rest in 170 events and ten seconds, their clock
+/// having got to 0.1 ms.
 #[test]
 fn cans_that_stand_half_over_each_other_rest() {
     let (radius, height) = (0.033, 0.115);

@@ -1,4 +1,5 @@
-//! Convex polyhedra: as cuboids where they are cuboids; rest, energy, outcomes, scale; against balls, cuboids and each other.
+//! Convex polyhedra: as cuboids where they are cuboids; rest, energy, outcomes, scale; against balls, cuboids and each
+//! other.
 
 use crate::common::turning::{Overlaps, noise, same_when_relabelled};
 use glam::{DQuat, DVec3};
@@ -84,7 +85,8 @@ fn traced(world: &Rigid, starts: &[Start], until: f64) -> (Trace<Turning>, State
     (trace, state)
 }
 
-/// The hull of a cuboid's corners flies, hits the table and hits another just as the cuboid does. Masses and moments differ by rounding, so do times: by 1e-12 of 0.1 s.
+/// The hull of a cuboid's corners flies, hits the table and hits another just as the cuboid does. Masses and moments
+/// differ by rounding, so do times: by 1e-12 of 0.1 s.
 #[test]
 fn a_cuboid_of_points_moves_as_a_cuboid() {
     for edges in [DVec3::splat(EDGE), DVec3::new(0.9, 1.0, 1.2) * EDGE] {
@@ -147,7 +149,8 @@ fn regular_dice_land_on_a_face_and_stay() {
             let body = state.bodies()[0].clone();
             let (face, tilt) = down(&shape, &body);
             faces[face] += 1;
-            // Flat on it: in the table by rounding at most, off it by no more than the preset's gap of 1e-5 insphere radii.
+            // Flat on it: in the table by rounding at most, off it by no more than the preset's gap of 1e-5 insphere
+            // radii.
             assert!(tilt < 1e-10, "{kind:?}: {tilt}");
             let off = body.path.x.z - shape.size();
             assert!((-1e-15..=1e-5 * shape.size()).contains(&off), "{kind:?}: {off}");
@@ -234,7 +237,8 @@ fn energy_never_grows() {
             let (shapes, starts) = four();
             let mut plain = plain(shapes, vec![flat()], Law::new(mu, e));
             plain.accuracy = Accuracy { events: 400, ..Accuracy::preset(Preset::Standard) };
-            // As for dice: pushed out of the overlaps that steps leave, bodies rise by less than a thousandth of their size.
+            // As for dice: pushed out of the overlaps that steps leave, bodies rise by less than a thousandth of their
+            // size.
             let scale: f64 = plain.bodies.iter().map(|b| b.mass.mass * 9.81 * b.shape.reach()).sum::<f64>() * 1e-3;
             let world = Rigid::new(plain).unwrap();
             let mut state = world.state(&starts).unwrap();
@@ -325,7 +329,8 @@ fn relabelling_permutes_flights_and_impacts() {
     assert!(impacts > 20, "{impacts}");
 }
 
-/// A ball falls onto the middle of a resting d20's upper face: it meets it when a ball meets a plane there, and keeps what an impact keeps.
+/// A ball falls onto the middle of a resting d20's upper face: it meets it when a ball meets a plane there, and keeps
+/// what an impact keeps.
 #[test]
 fn a_ball_meets_a_face_when_it_should() {
     let d20 = solid(Solid::Icosahedron);
@@ -344,7 +349,8 @@ fn a_ball_meets_a_face_when_it_should() {
     assert!(hit.normal.z.abs() > 1.0 - 1e-9 && (hit.approach - speed).abs() < 1e-4 * speed, "{hit:?}");
 }
 
-/// A thousand metres a second and ten thousand radians, from a tenth of a millimetre to a hundred metres, a million times heavier or lighter: what is on its way into another hits it.
+/// A thousand metres a second and ten thousand radians, from a tenth of a millimetre to a hundred metres, a million
+/// times heavier or lighter: what is on its way into another hits it.
 #[test]
 fn nothing_fast_or_small_or_heavy_passes() {
     for size in [1e-4, 1e-2, 1.0, 1e2] {

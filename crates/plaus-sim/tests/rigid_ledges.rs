@@ -57,7 +57,8 @@ fn a_cube_rests_on_what_is_narrower() {
     }
 }
 
-/// The face of a tilted cube comes down on the corner of a post: at the time and with the normal that the plane of the face says.
+/// The face of a tilted cube comes down on the corner of a post: at the time and with the normal that the plane of the
+/// face says.
 #[test]
 fn a_corner_of_a_box_meets_a_face() {
     let post = block([-0.5, -0.5, -2.0], [0.0, 0.0, 0.0]);
@@ -97,9 +98,10 @@ impl Observer<Rigid> for Depths<'_> {
     }
 }
 
-/// Posts in rows before a wall: all dice end, none deep in anything. Half way through a step of lasting contact a corner that turns at ω is `(ω h)²/8` of its arm in what it touches: up to
-/// a hundredth of the size. A d20 that wedges itself between two posts and the wall a little deeper than bodies may lie (1e-3 of its
-/// size; 1.7e-3 was seen) stands still there without being called at rest.
+/// Posts in rows before a wall: all dice end, none deep in anything. Half way through a step of lasting contact a
+/// corner that turns at ω is `(ω h)²/8` of its arm in what it touches: up to a hundredth of the size. A d20 that wedges
+/// itself between two posts and the wall a little deeper than bodies may lie (1e-3 of its size; 1.7e-3 was seen) stands
+/// still there without being called at rest.
 #[test]
 fn dice_among_posts_are_never_in_them() {
     let mut parts = vec![block([-40.0, -40.0, -4.0], [40.0, 40.0, -2.0])];

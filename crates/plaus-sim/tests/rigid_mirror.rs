@@ -1,4 +1,5 @@
-//! A mirrored shot gives the mirrored result: to the bit until an order among equals decides, which the mirror turns around.
+//! A mirrored shot gives the mirrored result: to the bit until an order among equals decides, which the mirror turns
+//! around.
 
 use glam::{DQuat, DVec3};
 use plaus_sim::mechanics::{Impact, Other};
@@ -75,8 +76,8 @@ fn compare(shot: u32) -> (usize, usize, [u16; 2]) {
     (count, here.len(), [mask(&|k| standing[k]), mask(&|k| mirror[TWIN[k]])])
 }
 
-/// What turns around in the mirror is the order of contacts and bodies in a group's equations, whose rounding (1e-16, which impacts magnify) then parts the two ways: never within the first ten
-/// impacts.
+/// What turns around in the mirror is the order of contacts and bodies in a group's equations, whose rounding (1e-16,
+/// which impacts magnify) then parts the two ways: never within the first ten impacts.
 #[test]
 fn a_mirrored_shot_goes_the_mirrored_way() {
     for shot in 0..8 {

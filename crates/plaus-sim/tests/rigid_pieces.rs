@@ -7,8 +7,8 @@ use plaus_sim::{Accuracy, Outcome, Preset};
 /// Energy gained over the whole by which a step may err: that of the standard preset, a thousandth.
 const GAIN: f64 = 1e-3;
 
-/// Depth over the size that a body may have on its way. Between two looks at lasting contact, an eighth of a step, it may
-/// go by a fifth of its size, and where it is looked at next is half way at worst.
+/// Depth over the size that a body may have on its way. Between two looks at lasting contact, an eighth of a step, it
+/// may go by a fifth of its size, and where it is looked at next is half way at worst.
 const DEEP: f64 = 0.1;
 
 /// Nothing that is told to rest is in the ground by more than the gap at which bodies touch.
@@ -53,8 +53,8 @@ fn every_pair_of_shapes_meets() {
     }
 }
 
-/// The tip of a cone that slides along a hollow edge of a mesh, a rounding below one of its sides, is held by the other:
-/// in both of these it went through once.
+/// The tip of a cone that slides along a hollow edge of a mesh, a rounding below one of its sides, is held by the
+/// other: in both of these it went through once.
 #[test]
 fn a_tip_does_not_slip_through_a_hollow_edge() {
     for k in [1, 5] {
@@ -64,8 +64,8 @@ fn a_tip_does_not_slip_through_a_hollow_edge() {
     }
 }
 
-/// A body whose deepest points leave what they overlap is looked at for the others that come down meanwhile: a coin went
-/// 3.7 times half its thickness into the ground so, a cuboid 1.3 times its size.
+/// A body whose deepest points leave what they overlap is looked at for the others that come down meanwhile: a coin
+/// went 3.7 times half its thickness into the ground so, a cuboid 1.3 times its size.
 #[test]
 fn others_come_down_while_the_deepest_points_leave() {
     for (body, place, k) in [

@@ -47,7 +47,8 @@ fn leaning(angle: f64, preset: Preset) -> f64 {
     (body.turn * DVec3::Z).z
 }
 
-/// The centre of gravity stands over the rim's circle at `atan(circle / height over it)`: below it returns, above it falls.
+/// The centre of gravity stands over the rim's circle at `atan(circle / height over it)`: below it returns, above it
+/// falls.
 #[test]
 fn a_pin_tips_at_its_static_angle() {
     let pin = alley().pin().unwrap();

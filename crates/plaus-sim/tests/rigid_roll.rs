@@ -152,8 +152,8 @@ fn grounds() -> [(&'static str, Part); 5] {
 
 /// A torque of c m g R against a ball that rolls takes c g/(1 + k) from it, k = I/(m R²): it rolls out over
 /// `v²(1 + k)/(2 c g)` in `v (1 + k)/(c g)`. On planes and boxes to rounding; elsewhere in steps of 0.4 √(R/g) at the
-/// standard preset, at whose ends the resistance acts: late by at most one, in which the ball goes 1 % of the way; it is
-/// known to rest two more after that.
+/// standard preset, at whose ends the resistance acts: late by at most one, in which the ball goes 1 % of the way; it
+/// is known to rest two more after that.
 #[test]
 fn a_ball_that_rolls_comes_to_rest_where_resistance_has_it() {
     let (c, v) = (0.02, 1.2);

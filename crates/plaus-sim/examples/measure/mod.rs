@@ -1,4 +1,5 @@
-//! What the measuring examples share: a clock, quantiles, a digest of outcomes, heights of bumps, and where a trace goes.
+//! What the measuring examples share: a clock, quantiles, a digest of outcomes, heights of bumps, and where a trace
+//! goes.
 #![allow(
     clippy::disallowed_methods,
     dead_code,
@@ -10,7 +11,8 @@ use serde::Serialize;
 use std::error::Error;
 use std::time::Instant;
 
-/// Time on the wall per piece of work, and on the processor over all of it: other programs make the first longer, not the second.
+/// Time on the wall per piece of work, and on the processor over all of it: other programs make the first longer, not
+/// the second.
 pub struct Stopwatch {
     pieces: Vec<f64>,
     on_processor: Option<f64>,
@@ -35,7 +37,8 @@ impl Stopwatch {
         sorted.get((p * sorted.len() as f64) as usize).copied().unwrap_or(f64::NAN)
     }
 
-    /// Processor time per piece in s, everything between the pieces included; wall-clock time where the system does not say.
+    /// Processor time per piece in s, everything between the pieces included; wall-clock time where the system does not
+    /// say.
     pub fn mean(&self) -> f64 {
         let all = match (self.on_processor, processor_time()) {
             (Some(from), Some(to)) => to - from,

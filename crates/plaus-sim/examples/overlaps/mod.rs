@@ -1,4 +1,5 @@
-//! What the examples that count overlaps share: an observer that looks for bodies in each other or in what stands still.
+//! What the examples that count overlaps share: an observer that looks for bodies in each other or in what stands
+//! still.
 
 use plaus_sim::rigid::{Phase, Rigid, Turning};
 use plaus_sim::trace::Observer;

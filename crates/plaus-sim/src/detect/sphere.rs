@@ -5,7 +5,9 @@ use crate::roots::{fall_of_quadratic, falls_of_quartic, squared_distance};
 use crate::scenery::{Scenery, Surface};
 use glam::DVec3;
 
-/// How far a contact point may lie outside a feature of the mesh and still count as on it, in radii. Closes the cracks that rounding leaves between neighbours. Default 1e-9; danger: much larger values catch balls on the invisible continuation of a face.
+/// How far a contact point may lie outside a feature of the mesh and still count as on it, in radii. Closes the cracks
+/// that rounding leaves between neighbours. Default 1e-9; danger: much larger values catch balls on the invisible
+/// continuation of a face.
 const SEAM: f64 = 1e-9;
 
 /// A stretch of a motion of which the begin is looked at again and again.
@@ -24,7 +26,8 @@ impl<'p> Stretch<'p> {
     }
 }
 
-/// First time in a stretch until `until` seconds after the motion's clock at which a sphere touches a surface while approaching it.
+/// First time in a stretch until `until` seconds after the motion's clock at which a sphere touches a surface while
+/// approaching it.
 #[inline]
 pub(crate) fn sphere_surface(
     scenery: &Scenery,

@@ -6,7 +6,8 @@ use crate::roots::fall_of_quadratic;
 use crate::scenery::{Aabb, Probe, Scenery, Surface, lesser};
 use glam::DVec3;
 
-/// First surface that a sphere touches while approaching it, within `until` seconds of the motion's clock. Surfaces in `skip` (its lasting contacts) do not count.
+/// First surface that a sphere touches while approaching it, within `until` seconds of the motion's clock. Surfaces in
+/// `skip` (its lasting contacts) do not count.
 pub(crate) fn next_surface(
     scenery: &Scenery,
     path: &Parabola,
@@ -22,7 +23,8 @@ pub(crate) fn next_surface(
     let mut search = Search { scenery, radius, skip, stretch, limit: until, best: None };
     // The time from which nothing matters any more: the first touch that is known.
     let mut limit = until;
-    // A coordinate that moves with its acceleration never turns again. Knowing that, rounding cannot send the walk to and fro.
+    // A coordinate that moves with its acceleration never turns again. Knowing that, rounding cannot send the walk to
+    // and fro.
     let mut onward = [0.0; 3];
     loop {
         let (walls, from, x) = (grid.walls(cell), search.stretch.from, search.stretch.x);
@@ -38,7 +40,8 @@ pub(crate) fn next_surface(
             for &item in items {
                 // Most are ruled out by the first comparison.
                 if scenery.may_meet(item, &probe) && scenery.bounds(item).distance_squared(&swept) <= near {
-                    // A hit within this cell bounds the rest of the search, here and beyond; what is hit beyond it is listed there.
+                    // A hit within this cell bounds the rest of the search, here and beyond; what is hit beyond it is
+                    // listed there.
                     search.consider(scenery.surface(item));
                 }
             }
@@ -67,7 +70,8 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// Takes note of a surface if it is touched first. Not inlined: the scan over what is near keeps its numbers in registers.
+    /// Takes note of a surface if it is touched first. Not inlined: the scan over what is near keeps its numbers in
+    /// registers.
     #[inline(never)]
     fn consider(&mut self, surface: Surface) {
         if self.skip.contains(&surface) {
@@ -82,7 +86,8 @@ impl Search<'_> {
     }
 }
 
-/// When a centre leaves a cell in a stretch, along which axis and which way; infinite and none where it stays until `limit`. `way` holds the centre until then.
+/// When a centre leaves a cell in a stretch, along which axis and which way; infinite and none where it stays until
+/// `limit`. `way` holds the centre until then.
 #[inline]
 fn exit(
     (low, high): (DVec3, DVec3),

@@ -44,7 +44,8 @@ impl Bounds {
 /// Control values over a cell, the second index along y.
 pub(super) type Values = [[f64; 4]; 4];
 
-/// A cell: its bounds at once, its polynomial from the first time that somebody looks into it. Most cells are only passed over.
+/// A cell: its bounds at once, its polynomial from the first time that somebody looks into it. Most cells are only
+/// passed over.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cell {
     /// Control values; once it is ready, coefficients: those of `vᵇ` in row `b`, from that of `u⁰` to that of `u³`.

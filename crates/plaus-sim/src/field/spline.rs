@@ -16,7 +16,8 @@ pub struct Grid {
     pub spacing: f64,
 }
 
-/// A field over the plane. It can be sent to another thread, but not be looked at by two at once: each chain has its own.
+/// A field over the plane. It can be sent to another thread, but not be looked at by two at once: each chain has its
+/// own.
 #[derive(Clone)]
 pub struct Spline {
     name: &'static str,
@@ -67,8 +68,8 @@ impl fmt::Debug for Spline {
 }
 
 impl Spline {
-    /// A field whose control values come from `source(i, j)`, a pure function with values in `range` (a promise that is checked whenever a point is made; tight
-    /// ranges make detection faster, ±8σ is fine for a Gaussian).
+    /// A field whose control values come from `source(i, j)`, a pure function with values in `range` (a promise that is
+    /// checked whenever a point is made; tight ranges make detection faster, ±8σ is fine for a Gaussian).
     ///
     /// # Errors
     /// [`WorldError::BadNumber`] where the spacing is not positive or a number is not finite.
@@ -112,7 +113,8 @@ impl Spline {
         self.range
     }
 
-    /// The first control value that was not finite or out of range, if there was one. It counts as the nearer end of the range (or the middle, for NaN).
+    /// The first control value that was not finite or out of range, if there was one. It counts as the nearer end of
+    /// the range (or the middle, for NaN).
     #[must_use]
     pub fn fault(&self) -> Option<WorldError> {
         let (key, value) = self.made.borrow().fault?;
@@ -214,7 +216,8 @@ impl Spline {
         self.made.borrow().points.len()
     }
 
-    /// Forgets all that has been made, and says which control points that were: nothing else of the field had any influence on what was looked at.
+    /// Forgets all that has been made, and says which control points that were: nothing else of the field had any
+    /// influence on what was looked at.
     pub fn take_touched(&mut self) -> Points {
         Points(std::mem::take(self.made.get_mut()).point_places)
     }
@@ -229,7 +232,8 @@ impl Spline {
             + size_of_val(&made.cells[..])
     }
 
-    /// Gives one control point another value; cells that were made are made anew where it matters. The source is not asked for it again.
+    /// Gives one control point another value; cells that were made are made anew where it matters. The source is not
+    /// asked for it again.
     pub fn set(&mut self, key: [i64; 2], value: f64) {
         let made = &mut *self.made.borrow_mut();
         let value = checked(self.range, made, key, value);
@@ -261,7 +265,8 @@ impl Spline {
         }
     }
 
-    /// Makes a cell. `near` holds the control values of the last cell that was made here: its neighbours have three rows of them.
+    /// Makes a cell. `near` holds the control values of the last cell that was made here: its neighbours have three
+    /// rows of them.
     #[cold]
     fn add(&self, made: &mut Made, key: [i64; 2], near: &mut Option<([i64; 2], Values)>) -> u32 {
         let points = self.points(made, key, near.take());
@@ -311,7 +316,8 @@ impl Spline {
 /// Cells kept at hand: four by four, as many as a die covers whose edge is two of them.
 const RECENT: usize = 16;
 
-/// The largest whole number not above `x`, by a cast: a call of the library's is slower on processors without an instruction for it.
+/// The largest whole number not above `x`, by a cast: a call of the library's is slower on processors without an
+/// instruction for it.
 #[inline]
 fn floor(x: f64) -> i64 {
     let i = x as i64;
@@ -334,5 +340,6 @@ impl Made {
     }
 }
 
-/// Most cells that one request for bounds may make. Default 4096, a square of 64 cells; larger footprints are asked for in pieces.
+/// Most cells that one request for bounds may make. Default 4096, a square of 64 cells; larger footprints are asked for
+/// in pieces.
 pub const MOST_CELLS: i64 = 4096;

@@ -141,8 +141,9 @@ pub struct Marble {
 /// An expiry that never comes; finite, so that every format can hold a state.
 const NEVER: f64 = f64::MAX;
 
-/// Impacts in a row, each within [`Accuracy::rattle`](crate::Accuracy) of the one before, from which further ones are plastic. Default 40: more than a row of touching balls
-/// makes at once, so that only a collapse of infinitely many impacts in finite time is cut short.
+/// Impacts in a row, each within [`Accuracy::rattle`](crate::Accuracy) of the one before, from which further ones are
+/// plastic. Default 40: more than a row of touching balls makes at once, so that only a collapse of infinitely many
+/// impacts in finite time is cut short.
 const RATTLES: u8 = 40;
 
 impl Marble {

@@ -150,7 +150,8 @@ impl Marbles {
         self.accuracy
     }
 
-    /// Moves mesh vertices (see [`crate::scenery::Mesh::move_vertices`]); states of this world stay valid only if they have not started.
+    /// Moves mesh vertices (see [`crate::scenery::Mesh::move_vertices`]); states of this world stay valid only if they
+    /// have not started.
     ///
     /// # Errors
     /// As [`crate::scenery::Mesh::move_vertices`].
@@ -161,7 +162,8 @@ impl Marbles {
     /// A state in which every marble waits for its release.
     ///
     /// # Errors
-    /// [`WorldError`] naming the marble whose start is not finite, or that overlaps another one released at the same time or the scenery.
+    /// [`WorldError`] naming the marble whose start is not finite, or that overlaps another one released at the same
+    /// time or the scenery.
     pub fn state(&self, starts: &[Start]) -> Result<State<Marble>, WorldError> {
         if starts.len() != self.specs.len() {
             return Err(WorldError::WrongState { state: starts.len(), world: self.specs.len() });
@@ -190,10 +192,12 @@ impl Marbles {
         }
     }
 
-    /// Gives a marble that is still waiting another start; everything else keeps its bits, so a saved beginning serves many continuations.
+    /// Gives a marble that is still waiting another start; everything else keeps its bits, so a saved beginning serves
+    /// many continuations.
     ///
     /// # Errors
-    /// [`WorldError`] where the start is bad, or where the marble has been released or the new release lies in the state's past.
+    /// [`WorldError`] where the start is bad, or where the marble has been released or the new release lies in the
+    /// state's past.
     pub fn restart(&self, state: &mut State<Marble>, index: usize, start: &Start) -> Result<(), WorldError> {
         self.check_start(index, start)?;
         let released = state.bodies()[index].phase != Phase::Waiting;
@@ -243,7 +247,8 @@ fn place(start: &Start) -> Place {
 /// Gap over the radius, and height of a bounce, that is never seen. Default 1e-9.
 const ROUNDING: f64 = 1e-9;
 
-/// Overlap at the start that counts as touching, over the radius. Default 1e-9; danger: larger values start bodies inside each other.
+/// Overlap at the start that counts as touching, over the radius. Default 1e-9; danger: larger values start bodies
+/// inside each other.
 const OVERLAP: f64 = 1e-9;
 
 pub use group::MarbleScratch;

@@ -1,4 +1,5 @@
-//! What a group of marbles does next: contacts and links that have ended are dropped, then a closed form, a step or rest is chosen.
+//! What a group of marbles does next: contacts and links that have ended are dropped, then a closed form, a step or
+//! rest is chosen.
 
 use super::Marbles;
 use super::body::{Ending, Marble, Phase};
@@ -7,7 +8,8 @@ use super::{alone, closed};
 use crate::links::{Link, Links};
 use crate::scenery::{Foot, Surface};
 
-/// Separating speed over `√(g r)` plus the body's own that never ends a contact. Default 1e-9: far above rounding, far below any motion.
+/// Separating speed over `√(g r)` plus the body's own that never ends a contact. Default 1e-9: far above rounding, far
+/// below any motion.
 const KEEP: f64 = 1e-9;
 
 /// Decides how a group of marbles goes on.

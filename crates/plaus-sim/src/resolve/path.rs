@@ -1,8 +1,9 @@
 //! The way of an impact's velocities over its normal impulse (Darboux and Keller's equations), step by step.
 //!
-//! While the friction force is constant, because the contact sticks or its slip keeps its direction, velocities are linear in the impulse and a step ends exactly where it is to.
-//! Elsewhere Kutta's third-order rule is used; between the ends of such a step velocities are the cubics with its values and slopes, so that where it is to end is found without
-//! another step, and the change of velocity is that of the impulse there.
+//! While the friction force is constant, because the contact sticks or its slip keeps its direction, velocities are
+//! linear in the impulse and a step ends exactly where it is to. Elsewhere Kutta's third-order rule is used; between
+//! the ends of such a step velocities are the cubics with its values and slopes, so that where it is to end is found
+//! without another step, and the change of velocity is that of the impulse there.
 
 use super::ContactMatrix;
 use crate::roots::refine;
@@ -69,8 +70,8 @@ struct Leg {
     from: f64,
 }
 
-/// Sideways velocity, over the speed and the square of the largest turn of a step, with which slip that is about to stop may be taken to stop. Default 1e-2: at turns of 0.3
-/// a thousandth of the speed, as the steps' own error.
+/// Sideways velocity, over the speed and the square of the largest turn of a step, with which slip that is about to
+/// stop may be taken to stop. Default 1e-2: at turns of 0.3 a thousandth of the speed, as the steps' own error.
 const STOPS: f64 = 1e-2;
 
 /// Part of the slip that a step may take. Default 0.5.
@@ -79,7 +80,8 @@ const SHRINKS: f64 = 0.5;
 /// How much farther than it is expected to be needed a step goes. Default 1.1; one that falls short costs another.
 const FARTHER: f64 = 1.1;
 
-/// Tangent of the angle by which a step may have turned the slip, over the angle by which it was to. Default 1.5; one that turned it farther is halved.
+/// Tangent of the angle by which a step may have turned the slip, over the angle by which it was to. Default 1.5; one
+/// that turned it farther is halved.
 const WIDEST: f64 = 1.5;
 
 /// Turn over change of the slip's rate below which it keeps its direction: rounding.
@@ -111,7 +113,8 @@ impl<'k> Path<'k> {
         self.rate_under(slip * (-self.friction / slip.length()))
     }
 
-    /// One step, until the normal velocity changes its sign or, where that is given, the work has grown to `released`. Slip of at most `tiny` is none.
+    /// One step, until the normal velocity changes its sign or, where that is given, the work has grown to `released`.
+    /// Slip of at most `tiny` is none.
     pub(super) fn step(&mut self, tiny: f64, released: Option<f64>) -> End {
         if let Some(leg) = self.leg {
             // Halves of an impact are alike but for what is lost.
@@ -266,7 +269,8 @@ impl Leg {
     }
 }
 
-/// Where a function that changes its sign once between `from` and 1 does so, by Newton's rule from nearby, which mostly does.
+/// Where a function that changes its sign once between `from` and 1 does so, by Newton's rule from nearby, which mostly
+/// does.
 fn crossing(eval: impl Fn(f64) -> (f64, f64), [from, near]: [f64; 2], falls: bool) -> f64 {
     let mut x = near.min(1.0);
     for _ in 0..ROUNDS {

@@ -1,11 +1,12 @@
 //! Impact of spheres: Newton's restitution along the normal, Coulomb friction with sticking across it.
 //!
-//! With contact velocity `u` (tangential part) and normal speed `v_n < 0`, the impulse is
-//! `J_n = m_eff (1+e) |v_n|`, `J_t = min(μ J_n, (1+e_t) |u| / Σ(1/m + r²/I))`, opposed to `u`. For solid spheres the sum is `7/(2m)` against something
-//! that does not move and `7/m` for an equal pair. A sphere's contact force has no lever arm about its centre in the normal direction, so
-//! Newton's, Poisson's and Stronge's restitution agree and energy cannot grow.
+//! With contact velocity `u` (tangential part) and normal speed `v_n < 0`, the impulse is `J_n = m_eff (1+e) |v_n|`,
+//! `J_t = min(μ J_n, (1+e_t) |u| / Σ(1/m + r²/I))`, opposed to `u`. For solid spheres the sum is `7/(2m)` against
+//! something that does not move and `7/m` for an equal pair. A sphere's contact force has no lever arm about its centre
+//! in the normal direction, so Newton's, Poisson's and Stronge's restitution agree and energy cannot grow.
 //!
-//! Sources: Garwin, "Kinematics of an ultraelastic rough ball", Am. J. Phys. 37 (1969) for `e_t`; Walton & Braun (1986) for the stick/slip form.
+//! Sources: Garwin, "Kinematics of an ultraelastic rough ball", Am. J. Phys. 37 (1969) for `e_t`; Walton & Braun (1986)
+//! for the stick/slip form.
 
 use crate::material::Law;
 use glam::DVec3;
@@ -59,7 +60,8 @@ pub struct Impulse {
     pub approach: f64,
 }
 
-/// Collides `first` with `second`; `normal` is the unit vector from the second towards the first. Nothing happens where they do not approach.
+/// Collides `first` with `second`; `normal` is the unit vector from the second towards the first. Nothing happens where
+/// they do not approach.
 #[inline]
 pub fn sphere_impact(first: &mut Touch, second: &mut Touch, normal: DVec3, law: &Law) -> Impulse {
     let relative = first.surface_velocity(-normal) - second.surface_velocity(normal);

@@ -1,20 +1,24 @@
-//! Impact of bodies with lever arms: Stronge's energetic restitution, integrated over the normal impulse after Darboux and Keller.
+//! Impact of bodies with lever arms: Stronge's energetic restitution, integrated over the normal impulse after Darboux
+//! and Keller.
 //!
-//! With `K` the inverse inertia seen at the contact, velocities change as `du/dp = K (−μ û, 1)` while the contact slips in direction `û`. Slip may
-//! stop, stay stuck (if the friction that would hold it is inside the cone) or turn. The normal work `W = ∫ u_n dp` decides the end:
-//! the impact is over when the fraction `e²` of the energy of compression has come back. Newton's rule gains energy under friction, Poisson's may too; this one
-//! cannot, because normal work is −(1−e²) of the compression's and friction only takes. Strong friction can press bodies together again before that: what they then
-//! take up is added to what has not come back yet.
+//! With `K` the inverse inertia seen at the contact, velocities change as `du/dp = K (−μ û, 1)` while the contact slips
+//! in direction `û`. Slip may stop, stay stuck (if the friction that would hold it is inside the cone) or turn. The
+//! normal work `W = ∫ u_n dp` decides the end: the impact is over when the fraction `e²` of the energy of compression
+//! has come back. Newton's rule gains energy under friction, Poisson's may too; this one cannot, because normal work is
+//! −(1−e²) of the compression's and friction only takes. Strong friction can press bodies together again before that:
+//! what they then take up is added to what has not come back yet.
 //!
-//! Sources: Keller, "Impact with friction", J. Appl. Mech. 53 (1986); Stronge, *Impact Mechanics* (2000), ch. 4; Darboux (1880).
-//! Deviation: where the slip turns while it shrinks (three dimensions), the path is followed by steps of third order that turn it by at most
-//! `turn` radians each; slip that keeps its direction (every planar impact) is followed exactly.
+//! Sources: Keller, "Impact with friction", J. Appl. Mech. 53 (1986); Stronge, *Impact Mechanics* (2000), ch. 4;
+//! Darboux (1880). Deviation: where the slip turns while it shrinks (three dimensions), the path is followed by steps
+//! of third order that turn it by at most `turn` radians each; slip that keeps its direction (every planar impact) is
+//! followed exactly.
 
 use super::path::{End, Path};
 use glam::{DMat3, DVec2, DVec3};
 use plaus_dist::math;
 
-/// Inverse inertia at a contact, in a frame whose z axis is the normal (1/kg): velocity change per impulse. Symmetric and positive.
+/// Inverse inertia at a contact, in a frame whose z axis is the normal (1/kg): velocity change per impulse. Symmetric
+/// and positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactMatrix(pub DMat3);
 
@@ -40,7 +44,8 @@ impl ContactMatrix {
         -DVec2::new(m.y_axis.y * c.x - m.y_axis.x * c.y, m.x_axis.x * c.y - m.x_axis.y * c.x) / det
     }
 
-    /// The direction in which a contact that cannot stick starts to slip: where the slip's change points along the slip.
+    /// The direction in which a contact that cannot stick starts to slip: where the slip's change points along the
+    /// slip.
     pub(super) fn escape(&self, friction: f64) -> DVec2 {
         const SECTORS: usize = 32;
         let rate_in = |angle: f64| {
@@ -70,7 +75,8 @@ impl ContactMatrix {
     }
 }
 
-/// Impulse (in the contact's frame) that ends an impact with relative velocity `u` (z is the normal part, negative for approach).
+/// Impulse (in the contact's frame) that ends an impact with relative velocity `u` (z is the normal part, negative for
+/// approach).
 ///
 /// `turn` is the largest angle in radians by which the slip may turn within one integration step.
 #[must_use]
@@ -107,8 +113,9 @@ pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: 
     path.impulse()
 }
 
-/// A slip that winds round and round while it dies would take steps without end. When it has turned by so many radians (eight rounds), it counts as stuck below this part of the
-/// relative velocity; default 1e-6, far less than what steps that turn by `turn` resolve. Where a round takes next to nothing off, that part widens with each step, by a factor
+/// A slip that winds round and round while it dies would take steps without end. When it has turned by so many radians
+/// (eight rounds), it counts as stuck below this part of the relative velocity; default 1e-6, far less than what steps
+/// that turn by `turn` resolve. Where a round takes next to nothing off, that part widens with each step, by a factor
 /// of 20,000 in eight more rounds.
 const MANY_TURNS: f64 = 51.2;
 const WOUND: f64 = 1e-6;
@@ -172,7 +179,8 @@ mod tests {
         assert!((slip - DVec3::new(0.6 * left, 0.8 * left, 1.0)).length() < 1e-14);
     }
 
-    /// Response and approach of the corner of a cube of unit mass, from a sequence that fills the box of their numbers evenly.
+    /// Response and approach of the corner of a cube of unit mass, from a sequence that fills the box of their numbers
+    /// evenly.
     fn corner(n: u32) -> (ContactMatrix, DVec3) {
         let part = |step: f64| (f64::from(n) * step) % 1.0;
         let down = -0.2 - 0.8 * part(0.324_717_957_244);
@@ -192,7 +200,8 @@ mod tests {
             (1..=500).map(error).sum::<f64>() / 500.0
         };
         let errors = [0.4, 0.2, 0.1, 0.05].map(mean);
-        // Third order would be an eighth each time; slip that nearly stops and goes on is slower to come, and has most of the mean.
+        // Third order would be an eighth each time; slip that nearly stops and goes on is slower to come, and has most
+        // of the mean.
         assert!(errors[0] < 5e-3, "{errors:?}");
         assert!(errors.windows(2).all(|e| e[1] < 0.45 * e[0]), "{errors:?}");
     }
@@ -238,7 +247,8 @@ mod tests {
         assert!(next.z.abs() < 1e-9 && energy < 0.0, "{next}, {energy}");
     }
 
-    /// Friction of 2.7 presses the bodies together again while they part. A spring that stores the work done on it and gives back e² of it says when they are apart.
+    /// Friction of 2.7 presses the bodies together again while they part. A spring that stores the work done on it and
+    /// gives back e² of it says when they are apart.
     #[test]
     fn bodies_pressed_together_again_part_in_the_end() {
         let r = DVec3::new(0.526_778_335_066_164_2, -0.914_060_086_875_240_7, 0.858_917_085_839_797_4);
@@ -246,7 +256,8 @@ mod tests {
         let k = matrix(inertia, r);
         let u = DVec3::new(2.411_761_369_790_216, 1.997_349_731_276_005, -0.212_421_147_996_087_9);
         let (e, mu) = (0.499_240_527_307_221_46, 2.699_420_945_821_742);
-        // Darboux and Keller's equations in steps of 1e-5 of the normal impulse, by Euler's rule: its error is of the order of the step.
+        // Darboux and Keller's equations in steps of 1e-5 of the normal impulse, by Euler's rule: its error is of the
+        // order of the step.
         let (mut v, mut stored) = (u, 0.0);
         let step = 1e-5;
         let mut again = false;
@@ -269,7 +280,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2000))]
-        /// For every inertia, lever arm, friction and restitution: energy does not grow, the bodies separate, and the impulse lies in the cone.
+        /// For every inertia, lever arm, friction and restitution: energy does not grow, the bodies separate, and the
+        /// impulse lies in the cone.
         #[test]
         fn energy_never_grows(
             inertia in prop::array::uniform3(0.05..20.0_f64),

@@ -1,4 +1,5 @@
-//! Sparse matrices of blocks of six: one for the momentum of each body and for each pair in contact, eliminated in order of least degree.
+//! Sparse matrices of blocks of six: one for the momentum of each body and for each pair in contact, eliminated in
+//! order of least degree.
 
 #![allow(clippy::needless_range_loop, reason = "rows and columns of matrices go by their numbers")]
 

@@ -89,8 +89,8 @@ pub struct Turning {
     pub(crate) line: Option<(u8, f64)>,
     /// Velocity and angular momentum at the start and the end of a step; of a leg at its start.
     pub(crate) ends: [Momentum; 2],
-    /// What is added to the angular momentum between the ends of a step, times 4 in its middle: the impulses between two bodies that pass each other count at where both are then, so that what
-    /// they have together is kept.
+    /// What is added to the angular momentum between the ends of a step, times 4 in its middle: the impulses between
+    /// two bodies that pass each other count at where both are then, so that what they have together is kept.
     pub(crate) passing: DVec3,
     /// Whether it is to sleep from its release on.
     pub(super) sleeps: bool,
@@ -174,8 +174,8 @@ impl Turning {
 
     /// Velocities `dt` after the clock.
     ///
-    /// Within a step the impulses of its contacts count evenly over time, so what frictionless contacts cannot change is kept at every time, Coulomb's law holds up to every time, and as kinetic
-    /// energy is convex no energy is made.
+    /// Within a step the impulses of its contacts count evenly over time, so what frictionless contacts cannot change
+    /// is kept at every time, Coulomb's law holds up to every time, and as kinetic energy is convex no energy is made.
     pub(super) fn motion_after(&self, spec: &Spec, dt: f64) -> Motion {
         match self.phase {
             Phase::Step => {
@@ -345,8 +345,9 @@ impl Rigid {
         moved
     }
 
-    /// A body on its way at any time within its current motion, for pictures of it: like [`Rigid::at`], but within a step it goes on along the step, with the velocities of its drift. Those that
-    /// [`Rigid::at`] gives there are what it would have if the step ended.
+    /// A body on its way at any time within its current motion, for pictures of it: like [`Rigid::at`], but within a
+    /// step it goes on along the step, with the velocities of its drift. Those that [`Rigid::at`] gives there are what
+    /// it would have if the step ended.
     #[must_use]
     pub fn on_its_way(&self, index: usize, body: &Turning, time: f64) -> Turning {
         if body.phase != Phase::Step {

@@ -5,8 +5,9 @@ use super::body::Pose;
 use crate::roots::earliest;
 use glam::DVec3;
 
-/// Distance of the capsules around two bodies, a lower bound on their gap, and a time within which they do not come nearer than `level`: along the direction between them no end of
-/// one gets so near to an end of the other, accelerations being at most `m`.
+/// Distance of the capsules around two bodies, a lower bound on their gap, and a time within which they do not come
+/// nearer than `level`: along the direction between them no end of one gets so near to an end of the other,
+/// accelerations being at most `m`.
 pub(super) fn capsules([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], level: f64, m: f64) -> (f64, f64) {
     let ends =
         |spec: &Spec, pose: &Pose| [pose.x + pose.r.z_axis * spec.capsule[0], pose.x + pose.r.z_axis * spec.capsule[1]];

@@ -121,7 +121,8 @@ impl Rigid {
         }
     }
 
-    /// Calls `each` for the points of a body that touch: those noted at its clock, where all were, or else those found now.
+    /// Calls `each` for the points of a body that touch: those noted at its clock, where all were, or else those found
+    /// now.
     pub(super) fn for_known_touches(&self, index: usize, body: &Turning, pose: &Pose, mut each: impl FnMut(Touch)) {
         let spec = &self.specs[index];
         let noted = body.touching();
@@ -171,7 +172,8 @@ impl Rigid {
         self.slowest_bounce(law) * spec.speed
     }
 
-    /// Rebound over `√(g · size)` up to which a contact lasts. A bounce that is not higher than the gap at which bodies touch is none, however elastic.
+    /// Rebound over `√(g · size)` up to which a contact lasts. A bounce that is not higher than the gap at which bodies
+    /// touch is none, however elastic.
     #[inline]
     pub(super) fn slowest_bounce(&self, law: &Law) -> f64 {
         (self.accuracy.settle * (1.0 - law.restitution)).max((2.0 * self.accuracy.gap).sqrt())
@@ -195,7 +197,8 @@ impl Rigid {
         body.listed = body.path.t;
     }
 
-    /// Impact of a body on what stands still, at this point and at all others that are struck at once. Whether there was one.
+    /// Impact of a body on what stands still, at this point and at all others that are struck at once. Whether there
+    /// was one.
     pub(super) fn hit_part(
         &self,
         index: usize,

@@ -1,12 +1,15 @@
-//! Two bodies with flat faces, cuboids or other convex polyhedra: when they first touch, and what is new in a contact that lasts.
+//! Two bodies with flat faces, cuboids or other convex polyhedra: when they first touch, and what is new in a contact
+//! that lasts.
 //!
-//! Along a direction that turns evenly, every corner of one keeps a distance from every corner of the other that can shrink only so fast: its rate is known, and its
-//! acceleration is bounded by what gravity, the bodies' rotations and the direction's own turning can do. While all these distances are positive the direction separates the
-//! bodies. So they are advanced by the first root of those parabolas, along the normal of the nearest features, turning as that normal does; this cannot overshoot, and
-//! converges quadratically (conservative advancement: Mirtich, *Impulse-based Dynamic Simulation* (1996), ch. 2.3, with corners' own second-order bounds in the place of one bound on
-//! the speed).
+//! Along a direction that turns evenly, every corner of one keeps a distance from every corner of the other that can
+//! shrink only so fast: its rate is known, and its acceleration is bounded by what gravity, the bodies' rotations and
+//! the direction's own turning can do. While all these distances are positive the direction separates the bodies. So
+//! they are advanced by the first root of those parabolas, along the normal of the nearest features, turning as that
+//! normal does; this cannot overshoot, and converges quadratically (conservative advancement: Mirtich, *Impulse-based
+//! Dynamic Simulation* (1996), ch. 2.3, with corners' own second-order bounds in the place of one bound on the speed).
 //!
-//! Bodies in lasting contact are looked at in the same way, without the pairs of corners that span their contact: the steps deal with those.
+//! Bodies in lasting contact are looked at in the same way, without the pairs of corners that span their contact: the
+//! steps deal with those.
 
 use super::Spec;
 use super::body::{Pose, Turning};
@@ -18,16 +21,19 @@ use glam::DVec3;
 /// Most advancements of one search; then the time reached is handed on as an event, and the bodies are looked at anew.
 const MOST_ADVANCES: usize = 200;
 
-/// Least advancement near contact: the time in which corners move by this part of the gap at which bodies touch. Default 0.1.
+/// Least advancement near contact: the time in which corners move by this part of the gap at which bodies touch.
+/// Default 0.1.
 const LEAST: f64 = 0.1;
 
-/// Least number of looks at bodies in lasting contact within one of their steps. Default 8: a point whose corners are held can come into contact only by turning.
+/// Least number of looks at bodies in lasting contact within one of their steps. Default 8: a point whose corners are
+/// held can come into contact only by turning.
 const LOOKS: f64 = 8.0;
 
 /// Halvings of the time between two such looks.
 const BISECTIONS: usize = 30;
 
-/// Most points of a contact that are remembered while bodies stay in touch: an octagon has eight, two faces of twelve corners have 24.
+/// Most points of a contact that are remembered while bodies stay in touch: an octagon has eight, two faces of twelve
+/// corners have 24.
 const MOST_POINTS: usize = 24;
 
 /// Two bodies where they are, as the search looks at them.
@@ -68,7 +74,8 @@ struct Held<P: ConvexPair> {
     count: usize,
     /// The corners of each that span them.
     corners: [u64; 2],
-    /// Which pairs of those corners lie in the plane of contact: bit j of entry i for corner i of the first and j of the second.
+    /// Which pairs of those corners lie in the plane of contact: bit j of entry i for corner i of the first and j of
+    /// the second.
     flat: P::Sets,
 }
 
@@ -251,7 +258,8 @@ struct Advance<'c, P> {
 }
 
 impl<P: ConvexPair> Advance<'_, P> {
-    /// How long at least no corner of one gets to the half gap over a corner of the other, but for the pairs held; `m` bounds the accelerations.
+    /// How long at least no corner of one gets to the half gap over a corner of the other, but for the pairs held; `m`
+    /// bounds the accelerations.
     fn time(&self, m: f64, held: &[u64]) -> f64 {
         let [a, b] = self.poses;
         let (n, across) = (self.normal, self.across);

@@ -29,7 +29,8 @@ pub(crate) struct Contact {
     pub(crate) target: f64,
     /// What is added to the velocity at the point to get the one that is meant: its mean over a drift, say.
     pub(crate) bias: DVec3,
-    /// The direction of the slip that friction is to oppose as long as it slides that way; else that of what slip is left.
+    /// The direction of the slip that friction is to oppose as long as it slides that way; else that of what slip is
+    /// left.
     pub(crate) held_slip: Option<DVec3>,
     /// Velocity change per impulse.
     k: DMat3,
@@ -129,7 +130,8 @@ impl Contact {
         }
     }
 
-    /// Gives this contact the impulse that it needs with all others as they are; returns the change of velocity that this meant.
+    /// Gives this contact the impulse that it needs with all others as they are; returns the change of velocity that
+    /// this meant.
     #[inline]
     pub(crate) fn solve(&mut self, members: &mut [Member], look: Look) -> f64 {
         let u = self.velocity(members) + self.bias;
@@ -196,7 +198,8 @@ impl Contact {
         None
     }
 
-    /// The impulse of a contact that slid when it was looked at last and goes on sliding: Coulomb's law then holds with it.
+    /// The impulse of a contact that slid when it was looked at last and goes on sliding: Coulomb's law then holds with
+    /// it.
     #[inline]
     fn still_sliding(&mut self, u: DVec3, look: Look) -> Option<DVec3> {
         let mut slip = self.slip.filter(|_| self.slides)?;
@@ -215,7 +218,8 @@ impl Contact {
         Asked { friction: self.friction, missing, along: self.along, stiff: self.stiff, turn, rounds }
     }
 
-    /// The impulse after which a contact with velocity `free`, that cannot stick, obeys Coulomb's law: the friction opposes the slip that is left.
+    /// The impulse after which a contact with velocity `free`, that cannot stick, obeys Coulomb's law: the friction
+    /// opposes the slip that is left.
     fn sliding(&mut self, free: DVec3, look: Look) -> DVec3 {
         let n = self.normal;
         let missing = self.target - free.dot(n);
@@ -233,7 +237,8 @@ impl Contact {
         (n - slide.slip * self.friction) * slide.load
     }
 
-    /// The sticking impulse where the cone allows its normal part at all, else one without friction: neither gains energy.
+    /// The sticking impulse where the cone allows its normal part at all, else one without friction: neither gains
+    /// energy.
     fn wedged(&self, free: DVec3, missing: f64) -> DVec3 {
         let n = self.normal;
         let stick = self.k_inverse * (n * missing - (free - n * free.dot(n)));

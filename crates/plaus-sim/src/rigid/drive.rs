@@ -1,10 +1,10 @@
 //! Bodies that go their own way, by keyframes, whatever they meet: a foot, a paddle, a tray.
 //!
 //! Between keys a track stands still, goes straight, or follows a cubic, as animations in glTF do. A body's way is cut
-//! into stretches of the simulator's own closed form, a parabola with a steady rotation: exact where tracks are straight;
-//! of cubics so short that nowhere on the body the way is off by more than a tenth of the gap at which bodies touch.
-//! Places and velocities along the way are those of the tracks at the ends of the stretches, rotations' velocities the
-//! mean over each.
+//! into stretches of the simulator's own closed form, a parabola with a steady rotation: exact where tracks are
+//! straight; of cubics so short that nowhere on the body the way is off by more than a tenth of the gap at which bodies
+//! touch. Places and velocities along the way are those of the tracks at the ends of the stretches, rotations'
+//! velocities the mean over each.
 
 use super::Spec;
 use super::body::{Phase, Turning};
@@ -16,8 +16,8 @@ use plaus_dist::math;
 /// How a track goes from a key to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Between {
-    /// It stands still and jumps at the next key. What the body is then in is pushed out as of any overlap; a jump itself
-    /// hits nothing.
+    /// It stands still and jumps at the next key. What the body is then in is pushed out as of any overlap; a jump
+    /// itself hits nothing.
     Step,
     /// Straight, at a steady rate; rotations the shorter way.
     Linear,

@@ -1,8 +1,10 @@
 //! What energy the steps of lasting contact may keep.
 //!
-//! Nothing may gain any. And resistance to rolling and to spinning takes some: a contact on a fixed part with normal force N at distance R from the centre of gravity resists
-//! with a torque of at most ρ N R against the part of the angular velocity across its normal (rolling) and σ N R against that along it (spinning), ρ and σ being the law's. Without it a pin that was nudged runs around on the rim of its foot, and one that lies rolls, for ever: nothing else takes
-//! their energy.
+//! Nothing may gain any. And resistance to rolling and to spinning takes some: a contact on a fixed part with normal
+//! force N at distance R from the centre of gravity resists with a torque of at most ρ N R against the part of the
+//! angular velocity across its normal (rolling) and σ N R against that along it (spinning), ρ and σ being the law's.
+//! Without it a pin that was nudged runs around on the rim of its foot, and one that lies rolls, for ever: nothing else
+//! takes their energy.
 
 use super::coulomb::{Contact, Member};
 use super::drive::between;
@@ -13,14 +15,16 @@ use super::{Rigid, Spec};
 use glam::{DQuat, DVec3};
 
 impl RigidScratch {
-    /// Whether a step was so long that keeping its points out of the ground lifted bodies higher than their energy can: a pin that rocks over its foot's rim, say. Then
-    /// a shorter one must see where it touches.
+    /// Whether a step was so long that keeping its points out of the ground lifted bodies higher than their energy can:
+    /// a pin that rocks over its foot's rim, say. Then a shorter one must see where it touches.
     pub(super) fn climbs(&self, world: &Rigid) -> Option<f64> {
         (!self.has_driven(world) && self.energy_to_keep(world) < 0.0).then_some(0.5)
     }
 
-    /// Takes back what a step's error has brought: along the first kick's impulses, whose part `α` is moved to the second kick, where the contacts bring back what they need. No other momentum is
-    /// touched, impulses stay in their cones. `firsts` are the contacts with the impulses of the first kick, of which what is left stays. What cannot be had in this way is left; whether all was.
+    /// Takes back what a step's error has brought: along the first kick's impulses, whose part `α` is moved to the
+    /// second kick, where the contacts bring back what they need. No other momentum is touched, impulses stay in their
+    /// cones. `firsts` are the contacts with the impulses of the first kick, of which what is left stays. What cannot
+    /// be had in this way is left; whether all was.
     pub(super) fn keep_energy(&mut self, world: &Rigid, firsts: &mut [Contact], enough: Enough) -> bool {
         if self.has_driven(world) {
             return true;
@@ -83,7 +87,8 @@ impl RigidScratch {
         self.places.iter().map(|p| spec(p).mass * world.strength * spec(p).gap).sum()
     }
 
-    /// Kinetic energy that the drift of a step leaves of what was there, negative where it lifted bodies higher than that.
+    /// Kinetic energy that the drift of a step leaves of what was there, negative where it lifted bodies higher than
+    /// that.
     fn energy_to_keep(&self, world: &Rigid) -> f64 {
         let left = |p: &Place| {
             let spec = &world.specs[p.body];
@@ -95,7 +100,8 @@ impl RigidScratch {
     }
 }
 
-/// Energy over the weight times the gap at which bodies touch that a step may bring. Default 0.01: rounding and what the solver leaves.
+/// Energy over the weight times the gap at which bodies touch that a step may bring. Default 0.01: rounding and what
+/// the solver leaves.
 const TINY: f64 = 0.01;
 
 /// The part of the first kick that is moved at first, the most, and how often another is tried.
@@ -110,8 +116,9 @@ fn kinetic(spec: &Spec, turn: DQuat, v: DVec3, w: DVec3) -> f64 {
     0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)))
 }
 
-/// Takes from the members' angular velocities what the contacts' resistance takes over a step whose halves have the contacts' impulses. Energy only falls, and no rotation is
-/// reversed: the contacts' friction, found afterwards, brings the velocities of what rolls into line.
+/// Takes from the members' angular velocities what the contacts' resistance takes over a step whose halves have the
+/// contacts' impulses. Energy only falls, and no rotation is reversed: the contacts' friction, found afterwards, brings
+/// the velocities of what rolls into line.
 pub(super) fn resist(
     world: &Rigid,
     places: &[Place],

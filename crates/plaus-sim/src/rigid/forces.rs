@@ -20,10 +20,11 @@ pub struct Forces {
     /// Rate at which velocity is lost, in 1/s: by a factor of e in `1/damping` seconds. Default 0; usual 0–1. Of a body
     /// in flight it is exact; in lasting contact it has the error of the steps.
     pub damping: f64,
-    /// The same of the angular momentum. Of a body that turns at ω rad/s, `√(damping · ω · reach/(2 · gap · size))` legs
-    /// are followed in a second, `gap` being the preset's, `size` its least half width and `reach` its farthest point's
-    /// distance from its centre of gravity; times up to `√r` where its moments of inertia are as 1 to r. Of a cube that
-    /// is 930 at 10 rad/s, a damping of 1/s and the standard preset. Each counts as an event of the run's budget.
+    /// The same of the angular momentum. Of a body that turns at ω rad/s, `√(damping · ω · reach/(2 · gap · size))`
+    /// legs are followed in a second, `gap` being the preset's, `size` its least half width and `reach` its farthest
+    /// point's distance from its centre of gravity; times up to `√r` where its moments of inertia are as 1 to r. Of a
+    /// cube that is 930 at 10 rad/s, a damping of 1/s and the standard preset. Each counts as an event of the run's
+    /// budget.
     pub angular_damping: f64,
 }
 

@@ -1,8 +1,9 @@
 //! A ball on level ground in closed form: sliding, then rolling, stretch by stretch of the ground's friction.
 //!
-//! While it slides, friction points against the slip `u = v − R ω × n` of its lowest point, whose direction does not change:
-//! `v̇ = −μ g û`, `ω̇ = μ m g R (n × û)/I`, `|u̇| = −μ g (1 + m R²/I)`. So its path is a parabola until the slip is gone, then straight. Where the friction changes (oil, then
-//! dry boards) a new parabola begins: that is a hook.
+//! While it slides, friction points against the slip `u = v − R ω × n` of its lowest point, whose direction does not
+//! change: `v̇ = −μ g û`, `ω̇ = μ m g R (n × û)/I`, `|u̇| = −μ g (1 + m R²/I)`. So its path is a parabola until the
+//! slip is gone, then straight. Where the friction changes (oil, then dry boards) a new parabola begins: that is a
+//! hook.
 //!
 //! Resistance to rolling, a torque of ρ m g R, slows a ball that rolls by `ρ g/(1 + I/(m R²))` until it stands; that to
 //! spinning slows its spin about the normal by `σ m g R/I`. While a ball slides there is none to rolling, save that one
@@ -77,8 +78,8 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     true
 }
 
-/// Acceleration of a ball on level ground, the rate of its angular velocity, and how long both last; none where it rolls
-/// and would need more friction than there is to be slowed down.
+/// Acceleration of a ball on level ground, the rate of its angular velocity, and how long both last; none where it
+/// rolls and would need more friction than there is to be slowed down.
 fn along(spec: &Spec, body: &mut Turning, n: DVec3, law: &Law) -> Option<(DVec3, DVec3, f64)> {
     let radius = spec.reach;
     let slip = body.path.v - body.spin.cross(n) * radius;
@@ -115,8 +116,8 @@ fn drill(spec: &Spec, body: &Turning, n: DVec3, law: &Law) -> (DVec3, f64) {
     (n * (-rate * about.signum()), about.abs() / rate)
 }
 
-/// Ends a stretch at its time: what rounding has left of the slip, of the speed or of the spin about the normal is taken
-/// away, and the ball is exactly on the line that it reached.
+/// Ends a stretch at its time: what rounding has left of the slip, of the speed or of the spin about the normal is
+/// taken away, and the ball is exactly on the line that it reached.
 pub(super) fn end(spec: &Spec, body: &mut Turning) {
     let n = -spec.pull / spec.strength;
     if body.rolls_after {
@@ -155,7 +156,8 @@ fn friction_ahead(part: &Part, usual: f64, at: DVec3, v: DVec3) -> f64 {
     stretches.iter().rev().find(|s| entered(s.from)).and_then(|s| s.friction).unwrap_or(usual)
 }
 
-/// Time until the ball's centre comes over another stretch or over the edge of what bears it, and the line that it reaches then: axis and place.
+/// Time until the ball's centre comes over another stretch or over the edge of what bears it, and the line that it
+/// reaches then: axis and place.
 fn next_line(part: &Part, body: &Turning) -> Option<(f64, (u8, f64))> {
     let Part::Block { bounds, stretches, .. } = part else { return None };
     let (x, v, a) = (body.path.x, body.path.v, body.path.a);

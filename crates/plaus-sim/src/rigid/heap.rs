@@ -1,8 +1,8 @@
 //! What a group touches, and what is different where it is a heap: many bodies in lasting contact.
 //!
-//! Half way through a step corners leave what they touch by its [`SAG`]. Each event of a heap interrupts a step of all of
-//! its bodies: contacts that count as over there would all be struck anew, one after the other, and each would interrupt
-//! a step again. So in a heap points are part of the contact that lasts up to that distance.
+//! Half way through a step corners leave what they touch by its [`SAG`]. Each event of a heap interrupts a step of all
+//! of its bodies: contacts that count as over there would all be struck anew, one after the other, and each would
+//! interrupt a step again. So in a heap points are part of the contact that lasts up to that distance.
 
 use super::Rigid;
 use super::body::{NEVER, Phase, Turning};
@@ -14,8 +14,8 @@ use crate::links::Links;
 /// Members from which a group counts as a heap. Default 13: more than ten pins and a ball.
 pub(super) const HEAP: usize = 13;
 
-/// Part of [`SAG`] over which points of a heap that separate half way through a step belong to its contacts. Default 0.5:
-/// a straight drift leaves a curve by half of what steps are shortened for, an eighth of 4 times `SAG`.
+/// Part of [`SAG`] over which points of a heap that separate half way through a step belong to its contacts. Default
+/// 0.5: a straight drift leaves a curve by half of what steps are shortened for, an eighth of 4 times `SAG`.
 const FARTHEST: f64 = 0.5;
 
 /// Whether bodies in lasting contact with each other are a heap.

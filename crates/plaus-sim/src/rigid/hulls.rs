@@ -1,4 +1,5 @@
-//! Convex polyhedra against each other, cuboids and balls, as the search for contact and the steps of lasting contact see them.
+//! Convex polyhedra against each other, cuboids and balls, as the search for contact and the steps of lasting contact
+//! see them.
 //!
 //! A cuboid is the polyhedron of its corners here, a ball a point with a rounding.
 
@@ -92,7 +93,8 @@ impl Rigid {
         Some(HullPair::new(a.x - b.x, placed(s, a)?, placed(t, b)?))
     }
 
-    /// First time in `[from, until]` at which two bodies, one of them a polyhedron, touch while approaching, as for cuboids.
+    /// First time in `[from, until]` at which two bodies, one of them a polyhedron, touch while approaching, as for
+    /// cuboids.
     pub(super) fn first_of_hulls(
         &self,
         pair: [usize; 2],

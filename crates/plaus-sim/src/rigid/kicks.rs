@@ -19,8 +19,8 @@ pub(super) struct Step {
 }
 
 impl RigidScratch {
-    /// The first half of a step of `h` seconds from the starts: a kick and the drift, whose ends are left in `places`. It is to be done with where the second half, whose velocities
-    /// are left in `members`, is worth doing.
+    /// The first half of a step of `h` seconds from the starts: a kick and the drift, whose ends are left in `places`.
+    /// It is to be done with where the second half, whose velocities are left in `members`, is worth doing.
     pub(super) fn drift(&mut self, world: &Rigid, h: f64) -> Step {
         let (push, fine) = (world.strength * h, self.fine(world) / h);
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
@@ -51,7 +51,8 @@ impl RigidScratch {
         step
     }
 
-    /// Says what each contact is to bring about over a drift of `h` seconds, and guesses by how much its mean velocity will differ from that at the start.
+    /// Says what each contact is to bring about over a drift of `h` seconds, and guesses by how much its mean velocity
+    /// will differ from that at the start.
     fn aim(&mut self, world: &Rigid, h: f64) {
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
@@ -79,7 +80,8 @@ impl RigidScratch {
         }
     }
 
-    /// Learns from where the drift leads how the mean velocities at the contacts differ from those at its start. Whether that is not near enough to what they were to be.
+    /// Learns from where the drift leads how the mean velocities at the contacts differ from those at its start.
+    /// Whether that is not near enough to what they were to be.
     fn correct(&mut self, world: &Rigid, h: f64) -> bool {
         let mut off = false;
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
@@ -104,8 +106,8 @@ impl RigidScratch {
         off
     }
 
-    /// A step whose impulses all come at its start, plastic, wherever the drift leads then: what is left where bodies are
-    /// so deep in an edge that no drift goes the way that its start says. Contacts only take energy.
+    /// A step whose impulses all come at its start, plastic, wherever the drift leads then: what is left where bodies
+    /// are so deep in an edge that no drift goes the way that its start says. Contacts only take energy.
     pub(super) fn give_in(&mut self, world: &Rigid, h: f64) {
         self.prepare(world, |spec, p| {
             let (v, w) = (p.start.v, p.start.w);
@@ -188,7 +190,8 @@ impl Rigid {
 }
 
 impl Touch {
-    /// Mean velocity at the point over a drift of `h` seconds to `after`: along the normal that of the gap, across it that with which it slips.
+    /// Mean velocity at the point over a drift of `h` seconds to `after`: along the normal that of the gap, across it
+    /// that with which it slips.
     fn mean_velocity(&self, after: &Self, feeler: Option<&Feeler>, [begin, end]: [&Pose; 2], h: f64) -> DVec3 {
         let n = self.normal;
         let mean = match feeler {

@@ -1,7 +1,8 @@
 //! Polyhedra at the edges and corners of boxes, where no corner of theirs need be.
 //!
-//! A box is a polyhedron that stands still, so first contact and points of contact are those of two polyhedra. The points of a body on a box are numbered: its corners, then the
-//! box's corners on each of its faces, edges and corners, then each of its edges with each of the box's.
+//! A box is a polyhedron that stands still, so first contact and points of contact are those of two polyhedra. The
+//! points of a body on a box are numbered: its corners, then the box's corners on each of its faces, edges and corners,
+//! then each of its edges with each of the box's.
 
 use super::body::{Phase, Pose, Start, Turning};
 use super::convex::Quest;
@@ -117,7 +118,8 @@ impl Rigid {
         }
     }
 
-    /// Whether a point of a body on a part is not fixed in the body: a corner of a box, where edges cross, or whatever pieces touch with.
+    /// Whether a point of a body on a part is not fixed in the body: a corner of a box, where edges cross, or whatever
+    /// pieces touch with.
     pub(super) fn is_at_ledge(&self, index: usize, t: &Touch) -> bool {
         let Some(point) = t.point() else { return true };
         point >= self.specs[index].hull && self.ledge(index, t.part).is_some()

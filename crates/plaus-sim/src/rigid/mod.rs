@@ -1,40 +1,45 @@
-//! Worlds of turning bodies: balls, cuboids, bodies of revolution, convex polyhedra, cylinders, cones, capsules and compounds of them among planes, boxes, tables with a spline surface, solids at any
-//! angle and triangle meshes.
+//! Worlds of turning bodies: balls, cuboids, bodies of revolution, convex polyhedra, cylinders, cones, capsules and
+//! compounds of them among planes, boxes, tables with a spline surface, solids at any angle and triangle meshes.
 //!
-//! A body in the air is on a parabola and rotates freely, both in closed form; a ball on level ground slides and rolls in
-//! closed form. A body touches when the first of its [feelers](crate::shape::Feeler) comes within half of `accuracy.gap` of a
-//! part. An impact at one point follows Stronge's law. Points of one body, or of one pair, that are struck at one instant are
-//! struck at once (Moreau's law), so their order plays no part; several pairs are struck one after the other, as an impact goes
-//! on from body to body: a cradle hands it on. A contact whose rebound would be slower than `accuracy.settle`, or not higher
-//! than `accuracy.gap`, lasts: the body, with all bodies in lasting contact with it, then moves in steps whose impulses are
-//! found together, until it leaves the ground or is at rest.
+//! A body in the air is on a parabola and rotates freely, both in closed form; a ball on level ground slides and rolls
+//! in closed form. A body touches when the first of its [feelers](crate::shape::Feeler) comes within half of
+//! `accuracy.gap` of a part. An impact at one point follows Stronge's law. Points of one body, or of one pair, that are
+//! struck at one instant are struck at once (Moreau's law), so their order plays no part; several pairs are struck one
+//! after the other, as an impact goes on from body to body: a cradle hands it on. A contact whose rebound would be
+//! slower than `accuracy.settle`, or not higher than `accuracy.gap`, lasts: the body, with all bodies in lasting
+//! contact with it, then moves in steps whose impulses are found together, until it leaves the ground or is at rest.
 //!
-//! What holds at every preset: contacts without friction change no momentum along their plane, linear or angular; friction stays
-//! within Coulomb's bound, but for the velocity below `accuracy.rest_speed` that rest takes; impacts make no energy. Tests throw
-//! random bodies for each (`tests/laws_*.rs`), each with a wrong twin that they catch.
+//! What holds at every preset: contacts without friction change no momentum along their plane, linear or angular;
+//! friction stays within Coulomb's bound, but for the velocity below `accuracy.rest_speed` that rest takes; impacts
+//! make no energy. Tests throw random bodies for each (`tests/laws_*.rs`), each with a wrong twin that they catch.
 //!
-//! What is approximate: a body of revolution is a row of balls and rings (see [`crate::shape::Revolution`]); bumps of a table
-//! are felt at the feelers only ([`RigidWorld::skin`]); half way through a step of lasting contact corners may be in what they
-//! touch, two cuboids in each other by about a thousandth of their size; the direction of a slip within an impact and the steps
-//! of lasting contact follow the preset, with an error that falls as the square of the step. Within a step energy may rise by
-//! that error: about 1e-3 of a body's weight times its size at the standard preset, 1e-6 at reference. A ring is felt at its
-//! lowest point, in lasting contact also at three others of the rim, so that it may be some millimetres in the edge of a box.
+//! What is approximate: a body of revolution is a row of balls and rings (see [`crate::shape::Revolution`]); bumps of a
+//! table are felt at the feelers only ([`RigidWorld::skin`]); half way through a step of lasting contact corners may be
+//! in what they touch, two cuboids in each other by about a thousandth of their size; the direction of a slip within an
+//! impact and the steps of lasting contact follow the preset, with an error that falls as the square of the step.
+//! Within a step energy may rise by that error: about 1e-3 of a body's weight times its size at the standard preset,
+//! 1e-6 at reference. A ring is felt at its lowest point, in lasting contact also at three others of the rim, so that
+//! it may be some millimetres in the edge of a box.
 //!
-//! Every shape meets every other; which row of the table serves a pair is in `rows.rs`. A convex polyhedron touches boxes with faces and edges too, not only with its corners as a cuboid does. One that is wedged between boxes so that each
-//! pushes it into the other may find no rest: it sinks, by a fifth of its size at worst in the tests, until its run is out of events.
+//! Every shape meets every other; which row of the table serves a pair is in `rows.rs`. A convex polyhedron touches
+//! boxes with faces and edges too, not only with its corners as a cuboid does. One that is wedged between boxes so that
+//! each pushes it into the other may find no rest: it sinks, by a fifth of its size at worst in the tests, until its
+//! run is out of events.
 //!
-//! Convex pieces in lasting contact are looked at eight times within a step for points that are not part of it, and beside
-//! a triangle that a body hangs below by each hundredth of its size: so deep a new point may be seen. Turning bodies on
-//! meshes and in corners are young: in the example `shapes` a cone left a box of triangles in 1 of 6 throws, and a coin was
-//! seen to lie 3.7 of its half thicknesses deep in planes where three of them meet.
+//! Convex pieces in lasting contact are looked at eight times within a step for points that are not part of it, and
+//! beside a triangle that a body hangs below by each hundredth of its size: so deep a new point may be seen. Turning
+//! bodies on meshes and in corners are young: in the example `shapes` a cone left a box of triangles in 1 of 6 throws,
+//! and a coin was seen to lie 3.7 of its half thicknesses deep in planes where three of them meet.
 //!
-//! Rolling and spinning resistance act in the steps of lasting contact on fixed parts, with the distance of the point from the centre of gravity as the radius; not between bodies, nor on
-//! a ball that glides: that goes on until it meets something or the run ends.
+//! Rolling and spinning resistance act in the steps of lasting contact on fixed parts, with the distance of the point
+//! from the centre of gravity as the radius; not between bodies, nor on a ball that glides: that goes on until it meets
+//! something or the run ends.
 //!
-//! A body may go its own way by keyframes ([`Rigid::drive`]): to contact it has no inverse mass, nothing that stands still
-//! holds it, and energy is not kept in a group that it is part of. Per body there are also a constant force and torque,
-//! damping, and more or less gravity ([`Rigid::act_on`]), and sleep until it is hit ([`Rigid::put_to_sleep`]). Between two
-//! runs bodies may be kicked, taken out and put in ([`Rigid::kick`], [`Rigid::remove`], [`Rigid::put`]). There are no joints.
+//! A body may go its own way by keyframes ([`Rigid::drive`]): to contact it has no inverse mass, nothing that stands
+//! still holds it, and energy is not kept in a group that it is part of. Per body there are also a constant force and
+//! torque, damping, and more or less gravity ([`Rigid::act_on`]), and sleep until it is hit ([`Rigid::put_to_sleep`]).
+//! Between two runs bodies may be kicked, taken out and put in ([`Rigid::kick`], [`Rigid::remove`], [`Rigid::put`]).
+//! There are no joints.
 //!
 //! ```
 //! use glam::DVec3;
@@ -146,10 +151,12 @@ pub struct RigidWorld {
     pub gravity: DVec3,
     /// Tolerances.
     pub accuracy: Accuracy,
-    /// Distance between points of a body's skin that are looked at over a table, over the table's grid spacing. Default 0.5; usual 0.25–1; a bump between them reaches into
-    /// the body by up to about `curvature · (skin · spacing)²/8`; the cost grows as its inverse square.
+    /// Distance between points of a body's skin that are looked at over a table, over the table's grid spacing. Default
+    /// 0.5; usual 0.25–1; a bump between them reaches into the body by up to about `curvature · (skin · spacing)²/8`;
+    /// the cost grows as its inverse square.
     pub skin: f64,
-    /// Height in m below which a body whose centre of gravity is found there, at one of its events, is gone: a pit. `-∞` for none.
+    /// Height in m below which a body whose centre of gravity is found there, at one of its events, is gone: a pit.
+    /// `-∞` for none.
     pub sink: f64,
     /// When a run ends, in s.
     pub duration: f64,
@@ -214,8 +221,8 @@ impl Rigid {
     /// start counts for nothing then, nor do its mass, gravity, and what stands still.
     ///
     /// # Errors
-    /// [`WorldError::BadKey`] naming the body and the key whose numbers are none, or whose time does not come after that
-    /// of the key before; [`WorldError::BadNumber`] for a body that is not there.
+    /// [`WorldError::BadKey`] naming the body and the key whose numbers are none, or whose time does not come after
+    /// that of the key before; [`WorldError::BadNumber`] for a body that is not there.
     pub fn drive(&mut self, body: usize, keys: &Keyframes) -> Result<(), WorldError> {
         let Some(spec) = self.specs.get(body) else {
             return Err(WorldError::BadNumber {
@@ -242,7 +249,8 @@ impl Rigid {
     /// A state in which every body waits for its release.
     ///
     /// # Errors
-    /// [`WorldError`] naming the body whose start is not finite, or that overlaps a part or another body released at the same time.
+    /// [`WorldError`] naming the body whose start is not finite, or that overlaps a part or another body released at
+    /// the same time.
     pub fn state(&self, starts: &[Start]) -> Result<State<Turning>, WorldError> {
         if starts.len() != self.specs.len() {
             return Err(WorldError::WrongState { state: starts.len(), world: self.specs.len() });
@@ -300,7 +308,8 @@ impl Rigid {
     /// Runs a state until `until` seconds, the end of the world's duration, rest, or the observer's stop.
     ///
     /// # Errors
-    /// [`WorldError::BadControlPoint`] where a field of a table was given a value that is not finite or out of its range; the run stops there.
+    /// [`WorldError::BadControlPoint`] where a field of a table was given a value that is not finite or out of its
+    /// range; the run stops there.
     pub fn run(
         &self,
         state: &mut State<Turning>,
@@ -335,7 +344,8 @@ impl Rigid {
             - s.mass * s.pull.dot(body.path.x)
     }
 
-    /// How far apart the skins of two bodies are at their clocks, in m; negative where they overlap, then by the shortest way out of it for balls, cuboids and polyhedra.
+    /// How far apart the skins of two bodies are at their clocks, in m; negative where they overlap, then by the
+    /// shortest way out of it for balls, cuboids and polyhedra.
     #[must_use]
     pub fn gap(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> f64 {
         let [a, b] = bodies.map(Turning::pose);
@@ -362,5 +372,6 @@ fn not_finite(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
     numbers.into_iter().find(|x| !x.is_finite())
 }
 
-/// Overlap at the start that counts as touching, over the size. Default 1e-6; danger: larger values start bodies inside each other.
+/// Overlap at the start that counts as touching, over the size. Default 1e-6; danger: larger values start bodies inside
+/// each other.
 const OVERLAP: f64 = 1e-6;

@@ -1,19 +1,25 @@
 //! Impulses of several lasting contacts at once: Newton's rule on what Coulomb's law leaves undone.
 //!
-//! With the velocity `w` that is not to be at a contact and a small compliance `ε`, impulses `f` obey unilateral contact and Coulomb's law exactly where `f = P(f − w/ε)`, `P` being the
-//! projection onto the cone that keeps the normal part (De Saxcé & Feng, Math. Comput. Modelling 28 (1998); Alart & Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991)). Momentum ties velocities to
-//! impulses. Each round linearises `P` where it is, solves for all velocities at once, and takes the impulses that follow; the velocity left is then `ε` times the change of the impulses, so that
-//! redundant contacts, stacks and mass ratios of ten thousand converge in a few rounds where Gauss–Seidel needs thousands. The matrix is sparse ([`Blocks`]).
+//! With the velocity `w` that is not to be at a contact and a small compliance `ε`, impulses `f` obey unilateral
+//! contact and Coulomb's law exactly where `f = P(f − w/ε)`, `P` being the projection onto the cone that keeps the
+//! normal part (De Saxcé & Feng, Math. Comput. Modelling 28 (1998); Alart & Curnier, Comput. Methods Appl. Mech. Eng.
+//! 92 (1991)). Momentum ties velocities to impulses. Each round linearises `P` where it is, solves for all velocities
+//! at once, and takes the impulses that follow; the velocity left is then `ε` times the change of the impulses, so that
+//! redundant contacts, stacks and mass ratios of ten thousand converge in a few rounds where Gauss–Seidel needs
+//! thousands. The matrix is sparse ([`Blocks`]).
 //!
-//! Where contacts slide or wedge, rounds may go to and fro without an end. Then a convex problem stands in: with the shift `µ |slip|` added to the velocity along the normal, and the shift held, the same
-//! law is the projection onto the cone itself (De Saxcé & Feng), impulses are those of least energy, and rounds with a line search always get there (Castro et al., IEEE Trans. Robot. 38 (2022)).
-//! The shift is renewed from the slip found until nothing changes any more (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)).
+//! Where contacts slide or wedge, rounds may go to and fro without an end. Then a convex problem stands in: with the
+//! shift `µ |slip|` added to the velocity along the normal, and the shift held, the same law is the projection onto the
+//! cone itself (De Saxcé & Feng), impulses are those of least energy, and rounds with a line search always get there
+//! (Castro et al., IEEE Trans. Robot. 38 (2022)). The shift is renewed from the slip found until nothing changes any
+//! more (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)).
 
 use super::blocks::Blocks;
 use super::coulomb::{Contact, Member};
 use glam::{DMat3, DVec3};
 
-/// Compliance of a contact over its response to an impulse. Default 1e-7: smaller values lose digits to rounding, larger ones take more rounds.
+/// Compliance of a contact over its response to an impulse. Default 1e-7: smaller values lose digits to rounding,
+/// larger ones take more rounds.
 const COMPLIANCE: f64 = 1e-7;
 
 /// The same of the first convex problem. Default 1e-2: with smaller values a round goes a shorter way.
@@ -25,16 +31,19 @@ const STIFFER: f64 = 0.1;
 /// The stiffest. Default 1e-7.
 const STIFFEST: f64 = 1e-7;
 
-/// Change of velocity over the fastest body's speed that rounding makes. Default 1e-8: ten times its own, over the compliance.
+/// Change of velocity over the fastest body's speed that rounding makes. Default 1e-8: ten times its own, over the
+/// compliance.
 const NOISE: f64 = 1e-8;
 
-/// By how much velocities may break Coulomb's law, over the fastest body's speed. Default 1e-5: bodies that wedge each other leave some for ever.
+/// By how much velocities may break Coulomb's law, over the fastest body's speed. Default 1e-5: bodies that wedge each
+/// other leave some for ever.
 const LAWLESS: f64 = 1e-5;
 
 /// Rounds of the plain rule. Default 30: 19 of 20 problems take fewer than 12.
 const MOST_ROUNDS: usize = 30;
 
-/// Rounds after which the same contacts slide, stick and are open again, for them to count as going to and fro. Default 4.
+/// Rounds after which the same contacts slide, stick and are open again, for them to count as going to and fro. Default
+/// 4.
 const LONGEST_CYCLE: usize = 4;
 
 /// How often the shift is renewed. Default 8: each time leaves a tenth of what was missing.
@@ -91,7 +100,8 @@ impl Projected {
         Self { impulse, stiffness: DMat3::IDENTITY * stiff, sliding: None }
     }
 
-    /// Whether friction has turned round since `before`: the slip went through none then, and the contact is tried without slip, or rounds might go to and fro for ever.
+    /// Whether friction has turned round since `before`: the slip went through none then, and the contact is tried
+    /// without slip, or rounds might go to and fro for ever.
     fn reverses(&self, before: &Self, c: &Contact) -> bool {
         let (Some(was), Some(is)) = (before.sliding, self.sliding) else { return false };
         was.dot(is) < 0.0 && c.held_slip.is_none_or(|s| is != -s)
@@ -105,8 +115,9 @@ impl Projected {
 }
 
 impl Newton {
-    /// Rounds until no body's velocity changes by more than `enough` in a last one, which is quadratic; where that fails, until no velocity breaks Coulomb's law by more than `coarse`.
-    /// Whether it is solved; however it ends, impulses and velocities are consistent to rounding.
+    /// Rounds until no body's velocity changes by more than `enough` in a last one, which is quadratic; where that
+    /// fails, until no velocity breaks Coulomb's law by more than `coarse`. Whether it is solved; however it ends,
+    /// impulses and velocities are consistent to rounding.
     pub(crate) fn solve(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64, coarse: f64) -> bool {
         if members.len() > MOST_MEMBERS {
             return false;
@@ -186,7 +197,8 @@ impl Newton {
         false
     }
 
-    /// Solves the convex problem whose shifts are those of the slips as they are; whether that succeeds. If not, nothing is changed.
+    /// Solves the convex problem whose shifts are those of the slips as they are; whether that succeeds. If not,
+    /// nothing is changed.
     fn stand_in(&mut self, contacts: &mut [Contact], members: &mut [Member], compliance: f64, enough: f64) -> bool {
         self.begin(contacts, members);
         self.compliance = compliance;
@@ -289,8 +301,9 @@ impl Newton {
         }
     }
 
-    /// Gives contacts the impulses that have been found, and members the velocities that follow to the last bit, where these are within `enough` of those that the cones were asked with. By how much
-    /// impulses have changed then, as velocities at their contacts.
+    /// Gives contacts the impulses that have been found, and members the velocities that follow to the last bit, where
+    /// these are within `enough` of those that the cones were asked with. By how much impulses have changed then, as
+    /// velocities at their contacts.
     fn take_impulses(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64) -> Option<f64> {
         for (m, start) in members.iter_mut().zip(&self.starts) {
             m.last = [m.v, m.w];
@@ -343,7 +356,8 @@ fn moved(m: &Member, [v, w]: [DVec3; 2]) -> f64 {
     (m.v - v).length().max((m.w - w).length() * m.reach)
 }
 
-/// Whether a contact's impulse is, within what changes its velocity by `enough`, the one that Coulomb's law has for a contact that moves like this.
+/// Whether a contact's impulse is, within what changes its velocity by `enough`, the one that Coulomb's law has for a
+/// contact that moves like this.
 fn is_lawful(c: &Contact, members: &[Member], enough: f64) -> bool {
     let n = c.normal;
     let trial = c.impulse - c.wrong(members) / c.compliance();

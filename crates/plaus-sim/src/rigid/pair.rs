@@ -1,7 +1,9 @@
 //! Two bodies: how near they are, when they touch, and their impact.
 //!
-//! Balls and bodies of revolution are looked at as the balls and rings of their skins, cuboids by their faces against balls; what serves which pair is in `rows.rs`. First contacts are found by advancement with a
-//! second-order bound on the nearest points' approach; should another pair of points have come first, the overlap is seen and the time bisected.
+//! Balls and bodies of revolution are looked at as the balls and rings of their skins, cuboids by their faces against
+//! balls; what serves which pair is in `rows.rs`. First contacts are found by advancement with a second-order bound on
+//! the nearest points' approach; should another pair of points have come first, the overlap is seen and the time
+//! bisected.
 
 use super::body::{Motion, Phase, Pose, Turning};
 use super::capsule::capsules;
@@ -23,7 +25,8 @@ const BISECTIONS: usize = 40;
 /// Distance of the capsules around two bodies, over their size, from which their skins are looked at. Default 0.02.
 const NEAR: f64 = 0.02;
 
-/// Distance over the size that two skins may move between two looks beyond what parts them. Default 0.05; larger values miss grazes that deep by half of it.
+/// Distance over the size that two skins may move between two looks beyond what parts them. Default 0.05; larger values
+/// miss grazes that deep by half of it.
 const SKIP: f64 = 0.05;
 
 /// Two balls, in world axes about the two centres of gravity.
@@ -60,13 +63,15 @@ impl Rigid {
         self.slowest_bounce(self.pair_law([i, j])) * self.specs[i].speed.min(self.specs[j].speed)
     }
 
-    /// The gap that a point of contact of two bodies is to have at the end of a step of `h` seconds: an overlap is undone at a limited speed.
+    /// The gap that a point of contact of two bodies is to have at the end of a step of `h` seconds: an overlap is
+    /// undone at a limited speed.
     pub(super) fn pair_goal(&self, [i, j]: [usize; 2], gap: f64, h: f64) -> f64 {
         let fastest = PUSH * self.accuracy.settle * self.specs[i].speed.min(self.specs[j].speed);
         (KEEP * self.pair_gap([i, j])).min(gap + fastest * h)
     }
 
-    /// First time in `[from, until]` at which two bodies touch while approaching, for rows that look at balls and rings.
+    /// First time in `[from, until]` at which two bodies touch while approaching, for rows that look at balls and
+    /// rings.
     pub(super) fn first_of_feelers(
         &self,
         pair: [usize; 2],
@@ -144,7 +149,8 @@ impl Rigid {
             if time >= until || time.is_nan() {
                 return None;
             }
-            // Skins have necks: a pair of points that is not the nearest may meet first, but within this distance it is seen in time, or hardly touches.
+            // Skins have necks: a pair of points that is not the nearest may meet first, but within this distance it is
+            // seen in time, or hardly touches.
             let seen = (f.max(0.0) + SKIP * s.size.min(t.size)) / ((a.v - b.v).length() + swing);
             // The end is looked at too.
             time = (time + earliest(f, rate, m).min(seen)).min(until);
@@ -152,7 +158,8 @@ impl Rigid {
         Some(time)
     }
 
-    /// Impact of two bodies, at all points that are struck at once; whether there was one, and whether their contact lasts from then on.
+    /// Impact of two bodies, at all points that are struck at once; whether there was one, and whether their contact
+    /// lasts from then on.
     pub(super) fn hit_pair(
         &self,
         pair: [usize; 2],
@@ -174,7 +181,8 @@ impl Rigid {
             points.push(Point { least: if linked && point.lasting { f64::INFINITY } else { 0.0 }, ..point });
         });
         if !points.iter().any(Point::is_struck) {
-            // Found again and again without an approach, as where two pairs of points are equally near: their group is to deal with it.
+            // Found again and again without an approach, as where two pairs of points are equally near: their group is
+            // to deal with it.
             let stuck = !linked && hurried && !points.is_empty();
             if stuck {
                 self.touch_again(pair, [a, b]);

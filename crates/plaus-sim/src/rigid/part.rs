@@ -1,4 +1,5 @@
-//! What stands still: half spaces, boxes, tables with a spline surface, solids of any shape at any angle, and triangle meshes.
+//! What stands still: half spaces, boxes, tables with a spline surface, solids of any shape at any angle, and triangle
+//! meshes.
 
 use crate::error::WorldError;
 use crate::field::Spline;
@@ -26,7 +27,8 @@ pub enum Part {
     Table(Box<Table>),
     /// Any shape that stands still at any angle.
     Solid(Box<SolidPart>),
-    /// A triangle mesh, solid behind its faces, whose corners run anticlockwise seen from outside; its triangles have the materials. It need not be closed. Edges between triangles in one plane are not felt.
+    /// A triangle mesh, solid behind its faces, whose corners run anticlockwise seen from outside; its triangles have
+    /// the materials. It need not be closed. Edges between triangles in one plane are not felt.
     Mesh(Arc<Mesh>),
 }
 
@@ -104,7 +106,8 @@ impl Table {
         self.fields().find_map(Spline::fault).map_or(Ok(()), Err)
     }
 
-    /// The foot of the perpendicular for a point near the surface. A ball's centre needs a few rounds, a corner on the surface none.
+    /// The foot of the perpendicular for a point near the surface. A ball's centre needs a few rounds, a corner on the
+    /// surface none.
     #[inline]
     pub(crate) fn foot(&self, p: DVec3, rounds: usize) -> Foot {
         let (mut x, mut y) = (p.x, p.y);
@@ -134,7 +137,8 @@ const MOST_TRIANGLES: usize = 1 << 20;
 /// How far the length of a plane's normal may be from 1: rounding.
 const UNIT: f64 = 1e-12;
 
-/// Rounds of [`Table::foot`] for a ball: each reduces the error by the ratio of its radius to the surface's radius of curvature.
+/// Rounds of [`Table::foot`] for a ball: each reduces the error by the ratio of its radius to the surface's radius of
+/// curvature.
 pub(crate) const ROUNDS: usize = 4;
 
 impl Part {
@@ -223,7 +227,8 @@ impl Part {
         }
     }
 
-    /// The direction in world axes against which the lowest point of a ring of a body is meant: that in which the ring is nearest to the part.
+    /// The direction in world axes against which the lowest point of a ring of a body is meant: that in which the ring
+    /// is nearest to the part.
     pub(crate) fn up_at_ring(&self, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
         match self {
             Self::Plane(plane) => plane.normal,
@@ -286,7 +291,8 @@ pub(crate) fn is_over(bounds: &Aabb, axis: usize, p: DVec3) -> bool {
     (0..3).all(|k| k == axis || (p[k] >= bounds.min[k] && p[k] <= bounds.max[k]))
 }
 
-/// Up where a ring's point nearest to a box is down: the normal of the side that its body is before where that point is over the side, else found from foot to foot.
+/// Up where a ring's point nearest to a box is down: the normal of the side that its body is before where that point is
+/// over the side, else found from foot to foot.
 fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
     let middle = x + r.z_axis * ring.height;
     let lowest = |up: DVec3| {
@@ -331,7 +337,8 @@ fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
     middle - point
 }
 
-/// Rounds of looking for a ring's nearest point to an edge. Default 6; an error of an angle then left is far below that between the points of a rim.
+/// Rounds of looking for a ring's nearest point to an edge. Default 6; an error of an angle then left is far below that
+/// between the points of a rim.
 const RING_ROUNDS: usize = 6;
 
 fn block_foot(bounds: &Aabb, p: DVec3) -> Foot {

@@ -1,21 +1,24 @@
 //! What steps of lasting contact do where cuboids touch each other: piles, dice that lean or are pushed.
 //!
-//! A corner that turns against a face that turns too needs shorter steps than a corner on a table, and what one body's contacts are off, the next body's undo.
+//! A corner that turns against a face that turns too needs shorter steps than a corner on a table, and what one body's
+//! contacts are off, the next body's undo.
 
 use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch};
 use super::touch::{PairTouch, Touch};
 use super::{Rigid, Skin};
 
-/// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values make fast turning in contact cost more, as their inverse root.
+/// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values
+/// make fast turning in contact cost more, as their inverse root.
 pub(super) const SAG: f64 = 1e-3;
 
-/// How much deeper, over the gap at which they touch, bodies other than cuboids may end a step than they were to. Default 300, 40 µm for a pin at the standard preset;
-/// looked at more closely, steps of pins get shorter and cost half as much again.
+/// How much deeper, over the gap at which they touch, bodies other than cuboids may end a step than they were to.
+/// Default 300, 40 µm for a pin at the standard preset; looked at more closely, steps of pins get shorter and cost half
+/// as much again.
 const ROUGH: f64 = 300.0;
 
 impl RigidScratch {
-    /// The part of a step within which cuboids that touch do not turn far into each other between its ends: a straight drift leaves the curve of a corner by an eighth of what
-    /// turning adds over the step, squared.
+    /// The part of a step within which cuboids that touch do not turn far into each other between its ends: a straight
+    /// drift leaves the curve of a corner by an eighth of what turning adds over the step, squared.
     pub(super) fn straightness(&self, world: &Rigid, h: f64) -> f64 {
         let mut worst = 0.0_f64;
         for (ab, t) in self.pairs.iter().filter(|p| p.1.feature.is_some()) {
@@ -61,12 +64,14 @@ impl RigidScratch {
         (self.pairs.iter().any(deep) || self.touches.iter().any(deep_at_ledge)).then_some(0.5)
     }
 
-    /// Whether cuboids are in lasting contact with each other. They come to rest where they are: what tidies one up could push it into another.
+    /// Whether cuboids are in lasting contact with each other. They come to rest where they are: what tidies one up
+    /// could push it into another.
     pub(super) fn has_cuboids_in_touch(&self) -> bool {
         self.pairs.iter().any(|p| p.1.feature.is_some())
     }
 
-    /// How far at most the ends of a step may be off where cuboids touch, in m. What they are off more, others undo, and bodies that lean on each other never come to rest.
+    /// How far at most the ends of a step may be off where cuboids touch, in m. What they are off more, others undo,
+    /// and bodies that lean on each other never come to rest.
     pub(super) fn fine(&self, world: &Rigid) -> f64 {
         let cuboids = self.pairs.iter().filter(|p| p.1.feature.is_some());
         let fine = cuboids.map(|(ab, _)| CLOSE * world.pair_gap(ab.map(|k| self.places[k].body)));

@@ -22,7 +22,8 @@ pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
 
 /// A body that wobbles on the rim of its foot, or of whose foot only a part touches yet, and that has less energy over
 /// lying flat there than the preset's rest speed gives a body's height: the points of its foot, and the shift and small
-/// turn that lay it flat. A disk that wobbles does so faster and faster, and of smaller and smaller steps there is no end.
+/// turn that lay it flat. A disk that wobbles does so faster and faster, and of smaller and smaller steps there is no
+/// end.
 pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(Vec<Touch>, DVec3, DVec3)> {
     let ([place], [(_, first), ..], []) = (&group.places[..], &group.touches[..], &group.leaving[..]) else {
         return None;
@@ -152,7 +153,8 @@ fn lies(touches: &[(usize, Touch)], axis: DVec3, size: f64) -> bool {
     touches.iter().any(|a| touches.iter().any(|b| along(a) - along(b) > 0.5 * size))
 }
 
-/// Whether the line of gravity through the centre of gravity meets the hull of the points: no half plane holds them all.
+/// Whether the line of gravity through the centre of gravity meets the hull of the points: no half plane holds them
+/// all.
 fn is_above(arms: impl Iterator<Item = DVec3> + Clone, down: DVec3) -> bool {
     let flat = |arm: DVec3| arm - down * arm.dot(down);
     arms.clone().all(|a| {
@@ -173,10 +175,12 @@ fn is_above(arms: impl Iterator<Item = DVec3> + Clone, down: DVec3) -> bool {
 /// How many times more sweeps the test of a pile may take, and how much smaller their last change is to be. Default 10.
 const PATIENCE: u32 = 10;
 
-/// Overlap over the size up to which a body may lie down; it is lifted out of it. Default 1e-3, a hundred times what steps of the draft preset leave.
+/// Overlap over the size up to which a body may lie down; it is lifted out of it. Default 1e-3, a hundred times what
+/// steps of the draft preset leave.
 const OVERLAP: f64 = 1e-3;
 
-/// Shift and small turn that bring the touching points of a body on flat ground to gap 0: least squares, exact for three points and for the corners of a face.
+/// Shift and small turn that bring the touching points of a body on flat ground to gap 0: least squares, exact for
+/// three points and for the corners of a face.
 pub(super) fn flatten<'t>(touches: impl Iterator<Item = &'t Touch> + Clone) -> Option<(DVec3, DVec3)> {
     let normal = touches.clone().next()?.normal;
     if touches.clone().count() < 3 || touches.clone().any(|t| t.normal != normal) {

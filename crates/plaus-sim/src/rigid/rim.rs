@@ -1,11 +1,13 @@
-//! The lowest point of a ring that turns with its body: not a point of the body, so its own second derivative has no bound, but every point of the ring has one.
+//! The lowest point of a ring that turns with its body: not a point of the body, so its own second derivative has no
+//! bound, but every point of the ring has one.
 
 use crate::roots::earliest;
 use glam::DVec2;
 
-/// A ring over a plane. A point of it in direction `u` (in body axes, across the axis) has the gap `middle + circle p·u`, its rate is `rate + circle q·u`, and its
-/// acceleration towards the plane is at most `m`. So after `τ` every point, and with it the lowest, is no lower than `g(τ) = middle + rate τ − circle |p + q τ| − m τ²/2`,
-/// which is concave.
+/// A ring over a plane. A point of it in direction `u` (in body axes, across the axis) has the gap
+/// `middle + circle p·u`, its rate is `rate + circle q·u`, and its acceleration towards the plane is at most `m`. So
+/// after `τ` every point, and with it the lowest, is no lower than
+/// `g(τ) = middle + rate τ − circle |p + q τ| − m τ²/2`, which is concave.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Low {
     pub(super) middle: f64,
@@ -16,7 +18,8 @@ pub(super) struct Low {
     pub(super) m: f64,
 }
 
-/// Rounds of closing in on the first root. Each about squares the error; more save no advancement of the search around it.
+/// Rounds of closing in on the first root. Each about squares the error; more save no advancement of the search around
+/// it.
 const ROUNDS: usize = 4;
 
 /// Bisections for the time from which an overlapping ring can sink. Default 40: to 2⁻⁴⁰ of the bracket.
@@ -118,7 +121,8 @@ mod tests {
 
     #[test]
     fn an_overlap_that_opens_can_sink_when_the_ring_has_levelled() {
-        // Leaning by 0.1 and levelling at 2 rad/s: the lowest point rises until the other side comes down, after 0.05 s but for the bound's own fall.
+        // Leaning by 0.1 and levelling at 2 rad/s: the lowest point rises until the other side comes down, after 0.05 s
+        // but for the bound's own fall.
         let low = Low {
             middle: 0.03 * 0.1 - 1e-9,
             rate: 0.0,

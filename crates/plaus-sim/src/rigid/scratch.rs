@@ -8,16 +8,19 @@ use super::tumble::{drift, rotation};
 use super::{Rigid, Spec};
 use glam::{DMat3, DQuat, DVec3};
 
-/// Gap that lasting contacts keep, over the gap at which bodies touch. Default 0.75; below 1, so that they go on touching.
+/// Gap that lasting contacts keep, over the gap at which bodies touch. Default 0.75; below 1, so that they go on
+/// touching.
 pub(super) const KEEP: f64 = 0.75;
 
-/// Gap up to which a point counts as touching, over the gap at which bodies touch: what a step leaves is not looked at as a new impact. This is the preset's gap.
+/// Gap up to which a point counts as touching, over the gap at which bodies touch: what a step leaves is not looked at
+/// as a new impact. This is the preset's gap.
 pub(super) const TOUCHING: f64 = 2.0;
 
 /// Distance from the gap that is to be kept within which a step needs no correction, over the gap. Default 0.2.
 pub(super) const CLOSE: f64 = 0.2;
 
-/// Largest speed with which a point is pushed out of an overlap, over that below which bounces last. Default 1; only the drift has it, not the velocities.
+/// Largest speed with which a point is pushed out of an overlap, over that below which bounces last. Default 1; only
+/// the drift has it, not the velocities.
 pub(super) const PUSH: f64 = 1.0;
 
 /// Work space of a group's step.

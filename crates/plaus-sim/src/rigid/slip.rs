@@ -1,8 +1,10 @@
 //! Sliding friction at one contact: the direction of the slip that is left, and the load.
 //!
-//! With velocity `f` before any impulse and response `K`, a load `λ` with friction against the unit slip `s` leaves `u = f + (K n − μ K s) λ`, whose normal part is to be what is asked for.
-//! Coulomb's law holds where what is left slips along `s`: `s⊥ · u = 0` and `s · u > 0`. The angle of `s` is found by Newton's rule from the direction at the last look, in a frame
-//! along the first: two more rounds of it square the error twice, and a world in a mirror gives the mirrored bits.
+//! With velocity `f` before any impulse and response `K`, a load `λ` with friction against the unit slip `s` leaves
+//! `u = f + (K n − μ K s) λ`, whose normal part is to be what is asked for. Coulomb's law holds where what is left
+//! slips along `s`: `s⊥ · u = 0` and `s · u > 0`. The angle of `s` is found by Newton's rule from the direction at the
+//! last look, in a frame along the first: two more rounds of it square the error twice, and a world in a mirror gives
+//! the mirrored bits.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -128,7 +130,8 @@ impl Slip {
 mod tests {
     use super::*;
 
-    /// A contact of a body of unit mass, from a sequence that fills the box of its numbers evenly: response, its inverse, and a velocity that comes down.
+    /// A contact of a body of unit mass, from a sequence that fills the box of its numbers evenly: response, its
+    /// inverse, and a velocity that comes down.
     fn contact(n: u32) -> (DMat3, DVec3) {
         let part = |step: f64| (f64::from(n) * step) % 1.0;
         let r =
@@ -140,7 +143,8 @@ mod tests {
         (DMat3::IDENTITY - cross * inertia * cross, u)
     }
 
-    /// Where no force within the cone can hold a contact, what is left after one look slips against the friction, and its normal part is what was asked for.
+    /// Where no force within the cone can hold a contact, what is left after one look slips against the friction, and
+    /// its normal part is what was asked for.
     #[test]
     fn what_is_left_obeys_coulomb() {
         let (n, friction) = (DVec3::Z, 0.3);
@@ -161,7 +165,8 @@ mod tests {
             if slide.is_right && slide.goes_on {
                 right += 1;
                 let tangent = left - n * left.z;
-                // The last round turned it by at most 1e-6 and left the square of that; where little slip is left, rounding has its share.
+                // The last round turned it by at most 1e-6 and left the square of that; where little slip is left,
+                // rounding has its share.
                 assert!(tangent.cross(slide.slip).length() <= 1e-9 * tangent.length() + 1e-14, "{case}: {left}");
                 assert!(tangent.dot(slide.slip) > 0.0, "{case}");
             }

@@ -1,4 +1,5 @@
-//! Impulses of lasting contacts, found together: Newton's rule, or block Gauss–Seidel whose blocks obey Coulomb's law exactly.
+//! Impulses of lasting contacts, found together: Newton's rule, or block Gauss–Seidel whose blocks obey Coulomb's law
+//! exactly.
 
 use super::coulomb::{Contact, Look, Member};
 use super::newton::Newton;
@@ -22,8 +23,8 @@ pub(crate) struct Enough {
 }
 
 impl Enough {
-    /// Where sweeps may end at changes of `speed`, and what contacts have to take up is of the order of `push`, both in m/s: friction up to the load that is off by a third of their ratio
-    /// is off by less than `speed`.
+    /// Where sweeps may end at changes of `speed`, and what contacts have to take up is of the order of `push`, both in
+    /// m/s: friction up to the load that is off by a third of their ratio is off by less than `speed`.
     pub(crate) fn new(speed: f64, push: f64) -> Self {
         Self { speed, turn: (speed / (3.0 * push)).max(LEAST_TURN) }
     }
@@ -32,11 +33,12 @@ impl Enough {
 /// How much finer Newton's rule is solved than sweeps would be: another round at most. Default 1e-3.
 const NEWTON_FINER: f64 = 1e-3;
 
-/// How many of the sweeps that a preset allows are made where Newton's rule fails: friction that wedges bodies. Default 60.
+/// How many of the sweeps that a preset allows are made where Newton's rule fails: friction that wedges bodies. Default
+/// 60.
 const SWEEPS_AFTER: u32 = 60;
 
-/// Solves all contacts until a round changes no body's velocity by more than `enough` says: by Newton's rule, and where that does not converge (friction that wedges bodies) by sweeps, at
-/// most `most` of them. Whether it got there.
+/// Solves all contacts until a round changes no body's velocity by more than `enough` says: by Newton's rule, and where
+/// that does not converge (friction that wedges bodies) by sweeps, at most `most` of them. Whether it got there.
 pub(crate) fn solve(
     contacts: &mut [Contact],
     members: &mut [Member],
@@ -66,9 +68,11 @@ pub(crate) fn solve(
     sweep(contacts, members, enough, most.min(SWEEPS_AFTER))
 }
 
-/// Sweeps up and down over all contacts until a round changes no body's velocity by more than `enough` says, at most `most` times; whether it got there.
+/// Sweeps up and down over all contacts until a round changes no body's velocity by more than `enough` says, at most
+/// `most` times; whether it got there.
 ///
-/// Velocities decide, not impulses: where contacts are redundant, impulses that cancel each other may go on growing for ever.
+/// Velocities decide, not impulses: where contacts are redundant, impulses that cancel each other may go on growing for
+/// ever.
 fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: Enough, most: u32) -> bool {
     let Enough { speed: enough, turn } = enough;
     let look = Look { turn, rounds: ROUNDS };

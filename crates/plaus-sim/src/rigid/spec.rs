@@ -93,7 +93,8 @@ impl Spec {
                 return Err(bad(field, value));
             }
         }
-        // Each moment is at most the sum of the two others: the integral of y² + z² at most that of x² + z² and x² + y².
+        // Each moment is at most the sum of the two others: the integral of y² + z² at most that of x² + z² and x² +
+        // y².
         let largest = inertia.max_element();
         if largest > (inertia.x + inertia.y + inertia.z - largest) * (1.0 + ROUNDING) {
             let expected = "moments of which none exceeds the sum of the two others";
@@ -205,8 +206,9 @@ impl Spec {
         if self.ring_of(point).is_some() { self.ring_point(point, up, swing).0 } else { self.feelers[point] }
     }
 
-    /// A point of a ring as a ball, in body axes, where `up` (in body axes) points away from the part, and how it stands: 0 lowest, 1 and 3 sideways, 2 highest.
-    /// Of a ring that is level the point that sinks fastest counts as the lowest; `swing` is the rate of `up` in body axes.
+    /// A point of a ring as a ball, in body axes, where `up` (in body axes) points away from the part, and how it
+    /// stands: 0 lowest, 1 and 3 sideways, 2 highest. Of a ring that is level the point that sinks fastest counts as
+    /// the lowest; `swing` is the rate of `up` in body axes.
     pub(crate) fn ring_point(&self, point: usize, up: DVec3, swing: DVec3) -> (Feeler, usize) {
         let k = point - self.hull;
         let (ring, quarter) = if k < RIM_POINTS { (&self.rings[0], k) } else { (&self.rings[k + 1 - RIM_POINTS], 0) };

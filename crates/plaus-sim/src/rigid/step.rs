@@ -1,9 +1,12 @@
 //! Lasting contact: what bodies that touch something do next, in steps on their group's own adaptive clock.
 //!
-//! A step is a half kick of gravity and contact impulses, a drift (straight, with free rotation, which keeps momentum), and another half kick: RATTLE's order (Andersen, J. Comput. Phys.
-//! 52 (1983)), of second order. The first impulses are such that every loaded point ends the drift at the gap that it is to keep and, where friction holds it, has not slipped, found in
-//! [`PASSES`] passes over the true geometry; the second such that no point approaches or, where friction holds it, slips. Where a point slides, both halves act against the slip over
-//! the drift. Impacts of other points during the drift are found exactly on the path that is really taken; the impulses of a step that one interrupts count up to then.
+//! A step is a half kick of gravity and contact impulses, a drift (straight, with free rotation, which keeps momentum),
+//! and another half kick: RATTLE's order (Andersen, J. Comput. Phys. 52 (1983)), of second order. The first impulses
+//! are such that every loaded point ends the drift at the gap that it is to keep and, where friction holds it, has not
+//! slipped, found in [`PASSES`] passes over the true geometry; the second such that no point approaches or, where
+//! friction holds it, slips. Where a point slides, both halves act against the slip over the drift. Impacts of other
+//! points during the drift are found exactly on the path that is really taken; the impulses of a step that one
+//! interrupts count up to then.
 
 use super::body::{Momentum, Motion, Phase, Turning};
 use super::coulomb::{Contact, Member, response};
@@ -17,7 +20,8 @@ use super::{glide, heap};
 use crate::links::Links;
 use glam::{DMat3, DQuat, DVec3};
 
-/// Spread of the gaps at rest, over the gap at which bodies touch, that is left as it is. Default 1e-3; rounding is far below.
+/// Spread of the gaps at rest, over the gap at which bodies touch, that is left as it is. Default 1e-3; rounding is far
+/// below.
 const TIDY: f64 = 1e-3;
 
 /// Rounds of lifting a body out of overlaps when it lies down: each deals with its deepest point.
@@ -26,7 +30,8 @@ const LIFTS: usize = 4;
 /// Passes over the end of a step: the first predicts where points get to, the others correct.
 pub(super) const PASSES: usize = 2;
 
-/// The same where cuboids touch each other: a corner of one turns against a face that turns too. Passes end where all gaps are right.
+/// The same where cuboids touch each other: a corner of one turns against a face that turns too. Passes end where all
+/// gaps are right.
 pub(super) const PASSES_OF_CUBOIDS: usize = 8;
 
 /// How often a step is shortened so that points which just left are not back within it. Each aims at half their speed.
@@ -153,7 +158,8 @@ impl RigidScratch {
             let p = &self.places[*k];
             let spec = &world.specs[p.body];
             if let Some(axis) = world.rim_axis(p.body, t) {
-                // The lowest point of a tilted ring runs around it as its axis goes round the normal, however slowly the body turns: a coin that wobbles.
+                // The lowest point of a tilted ring runs around it as its axis goes round the normal, however slowly
+                // the body turns: a coin that wobbles.
                 let axis = p.start.r * axis;
                 let round = t.normal.cross(axis);
                 let tilt = round.length();
@@ -180,7 +186,8 @@ impl RigidScratch {
         world.accuracy.step * time
     }
 
-    /// Whether the drift of a step brings a point back that is just leaving, and by what part the step is too long then.
+    /// Whether the drift of a step brings a point back that is just leaving, and by what part the step is too long
+    /// then.
     fn returns(&self) -> Option<f64> {
         let mut worst = 1.0_f64;
         for (k, t) in &self.leaving {
@@ -287,7 +294,8 @@ impl RigidScratch {
     }
 }
 
-/// Angle in radians that the lowest point of a ring may run around within the unit of a step's length. Default 0.25: its way is curved, a step's is straight.
+/// Angle in radians that the lowest point of a ring may run around within the unit of a step's length. Default 0.25:
+/// its way is curved, a step's is straight.
 const WOBBLE: f64 = 0.25;
 
 /// Sizes that a body may move within the unit of a step's length.

@@ -1,12 +1,16 @@
 //! Impacts of turning bodies, at one point or at several at once.
 //!
-//! A body that strikes at one point obeys Stronge's law ([`stronge_impulse`]). Where several points of one body on what stands still, or of one pair of bodies, are struck at one
-//! instant, they are struck at once: no order of points plays a part, and a symmetric impact stays symmetric. A point that touches and is driven into its partner by an impact elsewhere is
-//! struck next. Each point then parts with its restitution times its approach (Newton's rule), what touches without approach does not approach afterwards, and impulses lie in Coulomb's cones:
-//! Moreau, "Unilateral contact and dry friction in finite freedom dynamics" (1988), solved to rounding. Deviation: as Newton's rule can make energy where points slide, the restitutions are
-//! scaled down by what keeps it from growing; at 0 friction and contact only take.
+//! A body that strikes at one point obeys Stronge's law ([`stronge_impulse`]). Where several points of one body on what
+//! stands still, or of one pair of bodies, are struck at one instant, they are struck at once: no order of points plays
+//! a part, and a symmetric impact stays symmetric. A point that touches and is driven into its partner by an impact
+//! elsewhere is struck next. Each point then parts with its restitution times its approach (Newton's rule), what
+//! touches without approach does not approach afterwards, and impulses lie in Coulomb's cones: Moreau, "Unilateral
+//! contact and dry friction in finite freedom dynamics" (1988), solved to rounding. Deviation: as Newton's rule can
+//! make energy where points slide, the restitutions are scaled down by what keeps it from growing; at 0 friction and
+//! contact only take.
 //!
-//! Several pairs of bodies are struck pair by pair, as an impact goes on from body to body: so the balls of a cradle hand it on.
+//! Several pairs of bodies are struck pair by pair, as an impact goes on from body to body: so the balls of a cradle
+//! hand it on.
 
 use super::coulomb::{Contact, Member};
 use super::newton::Newton;
@@ -31,11 +35,14 @@ pub(super) struct Point {
     pub(super) other: Other,
 }
 
-/// Approach, over the speed below which a bounce lasts, that is left to the solver of lasting contacts. Default 0.1; larger values lose the order of slow impacts.
+/// Approach, over the speed below which a bounce lasts, that is left to the solver of lasting contacts. Default 0.1;
+/// larger values lose the order of slow impacts.
 const LEFT: f64 = 0.1;
 
 impl Point {
-    /// A point with this approach; `settles` is the rebound up to which a contact of its bodies lasts, and `hurried` whether it is to last however fast they part, unless nothing is lost in an impact: such impacts go on for ever, or part at last.
+    /// A point with this approach; `settles` is the rebound up to which a contact of its bodies lasts, and `hurried`
+    /// whether it is to last however fast they part, unless nothing is lost in an impact: such impacts go on for ever,
+    /// or part at last.
     pub(super) fn new(contact: Contact, approach: f64, law: &Law, settles: f64, hurried: bool, other: Other) -> Self {
         let lasting = law.restitution * approach <= settles || hurried && law.restitution < 1.0;
         let restitution = if lasting { 0.0 } else { law.restitution };
@@ -69,7 +76,8 @@ impl Point {
 /// Halvings of the interval in which the part of the restitutions lies that makes no energy.
 const HALVINGS: usize = 16;
 
-/// Most sweeps over points struck at once. Default 2000: about 20 are taken, a few hundred where impulses are redundant.
+/// Most sweeps over points struck at once. Default 2000: about 20 are taken, a few hundred where impulses are
+/// redundant.
 const SWEEPS: u32 = 2000;
 
 /// Change of velocity, over the fastest before, at which points struck at once are solved. Default 1e-13: rounding.
@@ -78,8 +86,8 @@ const SOLVED: f64 = 1e-13;
 /// Energy, over that of impulses and velocities, that counts as none: rounding.
 const NO_ENERGY: f64 = 1e-12;
 
-/// Impulses of an impact at the points that touch, of which at least one is struck; the members have the velocities before and are left with those after. `turn` is the preset's
-/// `slip_turn`.
+/// Impulses of an impact at the points that touch, of which at least one is struck; the members have the velocities
+/// before and are left with those after. `turn` is the preset's `slip_turn`.
 pub(super) fn strike(points: &mut [Point], members: &mut [Member], turn: f64) {
     // The fastest first: labels of bodies and points play no part.
     points.sort_by(|p, q| q.approach.total_cmp(&p.approach));

@@ -87,7 +87,8 @@ impl PairTouch {
     }
 }
 
-/// Arms from centres of gravity at `x` to the point half way between where they end: where impulses act on both bodies at one point, these keep their angular momentum.
+/// Arms from centres of gravity at `x` to the point half way between where they end: where impulses act on both bodies
+/// at one point, these keep their angular momentum.
 pub(super) fn to_middle(arms: [DVec3; 2], x: [DVec3; 2]) -> [DVec3; 2] {
     let half = ((x[0] + arms[0]) - (x[1] + arms[1])) * 0.5;
     [arms[0] - half, arms[1] + half]

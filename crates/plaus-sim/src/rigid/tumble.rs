@@ -2,8 +2,9 @@
 //!
 //! - Three equal moments: `ω` is constant.
 //! - Two equal moments (axis `e`, `I₁ = I₂ ≠ I₃`): `R(t) = Rot(L̂, |L| t/I₁) · R₀ · Rot(e, (1 − I₃/I₁) ω₃ t)`.
-//! - Three different moments: Taylor series of Euler's equations and of the quaternion, re-expanded before the body has turned by half a radian; the terms left out are below
-//!   rounding ([`ORDER`]). Deviation from a closed form in Jacobi's elliptic functions: the series needs no special cases near the separatrix, and is as exact.
+//! - Three different moments: Taylor series of Euler's equations and of the quaternion, re-expanded before the body has
+//!   turned by half a radian; the terms left out are below rounding ([`ORDER`]). Deviation from a closed form in
+//!   Jacobi's elliptic functions: the series needs no special cases near the separatrix, and is as exact.
 
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
@@ -163,7 +164,8 @@ impl Tumble {
         Self { fixed, cos, sin, rate, own: None, series: None }
     }
 
-    /// Angular velocity in world axes at the time last asked for, of a body with three different moments: it is known there.
+    /// Angular velocity in world axes at the time last asked for, of a body with three different moments: it is known
+    /// there.
     #[inline]
     pub(crate) fn spin(&self) -> Option<DVec3> {
         self.series.as_ref().map(|(_, series)| series.turn * series.w)
@@ -225,7 +227,8 @@ impl Tumble {
     }
 }
 
-/// A direction of the world as a turning body sees it: what of it stays, and what goes with cosine and sine of the turn.
+/// A direction of the world as a turning body sees it: what of it stays, and what goes with cosine and sine of the
+/// turn.
 #[derive(Debug, Clone)]
 pub(crate) struct View {
     direction: DVec3,
@@ -234,7 +237,8 @@ pub(crate) struct View {
     sin: DVec3,
 }
 
-/// A direction of the world in the axes of a body that turns about one axis: `fixed + cos · cos(rate · t) + sin · sin(rate · t)`.
+/// A direction of the world in the axes of a body that turns about one axis:
+/// `fixed + cos · cos(rate · t) + sin · sin(rate · t)`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sines {
     pub(crate) rate: f64,
@@ -255,7 +259,8 @@ struct Series {
     w: DVec3,
 }
 
-/// Terms of the series. With steps of at most [`STEP`] radians the first term left out is below `0.3¹⁶/16! ≈ 2e-22` times a small power of the ratio of moments.
+/// Terms of the series. With steps of at most [`STEP`] radians the first term left out is below `0.3¹⁶/16! ≈ 2e-22`
+/// times a small power of the ratio of moments.
 const ORDER: usize = 16;
 
 /// Longest step in radians of turning (times the ratio of moments where that exceeds 1).
@@ -370,7 +375,8 @@ mod tests {
         }
     }
 
-    /// RK4 with h |ω| = 3e-4 over 12 radians: truncation about 12·(3e-4)⁴/120 < 1e-15, rounding of 4e4 steps about 1e-13.
+    /// RK4 with h |ω| = 3e-4 over 12 radians: truncation about 12·(3e-4)⁴/120 < 1e-15, rounding of 4e4 steps about
+    /// 1e-13.
     #[test]
     fn free_rotation_agrees_with_a_tight_integration() {
         check(DVec3::new(2.0, 2.0, 2.0), 1e-11);

@@ -1,12 +1,14 @@
 //! Newton's method that never leaves its bracket.
 
-/// Most iterations of [`refine`]; bisection alone would need about 60 from any bracket whose ends differ by less than a factor 256.
+/// Most iterations of [`refine`]; bisection alone would need about 60 from any bracket whose ends differ by less than a
+/// factor 256.
 const MOST_ITERATIONS: usize = 128;
 
 /// The root of a function that changes its sign once between `low` and `high`.
 ///
-/// `eval` returns value and derivative. Newton steps that leave the bracket, or that shrink it too slowly, become bisections. It stops
-/// where two neighbouring iterates agree to the last bit or two, which is relative to the root, not absolute.
+/// `eval` returns value and derivative. Newton steps that leave the bracket, or that shrink it too slowly, become
+/// bisections. It stops where two neighbouring iterates agree to the last bit or two, which is relative to the root,
+/// not absolute.
 #[inline]
 pub fn refine(eval: impl Fn(f64) -> (f64, f64), mut low: f64, mut high: f64, low_is_positive: bool) -> f64 {
     let mut t = 0.5 * (low + high);

@@ -1,6 +1,7 @@
 //! Quadratics `c0 + c1 t + c2 t²`: a sphere and a plane, or two spheres in free flight.
 
-/// Real roots in ascending order, by the formula that does not cancel. A double root is given twice; a constant has none.
+/// Real roots in ascending order, by the formula that does not cancel. A double root is given twice; a constant has
+/// none.
 #[inline]
 #[must_use]
 pub fn roots_of_quadratic([c0, c1, c2]: [f64; 3]) -> Option<[f64; 2]> {

@@ -25,7 +25,8 @@ fn curvature(c: &[f64; 5], t: f64) -> f64 {
     2.0 * c[2] + t * (6.0 * c[3] + t * 12.0 * c[4])
 }
 
-/// Whether the Bernstein coefficients over `[from, until]` are all positive, which proves that there is no root. Cheap, and it settles most calls.
+/// Whether the Bernstein coefficients over `[from, until]` are all positive, which proves that there is no root. Cheap,
+/// and it settles most calls.
 #[inline]
 fn surely_positive(c: &[f64; 5], from: f64, until: f64) -> bool {
     let width = until - from;
@@ -64,8 +65,8 @@ fn turning_points(c: &[f64; 5], from: f64, until: f64) -> [f64; 3] {
     turns
 }
 
-/// First time in `[from, until]` at which the quartic is not positive and falls (see the module). `from` ≥ 0, `until` may be infinite only where
-/// the quartic is in fact a quadratic.
+/// First time in `[from, until]` at which the quartic is not positive and falls (see the module). `from` ≥ 0, `until`
+/// may be infinite only where the quartic is in fact a quadratic.
 #[inline]
 #[must_use]
 pub fn fall_of_quartic(c: &[f64; 5], from: f64, until: f64) -> Option<f64> {
@@ -75,7 +76,8 @@ pub fn fall_of_quartic(c: &[f64; 5], from: f64, until: f64) -> Option<f64> {
     falls_of_quartic(c, from, until, |_| true)
 }
 
-/// The fall of a quartic in `[0, until]`, sought as the first in `[0, horizon]`, so that its last bits do not depend on `until`.
+/// The fall of a quartic in `[0, until]`, sought as the first in `[0, horizon]`, so that its last bits do not depend on
+/// `until`.
 #[inline]
 pub(crate) fn first_fall_of_quartic(c: &[f64; 5], until: f64, horizon: f64) -> Option<f64> {
     if c[3] == 0.0 && c[4] == 0.0 {
@@ -130,10 +132,12 @@ fn bend(c: &[f64; 5], from: f64, until: f64) -> Bend {
 /// Whether there is a fall, and when; [`None`] where it is not known.
 type Verdict = Option<Option<f64>>;
 
-/// Most steps of Newton's method without a bracket: grazing takes about 30, everything else up to eight. Beyond them the general way is taken.
+/// Most steps of Newton's method without a bracket: grazing takes about 30, everything else up to eight. Beyond them
+/// the general way is taken.
 const MOST_STEPS: usize = 64;
 
-/// The fall of a quartic that is convex over the interval. Newton's method from the left never passes the root, so it needs no bracket, and shows on its way where there is none.
+/// The fall of a quartic that is convex over the interval. Newton's method from the left never passes the root, so it
+/// needs no bracket, and shows on its way where there is none.
 #[inline]
 fn fall_of_convex(c: &[f64; 5], from: f64, until: f64) -> Verdict {
     let mut t = from;
@@ -159,8 +163,9 @@ fn fall_of_convex(c: &[f64; 5], from: f64, until: f64) -> Verdict {
     None
 }
 
-/// The fall of a quartic that is concave over the interval, by Newton's method from the right, which never passes the last root. Not known where it is nowhere positive but
-/// rises at first: then it falls from its turning point on, which is not sought here.
+/// The fall of a quartic that is concave over the interval, by Newton's method from the right, which never passes the
+/// last root. Not known where it is nowhere positive but rises at first: then it falls from its turning point on, which
+/// is not sought here.
 #[inline]
 fn fall_of_concave(c: &[f64; 5], from: f64, until: f64) -> Verdict {
     let (mut f, mut s) = (value(c, until), slope(c, until));
@@ -238,8 +243,8 @@ mod tests {
     }
 
     proptest! {
-        /// The short ways for one sign of the bend against the general one, over stretches that begin and end anywhere: the same fall, or both none; save where the quartic
-        /// only just touches zero, which rounding decides.
+        /// The short ways for one sign of the bend against the general one, over stretches that begin and end anywhere:
+        /// the same fall, or both none; save where the quartic only just touches zero, which rounding decides.
         #[test]
         fn short_ways_agree_with_the_general_one(
             p in prop::array::uniform3(-2.0..2.0_f64), v in prop::array::uniform3(-3.0..3.0_f64),

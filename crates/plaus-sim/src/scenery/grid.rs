@@ -1,6 +1,7 @@
 //! Broad phase for what does not move: a uniform grid over the space of ball centres.
 //!
-//! A feature is listed in each cell from which the largest ball can touch its box, grown by how far it may be moved. The outermost cells reach to infinity.
+//! A feature is listed in each cell from which the largest ball can touch its box, grown by how far it may be moved.
+//! The outermost cells reach to infinity.
 
 use crate::scenery::Aabb;
 use glam::DVec3;
@@ -8,7 +9,8 @@ use glam::DVec3;
 /// Most cells along one axis; bounds memory at about 2 million cells.
 const MOST_CELLS: f64 = 128.0;
 
-/// Side of a cell over the mean side of a grown box. Default 0.15: smaller cells list less each but are crossed more often.
+/// Side of a cell over the mean side of a grown box. Default 0.15: smaller cells list less each but are crossed more
+/// often.
 const CELL: f64 = 0.15;
 
 /// Lists of features per cell.
@@ -27,8 +29,9 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// A grid over boxes for balls of radius up to `reach`. `may_touch` can rule out that a ball whose centre is in a box touches an item, beyond what boxes say.
-    /// Endless boxes may be listed in any cell and have no part in the choice of cells.
+    /// A grid over boxes for balls of radius up to `reach`. `may_touch` can rule out that a ball whose centre is in a
+    /// box touches an item, beyond what boxes say. Endless boxes may be listed in any cell and have no part in the
+    /// choice of cells.
     pub(crate) fn new(boxes: &[Aabb], reach: f64, may_touch: impl Fn(u32, &Aabb) -> bool) -> Self {
         let listed = || boxes.iter().filter(|b| b.min.x <= b.max.x && b.min.is_finite()).map(|b| b.grown(reach));
         let all = listed().fold(Aabb::EMPTY, Aabb::union);

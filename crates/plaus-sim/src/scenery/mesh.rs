@@ -1,7 +1,7 @@
 //! Triangle meshes: faces, and of the edges and vertices those that a sphere can touch.
 //!
-//! A sphere that meets a concave or flat edge meets a face first, so only convex and open edges are kept, and only the vertices of such edges. Faces are
-//! one-sided: their normal points out of the solid.
+//! A sphere that meets a concave or flat edge meets a face first, so only convex and open edges are kept, and only the
+//! vertices of such edges. Faces are one-sided: their normal points out of the solid.
 
 use crate::error::WorldError;
 use crate::material::Material;
@@ -9,8 +9,9 @@ use crate::scenery::Aabb;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// An edge counts as flat where the neighbour's far corner is within this part of the edge's length of the face's plane. Dimensionless; default 1e-12 (a
-/// few thousand rounding errors); danger: larger values open cracks of that width.
+/// An edge counts as flat where the neighbour's far corner is within this part of the edge's length of the face's
+/// plane. Dimensionless; default 1e-12 (a few thousand rounding errors); danger: larger values open cracks of that
+/// width.
 const FLAT: f64 = 1e-12;
 
 /// One triangle.
@@ -62,11 +63,12 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// A mesh of triangles whose corners run counter-clockwise seen from outside. Vertices may later be moved by up to `margin` metres without a new
-    /// broad phase (see [`Mesh::move_vertices`]); 0 where they never move.
+    /// A mesh of triangles whose corners run counter-clockwise seen from outside. Vertices may later be moved by up to
+    /// `margin` metres without a new broad phase (see [`Mesh::move_vertices`]); 0 where they never move.
     ///
     /// # Errors
-    /// [`WorldError`] naming the triangle that is degenerate, names an unknown vertex, or shares an edge it cannot share.
+    /// [`WorldError`] naming the triangle that is degenerate, names an unknown vertex, or shares an edge it cannot
+    /// share.
     pub fn new(vertices: Vec<DVec3>, triangles: &[([u32; 3], Material)], margin: f64) -> Result<Self, WorldError> {
         let margins = vec![margin; vertices.len()];
         Self::with_margins(vertices, triangles, margins)
@@ -230,12 +232,13 @@ impl Mesh {
         first.normal.dot(far) - first.offset < -FLAT * length
     }
 
-    /// Moves vertices in place: `moved` gives the index and the new position. The topology and the broad phase stay, so a scene whose draws differ in
-    /// small offsets builds its mesh once.
+    /// Moves vertices in place: `moved` gives the index and the new position. The topology and the broad phase stay, so
+    /// a scene whose draws differ in small offsets builds its mesh once.
     ///
     /// # Errors
-    /// [`WorldError::MovedTooFar`] beyond the mesh's margin, [`WorldError::DegenerateTriangle`] where a triangle collapses,
-    /// [`WorldError::UnknownVertex`] for an index that the mesh lacks. The mesh is then only partly moved: drop it or move the vertices back.
+    /// [`WorldError::MovedTooFar`] beyond the mesh's margin, [`WorldError::DegenerateTriangle`] where a triangle
+    /// collapses, [`WorldError::UnknownVertex`] for an index that the mesh lacks. The mesh is then only partly moved:
+    /// drop it or move the vertices back.
     pub fn move_vertices(&mut self, moved: &[(u32, DVec3)]) -> Result<(), WorldError> {
         for &(v, to) in moved {
             let home = *self.made_at.get(v as usize).ok_or(WorldError::UnknownVertex {
@@ -318,7 +321,8 @@ impl Mesh {
         })
     }
 
-    /// Whether a ball of radius up to `reach` whose centre is in a box can touch a face: not where the box is all behind it or all beyond reach.
+    /// Whether a ball of radius up to `reach` whose centre is in a box can touch a face: not where the box is all
+    /// behind it or all beyond reach.
     pub(crate) fn face_may_touch(&self, f: usize, centres: &Aabb, reach: f64) -> bool {
         let face = &self.faces[f];
         if self.margin_of(&face.corners) > 0.0 || !centres.min.is_finite() || !centres.max.is_finite() {

@@ -42,7 +42,8 @@ impl Plane {
         self.normal.dot(x) - self.offset
     }
 
-    /// Whether a ball of radius up to `reach` whose centre is in a box, endless perhaps, can touch the plane or be behind it.
+    /// Whether a ball of radius up to `reach` whose centre is in a box, endless perhaps, can touch the plane or be
+    /// behind it.
     pub(crate) fn may_touch(&self, centres: &Aabb, reach: f64) -> bool {
         let nearest = |k: usize| match self.normal[k] {
             n if n > 0.0 => n * centres.min[k],

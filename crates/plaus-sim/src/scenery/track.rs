@@ -4,8 +4,9 @@ use super::{Foot, Scenery, Surface};
 use glam::DVec3;
 
 impl Scenery {
-    /// The surface that a ball in contact with `surface` touches now, its centre being at `x`: the same as long as the foot of the perpendicular stays on it, else
-    /// the nearest face, edge or vertex around. `None` where a dome has been left.
+    /// The surface that a ball in contact with `surface` touches now, its centre being at `x`: the same as long as the
+    /// foot of the perpendicular stays on it, else the nearest face, edge or vertex around. `None` where a dome has
+    /// been left.
     pub(crate) fn track(&self, surface: Surface, x: DVec3) -> Option<Surface> {
         match surface {
             Surface::Plane(_) => Some(surface),
@@ -33,7 +34,8 @@ impl Scenery {
         Some((surface, self.foot(surface, x)))
     }
 
-    /// Where a ball's centre stands to what a contact with `surface` has become at `x`: the offset of a convex corner has no kinks, whatever feature is nearest.
+    /// Where a ball's centre stands to what a contact with `surface` has become at `x`: the offset of a convex corner
+    /// has no kinks, whatever feature is nearest.
     #[inline]
     pub(crate) fn foot_near(&self, surface: Surface, x: DVec3) -> Foot {
         if matches!(surface, Surface::Plane(_) | Surface::Dome(_)) {
@@ -99,7 +101,8 @@ impl Scenery {
         best.map(|(_, s)| s)
     }
 
-    /// Squared distance of `x` from a triangle and the part of it that is nearest. Behind a face counts as far: its solid is there.
+    /// Squared distance of `x` from a triangle and the part of it that is nearest. Behind a face counts as far: its
+    /// solid is there.
     fn nearest_on(&self, f: u32, x: DVec3) -> (f64, Surface) {
         let face = &self.mesh.faces[f as usize];
         let height = face.normal.dot(x) - face.offset;
@@ -129,7 +132,8 @@ impl Scenery {
         best
     }
 
-    /// Deepest overlap of a ball with the scenery: a surface and the depth in m, if any. For checking worlds and results, not for stepping.
+    /// Deepest overlap of a ball with the scenery: a surface and the depth in m, if any. For checking worlds and
+    /// results, not for stepping.
     #[must_use]
     pub fn deepest_overlap(&self, x: DVec3, radius: f64) -> Option<(Surface, f64)> {
         let mut worst: Option<(Surface, f64)> = None;
@@ -169,7 +173,8 @@ impl Scenery {
         worst
     }
 
-    /// Whether another face that looks the other way lies in front of `x` nearer than `depth`: then `x` is outside, beyond a thin wall.
+    /// Whether another face that looks the other way lies in front of `x` nearer than `depth`: then `x` is outside,
+    /// beyond a thin wall.
     fn is_shielded(&self, f: u32, x: DVec3, depth: f64) -> bool {
         let behind = self.mesh.faces[f as usize].normal;
         self.grid.items(self.grid.cell_of(x)).iter().any(|&item| match self.surface(item) {

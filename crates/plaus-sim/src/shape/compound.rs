@@ -87,7 +87,8 @@ impl Compound {
     /// Puts solids together.
     ///
     /// # Errors
-    /// [`WorldError::BadMember`] with the index of a solid whose numbers are no numbers or out of range, [`WorldError::BadNumber`] for none at all or more than 256.
+    /// [`WorldError::BadMember`] with the index of a solid whose numbers are no numbers or out of range,
+    /// [`WorldError::BadNumber`] for none at all or more than 256.
     pub fn new(members: &[Member]) -> Result<Self, WorldError> {
         if members.is_empty() || members.len() > MOST_MEMBERS {
             let expected = "from 1 to 256";

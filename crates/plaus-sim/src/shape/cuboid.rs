@@ -5,7 +5,8 @@ use crate::error::WorldError;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A cuboid with edges along the body's axes. With rounding it is the sum of a smaller cuboid and a ball, so its faces stay where they are.
+/// A cuboid with edges along the body's axes. With rounding it is the sum of a smaller cuboid and a ball, so its faces
+/// stay where they are.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Cuboid {
     half: DVec3,
@@ -16,7 +17,8 @@ impl Cuboid {
     /// A cuboid with `edges` in m whose edges and corners are rounded with radius `rounding` in m (0: sharp).
     ///
     /// # Errors
-    /// [`WorldError::BadNumber`] where an edge is not positive, or the rounding is negative or not less than half the shortest edge.
+    /// [`WorldError::BadNumber`] where an edge is not positive, or the rounding is negative or not less than half the
+    /// shortest edge.
     pub fn new(edges: DVec3, rounding: f64) -> Result<Self, WorldError> {
         for value in edges.to_array() {
             if !(value > 0.0 && value.is_finite()) {
@@ -45,7 +47,8 @@ impl Cuboid {
         self.rounding
     }
 
-    /// Centres of the corners' roundings; the corners where they are sharp. Bit k of the index tells the side along axis k.
+    /// Centres of the corners' roundings; the corners where they are sharp. Bit k of the index tells the side along
+    /// axis k.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
         let c = self.half - self.rounding;
@@ -77,7 +80,8 @@ impl Cuboid {
         points
     }
 
-    /// Mass and inertia, the rounding integrated exactly: inner cuboid, six slabs, twelve quarter cylinders, eight octants of a ball.
+    /// Mass and inertia, the rounding integrated exactly: inner cuboid, six slabs, twelve quarter cylinders, eight
+    /// octants of a ball.
     #[must_use]
     pub fn mass_properties(&self, density: f64) -> MassProperties {
         let (c, r) = (self.half - self.rounding, self.rounding);
@@ -99,7 +103,8 @@ fn second_moment(a: f64, b: f64, c: f64, r: f64) -> f64 {
     let middle = 2.0 * a * a * a / 3.0;
     // Cross-section of constant size along |x| < a: rounded rectangle.
     let section = 4.0 * b * c + 4.0 * r * (b + c) + PI * r * r;
-    // Caps beyond |x| = a, at depth s: a rectangle grown by √(r² − s²). Both caps: 2 ∫₀ʳ (a + s)² A(s) ds, A = 4bc + 4(b+c)√(r²−s²) + π(r²−s²).
+    // Caps beyond |x| = a, at depth s: a rectangle grown by √(r² − s²). Both caps: 2 ∫₀ʳ (a + s)² A(s) ds, A = 4bc +
+    // 4(b+c)√(r²−s²) + π(r²−s²).
     let (r2, r3) = (r * r, r * r * r);
     let slab = 4.0 * b * c * (a * a * r + a * r2 + r3 / 3.0);
     let quarters = 4.0 * (b + c) * (a * a * PI * r2 / 4.0 + 2.0 * a * r3 / 3.0 + PI * r2 * r2 / 16.0);

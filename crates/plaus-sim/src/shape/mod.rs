@@ -1,8 +1,9 @@
 //! Shapes of turning bodies, their mass properties, and the points and balls that make up their skin.
 //!
-//! A shape is described to the simulator as **feelers**: balls fixed in the body whose union has the shape's skin wherever it can touch something. A sharp corner is a
-//! ball of radius 0, a rounded one has its rounding radius, a sphere is a single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot. Two bodies with
-//! flat faces are looked at by their faces, edges and corners.
+//! A shape is described to the simulator as **feelers**: balls fixed in the body whose union has the shape's skin
+//! wherever it can touch something. A sharp corner is a ball of radius 0, a rounded one has its rounding radius, a
+//! sphere is a single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot.
+//! Two bodies with flat faces are looked at by their faces, edges and corners.
 
 mod compound;
 pub(crate) mod convex_pair;
@@ -89,7 +90,8 @@ impl Shape {
         }
     }
 
-    /// More balls between those of [`feelers`](Self::feelers), so that no point of the skin is farther than about `spacing` from one: for uneven ground.
+    /// More balls between those of [`feelers`](Self::feelers), so that no point of the skin is farther than about
+    /// `spacing` from one: for uneven ground.
     #[must_use]
     pub fn feelers_between(&self, spacing: f64) -> Vec<Feeler> {
         match self {
@@ -116,7 +118,8 @@ impl Shape {
         }
     }
 
-    /// The convex pieces that the body is made of; of a body of revolution the balls on its axis and the discs within its rings.
+    /// The convex pieces that the body is made of; of a body of revolution the balls on its axis and the discs within
+    /// its rings.
     pub(crate) fn pieces(&self) -> Vec<Piece> {
         match self {
             Self::Ball(radius) => vec![Piece::ball(*radius, DVec3::ZERO)],

@@ -1,8 +1,10 @@
 //! Bodies of revolution about their z axis, from a meridian profile.
 //!
-//! The profile is a flat foot, a rounded rim, and a cubic spline of the radius over the height up to a cap that is part of a sphere. Mass, centre of gravity and inertia are
-//! integrated exactly over the spline's pieces (they are polynomials) and by closed forms over rim and cap. The skin is made of balls on the axis that touch it
-//! from inside, `stations` of them, and of rings: the rim of the foot and the flank above it, where balls on the axis would stick out below.
+//! The profile is a flat foot, a rounded rim, and a cubic spline of the radius over the height up to a cap that is part
+//! of a sphere. Mass, centre of gravity and inertia are integrated exactly over the spline's pieces (they are
+//! polynomials) and by closed forms over rim and cap. The skin is made of balls on the axis that touch it from inside,
+//! `stations` of them, and of rings: the rim of the foot and the flank above it, where balls on the axis would stick
+//! out below.
 
 use super::{Feeler, MassProperties};
 use crate::error::WorldError;
@@ -57,7 +59,8 @@ struct Piece {
 const INCH: f64 = 0.0254;
 
 impl Profile {
-    /// The regulation pin: diameters at heights from USBC's drawing, with a foot of 2.031 in, its rim rounded by 5/32 in, and a head of radius 1.2735 in.
+    /// The regulation pin: diameters at heights from USBC's drawing, with a foot of 2.031 in, its rim rounded by 5/32
+    /// in, and a head of radius 1.2735 in.
     #[must_use]
     pub fn pin() -> Self {
         let table = [
@@ -104,7 +107,8 @@ impl Profile {
         Ok(())
     }
 
-    /// About so many points (radius, height over the foot) on the meridian from the foot's edge to the top, for drawing: closer where it bends more.
+    /// About so many points (radius, height over the foot) on the meridian from the foot's edge to the top, for
+    /// drawing: closer where it bends more.
     ///
     /// # Errors
     /// [`WorldError::BadNumber`] where the profile does not rise from its foot to its cap.
@@ -130,10 +134,12 @@ impl Profile {
         Ok(outline)
     }
 
-    /// The spline: from the rim, which it leaves in its own direction, to the beginning of the cap, where it is vertical.
+    /// The spline: from the rim, which it leaves in its own direction, to the beginning of the cap, where it is
+    /// vertical.
     fn pieces(&self) -> Vec<Piece> {
         let [z1, r1] = self.points[0];
-        // The rim's tangent towards the first point: where it leaves the rim depends on the slope, a few rounds settle it.
+        // The rim's tangent towards the first point: where it leaves the rim depends on the slope, a few rounds settle
+        // it.
         let mut slope = 0.0_f64;
         let mut start = [0.0; 2];
         for _ in 0..60 {
@@ -155,7 +161,8 @@ impl Profile {
     }
 }
 
-/// Slopes at the knots of the twice differentiable cubic spline with given slope at the lower end and none at the upper.
+/// Slopes at the knots of the twice differentiable cubic spline with given slope at the lower end and none at the
+/// upper.
 fn clamped_slopes(knots: &[[f64; 2]], first: f64) -> Vec<f64> {
     let n = knots.len();
     let h: Vec<f64> = knots.windows(2).map(|k| k[1][0] - k[0][0]).collect();
@@ -175,7 +182,8 @@ fn clamped_slopes(knots: &[[f64; 2]], first: f64) -> Vec<f64> {
     slopes
 }
 
-/// `∫ z^k r^m dz` over `s` in `[0, length]` of a piece, by Gauss–Legendre with eight points: exact up to degree 15, and `r⁴ z²` has degree 14.
+/// `∫ z^k r^m dz` over `s` in `[0, length]` of a piece, by Gauss–Legendre with eight points: exact up to degree 15, and
+/// `r⁴ z²` has degree 14.
 fn integral(p: &Piece, k: usize, m: usize) -> f64 {
     const NODES: [[f64; 2]; 4] = [
         [0.183_434_642_495_649_8, 0.362_683_783_378_362],
@@ -202,7 +210,8 @@ impl Piece {
 }
 
 impl Revolution {
-    /// A body of revolution whose skin is made of about `stations` balls. Usual 24–64; between two of them the skin lies too deep by up to about `spacing²/(8 radius)`.
+    /// A body of revolution whose skin is made of about `stations` balls. Usual 24–64; between two of them the skin
+    /// lies too deep by up to about `spacing²/(8 radius)`.
     ///
     /// # Errors
     /// [`WorldError::BadNumber`] where the profile does not rise from its foot to its cap.
@@ -211,7 +220,8 @@ impl Revolution {
         let pieces = profile.pieces();
         let [_, cap] = profile.points[profile.points.len() - 1];
         let cap_centre = profile.top - cap;
-        // Moments ∫ z^k r^m of all parts: spline, a neck of constant radius below the cap, the half ball, and the foot with its rim.
+        // Moments ∫ z^k r^m of all parts: spline, a neck of constant radius below the cap, the half ball, and the foot
+        // with its rim.
         let moment = |k: usize, m: usize| {
             let spline: f64 = pieces.iter().map(|p| integral(p, k, m)).sum();
             let neck_base = profile.points[profile.points.len() - 1][0];
@@ -289,7 +299,8 @@ fn head(centre: f64, radius: f64, k: usize, m: usize) -> f64 {
     }
 }
 
-/// The slice between the floor and the height where the spline leaves the rim, whose radius is `foot + √(rim² − (rim − z)²)`: a sum over fine slices.
+/// The slice between the floor and the height where the spline leaves the rim, whose radius is
+/// `foot + √(rim² − (rim − z)²)`: a sum over fine slices.
 fn rim(profile: &Profile, height: f64, k: usize, m: usize) -> f64 {
     // The square root's end at the floor is removed by z = height · x²; the rest is smooth.
     const SLICES: usize = 64;
@@ -305,7 +316,8 @@ fn rim(profile: &Profile, height: f64, k: usize, m: usize) -> f64 {
     piece_sum
 }
 
-/// Balls on the axis that touch the profile, evenly over its height, and the height below which they would stick out of the foot.
+/// Balls on the axis that touch the profile, evenly over its height, and the height below which they would stick out of
+/// the foot.
 fn row(pieces: &[Piece], stations: usize, balance: f64, cap: Feeler) -> (Vec<Feeler>, f64) {
     let (base, end) = (pieces[0].base, pieces[pieces.len() - 1].base + pieces[pieces.len() - 1].length);
     let mut row = Vec::new();
@@ -348,14 +360,16 @@ mod tests {
     fn a_regulation_pin() {
         let pin = Revolution::new(&Profile::pin(), 40).unwrap();
         let p = pin.mass_properties(1.0);
-        // Maple of about 700 kg/m³ gives 3 lb 6 oz to 3 lb 10 oz (1.53–1.64 kg); the centre of gravity is 5 40/64 to 5 60/64 in high.
+        // Maple of about 700 kg/m³ gives 3 lb 6 oz to 3 lb 10 oz (1.53–1.64 kg); the centre of gravity is 5 40/64 to 5
+        // 60/64 in high.
         assert!((1.53 / 800.0..1.64 / 600.0).contains(&p.mass), "volume {}", p.mass);
         let inches = pin.balance() / INCH;
         assert!((5.5..6.0).contains(&inches), "centre of gravity at {inches} in");
         assert!(p.inertia.x > 4.0 * p.inertia.z);
     }
 
-    /// Against a plain sum over 200,000 slices of the same profile; 1e-5 is what its midpoint rule leaves at the rim's square root.
+    /// Against a plain sum over 200,000 slices of the same profile; 1e-5 is what its midpoint rule leaves at the rim's
+    /// square root.
     #[test]
     fn moments_agree_with_a_plain_sum() {
         let profile = Profile::pin();
@@ -396,7 +410,8 @@ mod tests {
     fn the_skin_follows_the_profile() {
         let profile = Profile::pin();
         let pin = Revolution::new(&profile, 60).unwrap();
-        // At each table height the balls and rings reach the table's radius to 0.3 mm from inside, and nothing sticks out by more than 0.01 mm.
+        // At each table height the balls and rings reach the table's radius to 0.3 mm from inside, and nothing sticks
+        // out by more than 0.01 mm.
         for &[z, r] in &profile.points[..profile.points.len() - 1] {
             let h = z - pin.balance();
             let balls =

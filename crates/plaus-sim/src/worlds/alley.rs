@@ -27,8 +27,8 @@ const START: f64 = -740.0;
 /// Half the width, and the end, of a lane to practise on, in m: farther than a ball gets in any time that matters.
 const OPEN: f64 = 1000.0;
 
-/// An alley along y: the head pin's spot is the origin, the ball comes from below in y. Body 0 is the ball, the others are the pins that are set up, in ascending order
-/// of their numbers: with all ten, body k is pin k.
+/// An alley along y: the head pin's spot is the origin, the ball comes from below in y. Body 0 is the ball, the others
+/// are the pins that are set up, in ascending order of their numbers: with all ten, body k is pin k.
 #[derive(Debug, Clone, Copy)]
 pub struct Alley {
     /// Radius of the ball in m. Regulation: 0.10795–0.10916.
@@ -141,7 +141,8 @@ impl Alley {
         self.among(bodies, self.parts()?)
     }
 
-    /// The ball alone on a lane of the same friction that is wide and goes on behind the pins: there one sees where a delivery leads.
+    /// The ball alone on a lane of the same friction that is wide and goes on behind the pins: there one sees where a
+    /// delivery leads.
     ///
     /// # Errors
     /// [`WorldError`] for impossible numbers.
@@ -213,7 +214,8 @@ impl Alley {
         ])
     }
 
-    /// The ball on the lane with its centre at `x`, `distance` m before the head pin's spot, rolling or sliding towards the pins, and all pins on their spots.
+    /// The ball on the lane with its centre at `x`, `distance` m before the head pin's spot, rolling or sliding towards
+    /// the pins, and all pins on their spots.
     ///
     /// # Errors
     /// [`WorldError`] for impossible numbers.

@@ -90,7 +90,8 @@ impl Bins {
         DVec3::new(i as f64 * self.side, j as f64 * self.side, self.height)
     }
 
-    /// Offsets of all ridge vertices, about normal (a sum of uniforms) with `sigma` metres per axis; `uniform` gives numbers in [0, 1).
+    /// Offsets of all ridge vertices, about normal (a sum of uniforms) with `sigma` metres per axis; `uniform` gives
+    /// numbers in [0, 1).
     pub fn perturbed(&self, sigma: f64, mut uniform: impl FnMut() -> f64) -> Vec<(u32, DVec3)> {
         (0..self.crossings())
             .map(|k| {
@@ -101,7 +102,8 @@ impl Bins {
             .collect()
     }
 
-    /// The partitions' surface. Vertices `0..crossings()` are the ridge at the crossings; then four shoulder corners and four foot corners of each crossing.
+    /// The partitions' surface. Vertices `0..crossings()` are the ridge at the crossings; then four shoulder corners
+    /// and four foot corners of each crossing.
     ///
     /// # Errors
     /// [`WorldError`] for impossible dimensions.
@@ -163,7 +165,8 @@ impl Bins {
         let (width, breadth) = self.extent();
         let half = 0.5 * self.thickness;
         let wall = |p: DVec3, n: DVec3| Plane::new(p, n, Material(1));
-        // The walls stand on the outer partitions' inner sides and are taken as endless upwards: marbles stay over the bins.
+        // The walls stand on the outer partitions' inner sides and are taken as endless upwards: marbles stay over the
+        // bins.
         let planes = vec![
             wall(DVec3::new(half, 0.0, 0.0), DVec3::X)?,
             wall(DVec3::new(width - half, 0.0, 0.0), -DVec3::X)?,
@@ -202,7 +205,8 @@ impl Bins {
     }
 }
 
-/// Random drops: `count` starts at rest, uniform over the bins as far as walls allow, one every `interval` seconds. `uniform` gives numbers in [0, 1).
+/// Random drops: `count` starts at rest, uniform over the bins as far as walls allow, one every `interval` seconds.
+/// `uniform` gives numbers in [0, 1).
 pub fn drops(bins: &Bins, count: usize, interval: f64, mut uniform: impl FnMut() -> f64) -> Vec<Start> {
     let (width, breadth) = bins.extent();
     let edge = 0.5 * bins.thickness + bins.marble;

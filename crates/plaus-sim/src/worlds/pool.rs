@@ -7,8 +7,9 @@ use crate::rigid::{Phase, Rigid, Turning};
 use crate::state::State;
 use glam::DVec3;
 
-/// Energy in J over that of lying in a gutter, and how far in m a pin with no more than that can reach over the lane: to lay its head on the lane's edge with its foot on the gutter's floor it must raise its
-/// middle. The least energies that a search over poses finds are 0.12 for any way, 0.20 for 0.015 m, and 0.74 for 0.155 m; a test repeats it.
+/// Energy in J over that of lying in a gutter, and how far in m a pin with no more than that can reach over the lane:
+/// to lay its head on the lane's edge with its foot on the gutter's floor it must raise its middle. The least energies
+/// that a search over poses finds are 0.12 for any way, 0.20 for 0.015 m, and 0.74 for 0.155 m; a test repeats it.
 const INTRUSIONS: [(f64, f64); 3] = [(0.1, 0.0), (0.17, 0.015), (0.7, 0.155)];
 
 /// Where bodies leave the deck.
@@ -47,7 +48,8 @@ fn contains(set: u64, k: usize) -> bool {
 }
 
 impl Pool<'_> {
-    /// What may come to bear on a standing pin, in J, of all that moves and all at rest that it may reach; `None` where that is more than does no harm, or the ball moves.
+    /// What may come to bear on a standing pin, in J, of all that moves and all at rest that it may reach; `None` where
+    /// that is more than does no harm, or the ball moves.
     pub(super) fn left(&self) -> Option<f64> {
         let mut members = 0;
         let moves = |k: usize, body: &Turning| !self.world.is_resting(body) && !self.still.is_still(k, self.state);
@@ -118,7 +120,8 @@ impl Pool<'_> {
         (self.world.energy(k, body) - self.verdict.weights[usize::from(k > 0)] * height).max(0.0)
     }
 
-    /// The least height of a body's middle over the deck. A pin whose head or foot may be beyond the edge may have it lower than one that lies.
+    /// The least height of a body's middle over the deck. A pin whose head or foot may be beyond the edge may have it
+    /// lower than one that lies.
     fn on_deck(&self, k: usize, body: &Turning, way: f64) -> f64 {
         let verdict = self.verdict;
         let is_inside = || Side::ALL.iter().all(|side| self.extent(*side, k, body, way) < 0.0);
@@ -230,8 +233,8 @@ mod tests {
         skin
     }
 
-    /// Looks at poses with the middle `away` from the edge of the lane, which is at x = 0 and ends where x < 0: sets the pin as low as gutter and edge let it, and says what energy it has then and how far
-    /// it reaches over the lane.
+    /// Looks at poses with the middle `away` from the edge of the lane, which is at x = 0 and ends where x < 0: sets
+    /// the pin as low as gutter and edge let it, and says what energy it has then and how far it reaches over the lane.
     fn pose(skin: &[(DVec3, f64)], turn: DMat3, away: f64) -> Option<[f64; 2]> {
         let turned = skin.iter().map(|(centre, radius)| (turn * *centre + DVec3::new(away, 0.0, 0.0), *radius));
         let mut height = f64::NEG_INFINITY;
@@ -248,7 +251,8 @@ mod tests {
         Some([height, most])
     }
 
-    /// The grid (2°, 10°, 5 mm) finds the least energies 0.01 J too high at most: a finer one (1°, 5°, 2.5 mm) finds 0.122, 0.198 and 0.743 J. The bounds are 0.02 J and more below.
+    /// The grid (2°, 10°, 5 mm) finds the least energies 0.01 J too high at most: a finer one (1°, 5°, 2.5 mm) finds
+    /// 0.122, 0.198 and 0.743 J. The bounds are 0.02 J and more below.
     #[test]
     fn a_pin_in_a_gutter_reaches_no_farther_over_the_lane_than_its_energy_lets_it() {
         let (skin, alley) = (skin(), Alley::default());

@@ -4,8 +4,9 @@ use crate::rigid::{Phase, Turning};
 use crate::state::State;
 use glam::DVec3;
 
-/// How long in s a body has kept to one place from when on it counts as at rest. Default 0.25: what begins to fall from a balance goes e times as far every 0.12 s. Larger values make shots
-/// longer that end in heaps; smaller ones take a turning point for rest.
+/// How long in s a body has kept to one place from when on it counts as at rest. Default 0.25: what begins to fall from
+/// a balance goes e times as far every 0.12 s. Larger values make shots longer that end in heaps; smaller ones take a
+/// turning point for rest.
 const WHILE: f64 = 0.25;
 
 /// How far in m a body's middle may move, and head or foot with it, that keeps to its place. Default 1e-3.

@@ -85,7 +85,8 @@ impl DieOnTable {
         })
     }
 
-    /// A random throw from a hand's height: `uniform` gives numbers in [0, 1). Height 8–12 cm, 0.5–1.5 m/s along x, up to 30 rad/s about each axis, any orientation.
+    /// A random throw from a hand's height: `uniform` gives numbers in [0, 1). Height 8–12 cm, 0.5–1.5 m/s along x, up
+    /// to 30 rad/s about each axis, any orientation.
     pub fn throw(&self, mut uniform: impl FnMut() -> f64) -> Start {
         let mut between = |low: f64, high: f64| low + (high - low) * uniform();
         let position = DVec3::new(0.0, 0.0, between(0.08, 0.12));
@@ -101,7 +102,8 @@ impl DieOnTable {
         Start { position, orientation, velocity, spin, time: 0.0 }
     }
 
-    /// Several dice thrown together: as in [`throw`](Self::throw), but side by side in two rows, each towards the middle of all at up to 1 m/s, so that they meet in the air.
+    /// Several dice thrown together: as in [`throw`](Self::throw), but side by side in two rows, each towards the
+    /// middle of all at up to 1 m/s, so that they meet in the air.
     pub fn throw_together(&self, dice: usize, mut uniform: impl FnMut() -> f64) -> Vec<Start> {
         // Two of them cannot touch, however they are turned.
         let apart = 1.05 * self.edges.length();

@@ -10,17 +10,21 @@ use crate::state::State;
 use glam::DVec3;
 use plaus_dist::math;
 
-/// Height of a pin's axis (as a cosine) below which it is down. Default 0.5, 60° from upright: six times the angle from which it falls by itself.
+/// Height of a pin's axis (as a cosine) below which it is down. Default 0.5, 60° from upright: six times the angle from
+/// which it falls by itself.
 const FALLEN: f64 = 0.5;
 
-/// Depth in m of the middle of a pin's foot below the deck from which on it is down. Default 0.01. One that leans on the deck has it above; gutters are 0.05 and more deep.
+/// Depth in m of the middle of a pin's foot below the deck from which on it is down. Default 0.01. One that leans on
+/// the deck has it above; gutters are 0.05 and more deep.
 const SUNK: f64 = 0.01;
 
-/// Height in m of a pin's centre of gravity over its foot, of [`Profile::pin`](crate::shape::Profile::pin); to a millimetre, as `SUNK` needs it.
+/// Height in m of a pin's centre of gravity over its foot, of [`Profile::pin`](crate::shape::Profile::pin); to a
+/// millimetre, as `SUNK` needs it.
 const BALANCE: f64 = 0.147;
 
-/// Energy that all that can still meet a standing pin may have together, over that which tips one. Default 0.75: the rest, 9 mJ, is for what lasting contact may add by pushing bodies out of overlaps, 4 mJ at
-/// most at a time. Danger: at 1 and more nothing is certain.
+/// Energy that all that can still meet a standing pin may have together, over that which tips one. Default 0.75: the
+/// rest, 9 mJ, is for what lasting contact may add by pushing bodies out of overlaps, 4 mJ at most at a time. Danger:
+/// at 1 and more nothing is certain.
 const HARMLESS: f64 = 0.75;
 
 /// Angles at which a lying pin's lowest height is looked for: less than 0.1 mm, or 2 mJ, apart. Default 8000.
@@ -29,16 +33,20 @@ const ANGLES: u32 = 8000;
 /// Way of a pin's middle over that of its farther end where it rolls, in a circle, on belly and head. Default 0.7.
 const ENDS: f64 = 0.7;
 
-/// Part of its weight that rests on its head. Default 0.13, as its middle is 26 mm from where the belly touches, and the head 230 mm.
+/// Part of its weight that rests on its head. Default 0.13, as its middle is 26 mm from where the belly touches, and
+/// the head 230 mm.
 const HEAD: f64 = 0.13;
 
-/// Distance in m along its axis from a pin's middle within which it is convex. Default 0.04: from there to the head it is narrower.
+/// Distance in m along its axis from a pin's middle within which it is convex. Default 0.04: from there to the head it
+/// is narrower.
 const BELLY: f64 = 0.04;
 
 /// Says when a shot on an [`Alley`] is decided.
 ///
-/// A pin is down from the moment at which it leans by more than 60°, its foot is below the deck, or it is gone, whatever it does later; one that leans less, held by something, stands. A shot is decided when all pins
-/// are down; or when the ball is gone or at rest, every other pin stands on the deck with its whole foot, and what moves is too weak to tip any of them. Asked after each event, it ends a shot early:
+/// A pin is down from the moment at which it leans by more than 60°, its foot is below the deck, or it is gone,
+/// whatever it does later; one that leans less, held by something, stands. A shot is decided when all pins are down; or
+/// when the ball is gone or at rest, every other pin stands on the deck with its whole foot, and what moves is too weak
+/// to tip any of them. Asked after each event, it ends a shot early:
 ///
 /// ```
 /// use glam::DVec3;
@@ -55,12 +63,17 @@ const BELLY: f64 = 0.04;
 /// # Ok::<(), plaus_sim::WorldError>(())
 /// ```
 ///
-/// Too weak means: what all bodies that move, and those at rest to which they may get, can set free together is less than what tips a pin. On the deck each is counted down to where its middle would be
-/// lowest, and so is what it may push over an edge or what may come up again from gutters and pit, with all that these would set free on their floors; unless it can't get there, or can't reach a body on the deck from there.
+/// Too weak means: what all bodies that move, and those at rest to which they may get, can set free together is less
+/// than what tips a pin. On the deck each is counted down to where its middle would be lowest, and so is what it may
+/// push over an edge or what may come up again from gutters and pit, with all that these would set free on their
+/// floors; unless it can't get there, or can't reach a body on the deck from there.
 ///
-/// Proved, since energy only falls (but for the little that [`rigid`](crate::rigid) tells of): what a body on the deck can have at most, and that nothing in gutter or pit comes up with more than that. Bounded: how far something rolls or slides, from what
-/// resistance to rolling takes on the way while it touches (hops are not reckoned with), and how far a pin in a gutter reaches over the lane, by a search over its poses. Assumed: that a pin which falls off the gutter's end does not throw
-/// up another one, and that a body which has kept to its place for a while, see [`Still`], stays there if nothing comes.
+/// Proved, since energy only falls (but for the little that [`rigid`](crate::rigid) tells of): what a body on the deck
+/// can have at most, and that nothing in gutter or pit comes up with more than that. Bounded: how far something rolls
+/// or slides, from what resistance to rolling takes on the way while it touches (hops are not reckoned with), and how
+/// far a pin in a gutter reaches over the lane, by a search over its poses. Assumed: that a pin which falls off the
+/// gutter's end does not throw up another one, and that a body which has kept to its place for a while, see [`Still`],
+/// stays there if nothing comes.
 #[derive(Debug, Clone, Copy)]
 pub struct Verdict {
     /// Energy in J that tips a standing pin, and what of it bodies may have that it need not fear.
@@ -69,7 +82,8 @@ pub struct Verdict {
     /// Height of a pin's axis, as a cosine, at which it tips; the radius of the circle on which it stands, in m.
     tipped: f64,
     foot: f64,
-    /// Heights in m of the middle of a standing pin, and least ones of one that lies: with all of it over the ground, and with its middle only.
+    /// Heights in m of the middle of a standing pin, and least ones of one that lies: with all of it over the ground,
+    /// and with its middle only.
     pub(super) upright: f64,
     pub(super) lying: f64,
     pub(super) inside: f64,
@@ -132,13 +146,15 @@ impl Verdict {
         pin.phase == Phase::Gone || up.z < FALLEN || pin.path.x.z - BALANCE * up.z < -SUNK
     }
 
-    /// Whether which pins stand can no longer change, where no pin has risen again. Body 0 is the ball, the others are pins.
+    /// Whether which pins stand can no longer change, where no pin has risen again. Body 0 is the ball, the others are
+    /// pins.
     #[must_use]
     pub fn is_final(&self, world: &Rigid, state: &State<Turning>) -> bool {
         self.settled(world, state, &Still::default(), |k| Self::has_fallen(&state.bodies()[k])).is_some()
     }
 
-    /// Once no other pin than those that are down can fall any more: how far in m the middles of the others may still go. `is_down` is asked of bodies from 1 on.
+    /// Once no other pin than those that are down can fall any more: how far in m the middles of the others may still
+    /// go. `is_down` is asked of bodies from 1 on.
     #[must_use]
     pub fn settled(
         &self,
@@ -159,7 +175,8 @@ impl Verdict {
             return Some(0.0);
         }
         let left = Pool { verdict: self, world, state, still, standing }.left()?;
-        // What slides it, and how far its middle leans: tipping takes a concave barrier, so that the angle is at most in proportion to the energy.
+        // What slides it, and how far its middle leans: tipping takes a concave barrier, so that the angle is at most
+        // in proportion to the energy.
         Some(left / self.slide + left / self.tipping * self.foot)
     }
 
@@ -173,7 +190,8 @@ impl Verdict {
     }
 }
 
-/// The least height of the middle of a pin that lies on the deck, at whatever angle, where only what is so near to its middle along its axis has ground below it.
+/// The least height of the middle of a pin that lies on the deck, at whatever angle, where only what is so near to its
+/// middle along its axis has ground below it.
 pub(super) fn lying(pin: &Revolution, near: f64) -> f64 {
     let step = std::f64::consts::PI / f64::from(ANGLES);
     let height = |angle: f64| {

@@ -6,7 +6,8 @@ use crate::motion::Parabola;
 use crate::roots::roots_of_quadratic;
 use crate::trace::Observer;
 
-/// Watches every motion: a marble may cross the middle of a partition only above it, and stays in the box and above the floor.
+/// Watches every motion: a marble may cross the middle of a partition only above it, and stays in the box and above the
+/// floor.
 #[derive(Debug)]
 pub struct Watch<'b> {
     bins: &'b Bins,
@@ -21,7 +22,8 @@ impl<'b> Watch<'b> {
         Self { bins, last: vec![None; count], tunnelled: 0 }
     }
 
-    /// Motions that began outside the box, sunk by more than a thousandth of a radius, or beyond a partition without having passed above it.
+    /// Motions that began outside the box, sunk by more than a thousandth of a radius, or beyond a partition without
+    /// having passed above it.
     #[must_use]
     pub fn tunnelled(&self) -> usize {
         self.tunnelled

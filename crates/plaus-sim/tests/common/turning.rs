@@ -1,4 +1,5 @@
-//! What tests of turning bodies share: a stand-in for random bumps, a look whether bodies are in each other, relabelling.
+//! What tests of turning bodies share: a stand-in for random bumps, a look whether bodies are in each other,
+//! relabelling.
 
 use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
 use plaus_sim::trace::Observer;
@@ -48,8 +49,8 @@ impl Observer<Rigid> for Overlaps<'_> {
     }
 }
 
-/// Runs two bodies, and the same two under exchanged labels, and asserts that they do the same to the last bit. `of` makes the world in which the bodies stand in an order. Returns how
-/// many impacts there were.
+/// Runs two bodies, and the same two under exchanged labels, and asserts that they do the same to the last bit. `of`
+/// makes the world in which the bodies stand in an order. Returns how many impacts there were.
 pub fn same_when_relabelled(of: impl Fn([usize; 2]) -> Rigid, starts: [Start; 2], until: f64, what: &str) -> u64 {
     let run = |order: [usize; 2]| {
         let world = of(order);

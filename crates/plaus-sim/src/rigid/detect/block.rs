@@ -233,8 +233,9 @@ fn outside(bounds: &Aabb, p: DVec3) -> f64 {
     (bounds.min - p).max(p - bounds.max).max_element()
 }
 
-/// Gap of a point of a ring, its rate, the rate to reckon with, and a bound on its acceleration. The point moves round the ring as the body leans, which adds `ρ ω²` over the sine of the lean; for
-/// bodies that hardly lean the circle's own bound is used instead, in which the whole rim falls as fast as its fastest point.
+/// Gap of a point of a ring, its rate, the rate to reckon with, and a bound on its acceleration. The point moves round
+/// the ring as the body leans, which adds `ρ ω²` over the sine of the lean; for bodies that hardly lean the circle's
+/// own bound is used instead, in which the whole rim falls as fast as its fastest point.
 fn ring_gap(
     feeler: &Feeler,
     quarter: usize,

@@ -1,7 +1,8 @@
-//! First contact with a half space of a few balls that turn about one axis: cuboids in the air if all their moments of inertia are equal, any body in a step.
+//! First contact with a half space of a few balls that turn about one axis: cuboids in the air if all their moments of
+//! inertia are equal, any body in a step.
 //!
-//! The height of each over the plane is a parabola, that of the centre of gravity, and a sine. What the sines are is found once; a look costs one sine and cosine for all of them, and
-//! each sine's own amplitude bounds its acceleration.
+//! The height of each over the plane is a parabola, that of the centre of gravity, and a sine. What the sines are is
+//! found once; a look costs one sine and cosine for all of them, and each sine's own amplitude bounds its acceleration.
 
 use super::plane::BEYOND;
 use super::{MOST_ADVANCES, Search, earliest};
@@ -14,7 +15,8 @@ use plaus_dist::math;
 /// Most balls that are looked at in this way: the corners of a cuboid.
 const MOST: usize = 8;
 
-/// Height of a ball over the plane, less that of the centre of gravity and the ball's radius: `fixed + cos · cos(ωt) + sin · sin(ωt)`.
+/// Height of a ball over the plane, less that of the centre of gravity and the ball's radius:
+/// `fixed + cos · cos(ωt) + sin · sin(ωt)`.
 #[derive(Debug, Clone, Copy, Default)]
 struct Height {
     fixed: f64,

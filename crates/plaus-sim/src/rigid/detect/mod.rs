@@ -1,8 +1,10 @@
 //! First contact of a turning body with a fixed part, by conservative advancement of second order.
 //!
-//! Each feeler's gap `f` obeys `f(t + τ) ≥ f + f′ τ − M τ²/2`, where `M` bounds its acceleration towards the part: gravity, rotation, and the surface's curvature times speed
-//! squared. The body is advanced by the first root of these parabolas over all feelers, which cannot overshoot and converges quadratically, until a gap is
-//! below `accuracy.gap` and closing. A gap that is small but opening is no event (rule of `crate::roots`); the search goes on from where it can close again.
+//! Each feeler's gap `f` obeys `f(t + τ) ≥ f + f′ τ − M τ²/2`, where `M` bounds its acceleration towards the part:
+//! gravity, rotation, and the surface's curvature times speed squared. The body is advanced by the first root of these
+//! parabolas over all feelers, which cannot overshoot and converges quadratically, until a gap is below `accuracy.gap`
+//! and closing. A gap that is small but opening is no event (rule of `crate::roots`); the search goes on from where it
+//! can close again.
 
 mod block;
 mod corners;
@@ -17,7 +19,8 @@ use crate::roots::{earliest, fall_of_quadratic};
 use crate::scenery::Surface;
 use glam::DVec3;
 
-/// Most advancements of one search. Where they are spent the nearest point's time is handed on as an event: the body is looked at anew.
+/// Most advancements of one search. Where they are spent the nearest point's time is handed on as an event: the body is
+/// looked at anew.
 const MOST_ADVANCES: usize = 200;
 
 /// A search for the first contact of one body.
@@ -108,7 +111,8 @@ impl Search<'_> {
         fall_of_quadratic([height, normal.dot(path.v), 0.5 * normal.dot(path.a)], self.until)
     }
 
-    /// Angular velocity after `t`, for which `tumble` was asked last; it changes only in free flight, and not if all moments are equal.
+    /// Angular velocity after `t`, for which `tumble` was asked last; it changes only in free flight, and not if all
+    /// moments are equal.
     #[inline]
     pub(super) fn spin_at(&self, tumble: &Tumble, t: f64) -> DVec3 {
         if self.spec.wobble == 0.0 || !self.body.turns_freely() {
@@ -119,5 +123,6 @@ impl Search<'_> {
     }
 }
 
-/// Sine of the lean from which the lowest point of a rim is followed. Default 0.02; smaller values take more advancements, larger ones see impacts a little early.
+/// Sine of the lean from which the lowest point of a rim is followed. Default 0.02; smaller values take more
+/// advancements, larger ones see impacts a little early.
 const LEANS: f64 = 0.02;

@@ -11,7 +11,8 @@ use crate::scenery::Aabb;
 use glam::{DVec2, DVec3};
 use std::cell::RefCell;
 
-/// Distance of the capsule around a body from a plane, over the body's size, from which its skin is looked at. Default 0.05; smaller values look at capsules more often.
+/// Distance of the capsule around a body from a plane, over the body's size, from which its skin is looked at. Default
+/// 0.05; smaller values look at capsules more often.
 const NEAR: f64 = 0.05;
 
 /// Stands for a point behind the plane beyond the edges.
@@ -37,7 +38,8 @@ struct Look<'b> {
 }
 
 impl Look<'_> {
-    /// Whether a point (in body axes) that is behind the plane is beyond the edges of the side: then the plane says nothing about when it touches the box.
+    /// Whether a point (in body axes) that is behind the plane is beyond the edges of the side: then the plane says
+    /// nothing about when it touches the box.
     fn is_beyond(&self, centre: DVec3) -> bool {
         let there = || self.x + self.tumble.borrow_mut().at(self.t) * centre;
         self.edges.is_some_and(|(bounds, axis)| !is_over(bounds, axis, there()))
@@ -76,7 +78,8 @@ impl Next {
 }
 
 impl Search<'_> {
-    /// When and with which point the body first comes to a half space of a part; [`BEYOND`] where `edges` are given and it gets behind the plane beyond them.
+    /// When and with which point the body first comes to a half space of a part; [`BEYOND`] where `edges` are given and
+    /// it gets behind the plane beyond them.
     pub(in crate::rigid) fn half_space(
         &self,
         part: u16,
@@ -142,7 +145,8 @@ impl Search<'_> {
         Some((t, if edges.is_some() { BEYOND } else { 0 }))
     }
 
-    /// For how long at least the capsule around the body stays clear of the plane, where that is worth a step of the search.
+    /// For how long at least the capsule around the body stays clear of the plane, where that is worth a step of the
+    /// search.
     fn capsule(&self, look: &Look, step: f64) -> Option<f64> {
         let [low, high, radius] = self.spec.capsule;
         let mut soonest = f64::INFINITY;
@@ -179,7 +183,8 @@ impl Search<'_> {
         }
     }
 
-    /// The lowest point of a ring; of the rim also those sideways and the highest, which may touch while the lowest does.
+    /// The lowest point of a ring; of the rim also those sideways and the highest, which may touch while the lowest
+    /// does.
     fn ring(&self, look: &Look, index: usize, next: &mut Next) {
         let (spec, ring) = (self.spec, &self.spec.rings[index]);
         let point = spec.points_of(index).start;
@@ -212,7 +217,8 @@ impl Search<'_> {
         }
     }
 
-    /// A point of the rim that is not its lowest. Those sideways are as high as the rim's middle, whatever way the body turns.
+    /// A point of the rim that is not its lowest. Those sideways are as high as the rim's middle, whatever way the body
+    /// turns.
     fn rim_point(&self, look: &Look, point: usize, [middle, rate, m]: [f64; 3], next: &mut Next) {
         if self.lasts(look.part, point) {
             return;

@@ -6,7 +6,8 @@ use crate::rigid::part::{ROUNDS, Table};
 use crate::shape::Feeler;
 use glam::{DMat3, DVec3};
 
-/// How far ahead the table below is looked at at once, over the body's reach. Default 0.5; larger values make more of the table, smaller ones look more often.
+/// How far ahead the table below is looked at at once, over the body's reach. Default 0.5; larger values make more of
+/// the table, smaller ones look more often.
 const AHEAD: f64 = 0.5;
 
 impl Search<'_> {
@@ -71,7 +72,8 @@ impl Search<'_> {
         self.hit(t, part, 0);
     }
 
-    /// Height over the centre of gravity from which no point of the body can come down to `high` within a step, at the speed that it can have at most.
+    /// Height over the centre of gravity from which no point of the body can come down to `high` within a step, at the
+    /// speed that it can have at most.
     fn level(&self, (x, v, ..): &(DVec3, DVec3, DVec3, DMat3), high: f64, step: f64) -> f64 {
         let reach = self.spec.reach;
         let pull = (self.turning * reach - self.body.path.a.z).max(0.0);
@@ -139,7 +141,8 @@ impl Search<'_> {
         }
     }
 
-    /// A body so large against the grid that its footprint is not looked at: it counts as touching where it comes down to the field's highest value.
+    /// A body so large against the grid that its footprint is not looked at: it counts as touching where it comes down
+    /// to the field's highest value.
     fn coarse(&mut self, part: u16, t: f64) {
         self.hit(t, part, 0);
     }

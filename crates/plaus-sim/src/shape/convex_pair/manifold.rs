@@ -19,7 +19,8 @@ const FLAT: f64 = 0.99;
 /// Distance over the size within which two points of contact count as one. Default 1e-4.
 const SAME: f64 = 1e-4;
 
-/// Of two such points the nearer counts, if it is by this part of that distance. Default 1e-6: rounding decides nothing.
+/// Of two such points the nearer counts, if it is by this part of that distance. Default 1e-6: rounding decides
+/// nothing.
 const CLOSER: f64 = 1e-6;
 
 /// Points of contact so far.

@@ -22,12 +22,13 @@ const PROVED: f64 = 1e-10;
 /// Most rounds of turning the way out of an overlap.
 const ROUNDS: usize = 40;
 
-/// Least distance over the size to which cores that overlap are moved apart. Default 1e-5: what is nearest then is known
-/// to 1e-10 of it.
+/// Least distance over the size to which cores that overlap are moved apart. Default 1e-5: what is nearest then is
+/// known to 1e-10 of it.
 const ASIDE: f64 = 1e-5;
 
 /// Overlap over the size up to which the best direction looked at is taken, where it is the normal of a face with the
-/// other's lowest point over it: no way out is shorter nearby, and others elsewhere are by less than this. Default 1e-4.
+/// other's lowest point over it: no way out is shorter nearby, and others elsewhere are by less than this. Default
+/// 1e-4.
 const SHALLOW: f64 = 1e-4;
 
 /// Change of a direction within which it counts as found.
@@ -144,8 +145,8 @@ impl Search<'_, '_> {
         best
     }
 
-    /// The shortest way out near a direction. Moved apart along a direction by more than they overlap, cores have nearest
-    /// points, and along the line between these they overlap less, or as much if it is the same direction: the
+    /// The shortest way out near a direction. Moved apart along a direction by more than they overlap, cores have
+    /// nearest points, and along the line between these they overlap less, or as much if it is the same direction: the
     /// proximal-point method, for what keeps cores apart is the largest of `apart(n) + shift n·direction`.
     fn way_out(&self, start: DVec3) -> Option<Meeting> {
         let (mut n, mut found) = (start, None);

@@ -150,8 +150,8 @@ fn points_of_contact_are_found_again() {
                         assert!((again.points[0] - t.points[0]).length() < 1e-9, "{one} on {other}: {t:?} {again:?}");
                     });
                     most = most.max(count);
-                    // Of two polyhedra a corner that is less than what is asked for beside a face counts as over it, and
-                    // edges that cross so near to a corner are left to that.
+                    // Of two polyhedra a corner that is less than what is asked for beside a face counts as over it,
+                    // and edges that cross so near to a corner are left to that.
                     let off = if matches!(m.mark, Mark::Polyhedra(_)) { 2e-4 } else { 1e-8 };
                     assert!(count > 0 && (least - m.gap).abs() < off, "{one} on {other}: {least} for {m:?}");
                 }

@@ -3,17 +3,20 @@
 use super::{CuboidPair, Edge, Meeting, PARALLEL};
 use glam::DVec3;
 
-/// Cosine of the angle to the nearest points' normal within which a point's own normal must lie. Default ½; others belong to sides that do not face each other.
+/// Cosine of the angle to the nearest points' normal within which a point's own normal must lie. Default ½; others
+/// belong to sides that do not face each other.
 const FACING: f64 = 0.5;
 
-/// Sine of the slope against the plane of contact up to which an edge's crossings are looked at: the touching part of a steeper one is at its corner. Default ½.
+/// Sine of the slope against the plane of contact up to which an edge's crossings are looked at: the touching part of a
+/// steeper one is at its corner. Default ½.
 const STEEP: f64 = 0.5;
 
 /// Most edges of one cuboid that can be near the plane of contact.
 const MOST_EDGES: usize = 12;
 
 impl CuboidPair {
-    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one where the nearest points are that near.
+    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one
+    /// where the nearest points are that near.
     pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
         if nearest.gap > within {
             return;
@@ -38,7 +41,8 @@ impl CuboidPair {
         }
     }
 
-    /// Beyond which sides of the other cuboid a corner is, if it can be near. What is hardly beyond a side counts as above the face next to it.
+    /// Beyond which sides of the other cuboid a corner is, if it can be near. What is hardly beyond a side counts as
+    /// above the face next to it.
     fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: f64) -> Option<[i8; 3]> {
         let other = &self.cuboids[1 - of];
         let seen = self.corner_seen(of, corner);
@@ -57,7 +61,8 @@ impl CuboidPair {
             }
         }
         if sides == 0 {
-            // On the skin of the core or inside: of the sides not deeper than the nearest points are, that which faces the other cuboid most.
+            // On the skin of the core or inside: of the sides not deeper than the nearest points are, that which faces
+            // the other cuboid most.
             let deepest = top.min(nearest.gap + self.roundings()) - within;
             let faces = |k: usize| {
                 let cosine = other.axes.col(k).dot(nearest.normal) * f64::from(side(k));

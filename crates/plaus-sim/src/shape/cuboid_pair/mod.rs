@@ -1,15 +1,19 @@
 //! Two cuboids: how far apart they are, where they are nearest, and all the points at which they touch.
 //!
-//! A rounded cuboid is its core (a smaller, sharp cuboid) and everything within its rounding of it, so only the cores are looked at.
+//! A rounded cuboid is its core (a smaller, sharp cuboid) and everything within its rounding of it, so only the cores
+//! are looked at.
 //!
-//! Cores that are apart are separated best along a face's normal or the cross product of two edges, or else the nearest point of one of them is a corner. So the distance is
-//! exact after fifteen axes and the distances of sixteen corners from the other cuboid: no iteration, no tolerance on its end. Cores that overlap are as deep as
-//! their axis of least overlap says.
+//! Cores that are apart are separated best along a face's normal or the cross product of two edges, or else the nearest
+//! point of one of them is a corner. So the distance is exact after fifteen axes and the distances of sixteen corners
+//! from the other cuboid: no iteration, no tolerance on its end. Cores that overlap are as deep as their axis of least
+//! overlap says.
 //!
-//! The points of contact are those of the usual clipping of two support features: corners near a face of the other, and crossings of edges. Each is named by its
-//! [`Feature`], so that it can be followed to another pose ([`CuboidPair::again`]) with the exact geometry of that feature.
+//! The points of contact are those of the usual clipping of two support features: corners near a face of the other, and
+//! crossings of edges. Each is named by its [`Feature`], so that it can be followed to another pose
+//! ([`CuboidPair::again`]) with the exact geometry of that feature.
 //!
-//! Sources: axes: Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH 1996; corner regions: Ericson, *Real-Time Collision Detection* (2005), §5.1.4 and 5.1.9.
+//! Sources: axes: Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH 1996; corner regions: Ericson, *Real-Time Collision
+//! Detection* (2005), §5.1.4 and 5.1.9.
 
 mod manifold;
 mod nearest;
@@ -35,7 +39,8 @@ pub(crate) struct CuboidPair {
     cuboids: [Placed; 2],
     /// From the second centre to the first.
     offset: DVec3,
-    /// From the other's centre to the own one, in own axes negated for the first: where the other's centre is seen from each.
+    /// From the other's centre to the own one, in own axes negated for the first: where the other's centre is seen from
+    /// each.
     other: [DVec3; 2],
     /// Axes of the second in those of the first, as columns, and the transpose.
     across: [DMat3; 2],
@@ -51,8 +56,8 @@ pub(crate) struct Edge {
 /// The parts of two cuboids that meet at a point of contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Feature {
-    /// A corner of the cuboid `of` (0 or 1) and what is nearest to it on the other: `region` tells the sides beyond which it is, along each axis. One side is a face, two are
-    /// an edge, three a corner.
+    /// A corner of the cuboid `of` (0 or 1) and what is nearest to it on the other: `region` tells the sides beyond
+    /// which it is, along each axis. One side is a face, two are an edge, three a corner.
     Corner { of: u8, corner: u8, region: [i8; 3] },
     /// An edge of each.
     Edges(Edge, Edge),
@@ -69,8 +74,9 @@ pub(crate) struct Meeting<F = Feature> {
     pub(crate) feature: F,
 }
 
-/// Sine of the angle between edges below which they count as parallel. Default 1e-7: the crossing of edges more parallel than that lies within 1e-7 of their length of where
-/// their corners are, and its normal would be exact to 1e-9 only.
+/// Sine of the angle between edges below which they count as parallel. Default 1e-7: the crossing of edges more
+/// parallel than that lies within 1e-7 of their length of where their corners are, and its normal would be exact to
+/// 1e-9 only.
 const PARALLEL: f64 = 1e-7;
 
 /// The point of a core with these sides, in body axes.
@@ -160,7 +166,8 @@ impl CuboidPair {
         }
     }
 
-    /// The square of the sine between axis `i` of the first and axis `j` of the second, without cancellation. The same bits from both sides.
+    /// The square of the sine between axis `i` of the first and axis `j` of the second, without cancellation. The same
+    /// bits from both sides.
     #[inline]
     fn sine_squared(&self, i: usize, j: usize) -> f64 {
         let part = |c: DVec3, i: usize| {
@@ -170,7 +177,8 @@ impl CuboidPair {
         0.5 * (part(self.across[0].col(j), i) + part(self.across[1].col(i), j))
     }
 
-    /// The meeting of two edges as lines, its normal on the side of `towards`; with it how far along each edge it lies from the middle.
+    /// The meeting of two edges as lines, its normal on the side of `towards`; with it how far along each edge it lies
+    /// from the middle.
     fn at_edges(&self, a: Edge, b: Edge, towards: DVec3) -> (Meeting, [f64; 2]) {
         let [first, second] = &self.cuboids;
         let (i, j) = (usize::from(a.axis), usize::from(b.axis));
@@ -220,7 +228,8 @@ impl CuboidPair {
         }
     }
 
-    /// Rate of a feature's normal while the cuboids turn at these angular velocities; where edges are almost parallel or corners meet, what leaves no feature's own rate out of account.
+    /// Rate of a feature's normal while the cuboids turn at these angular velocities; where edges are almost parallel
+    /// or corners meet, what leaves no feature's own rate out of account.
     pub(crate) fn turning(&self, feature: Feature, normal: DVec3, spins: [DVec3; 2]) -> DVec3 {
         // A normal across an edge stays so.
         let kept_across = |e: DVec3, w: DVec3| -normal.dot(w.cross(e));
@@ -251,7 +260,8 @@ impl CuboidPair {
     }
 }
 
-/// Sine below which the normal of two edges turns too fast to be followed. Default 0.1: it turns at up to the cuboids' angular speeds over this.
+/// Sine below which the normal of two edges turns too fast to be followed. Default 0.1: it turns at up to the cuboids'
+/// angular speeds over this.
 const NEARLY_PARALLEL: f64 = 0.1;
 
 /// Within ±`most`; what is not a number is the middle.

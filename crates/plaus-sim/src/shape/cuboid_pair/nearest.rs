@@ -3,13 +3,16 @@
 use super::{CuboidPair, Edge, Meeting, PARALLEL, Placed};
 use glam::DVec3;
 
-/// How much farther apart an axis of two edges must keep cores than the faces do, over their size, to be taken: rounding decides nothing. Default 1e-12.
+/// How much farther apart an axis of two edges must keep cores than the faces do, over their size, to be taken:
+/// rounding decides nothing. Default 1e-12.
 const SLACK: f64 = 1e-12;
 
-/// Distance over the size below which cores count as touching, so that the direction between their nearest points says nothing. Default 1e-11.
+/// Distance over the size below which cores count as touching, so that the direction between their nearest points says
+/// nothing. Default 1e-11.
 const TOUCHING: f64 = 1e-11;
 
-/// Distance over the size by which nearest points may be farther apart than what separates the cores. Default 1e-10, above rounding.
+/// Distance over the size by which nearest points may be farther apart than what separates the cores. Default 1e-10,
+/// above rounding.
 const TIE: f64 = 1e-10;
 
 impl CuboidPair {
@@ -37,7 +40,8 @@ impl CuboidPair {
         if meeting.gap + self.roundings() <= self.apart(meeting.normal) + TIE * size {
             return meeting;
         }
-        // Faces so parallel that edges cross without an axis of their own: the face's axis keeps cores as far apart as they are.
+        // Faces so parallel that edges cross without an axis of their own: the face's axis keeps cores as far apart as
+        // they are.
         self.support_corner(of, axis)
     }
 

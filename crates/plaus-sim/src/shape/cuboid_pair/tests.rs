@@ -22,8 +22,9 @@ fn reach(c: &Placed, d: DVec3) -> f64 {
     (c.axes.transpose() * d).abs().dot(c.core)
 }
 
-/// Whether two cores have a point in common, by the vertices of what they share: where three of their twelve face planes meet within all the others. A vertex counts that is
-/// within `slack` of the faces; planes more parallel than a determinant of 1e-9 make none, as their vertices would be off by rounding over that.
+/// Whether two cores have a point in common, by the vertices of what they share: where three of their twelve face
+/// planes meet within all the others. A vertex counts that is within `slack` of the faces; planes more parallel than a
+/// determinant of 1e-9 make none, as their vertices would be off by rounding over that.
 fn overlap(a: &Placed, b: &Placed, offset: DVec3, slack: f64) -> bool {
     let planes: Vec<(DVec3, f64)> = [(a, offset), (b, DVec3::ZERO)]
         .into_iter()
@@ -53,8 +54,9 @@ fn places() -> impl Strategy<Value = (Placed, Placed, DVec3)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
-    /// The least distance proves itself: two points of the cores are that far apart, so it is not less; and a plane's width of that size fits between them, so it is not more. Lengths
-    /// are up to 5, so rounding is 1e-15 an operation; the bounds leave room for a few hundred.
+    /// The least distance proves itself: two points of the cores are that far apart, so it is not less; and a plane's
+    /// width of that size fits between them, so it is not more. Lengths are up to 5, so rounding is 1e-15 an operation;
+    /// the bounds leave room for a few hundred.
     #[test]
     fn the_distance_is_the_least((a, b, offset) in places()) {
         let pair = CuboidPair::new(offset, a, b);
@@ -86,7 +88,8 @@ proptest! {
         prop_assert!((one.gap - two.gap).abs() <= 1e-14 && (one.normal + two.normal).length() < 1e-9, "{one:?} {two:?}");
     }
 
-    /// Moved out along the normal by their overlap, cuboids just touch; moved by less, along the normal or any other direction, they do not part.
+    /// Moved out along the normal by their overlap, cuboids just touch; moved by less, along the normal or any other
+    /// direction, they do not part.
     #[test]
     fn overlaps_are_as_deep_as_they_say((a, b, offset) in places(), way in prop::array::uniform3(-1.0..1.0_f64)) {
         let nearest = CuboidPair::new(offset, a, b).nearest();

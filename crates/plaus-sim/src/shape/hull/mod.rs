@@ -20,16 +20,19 @@ pub(super) use integrals::outer;
 pub(super) use principal::principal;
 use std::collections::BTreeMap;
 
-/// Most corners of one face: all points at which a body stands on flat ground are kept (`MOST_TOUCHES` of a body), and some of a wall beside it.
+/// Most corners of one face: all points at which a body stands on flat ground are kept (`MOST_TOUCHES` of a body), and
+/// some of a wall beside it.
 const MOST_CORNERS_OF_A_FACE: usize = 12;
 
 /// Most points that a hull is made from: the search for its first face takes up to the cube of their number.
 const MOST_POINTS: usize = 1000;
 
-/// The convex hull of points, or all that is within a radius of it, about its centre of gravity and along its principal axes.
+/// The convex hull of points, or all that is within a radius of it, about its centre of gravity and along its principal
+/// axes.
 ///
-/// The points may be given along any axes about any origin; [`centre`](Self::centre) and [`turn`](Self::turn) tell where the body is among them, so that what is drawn fits:
-/// a point `p` of the given ones is at `turn⁻¹ (p − centre)` of the body.
+/// The points may be given along any axes about any origin; [`centre`](Self::centre) and [`turn`](Self::turn) tell
+/// where the body is among them, so that what is drawn fits: a point `p` of the given ones is at `turn⁻¹ (p − centre)`
+/// of the body.
 ///
 /// ```
 /// use plaus_sim::shape::{ConvexHull, Shape, Solid};
@@ -54,13 +57,14 @@ pub struct ConvexHull {
 }
 
 impl ConvexHull {
-    /// The hull of `points` in m, grown by `rounding` in m (0: sharp). Points inside the hull, on its faces or twice in the same place do no harm; points within 1e-9 of
-    /// the extent of a plane count as in it.
+    /// The hull of `points` in m, grown by `rounding` in m (0: sharp). Points inside the hull, on its faces or twice in
+    /// the same place do no harm; points within 1e-9 of the extent of a plane count as in it.
     ///
     /// # Errors
-    /// [`WorldError::BadPoint`] for a point that is not finite, [`WorldError::FewPoints`] for fewer than four distinct ones, [`WorldError::FlatHull`] where all are in a plane,
-    /// [`WorldError::LargeHull`] for more than 1000 points, 64 corners or 12 corners of one face, [`WorldError::UnclearHull`] where points are so nearly in a plane that rounding
-    /// decides on the faces, [`WorldError::BadNumber`] for a rounding that is negative or not finite.
+    /// [`WorldError::BadPoint`] for a point that is not finite, [`WorldError::FewPoints`] for fewer than four distinct
+    /// ones, [`WorldError::FlatHull`] where all are in a plane, [`WorldError::LargeHull`] for more than 1000 points, 64
+    /// corners or 12 corners of one face, [`WorldError::UnclearHull`] where points are so nearly in a plane that
+    /// rounding decides on the faces, [`WorldError::BadNumber`] for a rounding that is negative or not finite.
     pub fn new(points: &[DVec3], rounding: f64) -> Result<Self, WorldError> {
         if let Some((point, &at)) = points.iter().enumerate().find(|(_, p)| !p.is_finite()) {
             return Err(WorldError::BadPoint { point, at });

@@ -207,7 +207,8 @@ impl Polyhedron {
         }
     }
 
-    /// Points on edges and faces, no farther from each other than about `spacing`, without the corners; at most 16 intervals per edge.
+    /// Points on edges and faces, no farther from each other than about `spacing`, without the corners; at most 16
+    /// intervals per edge.
     pub(crate) fn between(&self, spacing: f64) -> Vec<DVec3> {
         let intervals = |length: f64| (length / spacing).ceil().clamp(1.0, 16.0) as usize;
         let mut points = Vec::new();

@@ -1,13 +1,15 @@
 //! Principal moments and axes of a symmetric tensor, by Jacobi's rotations.
 //!
-//! Source: Golub & Van Loan, *Matrix Computations*, §8.5 (cyclic Jacobi). A fixed order of rotations and square roots only: the same bits everywhere.
+//! Source: Golub & Van Loan, *Matrix Computations*, §8.5 (cyclic Jacobi). A fixed order of rotations and square roots
+//! only: the same bits everywhere.
 
 use glam::{DMat3, DVec3};
 
 /// Part of the trace below which what is not on the diagonal counts as rounding. Default 1e-14.
 const ROUNDING: f64 = 1e-14;
 
-/// Difference of two moments, over the larger, below which they are equal: the free rotation of a top then has its closed form, and axes are not turned for rounding's sake. Default 1e-12.
+/// Difference of two moments, over the larger, below which they are equal: the free rotation of a top then has its
+/// closed form, and axes are not turned for rounding's sake. Default 1e-12.
 const EQUAL: f64 = 1e-12;
 
 /// Sweeps over the three entries; convergence is quadratic, five or six do.

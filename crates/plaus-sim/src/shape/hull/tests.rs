@@ -76,7 +76,8 @@ fn axes_are_principal_and_told() {
     }
 }
 
-/// A lattice of cells whose middles are in the body: each cell on the skin is wrong by half of it at most, by chance, so 64³ of them are exact to well below 1e-3.
+/// A lattice of cells whose middles are in the body: each cell on the skin is wrong by half of it at most, by chance,
+/// so 64³ of them are exact to well below 1e-3.
 #[test]
 fn rounding_agrees_with_a_plain_sum() {
     let points =
@@ -154,7 +155,8 @@ proptest! {
         ..ProptestConfig::with_cases(300)
     })]
 
-    /// Every point is behind every face, every corner is a point, and scaling by powers of two scales all numbers to the bit.
+    /// Every point is behind every face, every corner is a point, and scaling by powers of two scales all numbers to
+    /// the bit.
     #[test]
     fn hulls_hold_their_points(points in clouds()) {
         let body = hull(&points, 0.0);

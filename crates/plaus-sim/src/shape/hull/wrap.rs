@@ -1,13 +1,16 @@
-//! The faces of a convex hull, by gift wrapping: from each edge of a face found, the plane is turned about the edge until it meets the first other point.
+//! The faces of a convex hull, by gift wrapping: from each edge of a face found, the plane is turned about the edge
+//! until it meets the first other point.
 //!
-//! Source: Chand & Kapur, "An algorithm for convex polytopes", J. ACM 17 (1970). Deviation: all points within [`FLAT`] of a face's plane belong to it, so faces that are flat but for
-//! rounding come out whole, and what comes out is checked to be a closed surface.
+//! Source: Chand & Kapur, "An algorithm for convex polytopes", J. ACM 17 (1970). Deviation: all points within [`FLAT`]
+//! of a face's plane belong to it, so faces that are flat but for rounding come out whole, and what comes out is
+//! checked to be a closed surface.
 
 use crate::error::WorldError;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 
-/// Distance from a plane or from another point within which points count as on it, over the extent of all. Default 1e-9; far above rounding, far below what can be seen.
+/// Distance from a plane or from another point within which points count as on it, over the extent of all. Default
+/// 1e-9; far above rounding, far below what can be seen.
 pub(super) const FLAT: f64 = 1e-9;
 
 /// The points with what belongs to all of them.
@@ -85,7 +88,8 @@ pub(super) fn newell(points: &[DVec3], face: &[usize]) -> DVec3 {
 }
 
 impl Cloud<'_> {
-    /// A face at the first of the points along x: of the planes through it that have all points on one side, that through the largest triangle.
+    /// A face at the first of the points along x: of the planes through it that have all points on one side, that
+    /// through the largest triangle.
     fn seed(&self, extent: f64) -> Option<Vec<usize>> {
         let at = |k: usize| self.points[k];
         let order = |a: DVec3, b: DVec3| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z));
@@ -147,7 +151,8 @@ impl Cloud<'_> {
         self.face(normal_through(across(first)), from)
     }
 
-    /// The hull of the points in a plane, anticlockwise about its normal; points on its sides are left out (Andrew's monotone chain).
+    /// The hull of the points in a plane, anticlockwise about its normal; points on its sides are left out (Andrew's
+    /// monotone chain).
     fn face(&self, normal: DVec3, on: DVec3) -> Vec<usize> {
         let (u, v) = normal.any_orthonormal_pair();
         let (u, v) = if u.cross(v).dot(normal) > 0.0 { (u, v) } else { (v, u) };

@@ -11,7 +11,8 @@ impl HullPair<'_> {
         [a.axes * a.core.edge(i).along, b.axes * b.core.edge(j).along]
     }
 
-    /// The meeting of two edges as lines, its normal on the side of `towards`; with it by how much the points are within the ends of their edges, in m.
+    /// The meeting of two edges as lines, its normal on the side of `towards`; with it by how much the points are
+    /// within the ends of their edges, in m.
     pub(super) fn at_edges(&self, [i, j]: [u8; 2], towards: DVec3) -> (Meeting, f64) {
         let [a, b] = &self.hulls;
         let [e, g] = self.along([i, j]);
@@ -38,10 +39,11 @@ impl HullPair<'_> {
         (self.meeting(points, normal, normal.dot(between), feature), if within.is_nan() { -1.0 } else { within })
     }
 
-    /// The pair of edges whose common perpendicular keeps the cores farthest apart, if farther than `least`; with the direction, towards the first.
+    /// The pair of edges whose common perpendicular keeps the cores farthest apart, if farther than `least`; with the
+    /// direction, towards the first.
     ///
-    /// Only pairs whose perpendicular is a normal of both surfaces count: on the sphere of normals the arcs between the faces of the edges cross (Gregorius, "The separating axis test
-    /// between convex polyhedra", GDC 2013).
+    /// Only pairs whose perpendicular is a normal of both surfaces count: on the sphere of normals the arcs between the
+    /// faces of the edges cross (Gregorius, "The separating axis test between convex polyhedra", GDC 2013).
     pub(super) fn best_edges(&self, least: f64) -> Option<(f64, [u8; 2], DVec3)> {
         let [a, b] = self.hulls.map(|h| h.core);
         let into = &self.across[0];

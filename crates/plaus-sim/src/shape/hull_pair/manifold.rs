@@ -1,17 +1,21 @@
-//! All points at which two polyhedra touch: corners near the other's surface, and crossings of edges near the plane of contact.
+//! All points at which two polyhedra touch: corners near the other's surface, and crossings of edges near the plane of
+//! contact.
 
 use super::{HullPair, Meeting, PARALLEL};
 use crate::shape::hull::{MOST_EDGES, On};
 use glam::DVec3;
 
-/// Cosine of the angle to the nearest points' normal within which a point's own normal must lie. Default ½; others belong to sides that do not face each other.
+/// Cosine of the angle to the nearest points' normal within which a point's own normal must lie. Default ½; others
+/// belong to sides that do not face each other.
 const FACING: f64 = 0.5;
 
-/// Sine of the slope against the plane of contact up to which an edge's crossings are looked at: the touching part of a steeper one is at its corner. Default ½.
+/// Sine of the slope against the plane of contact up to which an edge's crossings are looked at: the touching part of a
+/// steeper one is at its corner. Default ½.
 const STEEP: f64 = 0.5;
 
 impl HullPair<'_> {
-    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one where the nearest points are that near.
+    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one
+    /// where the nearest points are that near.
     pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
         if nearest.gap > within {
             return;
@@ -47,7 +51,8 @@ impl HullPair<'_> {
         }
     }
 
-    /// What of the other polyhedron a corner is near, if it can be near. What is hardly beyond a face counts as above the face next to it.
+    /// What of the other polyhedron a corner is near, if it can be near. What is hardly beyond a face counts as above
+    /// the face next to it.
     fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: f64) -> Option<On> {
         let other = self.hulls[1 - of].core;
         let seen = self.corner_seen(of, corner);
@@ -64,7 +69,8 @@ impl HullPair<'_> {
                 let mut sides = (0..other.faces.len()).filter(|&k| beyond(k) > within);
                 match (sides.next(), sides.next()) {
                     (None, _) => {
-                        // On the skin of the core or inside: of the faces not deeper than the nearest points are, that which faces the other polyhedron most.
+                        // On the skin of the core or inside: of the faces not deeper than the nearest points are, that
+                        // which faces the other polyhedron most.
                         let deepest = top.min(nearest.gap + self.roundings()) - within;
                         let out = self.hulls[1 - of].axes.transpose() * nearest.normal;
                         let out = if of == 0 { out } else { -out };
@@ -81,7 +87,8 @@ impl HullPair<'_> {
         (of == 0 || !matches!(on, On::Corner(_))).then_some(on)
     }
 
-    /// Calls `take` for the crossings of edges near the plane of contact that are within the ends of both by more than `margin`.
+    /// Calls `take` for the crossings of edges near the plane of contact that are within the ends of both by more than
+    /// `margin`.
     pub(super) fn crossings(&self, normal: DVec3, within: f64, margin: f64, mut take: impl FnMut(Meeting)) {
         // Heights along the normal about the second centre.
         let base = self.offset.dot(normal);

@@ -1,7 +1,8 @@
-//! Two convex polyhedra, each with a rounding: how far apart they are, where they are nearest, and all the points at which they touch. A ball is a polyhedron of a single corner.
+//! Two convex polyhedra, each with a rounding: how far apart they are, where they are nearest, and all the points at
+//! which they touch. A ball is a polyhedron of a single corner.
 //!
-//! The same questions as `cuboid_pair` answers for cuboids, and the same answers: what is nearest is named by its [`Feature`], whose exact geometry gives points, normal and
-//! gap at this and at other poses.
+//! The same questions as `cuboid_pair` answers for cuboids, and the same answers: what is nearest is named by its
+//! [`Feature`], whose exact geometry gives points, normal and gap at this and at other poses.
 
 mod edges;
 mod manifold;
@@ -93,7 +94,8 @@ impl<'h> HullPair<'h> {
         Meeting { normal, arms, gap: distance - self.roundings(), feature }
     }
 
-    /// The meeting of a corner with a part of the other's surface, wherever they are now; with it whether the foot is on that part.
+    /// The meeting of a corner with a part of the other's surface, wherever they are now; with it whether the foot is
+    /// on that part.
     fn at_corner(&self, of: usize, corner: u8, on: On) -> (Meeting, bool) {
         let (own, other) = (&self.hulls[of], &self.hulls[1 - of]);
         let seen = self.corner_seen(of, corner);
@@ -127,7 +129,8 @@ impl<'h> HullPair<'h> {
         }
     }
 
-    /// Rate of a feature's normal while the bodies turn at these angular velocities; where edges are almost parallel or corners meet, what leaves no feature's own rate out of account.
+    /// Rate of a feature's normal while the bodies turn at these angular velocities; where edges are almost parallel or
+    /// corners meet, what leaves no feature's own rate out of account.
     pub(crate) fn turning(&self, feature: Feature, normal: DVec3, spins: [DVec3; 2]) -> DVec3 {
         // A normal across an edge stays so.
         let kept_across = |e: DVec3, w: DVec3| -normal.dot(w.cross(e));

@@ -1,27 +1,33 @@
 //! The distance of two polyhedra.
 //!
-//! Cores that are apart are kept farthest apart by a face's normal or the common perpendicular of two edges, or else the nearest point of one of them is a corner over an edge or a corner
-//! of the other. So the distance is exact after all faces, all pairs of edges that can face each other, and, where those do not tell, all corners against all edges: no
-//! iteration. Cores that overlap are as deep as their axis of least overlap says, which is the least way out.
+//! Cores that are apart are kept farthest apart by a face's normal or the common perpendicular of two edges, or else
+//! the nearest point of one of them is a corner over an edge or a corner of the other. So the distance is exact after
+//! all faces, all pairs of edges that can face each other, and, where those do not tell, all corners against all edges:
+//! no iteration. Cores that overlap are as deep as their axis of least overlap says, which is the least way out.
 //!
-//! That two points are nearest is proved by themselves: they are as far apart as the planes across the line between them, each touching its core, keep the cores. So a guess from a
-//! pose nearby needs only that proof ([`HullPair::nearest`]).
+//! That two points are nearest is proved by themselves: they are as far apart as the planes across the line between
+//! them, each touching its core, keep the cores. So a guess from a pose nearby needs only that proof
+//! ([`HullPair::nearest`]).
 
 use super::{Feature, HullPair, Meeting};
 use crate::shape::hull::On;
 use glam::DVec3;
 
-/// How much farther apart edges must keep cores than the faces do, over their size, to be taken: rounding decides nothing. Default 1e-12.
+/// How much farther apart edges must keep cores than the faces do, over their size, to be taken: rounding decides
+/// nothing. Default 1e-12.
 const SLACK: f64 = 1e-12;
 
-/// Distance over the size below which cores count as touching, so that the direction between their nearest points says nothing. Default 1e-11.
+/// Distance over the size below which cores count as touching, so that the direction between their nearest points says
+/// nothing. Default 1e-11.
 const TOUCHING: f64 = 1e-11;
 
-/// Distance over the size by which nearest points may be farther apart than what separates the cores. Default 1e-10, above rounding.
+/// Distance over the size by which nearest points may be farther apart than what separates the cores. Default 1e-10,
+/// above rounding.
 const TIE: f64 = 1e-10;
 
 impl HullPair<'_> {
-    /// The nearest points of two polyhedra; of cores that overlap, those along the axis of least overlap. `guess` is what was nearest at a pose nearby, with its normal.
+    /// The nearest points of two polyhedra; of cores that overlap, those along the axis of least overlap. `guess` is
+    /// what was nearest at a pose nearby, with its normal.
     pub(crate) fn nearest(&self, guess: Option<(Feature, DVec3)>) -> Meeting {
         guess.and_then(|(feature, normal)| self.proved(feature, normal)).unwrap_or_else(|| self.searched())
     }
@@ -69,7 +75,8 @@ impl HullPair<'_> {
             return meeting;
         }
         let Some((_, of, face)) = face else { return meeting };
-        // Faces so parallel that edges cross without a perpendicular of their own, or corners just beside them: the face's normal keeps cores as far apart as they are.
+        // Faces so parallel that edges cross without a perpendicular of their own, or corners just beside them: the
+        // face's normal keeps cores as far apart as they are.
         let (meeting, _) = self.support_corner(of, face);
         self.crossing(&meeting, TIE * size).unwrap_or(meeting)
     }
@@ -96,7 +103,8 @@ impl HullPair<'_> {
         best
     }
 
-    /// The corner of the other polyhedron that is deepest below a face; of those equally deep one over the face, if there is any, and whether it is.
+    /// The corner of the other polyhedron that is deepest below a face; of those equally deep one over the face, if
+    /// there is any, and whether it is.
     fn support_corner(&self, of: usize, face: u8) -> (Meeting, bool) {
         let (own, other) = (self.hulls[of].core, self.hulls[1 - of].core);
         let down = self.across[1 - of] * -own.face(face).normal;

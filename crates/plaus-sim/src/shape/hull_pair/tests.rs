@@ -1,4 +1,5 @@
-//! Distances prove themselves: points on both skins, apart along a direction that keeps the bodies just as far apart. And against cuboids, which share nothing with this but the answer.
+//! Distances prove themselves: points on both skins, apart along a direction that keeps the bodies just as far apart.
+//! And against cuboids, which share nothing with this but the answer.
 
 use super::*;
 use crate::shape::cuboid_pair::CuboidPair;
@@ -162,7 +163,8 @@ fn points(pair: &HullPair, within: f64) -> Vec<Meeting> {
     points
 }
 
-/// A cube on another, turned by 45°: the octagon of their faces. A pentagon on the square: corners over it, and crossings of its sides.
+/// A cube on another, turned by 45°: the octagon of their faces. A pentagon on the square: corners over it, and
+/// crossings of its sides.
 #[test]
 fn faces_touch_at_the_corners_of_what_they_share() {
     let cube = solid(Solid::Cube);
@@ -183,7 +185,8 @@ fn faces_touch_at_the_corners_of_what_they_share() {
     let level = DMat3::from_rotation_z(-plaus_dist::math::atan2(out.y, out.x)) * down;
     let height = face.offset + 0.5 + 1e-6;
     let hangs = points(&HullPair::new(DVec3::new(0.0, 0.0, height), place(&dodecahedron, level), lower), 1e-5);
-    // Circumradius 0.85 of a pentagon with edge 1: the corner at +x is over the edge, so are those at ±144° hardly not; the square's corners are outside or inside.
+    // Circumradius 0.85 of a pentagon with edge 1: the corner at +x is over the edge, so are those at ±144° hardly not;
+    // the square's corners are outside or inside.
     let inside = |m: &&Meeting| m.arms[1].x.abs() < 0.5 + 1e-9 && m.arms[1].y.abs() < 0.5 + 1e-9;
     assert!(hangs.iter().all(|m| inside(&m) && (m.gap - 1e-6).abs() < 1e-12), "{hangs:?}");
     assert!((5..=9).contains(&hangs.len()), "{}", hangs.len());

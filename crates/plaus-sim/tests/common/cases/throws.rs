@@ -77,10 +77,10 @@ pub struct Toss {
 /// Half the width of the cube of the published tosses, in m (ContactNets: Pfrommer, Halm and Posa, CoRL 2020).
 const HALF: f64 = 0.0524;
 
-/// Reads tosses as they are in `xtask/figures/data/tosses/tosses.csv`: after the line of names a line each with number and
-/// seconds, then position, quaternion (real part first), velocity and angular velocity in the body's axes of the first
-/// frame, and position and quaternion of the last. Velocities are means over the 1/148 s before the frame: in free fall
-/// that at the frame is faster downwards by half of what gravity adds in that time.
+/// Reads tosses as they are in `xtask/figures/data/tosses/tosses.csv`: after the line of names a line each with number
+/// and seconds, then position, quaternion (real part first), velocity and angular velocity in the body's axes of the
+/// first frame, and position and quaternion of the last. Velocities are means over the 1/148 s before the frame: in
+/// free fall that at the frame is faster downwards by half of what gravity adds in that time.
 ///
 /// # Errors
 /// What line cannot be read.

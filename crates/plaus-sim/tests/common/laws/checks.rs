@@ -153,8 +153,9 @@ pub fn energy_bound(record: &Record) -> f64 {
     rise(record) * unit + ROUNDINGS * events as f64 * energy_scale(record)
 }
 
-/// What energy may rise by, over Σ m g size: by lifting every body by the touching gap once, and by the error of a step of lasting contact, of second order. A twentieth of the step's square
-/// is ten times the least that was seen, and twice the most.
+/// What energy may rise by, over Σ m g size: by lifting every body by the touching gap once, and by the error of a step
+/// of lasting contact, of second order. A twentieth of the step's square is ten times the least that was seen, and
+/// twice the most.
 fn rise(record: &Record) -> f64 {
     let accuracy = &record.accuracy;
     2.0 * accuracy.gap + accuracy.step * accuracy.step / 20.0

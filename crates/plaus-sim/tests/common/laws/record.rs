@@ -123,7 +123,8 @@ impl Observer<Rigid> for Recorder<'_> {
     }
 }
 
-/// Runs a world and writes down what happened. A run of more than `most` events is cut off there: what is recorded up to it must be lawful too.
+/// Runs a world and writes down what happened. A run of more than `most` events is cut off there: what is recorded up
+/// to it must be lawful too.
 pub fn record(world: RigidWorld, starts: &[Start], until: f64, most: u64) -> Record {
     let facts = world.bodies.iter().map(Facts::new).collect();
     let (gravity, accuracy) = (world.gravity, world.accuracy);

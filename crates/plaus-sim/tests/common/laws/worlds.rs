@@ -116,7 +116,8 @@ impl Dice {
         }
     }
 
-    /// A throw of a body from up to three times its size over the floor, with speeds from slow to fast on the scale √(g·reach).
+    /// A throw of a body from up to three times its size over the floor, with speeds from slow to fast on the scale
+    /// √(g·reach).
     pub fn throw(&mut self, body: &BodySpec) -> Start {
         let reach = body.shape.reach();
         let speed = (G * reach).sqrt();

@@ -1,8 +1,8 @@
 //! One point's impact: Stronge's restitution with Coulomb's friction, in small increments of the normal impulse.
 //!
-//! An increment's friction is implicit: of all tangential impulses within the cone it leaves the least tangential energy,
-//! so that it sticks where it can and opposes the slip that is left where it cannot. That is of the first order in the
-//! increment; two runs, one with half the increments, take the error of that order out.
+//! An increment's friction is implicit: of all tangential impulses within the cone it leaves the least tangential
+//! energy, so that it sticks where it can and opposes the slip that is left where it cannot. That is of the first order
+//! in the increment; two runs, one with half the increments, take the error of that order out.
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 

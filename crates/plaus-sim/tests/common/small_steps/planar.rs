@@ -1,7 +1,7 @@
 //! Boxes in a row in a vertical plane, without restitution: a wave of dominoes, in steps of one length.
 //!
-//! Moreau's steps over all contacts at once: corners on the floor, corners of a box on a face of its neighbour. A corner
-//! that is still apart may come as near as its gap within the step, so nothing needs to be found in time.
+//! Moreau's steps over all contacts at once: corners on the floor, corners of a box on a face of its neighbour. A
+//! corner that is still apart may come as near as its gap within the step, so nothing needs to be found in time.
 
 use glam::DVec2;
 use std::collections::BTreeMap;
