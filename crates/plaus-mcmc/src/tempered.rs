@@ -1,8 +1,8 @@
 //! A target whose constraint counts less: `p_w · p_c^β`.
 
-use crate::target::{ModelError, Simulated, StateOf, Target};
-use crate::view::View;
-use plaus_dist::{LogDensity, LogPotential, ParamError, Stream};
+use crate::target::{ModelError, Target};
+use crate::view::Reweighed;
+use plaus_dist::{LogPotential, ParamError};
 
 /// The target `p_w(draw) · p_c(outcome)^β`: for `p_c = λ^k`, the same target at `λ^β`.
 ///
@@ -53,53 +53,27 @@ pub(crate) fn floor_seen(floor: LogPotential, beta: f64) -> Option<LogPotential>
     LogPotential::new(seen).ok()
 }
 
-impl<T: Target> Target for Tempered<'_, T> {
-    type Draw = T::Draw;
-    type Outcome = T::Outcome;
-    type Scratch = T::Scratch;
-
-    fn start(&self, stream: &mut Stream) -> T::Draw {
-        self.target.start(stream)
-    }
-
-    fn log_prior(&self, draw: &T::Draw) -> Result<LogDensity, ModelError> {
-        self.target.log_prior(draw)
-    }
-
-    fn simulate(
-        &self,
-        draw: &T::Draw,
-        current: Option<&StateOf<Self>>,
-        floor: LogPotential,
-        scratch: &mut T::Scratch,
-    ) -> Result<Simulated<T::Outcome>, ModelError> {
-        match floor_seen(floor, self.beta) {
-            Some(floor) => self.target.simulate(draw, current, floor, scratch),
-            None => Ok(Simulated::CannotExceedFloor),
-        }
-    }
-
-    fn log_constraint(&self, outcome: &T::Outcome) -> Result<LogPotential, ModelError> {
-        Ok(self.target.log_constraint(outcome)?.tempered(self.beta)?)
-    }
-
-    fn settle(&self, accepted: bool, scratch: &mut T::Scratch) {
-        self.target.settle(accepted, scratch);
-    }
-}
-
-impl<T: Target + 'static> View for Tempered<'_, T> {
+impl<T: Target> Reweighed for Tempered<'_, T> {
     type Seen = T;
 
     fn seen(&self) -> &T {
         self.target
+    }
+
+    fn floor_seen(&self, floor: LogPotential) -> Option<LogPotential> {
+        floor_seen(floor, self.beta)
+    }
+
+    fn weigh(&self, outcome: &T::Outcome) -> Result<LogPotential, ModelError> {
+        Ok(self.target.log_constraint(outcome)?.tempered(self.beta)?)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plaus_dist::{Purpose, Seed, open_unit};
+    use crate::target::{Simulated, StateOf};
+    use plaus_dist::{LogDensity, Purpose, Seed, Stream, open_unit};
 
     /// A target of which only the tempering is of interest.
     struct Nothing;

@@ -2,8 +2,8 @@
 
 use crate::moves::{Mixture, MixtureError, Move, Path, Proposal};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateOf, Target};
-use plaus_dist::{LogRatio, Stream};
+use crate::target::{ModelError, Simulated, StateOf, Target};
+use plaus_dist::{LogDensity, LogPotential, LogRatio, Stream};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -18,6 +18,70 @@ pub trait View: Target {
 
     /// The target seen.
     fn seen(&self) -> &Self::Seen;
+}
+
+/// A view with a constraint of its own, that simulates as the target seen does.
+pub trait Reweighed: Sync {
+    /// The target seen.
+    type Seen: Target;
+
+    /// The target seen.
+    fn seen(&self) -> &Self::Seen;
+
+    /// What the constraint of the target seen must exceed where this one must exceed `floor`; `None` where none can.
+    fn floor_seen(&self, floor: LogPotential) -> Option<LogPotential>;
+
+    /// The constraint of an outcome.
+    ///
+    /// # Errors
+    /// [`ModelError`] where the target seen fails, or the constraint is no number.
+    fn weigh(&self, outcome: &<Self::Seen as Target>::Outcome) -> Result<LogPotential, ModelError>;
+}
+
+impl<W: Reweighed> Target for W {
+    type Draw = <W::Seen as Target>::Draw;
+    type Outcome = <W::Seen as Target>::Outcome;
+    type Scratch = <W::Seen as Target>::Scratch;
+
+    fn start(&self, stream: &mut Stream) -> Self::Draw {
+        Reweighed::seen(self).start(stream)
+    }
+
+    fn log_prior(&self, draw: &Self::Draw) -> Result<LogDensity, ModelError> {
+        Reweighed::seen(self).log_prior(draw)
+    }
+
+    fn simulate(
+        &self,
+        draw: &Self::Draw,
+        current: Option<&StateOf<Self>>,
+        floor: LogPotential,
+        scratch: &mut Self::Scratch,
+    ) -> Result<Simulated<Self::Outcome>, ModelError> {
+        match self.floor_seen(floor) {
+            Some(floor) => Reweighed::seen(self).simulate(draw, current, floor, scratch),
+            None => Ok(Simulated::CannotExceedFloor),
+        }
+    }
+
+    fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError> {
+        self.weigh(outcome)
+    }
+
+    fn settle(&self, accepted: bool, scratch: &mut Self::Scratch) {
+        Reweighed::seen(self).settle(accepted, scratch);
+    }
+}
+
+impl<W: Reweighed> View for W
+where
+    W::Seen: 'static,
+{
+    type Seen = W::Seen;
+
+    fn seen(&self) -> &W::Seen {
+        Reweighed::seen(self)
+    }
 }
 
 /// The moves of a target, with their probabilities, for a view of it. Many views can share them through one [`Arc`].
