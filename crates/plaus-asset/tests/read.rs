@@ -157,7 +157,8 @@ fn keys_and_what_is_said_besides_are_told() {
 fn broken_files_are_errors() {
     let node = json!([{ "mesh": 0 }]);
     let accessor = |changes: Value| {
-        let mut first = json!({ "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 2, 3] });
+        let mut first = json!({ "bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3" });
+        (first["min"], first["max"]) = (json!([0, 0, 0]), json!([1, 2, 3]));
         changes.as_object().unwrap().iter().for_each(|(key, value)| first[key] = value.clone());
         json!({ "accessors": [first, { "bufferView": 1, "componentType": 5125, "count": 12, "type": "SCALAR" }] })
     };
@@ -166,14 +167,17 @@ fn broken_files_are_errors() {
         json!({ "count": 5 }),
         json!({ "count": u64::MAX / 8 }),
         json!({ "byteOffset": u64::MAX - 4 }),
-        json!({ "sparse": { "count": 1, "indices": { "bufferView": 1, "componentType": 5125 }, "values": { "bufferView": 0 } } }),
+        json!({ "sparse": {
+            "count": 1, "indices": { "bufferView": 1, "componentType": 5125 }, "values": { "bufferView": 0 },
+        } }),
     ] {
         let error = read("a.glb", &glb(&node, &accessor(changes.clone()))).unwrap_err();
         assert!(matches!(error, AssetError::Broken(_)), "{changes}: {error}");
     }
     let circle = json!({ "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0, "children": [0] }] });
     assert!(read("a.glb", &glb(&node, &circle)).unwrap_err().to_string().contains("twice"));
-    let needs = json!({ "extensionsRequired": ["KHR_draco_mesh_compression"], "extensionsUsed": ["KHR_draco_mesh_compression"] });
+    let draco = "KHR_draco_mesh_compression";
+    let needs = json!({ "extensionsRequired": [draco], "extensionsUsed": [draco] });
     assert!(read("a.glb", &glb(&node, &needs)).is_err());
     let whole = glb(&node, &json!({}));
     for cut in (0..whole.len()).step_by(7) {

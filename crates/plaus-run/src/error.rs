@@ -52,7 +52,8 @@ pub enum RunFileProblem {
     Manifest(String),
     /// The run's copy of a file that its scenario names is another.
     #[error(
-        "this copy of {0}, which the run's scenario names, was changed after the run was made: put it back as it was, or sample a new run"
+        "this copy of {0}, which the run's scenario names, was changed after the run was made: put it back as it was, \
+         or sample a new run"
     )]
     Asset(String),
     /// The folder holds something else than what is to be gone on with.

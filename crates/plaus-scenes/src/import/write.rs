@@ -169,8 +169,8 @@ impl Things {
             text += "#\n# What of the file is not here:\n";
             self.left_out.iter().for_each(|what| text += &format!("# - {}\n", what.replace('\n', " ")));
         }
-        text += "#\n# What must happen is for you to say, for instance:\n# [[require]]\n# rests_at = { x_mm = 0, y_mm = 0, \
-                 within_mm = 50 }\n\n[world.custom]\nduration_s = 10\n";
+        text += "#\n# What must happen is for you to say, for instance:\n# [[require]]\n";
+        text += "# rests_at = { x_mm = 0, y_mm = 0, within_mm = 50 }\n\n[world.custom]\nduration_s = 10\n";
         let (materials, names) = self.materials(content);
         text += &materials;
         if !self.all.iter().any(|thing| thing.role == Role::Fixed) {
@@ -188,16 +188,10 @@ impl Things {
         if self.bodies().next().is_none() {
             let middle = 0.5 * (low + high);
             let radius = (0.03 * (high - low).max_element()).clamp(1.0, 1e5);
-            let at = [middle.x, middle.y, high.z + 4.0 * radius].map(number);
-            let _ = write!(
-                text,
-                "\n# Nothing in the file moves: what falls here is for you to replace.\n[[world.custom.bodies]]\nname = \"ball\"\n\
-                 shape = {{ ball = {{ radius_mm = {} }} }}\nat_mm = [{{ normal = [{}, {SPREAD}] }}, {{ normal = [{}, {SPREAD}] }}, {}]\n",
-                number(radius),
-                at[0],
-                at[1],
-                at[2]
-            );
+            let [x, y, z] = [middle.x, middle.y, high.z + 4.0 * radius].map(number);
+            text += "\n# Nothing in the file moves: what falls here is for you to replace.\n[[world.custom.bodies]]\n";
+            let _ = write!(text, "name = \"ball\"\nshape = {{ ball = {{ radius_mm = {} }} }}\n", number(radius));
+            let _ = writeln!(text, "at_mm = [{}, {}, {z}]", uncertain(&x), uncertain(&y));
         }
         text
     }
@@ -247,8 +241,7 @@ impl Things {
                 let lifted = number(thing.lifted);
                 let lifted =
                     if thing.lifted > 0.0 { format!(" # lifted by {lifted} mm out of others") } else { String::new() };
-                let law = |place| format!("{{ normal = [{place}, {SPREAD}] }}");
-                let _ = writeln!(text, "at_mm = [{}, {}, {z}]{lifted}", law(x), law(y));
+                let _ = writeln!(text, "at_mm = [{}, {}, {z}]{lifted}", uncertain(&x), uncertain(&y));
             }
         }
         if thing.role != Role::Driven && turn != [0.0; 3] {
@@ -307,6 +300,11 @@ pub(super) fn angles(turn: DQuat) -> [f64; 3] {
         [atan2(-x.z.signum() * y.x, y.y), atan2(-x.z, level), 0.0]
     };
     radians.map(f64::to_degrees)
+}
+
+/// A coordinate as a law around it.
+fn uncertain(place: &str) -> String {
+    format!("{{ normal = [{place}, {SPREAD}] }}")
 }
 
 /// A number as a scenario has it, to a millionth.
