@@ -2,7 +2,9 @@
 //! hand.
 
 use glam::{DQuat, DVec3};
+use plaus_scenes::Scenario;
 use plaus_scenes::animation::{Animation, Contact, Impact, Look, Piece, Shape, Track, Turn, UPRIGHT, upright};
+use plaus_scenes::files::Assets;
 use plaus_scenes::require::{Cast, FAR, Probe, Require};
 
 const G: f64 = 9.806_65;
@@ -176,4 +178,30 @@ fn costs_of_several_add_up() {
     assert!((log(&format!("any = {parts}")) - any).abs() < 1e-12);
     let beats = log("beats = { body = '*', each = 'beat', times_s = [0.1, 0.2, 0.5], within_ms = 20, scale_ms = 10 }");
     assert!((beats - (-8.0 - (92.112 - 20.0) / 10.0)).abs() < 1e-3, "{beats}");
+}
+
+/// Beats of a file become a list in the scenario in force, which then needs the file no more.
+#[test]
+fn beats_are_read_from_files() {
+    let mut files = Assets::default();
+    files.insert("drums/hits.csv", b"time,drum\n0.75,snare\n0.25,bass\n".to_vec());
+    let text = |beats: &str| format!("[world.ball2d]\n[[require]]\nall = [{{ beats = {{ {beats} }} }}]\n");
+    let read = |beats: &str| Scenario::read_with("inline", &text(beats), &[], &files).map_err(|e| e.to_string());
+    let scenario = read("times_from = { file = 'drums/hits.csv' }, each = 'beat'").unwrap();
+    assert_eq!(scenario, read("times_s = [0.25, 0.75], each = 'beat'").unwrap());
+    assert_eq!(Scenario::read("inline", &scenario.to_toml(), &[]).unwrap(), scenario);
+    for (beats, wrong) in [
+        ("times_from = { file = 'hits.csv' }", "require[0].all[0].beats.times_from.file: hits.csv: it is not among"),
+        ("times_from = { file = '../hits.csv' }", "it lies outside the scenario's folder"),
+        (
+            "times_from = { file = 'drums/hits.csv', column = 'beat' }",
+            "it has no column \"beat\"; there are time, drum",
+        ),
+        ("times_from = { file = 'drums/hits.csv', note = 36 }", "a table has no notes"),
+        ("times_from = { file = 'drums/hits.csv' }, every_s = 0.5", "say the beats in one way"),
+        ("times_from = { file = 'drums/hits.csv', colum = 'time' }", "did you mean"),
+    ] {
+        let error = read(beats).unwrap_err();
+        assert!(error.contains(wrong), "{beats}: {error}");
+    }
 }

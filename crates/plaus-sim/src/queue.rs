@@ -126,7 +126,10 @@ mod tests {
     proptest! {
         /// The tree against a plainly scanned list, through random updates.
         #[test]
-        fn first_is_the_least(times in prop::collection::vec(0_u8..6, 1..40), updates in prop::collection::vec((0_usize..40, 0_u8..6), 0..60)) {
+        fn first_is_the_least(
+            times in prop::collection::vec(0_u8..6, 1..40),
+            updates in prop::collection::vec((0_usize..40, 0_u8..6), 0..60),
+        ) {
             let event = |t: u8| Event { time: f64::from(t), happening: Happening::Expiry };
             let mut events: Vec<Event> = times.iter().map(|&t| event(t)).collect();
             let mut tree = Tournament::default();
@@ -136,7 +139,8 @@ mod tests {
                 let k = k % events.len();
                 events[k] = event(t);
                 tree.update(k, &events, &places);
-                let scanned = (0..events.len()).min_by(|&a, &b| events[a].time.total_cmp(&events[b].time).then(a.cmp(&b)));
+                let sooner = |&a: &usize, &b: &usize| events[a].time.total_cmp(&events[b].time).then(a.cmp(&b));
+                let scanned = (0..events.len()).min_by(sooner);
                 prop_assert_eq!(tree.first(), scanned);
             }
         }

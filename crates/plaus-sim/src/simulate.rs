@@ -177,7 +177,10 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         self.state.events[body] = never;
         self.scratch.queue.update(body, &self.state.events, &self.state.places);
         if let Happening::Body { other, .. } = event.happening
-            && matches!(self.state.events[other as usize].happening, Happening::Body { other, .. } if other as usize == body)
+            && matches!(
+                self.state.events[other as usize].happening,
+                Happening::Body { other, .. } if other as usize == body
+            )
         {
             self.state.events[other as usize] = never;
             self.scratch.queue.update(other as usize, &self.state.events, &self.state.places);
@@ -185,7 +188,10 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
     }
 
     fn is_stale(&self, event: &Event) -> bool {
-        matches!(event.happening, Happening::Body { other, generation } if generation != self.state.generations[other as usize])
+        matches!(
+            event.happening,
+            Happening::Body { other, generation } if generation != self.state.generations[other as usize]
+        )
     }
 
     /// Brings the bodies of an event, and all that are in lasting contact with them, to its time.

@@ -118,6 +118,12 @@ impl<B> State<B> {
         self.events[index] = Event { time: release, happening: Happening::Expiry };
     }
 
+    /// Gives a body another next event, so that what others have found about it is looked at anew.
+    pub(crate) fn interrupt(&mut self, index: usize, event: Event) {
+        self.events[index] = event;
+        self.generations[index] = self.generations[index].wrapping_add(1);
+    }
+
     /// Whether every body is at rest.
     pub(crate) fn all_resting<M: Mechanics<Body = B>>(&self, mechanics: &M) -> bool {
         self.bodies.iter().all(|b| mechanics.is_resting(b))

@@ -20,6 +20,7 @@ mod marble_worlds;
 mod marbles_exact;
 mod metamorphic;
 mod restart;
+mod rigid_acted;
 mod rigid_boxes;
 mod rigid_coins;
 mod rigid_die;

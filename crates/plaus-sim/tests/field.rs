@@ -70,7 +70,14 @@ proptest! {
     }
 
     #[test]
-    fn bounds_hold(x in -5.0..5.0_f64, y in -5.0..5.0_f64, w in 0.0..1.0_f64, d in 0.0..1.0_f64, u in 0.0..1.0_f64, v in 0.0..1.0_f64) {
+    fn bounds_hold(
+        x in -5.0..5.0_f64,
+        y in -5.0..5.0_f64,
+        w in 0.0..1.0_f64,
+        d in 0.0..1.0_f64,
+        u in 0.0..1.0_f64,
+        v in 0.0..1.0_f64,
+    ) {
         let f = field();
         let b = f.bounds([x, y], [x + w, y + d]).unwrap();
         let s = f.at(x + u * w, y + v * d);

@@ -173,10 +173,17 @@ impl Scenario {
             Ok(scenario) => scenario,
             Err(error) => return fail(vec![Problem::new("", error.message())]),
         };
-        match scenario.world.load(files).and_then(|()| scenario.try_building()) {
+        match scenario.load(files).and_then(|()| scenario.try_building()) {
             Ok(()) => Ok(scenario),
             Err(error) => fail(vec![tree::located(&tree, &error)]),
         }
+    }
+
+    /// Reads the files that it names.
+    fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
+        self.world.load(files)?;
+        let mut required = self.require.iter_mut().enumerate();
+        required.try_for_each(|(index, one)| one.load(&format!("require[{index}]"), files))
     }
 
     /// Whether moves' scales are adapted in the warm-up.

@@ -272,7 +272,9 @@ mod tests {
         /// For every inertia, lever arm, friction and restitution: energy does not grow, the bodies separate, and the impulse lies in the cone.
         #[test]
         fn energy_never_grows(
-            inertia in prop::array::uniform3(0.05..20.0_f64), r in prop::array::uniform3(-1.0..1.0_f64), u in prop::array::uniform3(-3.0..3.0_f64),
+            inertia in prop::array::uniform3(0.05..20.0_f64),
+            r in prop::array::uniform3(-1.0..1.0_f64),
+            u in prop::array::uniform3(-3.0..3.0_f64),
             e in 0.0..=1.0_f64, mu in 0.0..3.0_f64, turn in 0.03..0.5_f64,
         ) {
             let k = matrix(DVec3::from(inertia), DVec3::from(r));

@@ -47,6 +47,9 @@ pub enum Phase {
     Gone,
     /// Goes its own way, by keyframes.
     Driven,
+    /// Free flight with damping or a torque, in legs: a parabola and free rotation that stray from the closed form by
+    /// less than half of the gap at which bodies touch.
+    Leg,
 }
 
 /// Velocities of a body.
@@ -73,7 +76,7 @@ pub struct Turning {
     pub path: Parabola,
     /// Orientation at the clock: turns body axes into world axes.
     pub turn: DQuat,
-    /// Angular velocity at the clock in rad/s, in world axes. Within a step that of its drift.
+    /// Angular velocity at the clock in rad/s, in world axes. Within a step that of its drift, within a leg the mean.
     pub spin: DVec3,
     /// Kind of motion.
     pub phase: Phase,
@@ -84,7 +87,7 @@ pub struct Turning {
     pub(crate) rolls_after: bool,
     /// The line that a ball's centre reaches at the end of its stretch: axis and place.
     pub(crate) line: Option<(u8, f64)>,
-    /// Velocity and angular momentum at the start and the end of a step.
+    /// Velocity and angular momentum at the start and the end of a step; of a leg at its start.
     pub(crate) ends: [Momentum; 2],
     /// What is added to the angular momentum between the ends of a step, times 4 in its middle: the impulses between two bodies that pass each other count at where both are then, so that what
     /// they have together is kept.
@@ -176,9 +179,13 @@ impl Turning {
     pub(super) fn motion_after(&self, spec: &Spec, dt: f64) -> Motion {
         match self.phase {
             Phase::Step => {
-                let now = self.within_step(dt);
+                let now = self.within_step(spec, dt);
                 let turn = if dt == 0.0 { self.turn } else { drift(&spec.inertia, self.turn, self.spin, dt).0 };
                 Motion { v: now.v, w: spec.inertia.spin(turn, now.l) }
+            }
+            Phase::Leg => {
+                let now = self.within_leg(spec, dt);
+                Motion { v: now.v, w: spec.inertia.spin(drift(&spec.inertia, self.turn, self.spin, dt).0, now.l) }
             }
             Phase::Flight | Phase::Glide | Phase::Driven => {
                 Motion { v: self.path.velocity_after(dt), w: self.drift_spin(spec, dt) }
@@ -188,7 +195,7 @@ impl Turning {
     }
 
     /// Velocity and angular momentum `dt` after the start of a step.
-    fn within_step(&self, dt: f64) -> Momentum {
+    fn within_step(&self, spec: &Spec, dt: f64) -> Momentum {
         let [a, b] = self.ends;
         if dt <= 0.0 {
             return a;
@@ -197,13 +204,21 @@ impl Turning {
         if part >= 1.0 {
             return b;
         }
+        if let Some(drag) = &spec.drag {
+            // What damping takes is taken as in flight, whatever the contacts do.
+            let [now, all] = [dt, self.expiry - self.path.t].map(|dt| spec.dragged(drag, &a, dt));
+            let l = now.l + (b.l - all.l) * part + self.passing * (part * (1.0 - part));
+            return Momentum { v: now.v + (b.v - all.v) * part, l };
+        }
         Momentum { v: a.v.lerp(b.v, part), l: a.l.lerp(b.l, part) + self.passing * (part * (1.0 - part)) }
     }
 
     /// Angular velocity of the path that is taken, `dt` after the clock.
     pub(super) fn drift_spin(&self, spec: &Spec, dt: f64) -> DVec3 {
         match self.phase {
-            Phase::Flight | Phase::Step if spec.wobble != 0.0 => drift(&spec.inertia, self.turn, self.spin, dt).1,
+            Phase::Flight | Phase::Leg | Phase::Step if spec.wobble != 0.0 => {
+                drift(&spec.inertia, self.turn, self.spin, dt).1
+            }
             Phase::Glide => self.spin + self.spin_rate * dt,
             _ => self.spin,
         }
@@ -211,7 +226,12 @@ impl Turning {
 
     /// Whether it turns freely, in flight or within a step.
     pub(super) fn turns_freely(&self) -> bool {
-        matches!(self.phase, Phase::Flight | Phase::Step)
+        matches!(self.phase, Phase::Flight | Phase::Leg | Phase::Step)
+    }
+
+    /// Whether it touches nothing.
+    pub(super) fn flies(&self) -> bool {
+        matches!(self.phase, Phase::Flight | Phase::Leg)
     }
 
     /// The rotation of the current motion.
@@ -228,7 +248,8 @@ impl Turning {
             return drive.follow(self, time);
         }
         let dt = time - self.path.t;
-        self.hurried += 1;
+        // That one leg follows another is no event of the body.
+        self.hurried += u32::from(self.phase != Phase::Leg || time < self.expiry);
         if time - self.hurried_from > spec.rattle {
             (self.hurried, self.hurried_from) = (0, time);
         }
@@ -239,9 +260,10 @@ impl Turning {
                     self.path.v = self.path.velocity_after(dt);
                     (self.turn, self.spin) = drift(&spec.inertia, self.turn, self.spin, dt);
                 }
+                Phase::Leg => self.follow_leg(spec, dt),
                 Phase::Step => {
                     (self.turn, _) = drift(&spec.inertia, self.turn, self.spin, dt);
-                    let now = if time >= self.expiry { self.ends[1] } else { self.within_step(dt) };
+                    let now = if time >= self.expiry { self.ends[1] } else { self.within_step(spec, dt) };
                     self.ends[0] = now;
                     (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
                     // What is left of the step is no longer straight in the same way; settling decides anew.
@@ -261,7 +283,7 @@ impl Turning {
             if self.phase == Phase::Glide && time >= self.expiry {
                 super::glide::end(spec, self);
             }
-        } else if self.phase == Phase::Step {
+        } else if matches!(self.phase, Phase::Step | Phase::Leg) {
             let now = self.ends[0];
             (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
         }

@@ -218,7 +218,7 @@ impl Rigid {
         });
         strike(&mut points, &mut members, self.accuracy.slip_turn);
         body.set_motion(spec, Motion { v: members[0].v, w: members[0].w });
-        if body.phase != Phase::Flight {
+        if !body.flies() {
             body.phase = Phase::Step;
         }
         for p in &points {

@@ -109,7 +109,7 @@ fn as_vectors<T: Copy>(key: &Key<T>, vector: impl Fn(T) -> DVec4) -> Key<DVec4> 
 }
 
 /// The rotation vector that takes one orientation to another, the shorter way.
-fn between(from: DQuat, to: DQuat) -> DVec3 {
+pub(super) fn between(from: DQuat, to: DQuat) -> DVec3 {
     let q = to * from.conjugate();
     let q = if q.w < 0.0 { -q } else { q };
     let v = q.xyz();

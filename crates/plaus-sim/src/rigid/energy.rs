@@ -5,6 +5,7 @@
 //! their energy.
 
 use super::coulomb::{Contact, Member};
+use super::drive::between;
 use super::scratch::{KEEP, Place, RigidScratch};
 use super::solve::{Enough, solve};
 use super::touch::Touch;
@@ -86,7 +87,9 @@ impl RigidScratch {
     fn energy_to_keep(&self, world: &Rigid) -> f64 {
         let left = |p: &Place| {
             let spec = &world.specs[p.body];
-            kinetic(spec, p.turn, p.start.v, p.start.w) + spec.mass * spec.pull.dot(p.end.x - p.start.x)
+            let lifts = spec.mass * spec.pull.dot(p.end.x - p.start.x);
+            let turns = if spec.drag.is_some() { spec.torque().dot(between(p.turn, p.end_turn)) } else { 0.0 };
+            kinetic(spec, p.turn, p.start.v, p.start.w) + lifts + turns
         };
         self.places.iter().map(left).sum()
     }

@@ -2,22 +2,31 @@
 
 use super::Rigid;
 use super::body::{Phase, Turning};
+use super::drag::Drag;
 use crate::error::WorldError;
 use crate::state::State;
 use glam::DVec3;
 
-/// What acts on a body besides contact. Its flight stays a parabola.
+/// What acts on a body besides contact. Without damping and torque its flight stays a parabola; with them it has a
+/// closed form too, which is followed in legs: see [`Phase::Leg`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forces {
     /// How much of the world's gravity it feels. Default 1; 0 for what floats, negative for what rises.
     pub gravity: f64,
     /// A constant force at the centre of gravity, in N. Default none.
     pub force: DVec3,
+    /// A constant torque in world axes, in N m. Default none.
+    pub torque: DVec3,
+    /// Rate at which velocity is lost, in 1/s: by a factor of e in `1/damping` seconds. Default 0; usual 0–1. Of a body
+    /// in flight it is exact; in lasting contact it has the error of the steps.
+    pub damping: f64,
+    /// The same of the angular momentum.
+    pub angular_damping: f64,
 }
 
 impl Default for Forces {
     fn default() -> Self {
-        Self { gravity: 1.0, force: DVec3::ZERO }
+        Self { gravity: 1.0, force: DVec3::ZERO, torque: DVec3::ZERO, damping: 0.0, angular_damping: 0.0 }
     }
 }
 
@@ -25,17 +34,28 @@ impl Rigid {
     /// Sets what acts on a body.
     ///
     /// # Errors
-    /// [`WorldError::BadBody`] for numbers that are none.
+    /// [`WorldError::BadBody`] for numbers that are none, and for damping below 0.
     pub fn act_on(&mut self, body: usize, forces: Forces) -> Result<(), WorldError> {
         let numbers = [forces.gravity].into_iter().chain(forces.force.to_array());
         if let Some(value) = numbers.into_iter().find(|x| !x.is_finite()) {
             return Err(WorldError::BadBody { body, field: "force", value, expected: "finite numbers" });
+        }
+        if let Some(value) = super::not_finite(forces.torque.to_array()) {
+            return Err(WorldError::BadBody { body, field: "torque", value, expected: "finite numbers" });
+        }
+        for (field, value) in [("damping", forces.damping), ("angular damping", forces.angular_damping)] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(WorldError::BadBody { body, field, value, expected: "a rate from 0 on" });
+            }
         }
         let Some(spec) = self.specs.get_mut(body) else {
             return Err(WorldError::WrongState { state: body + 1, world: self.specs.len() });
         };
         spec.pull = self.gravity * forces.gravity + forces.force / spec.mass;
         spec.strength = spec.pull.length();
+        let Forces { torque, damping: linear, angular_damping: angular, .. } = forces;
+        let is_free = torque == DVec3::ZERO && linear == 0.0 && angular == 0.0;
+        spec.drag = (!is_free).then_some(Drag { linear, angular, torque });
         // Time scales are those of the strongest pull.
         let strength = self.specs.iter().map(|s| s.strength).fold(self.gravity.length(), f64::max);
         if strength != self.strength {

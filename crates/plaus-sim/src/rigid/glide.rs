@@ -34,6 +34,7 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     let n = touch.normal;
     let level = n.cross(spec.pull).length() <= LEVEL * spec.strength && n.dot(spec.pull) < 0.0;
     if !spec.is_ball
+        || spec.drag.is_some()
         || !level
         || matches!(part, Part::Table(_) | Part::Solid(_) | Part::Mesh(_))
         || is_leaving(part, body)

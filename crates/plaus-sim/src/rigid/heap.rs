@@ -112,7 +112,7 @@ impl RigidScratch {
         if self.touches.len() == before && !linked {
             self.leaving.retain(|l| l.0 != at);
             body.list(std::iter::empty());
-            return body.begin(Phase::Flight, spec.pull);
+            return world.fly(index, body);
         }
         self.places.push(Place::of(body, index));
     }

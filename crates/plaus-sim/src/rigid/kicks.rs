@@ -26,8 +26,8 @@ impl RigidScratch {
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
         let step = Step { enough, h };
         self.prepare(world, |spec, p| {
-            let half_kick = if spec.is_driven() { p.drive } else { spec.pull } * (0.5 * h);
-            (p.start.v + half_kick, p.start.w)
+            let (v, w) = (p.start.v, p.start.w);
+            if spec.is_driven() { (v + p.drive * (0.5 * h), w) } else { spec.kicked(&p.start.r, [v, w], 0.5 * h) }
         });
         self.aim(world, h);
         // The last step's forces are a good guess.
@@ -107,7 +107,10 @@ impl RigidScratch {
     /// A step whose impulses all come at its start, plastic, wherever the drift leads then: what is left where bodies are
     /// so deep in an edge that no drift goes the way that its start says. Contacts only take energy.
     pub(super) fn give_in(&mut self, world: &Rigid, h: f64) {
-        self.prepare(world, |spec, p| (p.start.v + if spec.is_driven() { p.drive } else { spec.pull } * h, p.start.w));
+        self.prepare(world, |spec, p| {
+            let (v, w) = (p.start.v, p.start.w);
+            if spec.is_driven() { (v + p.drive * h, w) } else { spec.kicked(&p.start.r, [v, w], h) }
+        });
         let push = world.strength * h;
         let enough = Enough::new(world.accuracy.sweep_tolerance * push, push);
         solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, world.accuracy.sweeps);
@@ -124,8 +127,10 @@ impl RigidScratch {
         for (m, p) in self.members.iter_mut().zip(&self.places) {
             let spec = &world.specs[p.body];
             // What goes its own way has had half of its velocity's change by then.
-            let half_kick = if spec.is_driven() { p.end.v - p.start.v } else { spec.pull * (0.5 * step.h) };
-            *m = Self::member(spec, &p.end.r, p.end.v + half_kick, p.end.w);
+            let (v, w) = (p.end.v, p.end.w);
+            let (v, w) =
+                if spec.is_driven() { (v + (v - p.start.v), w) } else { spec.kicked(&p.end.r, [v, w], 0.5 * step.h) };
+            *m = Self::member(spec, &p.end.r, v, w);
         }
         resist(world, &self.places, &self.touches, &self.contacts, &mut self.members);
         self.firsts.clone_from(&self.contacts);

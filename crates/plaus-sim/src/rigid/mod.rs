@@ -32,9 +32,9 @@
 //! a ball that glides: that goes on until it meets something or the run ends.
 //!
 //! A body may go its own way by keyframes ([`Rigid::drive`]): to contact it has no inverse mass, nothing that stands still
-//! holds it, and energy is not kept in a group that it is part of. Per body there are also a constant force and more or
-//! less gravity ([`Rigid::act_on`]), and sleep until it is hit ([`Rigid::put_to_sleep`]). There are no joints and no
-//! damping.
+//! holds it, and energy is not kept in a group that it is part of. Per body there are also a constant force and torque,
+//! damping, and more or less gravity ([`Rigid::act_on`]), and sleep until it is hit ([`Rigid::put_to_sleep`]). Between two
+//! runs bodies may be kicked, taken out and put in ([`Rigid::kick`], [`Rigid::remove`], [`Rigid::put`]). There are no joints.
 //!
 //! ```
 //! use glam::DVec3;
@@ -58,7 +58,9 @@ mod contact;
 mod convex;
 mod coulomb;
 mod detect;
+mod drag;
 mod drive;
+mod edit;
 mod energy;
 mod forces;
 mod glide;
@@ -356,7 +358,7 @@ impl Rigid {
 }
 
 /// The first of some numbers that is infinite or none.
-fn not_finite<const N: usize>(numbers: [f64; N]) -> Option<f64> {
+fn not_finite(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
     numbers.into_iter().find(|x| !x.is_finite())
 }
 

@@ -197,7 +197,7 @@ impl Rigid {
     /// Has both bodies look anew at what they touch.
     fn touch_again(&self, pair: [usize; 2], bodies: [&mut Turning; 2]) {
         for (index, body) in pair.into_iter().zip(bodies).filter(|(k, _)| !self.specs[*k].is_driven()) {
-            if body.phase != Phase::Flight {
+            if !body.flies() {
                 body.phase = Phase::Step;
             }
             self.list_touches(index, body);

@@ -1,11 +1,11 @@
 //! Rest: slow bodies that their contacts can hold.
 
+use super::Rigid;
 use super::body::Pose;
 use super::scratch::{Place, RigidScratch};
 use super::solve::{Enough, solve};
 use super::touch::Touch;
 use super::tumble::rotation;
-use super::{Rigid, Spec};
 use glam::{DMat3, DVec3};
 
 /// Whether all bodies of a group are slow enough to be looked at.
@@ -29,6 +29,9 @@ pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(V
     };
     let spec = &world.specs[place.body];
     if !spec.is_compound() || !group.pairs.is_empty() || !group.parting.is_empty() || spec.is_driven() {
+        return None;
+    }
+    if spec.torque() != DVec3::ZERO {
         return None;
     }
     // Heights over lying flat are up to two thirds of this where half of the energy is that of motion.
@@ -75,7 +78,9 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     {
         return false;
     }
-    if let [place] = &group.places[..] {
+    if let [place] = &group.places[..]
+        && world.specs[place.body].torque() == DVec3::ZERO
+    {
         let spec = &world.specs[place.body];
         if spec.is_ball {
             if let [(_, only)] = &group.touches[..] {
@@ -103,8 +108,10 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
         }
     }
     // What contacts cannot stop within a step is not at rest.
-    let pull = |spec: &Spec| if spec.is_driven() { DVec3::ZERO } else { spec.pull * h };
-    group.prepare(world, |spec, p| (p.start.v + pull(spec), p.start.w));
+    group.prepare(world, |spec, p| {
+        let (v, w) = (p.start.v, p.start.w);
+        if spec.is_driven() { (v, w) } else { spec.kicked(&p.start.r, [v, w], h) }
+    });
     group.leave_out_distant(world);
     let limit = world.accuracy.rest_residual * world.strength * h;
     let fastest = |p: &Place| p.start.v.length().max(p.start.w.length() * world.specs[p.body].reach);

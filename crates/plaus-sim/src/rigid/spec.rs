@@ -1,5 +1,6 @@
 //! What follows from a body's shape and mass.
 
+use super::drag::Drag;
 use super::drive::Drive;
 use super::scratch::TOUCHING;
 use super::tumble::Inertia;
@@ -51,6 +52,8 @@ pub(crate) struct Spec {
     pub(crate) capsule: [f64; 3],
     /// The way it goes, whatever it meets.
     pub(super) drive: Option<Drive>,
+    /// Damping and torque, where there is any.
+    pub(super) drag: Option<Drag>,
 }
 
 /// How a body is looked at by others.
@@ -152,6 +155,7 @@ impl Spec {
             pieces,
             capsule,
             drive: None,
+            drag: None,
         })
     }
 

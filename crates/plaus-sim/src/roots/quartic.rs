@@ -270,7 +270,8 @@ mod tests {
                     prop_assert!((s - g).abs() * slope(&c, g).abs().max(slope(&c, s).abs()) <= rounding + 1e-15 * s || (value(&c, s).abs() <= rounding && value(&c, g).abs() <= rounding), "{s} {g}");
                 }
                 (Some(Some(t)), None) | (Some(None), Some(t)) => prop_assert!(
-                    value(&c, t).abs() <= 1e-14 * scale && (slope(&c, t).abs() <= 1e-6 * scale || t >= until - 1e-14 || t <= from + 1e-14),
+                    value(&c, t).abs() <= 1e-14 * scale
+                        && (slope(&c, t).abs() <= 1e-6 * scale || t >= until - 1e-14 || t <= from + 1e-14),
                     "{short:?} {general:?} {}", value(&c, t)
                 ),
             }

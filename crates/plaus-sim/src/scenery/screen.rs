@@ -68,7 +68,11 @@ mod tests {
 
         /// What is apart by more than an f32 can lose is ruled out.
         #[test]
-        fn boxes_that_are_apart_do_not(a in prop::array::uniform3(-1.0..1.0_f64), axis in 0..3_usize, gap in 1e-6..1.0_f64) {
+        fn boxes_that_are_apart_do_not(
+            a in prop::array::uniform3(-1.0..1.0_f64),
+            axis in 0..3_usize,
+            gap in 1e-6..1.0_f64,
+        ) {
             let a = Aabb::around([DVec3::from(a), DVec3::from(a) + 0.1]);
             let mut b = a;
             b.min[axis] = a.max[axis] + gap;

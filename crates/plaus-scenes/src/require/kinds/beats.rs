@@ -1,5 +1,6 @@
 //! Events on the beats of a rhythm.
 
+use crate::files::{Files, leaves_folder};
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
@@ -8,6 +9,7 @@ use crate::require::score::{FAR, Mark, Reach};
 use crate::require::timed::{Timed, known, words};
 use crate::require::when::Window;
 use crate::scene::ConfigError;
+use plaus_asset::onsets::{Which, onsets};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -36,12 +38,56 @@ pub struct Beats {
     /// The beats, in place of regular ones.
     #[schemars(length(max = 10_000), extend("x-unit" = "s"))]
     pub times_s: Vec<f64>,
+    /// A file that has the beats, in place of `times_s`, which a run writes down.
+    pub times_from: Option<Onsets>,
     /// How far from a beat an impact may be.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "ms"))]
     pub within_ms: f64,
     /// What is farther off loses one nat each so many milliseconds.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms"))]
     pub scale_ms: f64,
+}
+
+/// Times in a file: of a table, or of notes.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Onsets {
+    /// The file, `.csv`, `.mid` or `.midi`: its path from the folder of the scenario, with `/` between folders.
+    pub file: String,
+    /// Of a table: the column with this name in its first row, in seconds. Unset: the first column.
+    #[serde(default)]
+    pub column: Option<String>,
+    /// Of MIDI: only notes of this key; 36 is a bass drum, 60 the middle C. Unset: all.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 127))]
+    pub note: Option<u8>,
+    /// Of MIDI: only notes of this channel; 10 are the drums. Unset: all.
+    #[serde(default)]
+    #[schemars(range(min = 1, max = 16))]
+    pub channel: Option<u8>,
+    /// Whether the file may lie outside the scenario's folder.
+    #[serde(default)]
+    pub anywhere: bool,
+}
+
+/// Most beats of a list.
+const MOST_BEATS: usize = 10_000;
+
+impl Onsets {
+    /// The times in the file.
+    fn read(&self, key: &str, files: &dyn Files) -> Result<Vec<f64>, ConfigError> {
+        let wrong = |message: String| ConfigError::new(format!("{key}.file"), format!("{}: {message}", self.file));
+        if let Some(why) = leaves_folder(&self.file).filter(|_| !self.anywhere) {
+            return Err(wrong(why));
+        }
+        let bytes = files.bytes(&self.file, self.anywhere).map_err(wrong)?;
+        let which = Which { column: self.column.as_deref(), note: self.note, channel: self.channel };
+        let times = onsets(&self.file, &bytes, &which).map_err(|error| wrong(error.to_string()))?;
+        if times.len() > MOST_BEATS {
+            return Err(wrong(format!("it has {} beats: at most {MOST_BEATS} are served", times.len())));
+        }
+        Ok(times)
+    }
 }
 
 /// What has to come on what.
@@ -68,6 +114,7 @@ impl Default for Beats {
             every_s: None,
             offset_s: 0.0,
             times_s: Vec::new(),
+            times_from: None,
             within_ms: 20.0,
             scale_ms: 10.0,
         }
@@ -147,6 +194,18 @@ impl Beats {
 }
 
 impl Ask for Beats {
+    /// The times become those of `times_s`, so that a run needs the file no more.
+    fn load(&mut self, key: &str, files: &dyn Files) -> Result<(), ConfigError> {
+        let Some(from) = &self.times_from else { return Ok(()) };
+        if self.every_s.is_some() || !self.times_s.is_empty() {
+            let message = "say the beats in one way: `every_s`, `times_s` or `times_from`";
+            return Err(ConfigError::new(format!("{key}.times_from"), message));
+        }
+        self.times_s = from.read(&format!("{key}.times_from"), files)?;
+        self.times_from = None;
+        Ok(())
+    }
+
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         place.body("body", &self.body)?;
         place.partner("with", &self.with)?;
@@ -161,7 +220,7 @@ impl Ask for Beats {
         }
         match (self.every_s, self.times_s.is_empty(), self.each) {
             (Some(_), false, _) => Err(place.wrong("say the beats in one way: `every_s` or `times_s`")),
-            (None, true, _) => Err(place.wrong("there are no beats: give `every_s` or `times_s`")),
+            (None, true, _) => Err(place.wrong("there are no beats: give `every_s`, `times_s` or `times_from`")),
             (Some(_), _, Each::Beat) => {
                 Err(place.at("each").wrong("regular beats have no end: list those that need an impact in `times_s`"))
             }

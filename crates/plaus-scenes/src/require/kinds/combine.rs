@@ -1,5 +1,6 @@
 //! Requirements made of others: all of them, any, not one, at least so many.
 
+use crate::files::Files;
 use crate::require::claim::Claim;
 use crate::require::kinds::{Ask, Require};
 use crate::require::place::Place;
@@ -61,12 +62,20 @@ fn put_together(of: &[Require], probe: &Probe<'_>, together: impl Fn(&[Mark]) ->
     Reach { least: end(|reach| reach.least), most: end(|reach| reach.most) }
 }
 
+fn load(of: &mut [Require], key: &str, files: &dyn Files) -> Result<(), ConfigError> {
+    of.iter_mut().enumerate().try_for_each(|(index, one)| one.load(&format!("{key}[{index}]"), files))
+}
+
 /// The times that all of them ask for.
 fn times(of: &[Require], probe: &Probe<'_>) -> Vec<Timed> {
     of.iter().flat_map(|one| one.times(probe)).collect()
 }
 
 impl Ask for All {
+    fn load(&mut self, key: &str, files: &dyn Files) -> Result<(), ConfigError> {
+        load(&mut self.0, key, files)
+    }
+
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         check(&self.0, place)
     }
@@ -93,6 +102,10 @@ impl Ask for All {
 }
 
 impl Ask for AnyOf {
+    fn load(&mut self, key: &str, files: &dyn Files) -> Result<(), ConfigError> {
+        load(&mut self.0, key, files)
+    }
+
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         check(&self.0, place)
     }
@@ -114,6 +127,10 @@ impl Ask for AnyOf {
 }
 
 impl Ask for Not {
+    fn load(&mut self, key: &str, files: &dyn Files) -> Result<(), ConfigError> {
+        self.0.load(key, files)
+    }
+
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         self.0.check(&place.at(self.0.name()))
     }
@@ -128,6 +145,10 @@ impl Ask for Not {
 }
 
 impl Ask for AtLeast {
+    fn load(&mut self, key: &str, files: &dyn Files) -> Result<(), ConfigError> {
+        load(&mut self.of, &format!("{key}.of"), files)
+    }
+
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         let (wanted, all) = (self.count, self.of.len());
         if wanted as usize > all {

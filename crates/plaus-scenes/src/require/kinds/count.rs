@@ -1,5 +1,6 @@
 //! How many bodies do something.
 
+use crate::files::Files;
 use crate::require::kinds::combine::{deepest, kth_best};
 use crate::require::kinds::{Ask, Require};
 use crate::require::place::Place;
@@ -34,6 +35,10 @@ fn everybody() -> String {
 }
 
 impl Ask for Count {
+    fn load(&mut self, key: &str, files: &dyn Files) -> Result<(), ConfigError> {
+        self.that.load(&format!("{key}.that"), files)
+    }
+
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         place.body("of", &self.of)?;
         place.limits(self.at_least.map(f64::from), self.at_most.map(f64::from))?;

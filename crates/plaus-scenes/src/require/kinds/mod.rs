@@ -22,7 +22,7 @@ mod stands;
 mod touches;
 
 pub use air_time::AirTime;
-pub use beats::{Beats, Each};
+pub use beats::{Beats, Each, Onsets};
 pub use before::Before;
 pub use bounces::Bounces;
 pub use combine::{All, AnyOf, AtLeast, Not};
@@ -47,12 +47,18 @@ use super::place::Place;
 use super::probe::Probe;
 use super::score::Reach;
 use super::timed::Timed;
+use crate::files::Files;
 use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What a kind of requirement must say of itself.
 pub(super) trait Ask {
+    /// Reads the files that it names; `key` is where it stands.
+    fn load(&mut self, _key: &str, _files: &dyn Files) -> Result<(), ConfigError> {
+        Ok(())
+    }
+
     /// Refuses what can mean nothing: bodies that are not there, empty windows.
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError>;
 
@@ -95,6 +101,10 @@ macro_rules! kinds {
             }
 
             fn ask(&self) -> &dyn Ask {
+                match self { $(Self::$kind(kind) => kind),+ }
+            }
+
+            fn ask_mut(&mut self) -> &mut dyn Ask {
                 match self { $(Self::$kind(kind) => kind),+ }
             }
         }
@@ -162,6 +172,12 @@ impl Require {
     #[must_use]
     pub fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
         self.ask().times(probe)
+    }
+
+    /// Reads the files that it names; `key` is where it stands.
+    pub(crate) fn load(&mut self, key: &str, files: &dyn Files) -> Result<(), ConfigError> {
+        let key = format!("{key}.{}", self.name());
+        self.ask_mut().load(&key, files)
     }
 
     pub(super) fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {

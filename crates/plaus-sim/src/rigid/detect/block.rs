@@ -2,7 +2,6 @@
 
 use super::plane::BEYOND;
 use super::{LEANS, MOST_ADVANCES, Search, earliest};
-use crate::rigid::body::Phase;
 use crate::rigid::part::{Part, Side, farthest_side, is_over};
 use crate::rigid::rim;
 use crate::scenery::Aabb;
@@ -168,7 +167,7 @@ impl Search<'_> {
                 } else {
                     self.ring_at_edge(part, k, gap, soonest);
                 }
-                if self.body.phase == Phase::Flight {
+                if self.body.flies() {
                     break;
                 }
             }

@@ -37,7 +37,7 @@ pub(in crate::rigid) struct Search<'s> {
 impl Rigid {
     /// First point of a body that touches a part, not after `until`.
     pub(super) fn first_touch(&self, index: usize, body: &Turning, until: f64) -> Option<(f64, Surface)> {
-        if !matches!(body.phase, Phase::Flight | Phase::Step | Phase::Glide) {
+        if !matches!(body.phase, Phase::Flight | Phase::Leg | Phase::Step | Phase::Glide) {
             return None;
         }
         let spec = &self.specs[index];

@@ -205,7 +205,7 @@ impl Search<'_> {
                 next.not_before(low.earliest(next.step), point, f);
             }
         }
-        if index == 0 && (p == DVec2::ZERO || self.body.phase != Phase::Flight) {
+        if index == 0 && (p == DVec2::ZERO || !self.body.flies()) {
             for quarter in usize::from(p != DVec2::ZERO)..RIM_POINTS {
                 self.rim_point(look, point + quarter, [middle, rate, m], next);
             }

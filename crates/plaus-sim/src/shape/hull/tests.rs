@@ -148,7 +148,11 @@ fn clouds() -> impl Strategy<Value = Vec<DVec3>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(3), failure_persistence: None, ..ProptestConfig::with_cases(300) })]
+    #![proptest_config(ProptestConfig {
+        rng_seed: proptest::test_runner::RngSeed::Fixed(3),
+        failure_persistence: None,
+        ..ProptestConfig::with_cases(300)
+    })]
 
     /// Every point is behind every face, every corner is a point, and scaling by powers of two scales all numbers to the bit.
     #[test]
@@ -159,7 +163,8 @@ proptest! {
             prop_assert!(body.core.farthest_face(seen).unwrap().1 < 1e-9);
         }
         for f in &body.core.faces {
-            prop_assert!(f.offset > 0.0 && f.corners.iter().all(|&k| (f.normal.dot(body.core.corner(k)) - f.offset).abs() < 2e-9));
+            let is_on_it = |&k| (f.normal.dot(body.core.corner(k)) - f.offset).abs() < 2e-9;
+            prop_assert!(f.offset > 0.0 && f.corners.iter().all(is_on_it));
         }
         let large = hull(&points.iter().map(|&p| p * 4.0).collect::<Vec<_>>(), 0.0);
         prop_assert_eq!(large.turn(), body.turn());

@@ -68,8 +68,17 @@ proptest! {
 
     /// What was nearest at a pose nearby makes no difference.
     #[test]
-    fn guesses_do_not_matter(a in cores(), b in cores(), r in turn(), s in turn(), offset in offset(), w in offset(), h in 0.0..0.2_f64) {
-        let place = |h: f64| Placed { axes: DMat3::from_quat(DQuat::from_scaled_axis(w * h)) * r, core: &a, rounding: 0.01 };
+    fn guesses_do_not_matter(
+        a in cores(),
+        b in cores(),
+        r in turn(),
+        s in turn(),
+        offset in offset(),
+        w in offset(),
+        h in 0.0..0.2_f64,
+    ) {
+        let turned = |h: f64| DMat3::from_quat(DQuat::from_scaled_axis(w * h)) * r;
+        let place = |h: f64| Placed { axes: turned(h), core: &a, rounding: 0.01 };
         let other = Placed { axes: s, core: &b, rounding: 0.0 };
         let before = HullPair::new(offset, place(0.0), other).nearest(None);
         let pair = HullPair::new(offset * (1.0 - h), place(h), other);
@@ -79,7 +88,14 @@ proptest! {
 
     /// Cuboids as hulls of their corners.
     #[test]
-    fn cuboids_agree(c in prop::array::uniform3(0.2..1.0_f64), d in prop::array::uniform3(0.2..1.0_f64), r in turn(), s in turn(), offset in offset(), rounding in 0.0..0.2_f64) {
+    fn cuboids_agree(
+        c in prop::array::uniform3(0.2..1.0_f64),
+        d in prop::array::uniform3(0.2..1.0_f64),
+        r in turn(),
+        s in turn(),
+        offset in offset(),
+        rounding in 0.0..0.2_f64,
+    ) {
         let (c, d) = (DVec3::from(c), DVec3::from(d));
         let boxes = CuboidPair::new(
             offset,
@@ -87,7 +103,8 @@ proptest! {
             cuboid_pair::Placed { axes: s, core: d, rounding: 0.0 },
         );
         let (a, b) = (Polyhedron::cuboid(c), Polyhedron::cuboid(d));
-        let pair = HullPair::new(offset, Placed { axes: r, core: &a, rounding }, Placed { axes: s, core: &b, rounding: 0.0 });
+        let placed = [Placed { axes: r, core: &a, rounding }, Placed { axes: s, core: &b, rounding: 0.0 }];
+        let pair = HullPair::new(offset, placed[0], placed[1]);
         let (m, n) = (pair.nearest(None), boxes.nearest());
         prop_assert!((m.gap - n.gap).abs() < 1e-12, "{m:?} {n:?}");
         // Brought to where they all but touch they have the same points of contact.
@@ -97,7 +114,7 @@ proptest! {
             cuboid_pair::Placed { axes: r, core: c, rounding },
             cuboid_pair::Placed { axes: s, core: d, rounding: 0.0 },
         );
-        let pair = HullPair::new(near, Placed { axes: r, core: &a, rounding }, Placed { axes: s, core: &b, rounding: 0.0 });
+        let pair = HullPair::new(near, placed[0], placed[1]);
         let (mut first, mut second) = (Vec::new(), Vec::new());
         pair.touching(&pair.nearest(None), 1e-5, |m| first.push((m.gap, m.arms[0])));
         boxes.touching(&boxes.nearest(), 1e-5, |m| second.push((m.gap, m.arms[0])));
@@ -110,8 +127,17 @@ proptest! {
 
     /// Every point of contact has the gap and the rate that moving the bodies a little shows.
     #[test]
-    fn rates_of_gaps_are_right(a in cores(), b in cores(), r in turn(), s in turn(), offset in offset(), v in offset(), w in offset()) {
-        let place = |h: f64| Placed { axes: DMat3::from_quat(DQuat::from_scaled_axis(w * h)) * r, core: &a, rounding: 0.0 };
+    fn rates_of_gaps_are_right(
+        a in cores(),
+        b in cores(),
+        r in turn(),
+        s in turn(),
+        offset in offset(),
+        v in offset(),
+        w in offset(),
+    ) {
+        let turned = |h: f64| DMat3::from_quat(DQuat::from_scaled_axis(w * h)) * r;
+        let place = |h: f64| Placed { axes: turned(h), core: &a, rounding: 0.0 };
         let other = Placed { axes: s, core: &b, rounding: 0.0 };
         let nearest = HullPair::new(offset, place(0.0), other).nearest(None);
         if nearest.gap < 1e-2 {

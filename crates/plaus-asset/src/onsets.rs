@@ -1,0 +1,204 @@
+//! Times at which something begins: of a column of a table, or of the notes of a piece of music.
+
+use super::AssetError;
+use midly::{MetaMessage, MidiMessage, Smf, Timing, TrackEventKind};
+
+/// Which times of a file.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Which<'a> {
+    /// Of a table: the column with this name in its first row; `None`: the first column.
+    pub column: Option<&'a str>,
+    /// Of MIDI: only notes of this key, from 0 to 127: 36 is a bass drum; `None`: all.
+    pub note: Option<u8>,
+    /// Of MIDI: only notes of this channel, from 1 to 16; `None`: all.
+    pub channel: Option<u8>,
+}
+
+/// The times in a file, in seconds, each once, in ascending order.
+///
+/// ```
+/// use plaus_asset::onsets::{Which, onsets};
+///
+/// assert_eq!(onsets("hits.csv", b"time,drum\n0.5,snare\n0.25,bass\n", &Which::default())?, [0.25, 0.5]);
+/// # Ok::<(), plaus_asset::AssetError>(())
+/// ```
+///
+/// # Errors
+/// [`AssetError`] where the name does not end in `.csv`, `.mid` or `.midi`, the file is not what that says, or there
+/// are no such times in it.
+pub fn onsets(file: &str, bytes: &[u8], which: &Which<'_>) -> Result<Vec<f64>, AssetError> {
+    let ending = file.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
+    let mut times = match ending.as_deref() {
+        Some("csv") if which.note.or(which.channel).is_some() => {
+            return Err(broken("a table has no notes and channels: say which `column`"));
+        }
+        Some("csv") => of_table(bytes, which.column)?,
+        Some("mid" | "midi") if which.column.is_some() => {
+            return Err(broken("MIDI has no columns: say which `note` or `channel`"));
+        }
+        Some("mid" | "midi") => of_midi(bytes, which)?,
+        _ => return Err(broken("its name must end in .csv, .mid or .midi")),
+    };
+    if times.is_empty() {
+        return Err(broken("there are no such times in it"));
+    }
+    times.sort_unstable_by(f64::total_cmp);
+    times.dedup();
+    Ok(times)
+}
+
+fn broken(message: impl Into<String>) -> AssetError {
+    AssetError::Broken(message.into())
+}
+
+fn of_table(bytes: &[u8], column: Option<&str>) -> Result<Vec<f64>, AssetError> {
+    let mut reader =
+        csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(bytes);
+    let (mut place, mut times) = (0, Vec::new());
+    for (index, row) in reader.records().enumerate() {
+        let row = row.map_err(|error| broken(error.to_string()))?;
+        let line = row.position().map_or(0, csv::Position::line);
+        if let (0, Some(name)) = (index, column) {
+            let names = || row.iter().collect::<Vec<_>>().join(", ");
+            let found = row.iter().position(|cell| cell == name);
+            place = found.ok_or_else(|| broken(format!("it has no column {name:?}; there are {}", names())))?;
+            continue;
+        }
+        let cell = row.get(place).unwrap_or_default();
+        match cell.parse::<f64>() {
+            Ok(time) if time.is_finite() && time >= 0.0 => times.push(time),
+            // Names of columns.
+            Err(_) if index == 0 => {}
+            _ => return Err(broken(format!("line {line}: {cell:?} is no time in seconds"))),
+        }
+    }
+    Ok(times)
+}
+
+/// Microseconds of a quarter note until the file says something else: 120 beats a minute.
+const QUARTER: f64 = 500_000.0;
+
+/// Where a file says how time is counted; this byte there says minus 128 frames a second, which the reader trips over.
+const COUNTING: (usize, u8) = (12, 0x80);
+
+fn of_midi(bytes: &[u8], which: &Which<'_>) -> Result<Vec<f64>, AssetError> {
+    if bytes.get(COUNTING.0) == Some(&COUNTING.1) {
+        return Err(broken("it counts time in no way that MIDI has"));
+    }
+    let file = Smf::parse(bytes).map_err(|error| broken(error.to_string()))?;
+    // Tempi hold for all tracks, in whichever they stand; they come before the notes of the same time.
+    let (mut tempi, mut notes) = (Vec::new(), Vec::new());
+    for track in &file.tracks {
+        let mut at = 0_u64;
+        for event in track {
+            at += u64::from(event.delta.as_int());
+            match event.kind {
+                TrackEventKind::Meta(MetaMessage::Tempo(quarter)) => tempi.push((at, f64::from(quarter.as_int()))),
+                TrackEventKind::Midi { channel, message: MidiMessage::NoteOn { key, vel } } => {
+                    let is_meant = which.note.is_none_or(|note| note == key.as_int())
+                        && which.channel.is_none_or(|wanted| wanted == channel.as_int() + 1);
+                    if vel > 0 && is_meant {
+                        notes.push(at);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    tempi.sort_by_key(|tempo| tempo.0);
+    notes.sort_unstable();
+    let (mut ahead, mut since, mut seconds) = (tempi.into_iter().peekable(), 0_u64, 0.0);
+    let of_quarter = |quarter: f64| match file.header.timing {
+        Timing::Metrical(ticks) => 1e-6 * quarter / f64::from(ticks.as_int().max(1)),
+        Timing::Timecode(frames, parts) => 1.0 / f64::from(frames.as_f32()) / f64::from(parts.max(1)),
+    };
+    let mut tick = of_quarter(QUARTER);
+    let time = |note: u64| {
+        while let Some((at, quarter)) = ahead.next_if(|tempo| tempo.0 <= note) {
+            seconds += (at - since) as f64 * tick;
+            (since, tick) = (at, of_quarter(quarter));
+        }
+        seconds + (note - since) as f64 * tick
+    };
+    Ok(notes.into_iter().map(time).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A piece of one track: a header with so many ticks a quarter, then events as they stand in a file.
+    fn midi(ticks: u16, events: &[&[u8]]) -> Vec<u8> {
+        let track: Vec<u8> = events.iter().copied().chain([&[0, 0xff, 0x2f, 0][..]]).flatten().copied().collect();
+        let mut file = b"MThd\0\0\0\x06\0\0\0\x01".to_vec();
+        file.extend(ticks.to_be_bytes());
+        file.extend(b"MTrk");
+        file.extend((track.len() as u32).to_be_bytes());
+        file.extend(track);
+        file
+    }
+
+    #[test]
+    fn notes_come_at_the_tempo_that_holds() {
+        // A quarter of 96 ticks lasts half a second; from the second quarter on, a whole one. A chord is one time, and
+        // a note of velocity 0 ends one.
+        let slow = [96, 0xff, 0x51, 3, 0x0f, 0x42, 0x40];
+        let events: [&[u8]; 6] = [
+            &[0, 0x99, 36, 100],
+            &[0, 0x99, 38, 100],
+            &[48, 0x90, 60, 80],
+            &[48, 0x90, 60, 0],
+            &[&slow[..]].concat(),
+            &[96, 0x99, 36, 90],
+        ];
+        let piece = midi(96, &events);
+        let times = |which: Which<'_>| onsets("song.mid", &piece, &which).unwrap();
+        assert_eq!(times(Which::default()), [0.0, 0.25, 2.0]);
+        assert_eq!(times(Which { note: Some(36), ..Which::default() }), [0.0, 2.0]);
+        assert_eq!(times(Which { channel: Some(1), ..Which::default() }), [0.25]);
+        let none = onsets("song.midi", &piece, &Which { note: Some(1), ..Which::default() });
+        assert_eq!(none.unwrap_err().to_string(), "there are no such times in it");
+    }
+
+    #[test]
+    fn tables_are_read_by_column() {
+        let table = b"beat, seconds\n1, 0.5\n2, 0.25\n3, 0.5\n";
+        let of = |column| onsets("a.csv", table, &Which { column, ..Which::default() });
+        assert_eq!(of(None).unwrap(), [1.0, 2.0, 3.0]);
+        assert_eq!(of(Some("seconds")).unwrap(), [0.25, 0.5]);
+        assert_eq!(of(Some("time")).unwrap_err().to_string(), "it has no column \"time\"; there are beat, seconds");
+        assert_eq!(onsets("a.CSV", b"0.5\n0.75\n", &Which::default()).unwrap(), [0.5, 0.75]);
+    }
+
+    #[test]
+    fn what_is_no_time_is_named() {
+        let of = |file: &str, bytes: &[u8], which: Which<'_>| onsets(file, bytes, &which).unwrap_err().to_string();
+        let any = Which::default;
+        assert_eq!(of("a.csv", b"0.5\nsoon\n", any()), "line 2: \"soon\" is no time in seconds");
+        assert_eq!(of("a.csv", b"0.5\n-1\n", any()), "line 2: \"-1\" is no time in seconds");
+        assert_eq!(of("a.csv", b"0.5\nNaN\n", any()), "line 2: \"NaN\" is no time in seconds");
+        assert_eq!(of("a.csv", b"", any()), "there are no such times in it");
+        assert_eq!(of("a.wav", b"", any()), "its name must end in .csv, .mid or .midi");
+        assert!(of("a.mid", b"RIFF", any()).contains("MIDI") || !of("a.mid", b"RIFF", any()).is_empty());
+        let noted = Which { note: Some(36), ..any() };
+        assert!(of("a.csv", b"0.5\n", noted).contains("say which `column`"));
+        assert!(of("a.mid", b"", Which { column: Some("x"), ..any() }).contains("say which `note`"));
+    }
+
+    /// Files that end anywhere, or hold anything, are errors or times, and never more.
+    #[test]
+    fn damaged_files_do_no_harm() {
+        let piece = midi(96, &[&[0, 0x99, 36, 100], &[48, 0xff, 0x51, 3, 0, 0, 0], &[96, 0x99, 36, 90]]);
+        for length in 0..piece.len() {
+            let _ = onsets("a.mid", &piece[..length], &Which::default());
+        }
+        for at in 0..piece.len() {
+            for byte in [0, 1, 0x7f, 0x80, 0xff] {
+                let mut broken = piece.clone();
+                broken[at] = byte;
+                let read = onsets("a.mid", &broken, &Which::default()).unwrap_or_default();
+                assert!(read.iter().all(|time| time.is_finite() && *time >= 0.0), "{read:?}");
+            }
+        }
+    }
+}

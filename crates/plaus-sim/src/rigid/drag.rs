@@ -1,0 +1,154 @@
+//! Damping and constant torque.
+//!
+//! With rates `c` and `d`, `v̇ = a − c v` and `L̇ = T − d L` have closed forms, `v = a/c + (v₀ − a/c) e^(−ct)` and
+//! alike for the angular momentum; without a torque a body turns as it would without damping, but its time runs as `(1
+//! − e^(−dt))/d`. What looks for contacts knows parabolas and free rotation alone, so such a flight is cut into legs:
+//! on each the body is on a parabola through the closed form's places at both ends with its velocity at the start, and
+//! turns freely with the leg's mean angular momentum. Legs are so short that no point of the body is farther than
+//! [`STRAY`] of the gap at which it touches from where the closed form has it. At the ends of legs velocity, place and
+//! angular momentum are those of the closed form to rounding, and the orientation too where there is no torque, or
+//! where it does not change the axis; otherwise the orientation has an error that falls as the square of the legs.
+
+use super::body::{Momentum, Phase, Turning};
+use super::tumble::drift;
+use super::{Rigid, Spec};
+use glam::{DMat3, DVec3};
+use plaus_dist::math;
+
+/// What slows a body down, and what turns it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Drag {
+    /// Rate in 1/s at which velocity is lost.
+    pub(super) linear: f64,
+    /// Rate in 1/s at which angular momentum is lost.
+    pub(super) angular: f64,
+    /// In N m, in world axes.
+    pub(super) torque: DVec3,
+}
+
+/// Part of the gap at which a body touches by which a leg may stray from the closed form. Default 0.5: a first contact
+/// is found as early as that.
+const STRAY: f64 = 0.5;
+
+/// Angle in radians by which a ball may be turned otherwise half way of a leg. Default 1e-3: no contact depends on it.
+const UNSEEN: f64 = 1e-3;
+
+/// Decay `z` below which series stand for differences of nearly equal numbers. Default 0.5: their twelve terms leave
+/// `0.5¹²/14!`, which is below rounding.
+const SMALL: f64 = 0.5;
+
+/// `(1 − e^(−z))/z`: the mean of `e^(−z s)` over `s` from 0 to 1.
+fn mean_decay(z: f64) -> f64 {
+    if z == 0.0 { 1.0 } else { -math::exp_m1(-z) / z }
+}
+
+/// `(z − 1 + e^(−z))/z²`: the mean over `s` of what an even gain has become, 1/2 without decay.
+fn mean_gain(z: f64) -> f64 {
+    if z >= SMALL {
+        return (z + math::exp_m1(-z)) / (z * z);
+    }
+    // Σ (−z)ⁿ/(n + 2)!, from the last term on.
+    (3..=14).rev().fold(1.0, |sum, n| 1.0 - z / f64::from(n) * sum) * 0.5
+}
+
+/// A quantity that `gain` feeds and that decays at `rate`, after `dt`.
+fn after(start: DVec3, gain: DVec3, rate: f64, dt: f64) -> DVec3 {
+    let z = rate * dt;
+    start * math::exp(-z) + gain * (mean_decay(z) * dt)
+}
+
+/// Its integral over `dt`.
+fn summed(start: DVec3, gain: DVec3, rate: f64, dt: f64) -> DVec3 {
+    let z = rate * dt;
+    start * (mean_decay(z) * dt) + gain * (mean_gain(z) * dt * dt)
+}
+
+impl Spec {
+    /// Velocity and angular momentum in flight, `dt` after these.
+    pub(super) fn dragged(&self, drag: &Drag, from: &Momentum, dt: f64) -> Momentum {
+        Momentum { v: after(from.v, self.pull, drag.linear, dt), l: after(from.l, drag.torque, drag.angular, dt) }
+    }
+
+    /// Velocities `dt` later of a body turned by `r` that stays where it is: with which a step of lasting contact
+    /// begins or ends.
+    #[inline]
+    pub(super) fn kicked(&self, r: &DMat3, [v, w]: [DVec3; 2], dt: f64) -> (DVec3, DVec3) {
+        match &self.drag {
+            None => (v + self.pull * dt, w),
+            Some(drag) => {
+                let gain = self.inertia.inverse(r) * drag.torque;
+                (after(v, self.pull, drag.linear, dt), after(w, gain, drag.angular, dt))
+            }
+        }
+    }
+
+    /// The torque that acts on it, in N m.
+    pub(super) fn torque(&self) -> DVec3 {
+        self.drag.map_or(DVec3::ZERO, |d| d.torque)
+    }
+
+    /// How long a leg may be.
+    fn leg(&self, drag: &Drag, from: &Momentum) -> f64 {
+        let stray = STRAY * self.gap;
+        // The third derivative of the way is at most this, and a parabola through both ends strays by 2/81 of it times
+        // h³.
+        let jerk = drag.linear * (self.pull - from.v * drag.linear).length();
+        let straight = math::cbrt(stray * 40.5 / jerk);
+        let turning = (drag.torque - from.l * drag.angular).length() / self.inertia.moments.min_element();
+        let most = if self.is_ball { UNSEEN } else { stray / self.reach };
+        straight.min((8.0 * most / turning).sqrt())
+    }
+}
+
+impl Turning {
+    /// Velocity and angular momentum `dt` after the start of a leg.
+    pub(super) fn within_leg(&self, spec: &Spec, dt: f64) -> Momentum {
+        spec.drag.as_ref().filter(|_| dt > 0.0).map_or(self.ends[0], |drag| spec.dragged(drag, &self.ends[0], dt))
+    }
+
+    /// Moves along a leg to `dt` after its start, where its centre is already known to be.
+    pub(super) fn follow_leg(&mut self, spec: &Spec, dt: f64) {
+        let now = self.within_leg(spec, dt);
+        (self.turn, _) = drift(&spec.inertia, self.turn, self.spin, dt);
+        (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
+        self.ends[0] = now;
+    }
+}
+
+impl Rigid {
+    /// Has a body that touches nothing fly on.
+    pub(super) fn fly(&self, index: usize, body: &mut Turning) {
+        let spec = &self.specs[index];
+        let Some(drag) = &spec.drag else { return body.begin(Phase::Flight, spec.pull) };
+        let from = Momentum { v: body.path.v, l: spec.inertia.momentum(body.turn, body.spin) };
+        let h = spec.leg(drag, &from).min(self.duration);
+        let way = summed(from.v, spec.pull, drag.linear, h);
+        body.begin(Phase::Leg, (way / h - from.v) * (2.0 / h));
+        body.ends[0] = from;
+        body.spin = spec.inertia.spin(body.turn, summed(from.l, drag.torque, drag.angular, h) / h);
+        body.expiry = body.path.t + h;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Beside sums of a thousand terms of Simpson's rule, whose error is of the order of 1e-13.
+    #[test]
+    fn means_are_those_of_their_integrands() {
+        for z in [0.0, 1e-9, 1e-3, 0.3, 0.499, 0.501, 2.0, 20.0] {
+            let simpson = |f: &dyn Fn(f64) -> f64| {
+                let weight = |k: usize| if k == 0 || k == 1000 { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };
+                (0..=1000).map(|k| weight(k) * f(k as f64 / 1000.0)).sum::<f64>() / 3000.0
+            };
+            let decay = simpson(&|s| math::exp(-z * s));
+            let gain = simpson(&|s| (1.0 - s) * math::exp(-z * s));
+            // Simpson's own error, z⁴/180/1000⁴.
+            let tolerance = 1e-14 + z * z * z * z / 1.8e14;
+            assert!((mean_decay(z) - decay).abs() < tolerance, "{z}: {} for {decay}", mean_decay(z));
+            // ∫₀¹ ∫₀ˢ e^(−z(s−r)) dr ds = ∫₀¹ (1 − u) e^(−z u) du.
+            assert!((mean_gain(z) - gain).abs() < tolerance, "{z}: {} for {gain}", mean_gain(z));
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What may be done to a state between two runs: bodies are kicked, taken out, and put in.
+
+use super::Rigid;
+use super::body::{Motion, Phase, Start, Turning};
+use crate::error::WorldError;
+use crate::queue::{Event, Happening};
+use crate::state::State;
+use glam::DVec3;
+
+impl Rigid {
+    /// Gives a body an impulse in N s at its centre of gravity, and an angular impulse in N m s, at the state's time.
+    /// One that sleeps or rests wakes, one that has not been released starts with what they bring.
+    ///
+    /// # Errors
+    /// [`WorldError::BadBody`] for a body that is not there, is gone or goes its own way, and for numbers that are
+    /// none.
+    pub fn kick(
+        &self,
+        state: &mut State<Turning>,
+        index: usize,
+        impulse: DVec3,
+        angular: DVec3,
+    ) -> Result<(), WorldError> {
+        self.check_edited(state, index)?;
+        if let Some(value) = super::not_finite([impulse.to_array(), angular.to_array()].concat()) {
+            return Err(bad(index, "impulse", value, "finite numbers"));
+        }
+        if state.bodies[index].phase == Phase::Gone {
+            return Err(bad(index, "index of what is kicked", index as f64, "a body that is not gone"));
+        }
+        let (spec, time) = (&self.specs[index], state.time);
+        let body = &mut state.bodies[index];
+        let is_waiting = body.phase == Phase::Waiting;
+        if !is_waiting {
+            body.advance(spec, time);
+        }
+        let v = body.path.v + impulse / spec.mass;
+        let w = body.spin + spec.inertia.spin(body.turn, angular);
+        body.set_motion(spec, Motion { v, w });
+        if !is_waiting {
+            self.wake(state, index);
+        }
+        Ok(())
+    }
+
+    /// Takes a body out at the state's time. What rested on it wakes.
+    ///
+    /// # Errors
+    /// [`WorldError::BadBody`] for a body that is not there or goes its own way.
+    pub fn remove(&self, state: &mut State<Turning>, index: usize) -> Result<(), WorldError> {
+        self.check_edited(state, index)?;
+        let time = state.time;
+        let neighbours: Vec<usize> = state.links.of(index as u32).map(|k| k as usize).collect();
+        state.links.retain(|link| !link.contains(&(index as u32)));
+        for k in neighbours.into_iter().filter(|&k| !self.specs[k].is_driven()) {
+            state.bodies[k].advance(&self.specs[k], time);
+            self.wake(state, k);
+        }
+        let body = &mut state.bodies[index];
+        if body.phase != Phase::Waiting {
+            body.advance(&self.specs[index], time);
+        }
+        body.lie_still();
+        body.phase = Phase::Gone;
+        state.interrupt(index, Event { time: f64::INFINITY, happening: Happening::End });
+        Ok(())
+    }
+
+    /// Puts a body in anew, wherever it was, or although it had been taken out: it is released as its start says. A
+    /// world holds all bodies that are ever put in; take those out that are to come later.
+    ///
+    /// # Errors
+    /// [`WorldError`] where its start lies before the state's time, is not finite, or overlaps scenery, or, where it is
+    /// released at the state's time, a body that is there; [`WorldError::BadBody`] for a body that is not there or goes
+    /// its own way. Nothing has changed then.
+    pub fn put(&self, state: &mut State<Turning>, index: usize, start: &Start) -> Result<(), WorldError> {
+        self.check_edited(state, index)?;
+        self.check_start(index, start)?;
+        if start.time < state.time {
+            return Err(bad(index, "start time", start.time, "a time from that of the state on"));
+        }
+        let body = Turning::waiting(start);
+        let is_there = |b: &Turning| !matches!(b.phase, Phase::Waiting | Phase::Gone);
+        for (k, other) in state.bodies.iter().enumerate() {
+            if k == index || start.time > state.time || !is_there(other) {
+                continue;
+            }
+            let there = self.at(k, other, start.time);
+            let (pair, both) = if k < index { ([k, index], [&there, &body]) } else { ([index, k], [&body, &there]) };
+            let depth = -self.gap(pair, both);
+            if depth > super::OVERLAP * self.specs[k].size.min(self.specs[index].size) {
+                return Err(WorldError::BodiesOverlap { a: pair[0], b: pair[1], depth });
+            }
+        }
+        self.remove(state, index)?;
+        state.bodies[index] = body;
+        let time = start.time.min(self.duration);
+        state.interrupt(index, Event { time, happening: Happening::Expiry });
+        Ok(())
+    }
+
+    fn check_edited(&self, state: &State<Turning>, index: usize) -> Result<(), WorldError> {
+        if state.bodies.len() != self.specs.len() {
+            return Err(WorldError::WrongState { state: state.bodies.len(), world: self.specs.len() });
+        }
+        match self.specs.get(index) {
+            Some(spec) if !spec.is_driven() => Ok(()),
+            _ => Err(bad(index, "index", index as f64, "a body of the world without keyframes")),
+        }
+    }
+
+    /// Has a body at the state's time, and what it touches, look anew at what they do.
+    fn wake(&self, state: &mut State<Turning>, index: usize) {
+        let body = &mut state.bodies[index];
+        if !body.flies() && body.phase != Phase::Gone {
+            body.phase = Phase::Step;
+            let motion = Motion { v: body.path.v, w: body.spin };
+            body.set_motion(&self.specs[index], motion);
+            body.expiry = body.path.t;
+            self.list_touches(index, body);
+        }
+        let time = state.time;
+        state.interrupt(index, Event { time, happening: Happening::Expiry });
+    }
+}
+
+fn bad(body: usize, field: &'static str, value: f64, expected: &'static str) -> WorldError {
+    WorldError::BadBody { body, field, value, expected }
+}
