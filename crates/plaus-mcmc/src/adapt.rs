@@ -14,8 +14,8 @@
 //! vanishes, and then only in the limit (Andrieu and Thoms, "A tutorial on adaptive MCMC", Statistics and Computing 18,
 //! 2008).
 //!
-//! A move may also learn from where its chain was, in all but the first quarter of the warm-up: see [`crate::fit`]. What
-//! it has learnt is kept in the same way.
+//! A move may also learn from where its chain was, in all but the first quarter of the warm-up: see [`crate::fit`].
+//! What it has learnt is kept in the same way.
 //!
 //! The scales are a function of target, moves, seed and chain; each chain has its own, and so has each rung of tempered
 //! replicas.
