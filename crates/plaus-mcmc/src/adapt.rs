@@ -14,12 +14,16 @@
 //! vanishes, and then only in the limit (Andrieu and Thoms, "A tutorial on adaptive MCMC", Statistics and Computing 18,
 //! 2008).
 //!
+//! A move may also learn from where its chain was, in all but the first quarter of the warm-up: see [`crate::fit`].
+//! What it has learnt is kept in the same way.
+//!
 //! The scales are a function of target, moves, seed and chain; each chain has its own, and so has each rung of tempered
 //! replicas.
 
+use crate::fit::Learning;
 use crate::moves::{Mixture, Move, MoveId, Path};
 use crate::scale::Scale;
-use crate::target::Target;
+use crate::target::{StateOf, Target};
 use plaus_dist::math;
 use serde::{Deserialize, Serialize};
 
@@ -85,15 +89,20 @@ pub struct Scales {
     frozen: bool,
     /// By move, in order of its scales.
     of: Vec<Vec<Adapted>>,
+    /// By move, what it learns.
+    learned: Vec<Option<Learning>>,
 }
 
 impl Scales {
-    /// Where adaptation begins; `None` where no move has a scale.
+    /// Where adaptation begins; `None` where no move has a scale, or learns.
     fn start<T: Target>(moves: &Mixture<T>, until: u64) -> Option<Self> {
         let begin = |scale: Scale| Adapted { log: scale.log(scale.start), tried: 0, accepted: 0, sum: 0.0, summed: 0 };
         let of: Vec<Vec<Adapted>> =
             moves.iter().map(|(_, kernel)| kernel.scales().into_iter().map(begin).collect()).collect();
-        of.iter().any(|scales| !scales.is_empty()).then_some(Self { until, frozen: false, of })
+        let begin = |numbers: usize| (numbers > 0).then(|| Learning::start(numbers));
+        let learned: Vec<Option<Learning>> = moves.iter().map(|(_, kernel)| begin(kernel.learns())).collect();
+        let is_any = of.iter().any(|scales| !scales.is_empty()) || learned.iter().any(Option::is_some);
+        is_any.then_some(Self { until, frozen: false, of, learned })
     }
 
     /// Whether the warm-up is over, so that they stay.
@@ -115,10 +124,18 @@ impl Scales {
         self.of.get(usize::from(id.0)).map_or(&[], Vec::as_slice)
     }
 
+    /// What a move learns; `None` for one that learns nothing.
+    #[must_use]
+    pub fn learned(&self, id: MoveId) -> Option<&Learning> {
+        self.learned.get(usize::from(id.0)).and_then(Option::as_ref)
+    }
+
     /// Whether they are scales of these moves.
     #[must_use]
     pub fn fit<T: Target>(&self, moves: &Mixture<T>) -> bool {
+        let numbers = |learned: &Option<Learning>| learned.as_ref().map_or(0, Learning::numbers);
         self.of.iter().map(Vec::len).eq(moves.iter().map(|(_, kernel)| kernel.scales().len()))
+            && self.learned.iter().map(numbers).eq(moves.iter().map(|(_, kernel)| kernel.learns()))
     }
 }
 
@@ -154,6 +171,20 @@ impl<T: Target> Adaptation<T> {
         self.remade[usize::from(id.0)].as_deref()
     }
 
+    /// Notes the state that iteration `iteration` led to, for moves that learn.
+    pub(crate) fn look(&mut self, moves: &Mixture<T>, iteration: u64, target: &T, state: &StateOf<T>) {
+        if self.scales.frozen || iteration < self.scales.until / 4 {
+            return;
+        }
+        for (id, (_, kernel)) in (0..).zip(moves.iter()) {
+            let index = usize::from(id);
+            let Some(learning) = &mut self.scales.learned[index] else { continue };
+            if learning.note(&kernel.learn_from(target, state)) {
+                self.remade[index] = remade(kernel, &self.scales, MoveId(id));
+            }
+        }
+    }
+
     /// Notes what became of a proposal that iteration `iteration` made.
     pub(crate) fn learn(
         &mut self,
@@ -177,12 +208,16 @@ impl<T: Target> Adaptation<T> {
         if !self.scales.frozen && iteration + 1 >= self.scales.until {
             self.scales.frozen = true;
             self.scales.of.iter_mut().flatten().for_each(Adapted::freeze);
+            self.scales.learned.iter_mut().flatten().for_each(Learning::freeze);
             *self = Self::resume(moves, self.scales.clone());
         }
     }
 }
 
 fn remade<T: Target>(kernel: &dyn Move<T>, scales: &Scales, id: MoveId) -> Option<Box<dyn Move<T>>> {
+    if let Some(fit) = scales.learned(id).and_then(Learning::fit) {
+        return kernel.at_fit(fit);
+    }
     let values = scales.values(id);
     if values.is_empty() { None } else { kernel.at_scales(&values) }
 }
@@ -223,7 +258,7 @@ mod tests {
         let mut one = begun();
         let known = |summed: u64| {
             (one.summed, one.sum) = (summed, summed as f64);
-            let mut scales = Scales { until: 2, frozen: true, of: vec![vec![one]] };
+            let mut scales = Scales { until: 2, frozen: true, of: vec![vec![one]], learned: vec![None] };
             scales.of[0][0].freeze();
             scales.values(MoveId(0))
         };

@@ -252,6 +252,7 @@ impl<'a, T: Target> Chain<'a, T> {
         self.iteration = next;
         self.counts[usize::from(move_id.0)].count(verdict);
         if let Some(adaptation) = &mut self.adaptation {
+            adaptation.look(moves, next, self.target, &self.state);
             adaptation.learn(moves, next, (move_id, proposal.path()), verdict == Verdict::Accepted);
         }
         Ok(Step { move_id, verdict })

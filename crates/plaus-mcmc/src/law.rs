@@ -138,6 +138,16 @@ impl Law {
         }
     }
 
+    /// Whether it is the law of one number that has a normalised density and hangs on no other variable.
+    #[must_use]
+    pub fn is_density(&self) -> bool {
+        match self {
+            Self::Gaussian(_) | Self::Truncated(_) | Self::Uniform(_) => true,
+            Self::Number(law) => law.is_continuous(),
+            _ => false,
+        }
+    }
+
     /// The Gaussian of each coordinate, before anything is cut off; `None` for laws that are made of none.
     #[must_use]
     pub fn gaussian(&self) -> Option<Gaussian> {

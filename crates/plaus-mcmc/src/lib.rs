@@ -54,6 +54,7 @@ pub mod chain;
 pub mod chance;
 pub mod check;
 pub mod diagnose;
+pub mod fit;
 pub mod independent;
 pub mod ladder;
 pub mod law;
@@ -74,6 +75,7 @@ pub mod view;
 
 pub use adapt::{Adapted, Scales};
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
+pub use fit::{Fit, Learning};
 pub use independent::{Independent, Tried, keep_draws, try_draws};
 pub use ladder::Ladder;
 pub use law::{Law, Offset, Recipe, Rectangle};

@@ -1,5 +1,6 @@
 //! Moves propose candidates and answer for their own Hastings ratio; a mixture chooses among them.
 
+use crate::fit::Fit;
 use crate::scale::Scale;
 use crate::target::{ModelError, StateOf, Target};
 use plaus_dist::{LogRatio, Stream, open_unit};
@@ -104,6 +105,22 @@ pub trait Move<T: Target>: Send + Sync {
     /// The same move at other values of its [`Move::scales`], one each; `None` leaves one as it is configured. A move
     /// that has scales gives one.
     fn at_scales(&self, _values: &[Option<f64>]) -> Option<Box<dyn Move<T>>> {
+        None
+    }
+
+    /// Of how many numbers the points are that it learns from in a chain's warm-up, see [`crate::fit`]; 0 for a move
+    /// that learns nothing.
+    fn learns(&self) -> usize {
+        0
+    }
+
+    /// Those numbers of a state.
+    fn learn_from(&self, _target: &T, _state: &StateOf<T>) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The same move with what was fitted to such points. A move that learns gives one.
+    fn at_fit(&self, _fit: &Fit) -> Option<Box<dyn Move<T>>> {
         None
     }
 

@@ -1,5 +1,6 @@
 //! Targets seen differently: same draws, same outcomes, another weight or another way to simulate.
 
+use crate::fit::Fit;
 use crate::moves::{Mixture, MixtureError, Move, Path, Proposal};
 use crate::scale::Scale;
 use crate::target::{ModelError, Simulated, StateOf, Target};
@@ -177,5 +178,17 @@ impl<V: Sees> Move<V> for Lent<V::Seen> {
 
     fn scale_of(&self, path: Path) -> Option<usize> {
         self.kernel().scale_of(path)
+    }
+
+    fn learns(&self) -> usize {
+        self.kernel().learns()
+    }
+
+    fn learn_from(&self, target: &V, state: &StateOf<V>) -> Vec<f64> {
+        self.kernel().learn_from(target.seen(), &V::state(state))
+    }
+
+    fn at_fit(&self, fit: &Fit) -> Option<Box<dyn Move<V>>> {
+        Some(Box::new(Lent(Arc::from(self.kernel().at_fit(fit)?))))
     }
 }

@@ -13,6 +13,7 @@ mod diagnose_properties;
 mod engine_chain;
 mod engine_run;
 mod independent;
+mod learned;
 mod library;
 mod replicas;
 mod required;

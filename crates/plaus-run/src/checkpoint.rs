@@ -17,7 +17,7 @@ use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::Path;
 
-const KIND: Kind = Kind::new(*b"chkp", 3, "a checkpoint of a chain");
+const KIND: Kind = Kind::new(*b"chkp", 4, "a checkpoint of a chain");
 
 /// Where a chain can go on from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -107,6 +107,10 @@ as_number_law!(Choice {
         [self.values[0], self.values[self.values.len() - 1]]
     }
 
+    fn is_continuous(&self) -> bool {
+        false
+    }
+
     /// In places of the list.
     fn width(&self) -> f64 {
         self.values.len() as f64

@@ -28,6 +28,11 @@ pub trait NumberLaw: Debug + Send + Sync {
     /// Between which values all draws lie; infinite where there is no end.
     fn support(&self) -> [f64; 2];
 
+    /// Whether it has a density; else single values have a probability each.
+    fn is_continuous(&self) -> bool {
+        true
+    }
+
     /// What a step of usual size is measured by, above 0.
     fn width(&self) -> f64;
 

@@ -3,6 +3,7 @@
 //! | move | what it does | log ratio |
 //! | --- | --- | --- |
 //! | [`RedrawAll`] | everything anew | prior of the old draw over that of the new one |
+//! | [`Learned`] | everything anew, numbers from a density learnt in the warm-up | the mixture's, old over new |
 //! | [`RedrawOne`] | one variable of a set anew | its old density over its new one |
 //! | [`RedrawSome`] | each variable of a set anew with a probability | their old densities over their new ones |
 //! | [`RedrawGroup`] | all variables of one body or part anew | their old densities over their new ones |
@@ -19,6 +20,7 @@
 //! What a move can get wrong is tried once, on a target that has a variable of every law, with a wrong twin each:
 //! `tests/library.rs`.
 
+mod learned;
 mod redraw_all;
 mod redraw_group;
 mod redraw_one;
@@ -34,6 +36,7 @@ mod swap;
 mod symmetry;
 mod toggle;
 
+pub use learned::Learned;
 pub use redraw_all::RedrawAll;
 pub use redraw_group::RedrawGroup;
 pub use redraw_one::RedrawOne;

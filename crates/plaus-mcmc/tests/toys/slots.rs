@@ -37,10 +37,10 @@ impl Slots {
         let pin = || Law::Plane(Offset::new(0.3, f64::INFINITY).unwrap());
         let ball = || Law::Rectangle(Rectangle::new([[0.0, 2.0], [1.0, 2.0]]).unwrap());
         Self(Vars::new(vec![
-            Var::new("speed", "m/s", Law::Gaussian(Gaussian::new(1.0, 0.5).unwrap())),
-            Var::new("size", "m", Law::Uniform(WrappedUniform::new(1.0, 2.0).unwrap())),
+            Var::new("speed", "m/s", Law::Gaussian(Gaussian::new(1.0, 0.5).unwrap())).column(1.0),
+            Var::new("size", "m", Law::Uniform(WrappedUniform::new(1.0, 2.0).unwrap())).column(1.0),
             Var::new("height", "m", Law::Above(1.5, 0.5, SIZE)),
-            Var::new("angle", "rad", Law::Truncated(TruncatedGaussian::new(0.0, 1.0, -1.0, 2.0).unwrap())),
+            Var::new("angle", "rad", Law::Truncated(TruncatedGaussian::new(0.0, 1.0, -1.0, 2.0).unwrap())).column(1.0),
             Var::new("pin", "mm", pin()).of("pin", 1),
             Var::new("pin", "mm", pin()).of("pin", 2),
             Var::new("vertex", "mm", Law::Space(Offset::new(0.2, 0.5).unwrap())),

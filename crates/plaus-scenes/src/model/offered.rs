@@ -1,7 +1,7 @@
 //! Moves of the library that every scene offers, of any weight that a scenario gives them: one row a move.
 
 use super::row::Row;
-use plaus_mcmc::library::{RedrawOne, Sizes, Step, StepAll};
+use plaus_mcmc::library::{Learned, RedrawOne, Sizes, Step, StepAll};
 use plaus_mcmc::{Move, Variables, Vars};
 
 /// A row, and the move for a target.
@@ -39,5 +39,14 @@ impl<S: Variables + 'static> Offered for S {
             let sizes = Sizes::new(FINEST, 1.0);
             Box::new(StepAll { name: "step_all", among: all(scene.vars()), sizes })
         }),
+        (
+            Row::own(
+                "learned",
+                0.0,
+                "Everything is drawn anew, numbers that tables show from a density that the chain has learnt in its \
+                 warm-up. It learns only where `adapt` of the sampler is true; else all is drawn from its law.",
+            ),
+            |scene| Box::new(Learned::of("learned", scene.vars())),
+        ),
     ];
 }
