@@ -2,9 +2,9 @@
 
 use crate::chance::prior;
 use crate::moves::{Mixture, Move, Path, Proposal};
+use crate::parallel;
 use crate::target::{Goal, ModelError, Simulated, State, StateOf, Target, at_most, most_of};
 use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math, open_unit};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// What a draw of a trial is made from.
@@ -70,6 +70,9 @@ impl Tried {
     }
 }
 
+/// Draws that are made one after the other with the same scratch. Default 8.
+const IN_A_ROW: u64 = 8;
+
 /// Makes the draws of the prior with these numbers, on the current pool of threads. They are functions of target, seed
 /// and number, and none of them is a chain's of a run.
 ///
@@ -85,7 +88,7 @@ pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result
         Ok(Tried { draws: 1, hits: u64::from(is_hit), kept })
     };
     // Summed in order, so that the sum does not depend on who made which.
-    let made: Vec<Tried> = numbers.into_par_iter().map_init(T::Scratch::default, one).collect::<Result<_, _>>()?;
+    let made = each::<T, Tried>(numbers, one)?;
     Ok(made.into_iter().fold(Tried::default(), Tried::and))
 }
 
@@ -109,6 +112,20 @@ pub fn keep_draws<T: Target>(target: &T, seed: Seed, numbers: Range<u64>) -> Res
         let log_constraint = at_most(target.log_constraint(&outcome)?, most)?;
         Ok((log_constraint > floor).then_some(State { draw, outcome, log_prior, log_constraint }))
     };
-    let made: Vec<_> = numbers.into_par_iter().map_init(T::Scratch::default, one).collect::<Result<_, _>>()?;
+    Ok(each::<T, _>(numbers, one)?.into_iter().flatten().collect())
+}
+
+/// What `one` makes of each number, in their order, on the current pool of threads; some in a row share their scratch.
+fn each<T: Target, R: Send>(
+    numbers: Range<u64>,
+    one: impl Fn(&mut T::Scratch, u64) -> Result<R, ModelError> + Sync,
+) -> Result<Vec<R>, ModelError> {
+    let parts = numbers.end.saturating_sub(numbers.start).div_ceil(IN_A_ROW);
+    let made = parallel::try_map(parts as usize, |part| {
+        let from = numbers.start + part as u64 * IN_A_ROW;
+        let mut scratch = T::Scratch::default();
+        let row = from..numbers.end.min(from + IN_A_ROW);
+        row.map(|number| one(&mut scratch, number)).collect::<Result<Vec<R>, ModelError>>()
+    })?;
     Ok(made.into_iter().flatten().collect())
 }
