@@ -75,8 +75,10 @@ class Problem:
     said: str | None
     """The override that said so, as `key=value`; None for the text itself."""
 
-def _scenario(text: str, name: str, overrides: Sequence[str]) -> Scenario:
-    """A scenario as it was pickled."""
+def _scenario(
+    text: str, name: str, overrides: Sequence[str], files: Sequence[tuple[str, bytes]] = ...
+) -> Scenario:
+    """A scenario as it was pickled, with the files that it names."""
 
 @final
 class Scenario:
