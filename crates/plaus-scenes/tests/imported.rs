@@ -139,9 +139,8 @@ fn what_nothing_moves_in_gets_a_ball() {
 /// What begins inside another body is lifted until it is free.
 #[test]
 fn what_begins_inside_another_is_lifted() {
-    let body = |name: &str, at: [f64; 3]| {
-        json!({ "name": name, "mesh": 0, "translation": at, "extras": { "plaus": "body" } })
-    };
+    let body =
+        |name: &str, at: [f64; 3]| json!({ "name": name, "mesh": 0, "translation": at, "extras": { "plaus": "body" } });
     let (made, _) = imported(&glb(&json!([body("one", [0.0; 3]), body("other", [0.1, 0.1, 0.0])]), &json!({})));
     let lifted = made.text.lines().find_map(|line| line.split("# lifted by ").nth(1)?.split(' ').next()?.parse().ok());
     assert!(lifted.is_some_and(|by: f64| by > 100.0), "{}", made.text);
