@@ -1,9 +1,10 @@
 //! Times that requirements ask for, beside those that solutions found: a picture.
 
 use crate::svg::{Frame, PANEL, Svg};
-use plaus_run::{Error, RunOf, solutions};
+use plaus_run::replay::replay_each;
+use plaus_run::{Error, RunOf, SampleId, solutions};
 use plaus_scenes::Scene;
-use plaus_scenes::require::Probe;
+use plaus_scenes::require::Timed;
 
 /// Solutions that are looked at: each is simulated again.
 const MOST: usize = 64;
@@ -18,37 +19,38 @@ struct Asked {
     found: Vec<[f64; 2]>,
 }
 
-/// The picture, and how many solutions are in it; `None` where nothing asks for a time, or there are no solutions.
+/// The picture; `None` where nothing asks for a time, or there are no solutions.
 ///
 /// # Errors
 /// [`Error`] where the run cannot be read, or a solution not be simulated.
 pub(crate) fn plot<S: Scene>(run: &RunOf<'_, S>) -> Result<Option<String>, Error> {
-    let (scene, demands) = (run.scene(), run.scene().demands());
-    let cast = scene.cast();
-    let mut asked: Vec<Asked> = demands.iter().map(|(key, _)| Asked { key: key.clone(), ..Asked::default() }).collect();
-    for solution in solutions::distinct(run)?.iter().take(MOST) {
-        let draw = run.sample(solution.sample)?.state.draw;
-        let motion = scene.motion(&draw).map_err(|error| Error::Sampling(error.to_string()))?;
-        let probe = Probe::whole(&motion, &cast);
-        for (asked, (_, require)) in asked.iter_mut().zip(&demands) {
-            for timed in require.times(&probe) {
-                let (from, to) = (timed.wanted.from, timed.wanted.to);
-                let middle = 0.5 * (from + to);
-                if !middle.is_finite() {
-                    continue; // a window with an open end has no time that is meant
-                }
-                if asked.wanted.iter().all(|known| known[0] != middle) {
-                    asked.wanted.push([middle, 0.5 * (to - from)]);
-                }
-                asked.found.extend(timed.found.map(|found| [middle, found]));
-            }
-        }
-        if asked.iter().all(|one| one.wanted.is_empty()) {
-            return Ok(None);
-        }
+    let samples: Vec<SampleId> = solutions::distinct(run)?.iter().take(MOST).map(|one| one.sample).collect();
+    let times = |some| replay_each(run, some, |replay| run.scene().times(&replay.animation));
+    let (first, others) = samples.split_at(samples.len().min(1));
+    let mut found = times(first)?;
+    if found.iter().flatten().any(|(_, timed)| middle(timed).is_some()) {
+        found.extend(times(others)?);
     }
-    asked.retain(|one| !one.wanted.is_empty());
+    let mut asked: Vec<Asked> = Vec::new();
+    for (key, timed) in found.into_iter().flatten() {
+        let Some(middle) = middle(&timed) else { continue };
+        let known = asked.iter().position(|one| one.key == key);
+        let index = known.unwrap_or_else(|| {
+            asked.push(Asked { key, ..Asked::default() });
+            asked.len() - 1
+        });
+        let one = &mut asked[index];
+        if one.wanted.iter().all(|known| known[0] != middle) {
+            one.wanted.push([middle, 0.5 * (timed.wanted.to - timed.wanted.from)]);
+        }
+        one.found.extend(timed.found.map(|found| [middle, found]));
+    }
     Ok((!asked.is_empty()).then(|| picture(&asked)))
+}
+
+/// The time that is meant; a window with an open end has none.
+fn middle(timed: &Timed) -> Option<f64> {
+    Some(0.5 * (timed.wanted.from + timed.wanted.to)).filter(|middle| middle.is_finite())
 }
 
 /// Left: times found over times asked for. Right: how far off, with the windows.
@@ -60,10 +62,10 @@ fn picture(asked: &[Asked]) -> String {
     };
     let off = |[wanted, found]: [f64; 2]| 1e3 * (found - wanted);
     let windows = || asked.iter().flat_map(|one| &one.wanted);
-    let times =
-        range(&mut windows().map(|window| window[0]).chain(asked.iter().flat_map(|one| &one.found).map(|at| at[1])));
+    let found = || asked.iter().flat_map(|one| &one.found);
+    let times = range(&mut windows().map(|window| window[0]).chain(found().map(|at| at[1])));
     let edges = windows().flat_map(|window| [-1e3 * window[1], 1e3 * window[1]]);
-    let misses = range(&mut edges.chain(asked.iter().flat_map(|one| &one.found).map(|at| off(*at))));
+    let misses = range(&mut edges.chain(found().map(|at| off(*at))));
     let legend = 26.0 * asked.len() as f64;
     let mut svg = Svg::new(2 * PANEL[0] as usize, (PANEL[1] + legend) as usize);
     let both = Frame::new(0, times, times);

@@ -10,7 +10,7 @@ use plaus_export::sound;
 use plaus_run::RunOf;
 use plaus_run::replay::Replay;
 use plaus_scenes::animation::{Animation, Piece, View};
-use plaus_scenes::require::{Probe, Timed};
+use plaus_scenes::require::Timed;
 use plaus_scenes::{Role, Scene};
 use serde_json::{Value, json};
 
@@ -40,7 +40,7 @@ pub(crate) fn pack<S: Scene>(run: &RunOf<'_, S>, replays: &[Replay], maps: &Maps
         let mut sample = of_replay(replay, &ranges, &mut bytes, &mut things, &mut sounds, &mut names);
         sample["outcome"] = json!(maps.outcomes[number]);
         sample["path"] = json!(maps.paths[number]);
-        sample["asked"] = asked(run.scene(), &replay.animation);
+        sample["asked"] = asked(&run.scene().times(&replay.animation));
         samples.push(sample);
     }
     let manifest = run.run().manifest();
@@ -125,12 +125,9 @@ fn of_replay(
 }
 
 /// The times that are asked for, with what came of each; what has the same words is numbered.
-fn asked<S: Scene>(scene: &S, animation: &Animation) -> Value {
-    let cast = scene.cast();
-    let probe = Probe::whole(animation, &cast);
-    let times: Vec<Timed> = scene.demands().iter().flat_map(|(_, require)| require.times(&probe)).collect();
-    let one = |(k, at): (usize, &Timed)| {
-        let before = times[..k].iter().filter(|other| other.what == at.what).count();
+fn asked(times: &[(String, Timed)]) -> Value {
+    let one = |(k, (_, at)): (usize, &(String, Timed))| {
+        let before = times[..k].iter().filter(|(_, other)| other.what == at.what).count();
         let what = if before == 0 { at.what.clone() } else { format!("{} ({})", at.what, before + 1) };
         // What is infinite becomes `null`.
         json!({"what": what, "from": at.wanted.from, "to": at.wanted.to, "found": at.found})

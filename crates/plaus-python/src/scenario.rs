@@ -11,6 +11,7 @@ use plaus_scenes::{Scene, Visitor};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -30,6 +31,8 @@ pub(crate) struct Scenario {
     pub(crate) recipe: Recipe,
     /// What it is called in messages.
     shown: String,
+    /// All files that were read with it: what is set is read anew with them.
+    files: Assets,
 }
 
 impl Scenario {
@@ -40,16 +43,23 @@ impl Scenario {
         overrides: Vec<String>,
         files: &dyn Files,
     ) -> PyResult<Self> {
-        let read = plaus_scenes::Scenario::read_with(&shown, &text, &overrides, files);
+        let seen = RefCell::new(Assets::default());
+        let noted = |path: &str, anywhere: bool| {
+            let bytes = files.bytes(path, anywhere)?;
+            seen.borrow_mut().insert(path, bytes.clone());
+            Ok(bytes)
+        };
+        let read = plaus_scenes::Scenario::read_with(&shown, &text, &overrides, &noted);
         let scenario = read.map_err(|error| of_scenario(py, &error))?;
-        Ok(Self { recipe: Recipe { scenario, file, text, overrides, solutions: None }, shown })
+        let recipe = Recipe { scenario, file, text, overrides, solutions: None };
+        Ok(Self { recipe, shown, files: seen.into_inner() })
     }
 
     /// The same with more overrides, in their order.
     pub(crate) fn with(&self, py: Python<'_>, more: Vec<String>) -> PyResult<Self> {
-        let Recipe { scenario, file, text, overrides, .. } = &self.recipe;
+        let Recipe { file, text, overrides, .. } = &self.recipe;
         let all = overrides.iter().cloned().chain(more).collect();
-        Self::read(py, (self.shown.clone(), file.clone()), text.clone(), all, &scenario.world.assets())
+        Self::read(py, (self.shown.clone(), file.clone()), text.clone(), all, &self.files)
     }
 }
 
@@ -216,8 +226,8 @@ impl Scenario {
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Parts)> {
         let rebuild = slf.py().import("plaus._plaus")?.getattr("_scenario")?;
-        let Recipe { scenario, file, text, overrides, .. } = &slf.get().recipe;
-        let files = scenario.world.assets().iter().map(|(path, bytes)| (path.to_owned(), bytes.to_vec())).collect();
+        let Self { recipe: Recipe { file, text, overrides, .. }, files, .. } = slf.get();
+        let files = files.iter().map(|(path, bytes)| (path.to_owned(), bytes.to_vec())).collect();
         Ok((rebuild, (text.clone(), file.clone(), overrides.clone(), files)))
     }
 }

@@ -68,6 +68,15 @@ def test_scenarios_from_file_text_and_dictionary_are_equal():
     assert plaus.Scenario.from_file(SCENARIOS / "dice-one.toml").scene == "dice"
 
 
+def test_files_beside_a_scenario_go_with_it(tmp_path):
+    (tmp_path / "beats.csv").write_text("0.25\n0.75\n")
+    world = "[world.ball2d]\n[[require]]\nbeats = { each = 'beat', times_from = { file = 'beats.csv' } }\n"
+    (tmp_path / "beats.toml").write_text(world)
+    one = plaus.Scenario.from_file(tmp_path / "beats.toml")
+    (tmp_path / "beats.csv").unlink()
+    assert pickle.loads(pickle.dumps(one)).set(seed=4) == one.set(seed=4) != one
+
+
 def test_a_wrong_scenario_says_where_and_what_would_mend_it():
     with pytest.raises(plaus.ScenarioError) as caught:
         plaus.Scenario.from_text("[world.ball2d]\nsigma_d = -1\ntraget = 2\n")

@@ -15,8 +15,7 @@ use crate::diagnosis::{Diagnosis, columns};
 use crate::error::Error;
 use crate::read::RunOf;
 use plaus_dist::math;
-use plaus_mcmc::keep_draws;
-use plaus_mcmc::parallel;
+use plaus_mcmc::{keep_draws, parallel};
 use plaus_scenes::Scene;
 use serde::Serialize;
 

@@ -4,8 +4,7 @@
 use crate::error::RunFileError;
 use crate::records::{Blocks, Extent};
 use plaus_mcmc::diagnose::summarize;
-use plaus_mcmc::parallel;
-use plaus_mcmc::{Block, Plan};
+use plaus_mcmc::{Block, Plan, parallel};
 use plaus_scenes::{Role, Scene};
 use std::ops::Range;
 use std::path::Path;

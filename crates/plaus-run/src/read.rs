@@ -6,8 +6,7 @@ use crate::folder::Folder;
 use crate::manifest::{Manifest, stored_scalars};
 use crate::records::{self, Blocks, Extent};
 use crate::sample_id::{Phase, SampleId};
-use plaus_mcmc::parallel;
-use plaus_mcmc::{Entry, Snapshot, Target};
+use plaus_mcmc::{Entry, Snapshot, Target, parallel};
 use plaus_scenes::{Scenario, Scene, Visitor};
 use std::ops::Range;
 

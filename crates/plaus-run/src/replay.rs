@@ -3,8 +3,7 @@
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::read::RunOf;
 use crate::sample_id::SampleId;
-use plaus_mcmc::parallel;
-use plaus_mcmc::{State, StateOf};
+use plaus_mcmc::{State, StateOf, parallel};
 use plaus_scenes::{AccuracyPreset, Animation, Scene, Until};
 use serde::Serialize;
 

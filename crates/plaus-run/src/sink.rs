@@ -9,8 +9,7 @@ use crate::records;
 use crate::siblings::Siblings;
 use crate::trail;
 use crate::watch::Watch;
-use plaus_mcmc::parallel;
-use plaus_mcmc::{Block, Control, FirstOfClass, Progress, Sink, Snapshot, Target};
+use plaus_mcmc::{Block, Control, FirstOfClass, Progress, Sink, Snapshot, Target, parallel};
 use plaus_scenes::Scene;
 use rayon::ThreadPool;
 

@@ -8,8 +8,7 @@ use crate::error::Error;
 use crate::manifest::Recipe;
 use crate::way::Way;
 use plaus_dist::Seed;
-use plaus_mcmc::parallel;
-use plaus_mcmc::{Chain, ChainError, Mixture, Plan, Pulse, Tried, Verdict, try_draws};
+use plaus_mcmc::{Chain, ChainError, Mixture, Plan, Pulse, Tried, Verdict, parallel, try_draws};
 use plaus_scenes::{Role, Scene};
 
 /// Draws of the prior between two looks at what they come to.

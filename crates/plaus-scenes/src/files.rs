@@ -97,6 +97,11 @@ pub fn leaves_folder(path: &str) -> Option<String> {
     })
 }
 
+/// Refuses a path that leaves the scenario's folder, unless that is allowed.
+pub(crate) fn inside(path: &str, anywhere: bool) -> Result<(), String> {
+    leaves_folder(path).filter(|_| !anywhere).map_or(Ok(()), Err)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,7 @@
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
 use crate::model::Scalar;
-use crate::require::{Cast, Mark, Require};
+use crate::require::{Cast, Mark, Probe, Require, Timed};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
 use plaus_mcmc::{Goal, Mixture, ModelError, StateOf, Variables};
@@ -97,6 +97,17 @@ pub trait Scene:
     /// contradicts that is refused.
     fn demands(&self) -> Vec<(String, Require)> {
         Vec::new()
+    }
+
+    /// The times that its demands ask for, each with its demand's key, and what came of them in a motion that is known
+    /// to its end.
+    fn times(&self, motion: &Animation) -> Vec<(String, Timed)> {
+        let cast = self.cast();
+        let probe = Probe::whole(motion, &cast);
+        let of = |(key, require): (String, Require)| {
+            require.times(&probe).into_iter().map(move |timed| (key.clone(), timed)).collect::<Vec<_>>()
+        };
+        self.demands().into_iter().flat_map(of).collect()
     }
 
     /// Bodies and impacts of [`Scene::motion`] before `time`, as far as a simulation that ends there tells; `None`

@@ -198,7 +198,7 @@ impl Watching {
             return self.end_of_piece(&run, ending);
         }
         let is_satisfied = self.tell_what_is_missing(&run, &diagnosis, monitor, ending)?;
-        if diagnosis.draws == 0 && ending == Ending::Complete {
+        if is_empty(&diagnosis, ending) {
             return Ok(Outcome::Unsatisfied); // the summary has said why
         }
         if let Some(list) = confirmed.as_ref().filter(|_| !self.json) {
@@ -238,8 +238,7 @@ impl Watching {
                 "only {found} of the {wanted} distinct solutions were found; go on: plaus resume {path}{more}"
             ));
         }
-        let has_ended_empty = diagnosis.draws == 0 && ending == Ending::Complete;
-        if tally.is_satisfied() || has_ended_empty {
+        if tally.is_satisfied() || is_empty(diagnosis, ending) {
             return Ok(missing.is_none());
         }
         if monitor.done() <= plan.warmup && ending == Ending::Stopped {
@@ -254,6 +253,11 @@ impl Watching {
         console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
         Ok(false)
     }
+}
+
+/// Whether a run came to its end, and recorded nothing that can be diagnosed.
+fn is_empty(diagnosis: &Diagnosis, ending: Ending) -> bool {
+    diagnosis.draws == 0 && ending == Ending::Complete
 }
 
 /// The last line of `--json`.

@@ -17,8 +17,7 @@ use plaus_dist::Seed;
 use plaus_mcmc::chance::{
     ChanceError, ChancePulse, Counted, Method, Parts, Split, Splitting, Stoned, Stones, count, split, stones,
 };
-use plaus_mcmc::parallel;
-use plaus_mcmc::{Mixture, StateOf};
+use plaus_mcmc::{Mixture, StateOf, parallel};
 use plaus_scenes::{Scene, Visitor};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

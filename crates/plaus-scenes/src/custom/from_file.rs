@@ -2,7 +2,7 @@
 
 use super::amount::{Amount, Length};
 use super::corners::{Corners, corners};
-use crate::files::{Asset, Files, leaves_folder};
+use crate::files::{Asset, Files, inside};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 use plaus_asset::Triangles;
@@ -95,9 +95,7 @@ impl FromFile {
     ) -> Result<(), ConfigError> {
         let wrong = |name: &str, message: String| ConfigError::new(format!("{key}.{name}"), message);
         let in_file = |message: String| wrong("file", format!("{}: {message}", self.file));
-        if let Some(why) = leaves_folder(&self.file).filter(|_| !self.anywhere) {
-            return Err(in_file(why));
-        }
+        inside(&self.file, self.anywhere).map_err(in_file)?;
         let asset = match known.get(&self.file) {
             Some(asset) => Arc::clone(asset),
             None => {

@@ -3,8 +3,7 @@
 use super::nearest::{any_of, nearest, shown};
 use super::problem::{Problem, Source};
 use super::shape::{Kind, Shape};
-use super::tree::join;
-use super::tree::{Data, Place, Tree};
+use super::tree::{Data, Place, Tree, join};
 use std::collections::BTreeMap;
 use toml::de::DeValue;
 

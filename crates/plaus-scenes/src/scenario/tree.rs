@@ -1,7 +1,6 @@
 //! TOML as a tree in which every value knows where it comes from.
 
-use super::problem::ScenarioError;
-use super::problem::{Problem, Source};
+use super::problem::{Problem, ScenarioError, Source};
 use crate::scene::ConfigError;
 use std::collections::BTreeMap;
 use std::ops::Range;

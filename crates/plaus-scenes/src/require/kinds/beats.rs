@@ -1,6 +1,6 @@
 //! Events on the beats of a rhythm.
 
-use crate::files::{Files, leaves_folder};
+use crate::files::{Files, inside};
 use crate::require::event::{Event, What};
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
@@ -77,9 +77,7 @@ impl Onsets {
     /// The times in the file.
     fn read(&self, key: &str, files: &dyn Files) -> Result<Vec<f64>, ConfigError> {
         let wrong = |message: String| ConfigError::new(format!("{key}.file"), format!("{}: {message}", self.file));
-        if let Some(why) = leaves_folder(&self.file).filter(|_| !self.anywhere) {
-            return Err(wrong(why));
-        }
+        inside(&self.file, self.anywhere).map_err(wrong)?;
         let bytes = files.bytes(&self.file, self.anywhere).map_err(wrong)?;
         let which = Which { column: self.column.as_deref(), note: self.note, channel: self.channel };
         let times = onsets(&self.file, &bytes, &which).map_err(|error| wrong(error.to_string()))?;
@@ -127,13 +125,15 @@ impl Beats {
         Event { body: body.into(), what: What::Impact, with, nth: self.nth, faster_than: self.faster_than }
     }
 
+    /// The number of the regular beat nearest to a time, from 0.
+    fn number(&self, time: f64, every: f64) -> f64 {
+        ((time - self.offset_s) / every).round().max(0.0)
+    }
+
     /// How far a time is from the nearest beat, in s.
     fn off(&self, time: f64) -> f64 {
         match self.every_s {
-            Some(every) => {
-                let beat = ((time - self.offset_s) / every).round().max(0.0);
-                (time - self.offset_s - beat * every).abs()
-            }
+            Some(every) => (time - self.offset_s - self.number(time, every) * every).abs(),
             None => self.times_s.iter().map(|beat| (time - beat).abs()).fold(f64::INFINITY, f64::min),
         }
     }
@@ -142,7 +142,7 @@ impl Beats {
     fn nearest(&self, time: Option<f64>) -> f64 {
         let time = time.unwrap_or(0.0);
         match self.every_s {
-            Some(every) => self.offset_s + ((time - self.offset_s) / every).round().max(0.0) * every,
+            Some(every) => self.offset_s + self.number(time, every) * every,
             None => {
                 self.times_s.iter().copied().min_by(|a, b| (time - a).abs().total_cmp(&(time - b).abs())).unwrap_or(0.0)
             }
