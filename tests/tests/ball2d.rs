@@ -7,11 +7,13 @@ use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math};
 use plaus_mcmc::check::{OneStep, PriorOnly, Ratios, Statistic, one_step, prior, ratios, rejection, visited};
 use plaus_mcmc::library::{RedrawOne, ShiftHalf};
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Chain, Goal, Mixture, ModelError, Move, Path, Proposal, State, StateOf, Target, diagnose};
+use plaus_mcmc::{
+    Chain, Goal, Mixture, ModelError, Move, Path, Proposal, State, StateOf, StateRefOf, Target, diagnose,
+};
 use plaus_scenes::ball2d::{Aim, Ball2d, Config, Downward, Normals, Rest, Weights};
 use plaus_scenes::{Moves, Rules, Scene};
 
-type Ball = StateOf<Ball2d>;
+type Ball<'a> = StateRefOf<'a, Ball2d>;
 type AnyMove = Box<dyn Move<Ball2d>>;
 type Change = fn(&mut Config);
 
@@ -40,9 +42,9 @@ fn redraw(collisions: usize) -> AnyMove {
 }
 
 fn statistics(collisions: usize) -> Vec<Statistic<'static, Normals, Rest>> {
-    let angle = |i: usize| Statistic::new(format!("theta_{}", i + 1), move |state: &Ball| state.draw.0[i]);
-    let rest = Statistic::new("rest_x", |state: &Ball| state.outcome.x.unwrap_or(-1e3));
-    let downward = Statistic::new("downward", |state: &Ball| f64::from(state.outcome.downward.count_ones()));
+    let angle = |i: usize| Statistic::new(format!("theta_{}", i + 1), move |state: &StateOf<Ball2d>| state.draw.0[i]);
+    let rest = Statistic::new("rest_x", |state: &StateOf<Ball2d>| state.outcome.x.unwrap_or(-1e3));
+    let downward = Statistic::new("downward", |state: &StateOf<Ball2d>| f64::from(state.outcome.downward.count_ones()));
     (0..collisions).map(angle).chain([rest, downward]).collect()
 }
 
@@ -120,13 +122,13 @@ impl Move<Ball2d> for Symmetric {
     fn name(&self) -> &str {
         self.0.name()
     }
-    fn propose(&self, t: &Ball2d, current: &Ball, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
+    fn propose(&self, t: &Ball2d, current: Ball<'_>, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
         Ok(match self.0.propose(t, current, to, s)? {
             Proposal::Candidate { .. } => Proposal::SYMMETRIC,
             other => other,
         })
     }
-    fn log_ratio(&self, _: &Ball2d, _: &Ball, _: &Ball, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: &Ball2d, _: Ball<'_>, _: Ball<'_>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }
@@ -139,16 +141,16 @@ impl Move<Ball2d> for AimWithoutJacobian {
     fn name(&self) -> &str {
         "aim without Jacobian"
     }
-    fn propose(&self, t: &Ball2d, current: &Ball, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
+    fn propose(&self, t: &Ball2d, current: Ball<'_>, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
         let proposal = Aim.propose(t, current, to, s)?;
         let Proposal::Candidate { path, .. } = proposal else { return Ok(proposal) };
         let x = t.path(to).last().copied().unwrap_or(f64::NAN);
         let square = |x: f64| math::square((x - t.config().target) / t.config().sigma_d);
-        let (from, to) = (t.log_prior(&current.draw)?.value(), t.log_prior(to)?.value());
+        let (from, to) = (t.log_prior(current.draw)?.value(), t.log_prior(to)?.value());
         let log_ratio = LogRatio::new(from - to + 0.5 * (square(x) - square(current.outcome.x.unwrap_or(0.0))))?;
         Ok(Proposal::Candidate { log_ratio, path, later: None })
     }
-    fn log_ratio(&self, _: &Ball2d, _: &Ball, _: &Ball, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: &Ball2d, _: Ball<'_>, _: Ball<'_>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }
@@ -160,12 +162,12 @@ impl Move<Ball2d> for Leaning {
     fn name(&self) -> &str {
         "leaning"
     }
-    fn propose(&self, t: &Ball2d, current: &Ball, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
+    fn propose(&self, t: &Ball2d, current: Ball<'_>, to: &mut Normals, s: &mut Stream) -> Result<Proposal, ModelError> {
         let proposal = shifted(5).propose(t, current, to, s)?;
         to.0.iter_mut().zip(&current.draw.0).filter(|(new, old)| new != old).for_each(|(new, _)| *new += 1.0);
         Ok(proposal)
     }
-    fn log_ratio(&self, _: &Ball2d, _: &Ball, _: &Ball, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: &Ball2d, _: Ball<'_>, _: Ball<'_>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }
@@ -195,7 +197,7 @@ fn importance(scene: &Ball2d, draws: u64) -> (f64, f64) {
     for _ in 0..draws {
         let state = State::evaluate(scene, scene.start(&mut stream), &mut ()).unwrap();
         let weight = math::exp(state.log_constraint.value());
-        let hit = if scene.class(&state).is_some() { weight } else { 0.0 };
+        let hit = if scene.class(state.by_ref()).is_some() { weight } else { 0.0 };
         (sum, inside) = (sum + weight, inside + hit);
         squares = [squares[0] + weight * weight, squares[1] + weight * hit, squares[2] + hit * hit];
     }
@@ -212,7 +214,7 @@ fn by_chains(scene: &Ball2d, iterations: usize) -> (f64, f64) {
             let mut chain = Chain::start(scene, &moves, Seed(11).chain(index)).unwrap();
             let mut inside = || {
                 chain.step().unwrap();
-                f64::from(u8::from(scene.class(chain.state()).is_some()))
+                f64::from(u8::from(scene.class(chain.state().by_ref()).is_some()))
             };
             (0..1000).for_each(|_| {
                 inside();
@@ -249,8 +251,8 @@ fn chains_agree_with_rejection_in_every_angle() {
         let moves = scene.moves(&Rules::exact()).unwrap();
         let mut exact = rejection(&scene, LogPotential::ONE);
         let mut stream = Seed(3).chain(1).at(0, Purpose::START);
-        let draws: Vec<Ball> = (0..20_000).map(|_| exact(&mut stream).unwrap()).collect();
-        let chains: Vec<Vec<Ball>> = (0..4)
+        let draws: Vec<StateOf<Ball2d>> = (0..20_000).map(|_| exact(&mut stream).unwrap()).collect();
+        let chains: Vec<Vec<StateOf<Ball2d>>> = (0..4)
             .map(|index| {
                 let mut chain = Chain::start(&scene, &moves, Seed(21).chain(index)).unwrap();
                 (0..1000).for_each(|_| {
@@ -266,7 +268,7 @@ fn chains_agree_with_rejection_in_every_angle() {
             .collect();
         for angle in 0..5 {
             for power in 1..=2 {
-                let value = |state: &Ball| math::powi(state.draw.0[angle], power);
+                let value = |state: &StateOf<Ball2d>| math::powi(state.draw.0[angle], power);
                 let columns: Vec<Vec<f64>> = chains.iter().map(|chain| chain.iter().map(value).collect()).collect();
                 let by_chain = diagnose::summarize(&columns).unwrap();
                 let exact = diagnose::summarize(&[draws.iter().map(value).collect::<Vec<_>>()]).unwrap();
@@ -309,7 +311,7 @@ fn no_chain_stays_off_target() {
     for seed in 0..2000 {
         let mut chain = Chain::start(&scene, &moves, Seed(seed).chain(0)).unwrap();
         let hit = (0..100_000).any(|_| {
-            let on_target = scene.class(chain.state()).is_some();
+            let on_target = scene.class(chain.state().by_ref()).is_some();
             chain.step().unwrap();
             on_target
         });

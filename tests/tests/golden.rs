@@ -8,9 +8,9 @@
 mod simulator;
 
 use plaus_dist::Seed;
-use plaus_mcmc::{Chain, Verdict};
+use plaus_mcmc::{Chain, Goal, Verdict};
 use plaus_run::codec::{Kind, decode, encode};
-use plaus_scenes::{Rules, Scenario, Scene, Visitor};
+use plaus_scenes::{AnyScene, Rules, Scenario, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -84,18 +84,16 @@ struct Record {
     iterations: u64,
 }
 
-impl Visitor for Record {
-    type Output = Trace;
-
-    fn visit<S: Scene>(self, scene: S) -> Trace {
+impl Record {
+    fn of(&self, scene: &AnyScene) -> Trace {
         let moves = scene.moves(&self.rules).unwrap();
-        let mut chain = Chain::start(&scene, &moves, Seed(self.seed).chain(0)).unwrap();
+        let mut chain = Chain::start(scene, &moves, Seed(self.seed).chain(0)).unwrap();
         let names: Vec<String> = scene.scalars().into_iter().map(|scalar| scalar.name).collect();
-        let row = |chain: &Chain<'_, S>, move_id, verdict| {
+        let row = |chain: &Chain<'_, AnyScene>, move_id, verdict| {
             let state = chain.state();
             let mut scalars = vec![0.0; names.len()];
-            scene.write_scalars(state, &mut scalars);
-            let class = scene.class(state).map(|class| class.0);
+            scene.write_scalars(state.by_ref(), &mut scalars);
+            let class = scene.class(state.by_ref()).map(|class| class.0);
             let (log_prior, log_constraint) = (state.log_prior.value(), state.log_constraint.value());
             Row { move_id, verdict, log_prior, log_constraint, class, scalars }
         };
@@ -119,7 +117,7 @@ fn record(&(_, file, overrides, iterations): &Case) -> Trace {
     let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
     let scenario = Scenario::read(file, &text, &overrides).unwrap();
     let record = Record { rules: scenario.sampler.rules, seed: scenario.sampler.seed, iterations };
-    scenario.world.visit(record).unwrap()
+    record.of(&scenario.world.scene().unwrap())
 }
 
 /// Something with a name that is compared bit by bit, and how it is shown.

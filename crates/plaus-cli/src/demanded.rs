@@ -2,7 +2,7 @@
 
 use crate::svg::{Frame, PANEL, Svg};
 use plaus_run::replay::replay_each;
-use plaus_run::{Error, RunOf, SampleId, solutions};
+use plaus_run::{Error, RunReader, SampleId, solutions};
 use plaus_scenes::Scene;
 use plaus_scenes::require::Timed;
 
@@ -23,7 +23,7 @@ struct Asked {
 ///
 /// # Errors
 /// [`Error`] where the run cannot be read, or a solution not be simulated.
-pub(crate) fn plot<S: Scene>(run: &RunOf<'_, S>) -> Result<Option<String>, Error> {
+pub(crate) fn plot(run: &RunReader<'_>) -> Result<Option<String>, Error> {
     let samples: Vec<SampleId> = solutions::distinct(run)?.iter().take(MOST).map(|one| one.sample).collect();
     let times = |some| replay_each(run, some, |replay| run.scene().times(&replay.animation));
     let (first, others) = samples.split_at(samples.len().min(1));

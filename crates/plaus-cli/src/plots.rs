@@ -7,7 +7,7 @@ use plaus_mcmc::MoveCounts;
 use plaus_mcmc::diagnose::autocorrelation;
 use plaus_run::diagnosis::columns;
 use plaus_run::export::output;
-use plaus_run::{Error, Phase, RunFileError, RunFileProblem, RunOf, Tally};
+use plaus_run::{Error, Phase, RunFileError, RunFileProblem, RunReader, Tally};
 use plaus_scenes::{Role, Scalar, Scene};
 use std::fs;
 use std::path::Path;
@@ -27,7 +27,7 @@ const BINS: usize = 20;
 ///
 /// # Errors
 /// [`Error`] where the run cannot be read or the folder not be made.
-pub(crate) fn write<S: Scene>(run: &RunOf<'_, S>, out: &Path, force: bool) -> Result<usize, Error> {
+pub(crate) fn write(run: &RunReader<'_>, out: &Path, force: bool) -> Result<usize, Error> {
     let mut count = 0;
     output::folder(
         out,

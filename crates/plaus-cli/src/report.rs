@@ -2,24 +2,9 @@
 
 use crate::progress::acceptance;
 use crate::table::{amount, grouped, lay_out, percent, short};
-use plaus_run::{Beside, Diagnosis, Manifest, Run, RunFileError, RunOf, RunVisitor};
-use plaus_scenes::{Role, Scene};
+use plaus_run::{Beside, Diagnosis, Manifest};
+use plaus_scenes::Role;
 use serde_json::{Value, json};
-
-/// Diagnoses a run, from at most so many draws a chain.
-pub(crate) struct Diagnose(pub(crate) Option<u64>);
-
-impl RunVisitor for Diagnose {
-    type Output = Result<Diagnosis, RunFileError>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        Diagnosis::of(&run, self.0)
-    }
-}
-
-/// Diagnoses a run.
-pub(crate) fn diagnose(run: &Run, most: Option<u64>) -> Result<Diagnosis, plaus_run::Error> {
-    Ok(run.visit(Diagnose(most))??)
-}
 
 /// The line that says what a run is; the seed is always in it.
 pub(crate) fn headline(manifest: &Manifest) -> String {

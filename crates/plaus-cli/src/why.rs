@@ -3,50 +3,33 @@
 use crate::console;
 use crate::table::{grouped, lay_out, percent, short};
 use plaus_mcmc::ModelError;
-use plaus_run::{Phase, RunFileError, RunOf, RunVisitor};
+use plaus_run::{Phase, RunFileError, RunReader};
 use plaus_scenes::require::{Clause, Tally};
-use plaus_scenes::{Scene, Visitor};
+use plaus_scenes::{Scene, Stage};
 use serde_json::{Value, json};
 
-/// So many draws from the prior of a scene.
-pub(crate) struct OfPrior {
-    pub(crate) draws: u64,
-    pub(crate) seed: u64,
-    /// Whether to tell how far it is.
-    pub(crate) tells: bool,
-}
-
-impl Visitor for OfPrior {
-    type Output = Result<Tally, ModelError>;
-
-    fn visit<S: Scene>(self, scene: S) -> Self::Output {
-        Tally::of_prior(&scene, self.seed, self.draws, |done| {
-            if self.tells && self.draws >= 1000 && done % (self.draws / 10) == 0 {
-                console::note_line(&format!("{} of {} draws", grouped(done), grouped(self.draws)));
-            }
-            true
-        })
-    }
+/// So many draws from the prior of a scene; `tells` how far it is.
+pub(crate) fn of_prior(scene: &Stage, seed: u64, draws: u64, tells: bool) -> Result<Tally, ModelError> {
+    Tally::of_prior(scene, seed, draws, |done| {
+        if tells && draws >= 1000 && done % (draws / 10) == 0 {
+            console::note_line(&format!("{} of {} draws", grouped(done), grouped(draws)));
+        }
+        true
+    })
 }
 
 /// All recorded states of a run, those of the warm-up too.
-pub(crate) struct OfRun;
-
-impl RunVisitor for OfRun {
-    type Output = Result<Tally, RunFileError>;
-
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        let mut tally = Tally::new(run.scene().asked());
-        for chain in run.chains() {
-            for phase in [Phase::Warmup, Phase::Sampling] {
-                run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
-                    tally.add(&run.scene().answers(&stretch.entry.state));
-                    Ok(())
-                })?;
-            }
+pub(crate) fn of_run(run: &RunReader<'_>) -> Result<Tally, RunFileError> {
+    let mut tally = Tally::new(run.scene().asked());
+    for chain in run.chains() {
+        for phase in [Phase::Warmup, Phase::Sampling] {
+            run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
+                tally.add(&run.scene().answers(stretch.entry.state.by_ref()));
+                Ok(())
+            })?;
         }
-        Ok(tally)
     }
+    Ok(tally)
 }
 
 /// What was met and what not, as a table with the pairs that were never met together.

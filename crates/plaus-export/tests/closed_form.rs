@@ -9,8 +9,9 @@ use plaus_animation::{Animation, Shape};
 use plaus_dist::stream::{Purpose, Seed};
 use plaus_export::keys::{Key, of_track};
 use plaus_export::{Between, Clip, Cut, Label, Style, glb, thin};
-use plaus_scenes::Scene;
-use plaus_scenes::registry::{NAMES, Visitor, World};
+use plaus_mcmc::Target;
+use plaus_scenes::registry::{NAMES, World};
+use plaus_scenes::{AnyScene, Scene};
 
 fn written(animation: &Animation, range: Option<(f64, f64)>, keys: Between) -> (Glb, Cut) {
     let cut = Cut::new(60.0, range, animation).unwrap();
@@ -29,23 +30,18 @@ fn size(animation: &Animation) -> f64 {
     low.distance(high)
 }
 
-/// Animations of draws from a scene's prior.
-struct FromPrior(u64);
-
-impl Visitor for FromPrior {
-    type Output = Vec<Animation>;
-    fn visit<S: Scene>(self, scene: S) -> Self::Output {
-        let draw = |chain| scene.start(&mut Seed(5).chain(chain).at(0, Purpose::START));
-        (0..self.0).map(|chain| scene.animate(&draw(chain)).unwrap()).collect()
-    }
+/// Animations of so many draws from a scene's prior.
+fn from_prior(name: &str, draws: u64) -> impl Iterator<Item = Animation> + use<> {
+    let scene = World::default_of(name).unwrap().scene().unwrap();
+    let start = |scene: &AnyScene, chain| scene.start(&mut Seed(5).chain(chain).at(0, Purpose::START));
+    (0..draws).map(move |chain| scene.animate(&start(&scene, chain)).unwrap())
 }
 
 /// Some animations of every scene there is, and one with everything in it.
 fn animations() -> Vec<(&'static str, Animation)> {
     let mut all = vec![("tumbling", tumbling())];
     for name in NAMES {
-        let drawn = World::default_of(name).unwrap().visit(FromPrior(2)).unwrap();
-        all.extend(drawn.into_iter().map(|animation| (*name, animation)));
+        all.extend(from_prior(name, 2).map(|animation| (*name, animation)));
     }
     all
 }
@@ -220,7 +216,7 @@ fn animations_without_bodies_or_motion_are_files_too() {
 #[test]
 fn motion_has_no_gaps() {
     for name in NAMES {
-        for animation in World::default_of(name).unwrap().visit(FromPrior(6)).unwrap() {
+        for animation in from_prior(name, 6) {
             for track in &animation.tracks {
                 let most = 1e-4 * track.shape.reach();
                 for pair in track.pieces.windows(2) {

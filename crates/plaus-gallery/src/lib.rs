@@ -2,18 +2,11 @@
 //!
 //! ```no_run
 //! use plaus_gallery::{Options, gallery};
-//! use plaus_run::{Error, Folder, Run, RunOf, RunVisitor};
-//! use plaus_scenes::Scene;
+//! use plaus_run::{Folder, Run};
 //!
-//! struct Page;
-//! impl RunVisitor for Page {
-//!     type Output = Result<String, Error>;
-//!     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-//!         Ok(gallery(&run, &Options::default())?.html)
-//!     }
-//! }
-//! let html = Run::open(&Folder::new("runs/ball2d"))?.visit(Page)??;
-//! std::fs::write("gallery.html", html)?;
+//! let run = Run::open(&Folder::new("runs/ball2d"))?;
+//! let made = gallery(&run.reader()?, &Options::default())?;
+//! std::fs::write("gallery.html", made.html)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -31,8 +24,7 @@ mod sounds;
 
 use features::Features;
 use plaus_run::replay::replay_each;
-use plaus_run::{Error, RunOf, SampleId, Solution, solutions};
-use plaus_scenes::Scene;
+use plaus_run::{Error, RunReader, SampleId, Solution, solutions};
 
 /// Most solutions among which is chosen: more take long to compare.
 const MOST_CANDIDATES: usize = 2000;
@@ -70,7 +62,7 @@ pub const HEAD: &str = page::HEAD;
 ///
 /// # Errors
 /// [`Error`] where no sample satisfies the constraint, or the run cannot be read.
-pub fn gallery<S: Scene>(run: &RunOf<'_, S>, options: &Options) -> Result<Gallery, Error> {
+pub fn gallery(run: &RunReader<'_>, options: &Options) -> Result<Gallery, Error> {
     let all = solutions::distinct(run)?;
     let candidates = thinned(&all);
     let ids: Vec<SampleId> = candidates.iter().map(|solution| solution.sample).collect();

@@ -7,7 +7,7 @@ use crate::page::Packed;
 use crate::sounds::Sounds;
 use glam::DVec3;
 use plaus_export::sound;
-use plaus_run::RunOf;
+use plaus_run::RunReader;
 use plaus_run::replay::Replay;
 use plaus_scenes::animation::{Animation, Piece, View};
 use plaus_scenes::require::Timed;
@@ -31,7 +31,7 @@ struct Ranges {
     spin: f64,
 }
 
-pub(crate) fn pack<S: Scene>(run: &RunOf<'_, S>, replays: &[Replay], maps: &Maps, about: &About<'_>) -> Packed {
+pub(crate) fn pack(run: &RunReader<'_>, replays: &[Replay], maps: &Maps, about: &About<'_>) -> Packed {
     let (mut bytes, mut things, mut names) = (Bytes::default(), Things::default(), Vec::new());
     let mut sounds = Sounds::default();
     let ranges = Ranges::of(replays);

@@ -8,7 +8,7 @@ use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, 
 use plaus_mcmc::check::{OneStep, Ratios, Statistic, one_step, prior, ratios, rejection};
 use plaus_mcmc::{
     Block, Control, Goal, Mixture, ModelError, Move, Path, Plan, Progress, Proposal, Simulated, Sink, Snapshot,
-    SolutionClass, StateOf, Target, diagnose, run,
+    SolutionClass, StateOf, StateRefOf, Target, diagnose, run,
 };
 
 /// A marble is thrown with some strength; where it lands, by a law of our own, should be near either of two hills at
@@ -35,7 +35,7 @@ impl Target for TwoHills {
     fn simulate(
         &self,
         strength: &f64,
-        _current: Option<&StateOf<Self>>,
+        _current: Option<StateRefOf<'_, Self>>,
         _floor: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<f64>, ModelError> {
@@ -50,7 +50,7 @@ impl Target for TwoHills {
 
 impl Goal for TwoHills {
     /// A throw satisfies the constraint within half a unit of a hill; which hill tells solutions apart.
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let hit = (state.outcome.abs() - 2.0).abs() < 0.5;
         hit.then(|| SolutionClass::of([state.outcome.signum() as i64]))
     }
@@ -66,7 +66,7 @@ impl Move<TwoHills> for Mirror {
     fn propose(
         &self,
         _: &TwoHills,
-        _: &StateOf<TwoHills>,
+        _: StateRefOf<'_, TwoHills>,
         strength: &mut f64,
         _: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -76,8 +76,8 @@ impl Move<TwoHills> for Mirror {
     fn log_ratio(
         &self,
         _: &TwoHills,
-        _: &StateOf<TwoHills>,
-        _: &StateOf<TwoHills>,
+        _: StateRefOf<'_, TwoHills>,
+        _: StateRefOf<'_, TwoHills>,
         _: Path,
     ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
@@ -104,21 +104,21 @@ impl Move<TwoHills> for Stretch {
     fn propose(
         &self,
         _: &TwoHills,
-        current: &StateOf<TwoHills>,
+        current: StateRefOf<'_, TwoHills>,
         strength: &mut f64,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         *strength *= math::exp(self.log_factor.sample(stream));
-        Ok(Proposal::with_ratio(self.ratio(current.draw, *strength)?))
+        Ok(Proposal::with_ratio(self.ratio(*current.draw, *strength)?))
     }
     fn log_ratio(
         &self,
         _: &TwoHills,
-        from: &StateOf<TwoHills>,
-        to: &StateOf<TwoHills>,
+        from: StateRefOf<'_, TwoHills>,
+        to: StateRefOf<'_, TwoHills>,
         _: Path,
     ) -> Result<LogRatio, ModelError> {
-        self.ratio(from.draw, to.draw)
+        self.ratio(*from.draw, *to.draw)
     }
 }
 

@@ -23,7 +23,7 @@
 use crate::fit::Learning;
 use crate::moves::{Mixture, Move, MoveId, Path};
 use crate::scale::Scale;
-use crate::target::{StateOf, Target};
+use crate::target::{StateRefOf, Target};
 use plaus_dist::math;
 use serde::{Deserialize, Serialize};
 
@@ -172,7 +172,7 @@ impl<T: Target> Adaptation<T> {
     }
 
     /// Notes the state that iteration `iteration` led to, for moves that learn.
-    pub(crate) fn look(&mut self, moves: &Mixture<T>, iteration: u64, target: &T, state: &StateOf<T>) {
+    pub(crate) fn look(&mut self, moves: &Mixture<T>, iteration: u64, target: &T, state: StateRefOf<'_, T>) {
         if self.scales.frozen || iteration < self.scales.until / 4 {
             return;
         }

@@ -247,12 +247,13 @@ impl<'a, T: Target> Chain<'a, T> {
         let fail = |source| ChainError::Model { iteration: next, step: Some(configured.name().to_owned()), source };
         self.candidate.clone_from(&self.state.draw);
         let kernel = kernel(moves, self.adaptation.as_ref(), move_id);
-        let proposal = kernel.propose(self.target, &self.state, &mut self.candidate, &mut stream).map_err(fail)?;
+        let proposal =
+            kernel.propose(self.target, self.state.by_ref(), &mut self.candidate, &mut stream).map_err(fail)?;
         let verdict = self.judge(next, move_id, proposal).map_err(fail)?;
         self.iteration = next;
         self.counts[usize::from(move_id.0)].count(verdict);
         if let Some(adaptation) = &mut self.adaptation {
-            adaptation.look(moves, next, self.target, &self.state);
+            adaptation.look(moves, next, self.target, self.state.by_ref());
             adaptation.learn(moves, next, (move_id, proposal.path()), verdict == Verdict::Accepted);
         }
         Ok(Step { move_id, verdict })
@@ -280,7 +281,7 @@ impl<'a, T: Target> Chain<'a, T> {
         } else {
             let candidate = State { draw: self.candidate.clone(), outcome, log_prior, log_constraint };
             let kernel = kernel(self.moves, self.adaptation.as_ref(), move_id);
-            let after = kernel.log_ratio_after(self.target, &self.state, &candidate, path)?;
+            let after = kernel.log_ratio_after(self.target, self.state.by_ref(), candidate.by_ref(), path)?;
             match self::floor(ln_u, log_ratio.times(after)?, log_p, log_prior)? {
                 Some(floor) => self.accept_above(floor, candidate.outcome, log_prior, log_constraint)?,
                 None => false,
@@ -292,7 +293,7 @@ impl<'a, T: Target> Chain<'a, T> {
 
     /// The candidate's outcome; `None`, and the target is told, where its constraint cannot exceed `floor`.
     fn simulated(&mut self, floor: LogPotential) -> Result<Option<T::Outcome>, ModelError> {
-        let simulated = self.target.simulate(&self.candidate, Some(&self.state), floor, &mut self.scratch)?;
+        let simulated = self.target.simulate(&self.candidate, Some(self.state.by_ref()), floor, &mut self.scratch)?;
         let Simulated::Complete(outcome) = simulated else {
             self.target.settle(false, &mut self.scratch);
             return Ok(None);

@@ -3,7 +3,7 @@
 use crate::chance::prior;
 use crate::moves::{Mixture, Move, Path, Proposal};
 use crate::parallel;
-use crate::target::{Goal, ModelError, Simulated, State, StateOf, Target, at_most, most_of};
+use crate::target::{Goal, ModelError, Simulated, State, StateOf, StateRefOf, Target, at_most, most_of};
 use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math, open_unit};
 use std::ops::Range;
 
@@ -37,7 +37,7 @@ impl<T: Target> Move<T> for Independent {
     fn propose(
         &self,
         target: &T,
-        _: &StateOf<T>,
+        _: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -46,7 +46,13 @@ impl<T: Target> Move<T> for Independent {
     }
 
     /// Of the proposal alone. It is not what the accept step goes by.
-    fn log_ratio(&self, _: &T, from: &StateOf<T>, to: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(
+        &self,
+        _: &T,
+        from: StateRefOf<'_, T>,
+        to: StateRefOf<'_, T>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
     }
 }
@@ -83,7 +89,7 @@ pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result
     let streams = seed.chain(1 << 62);
     let one = |scratch: &mut T::Scratch, number| -> Result<Tried, ModelError> {
         let state = prior(target, &mut streams.at(number, TRIAL), scratch)?;
-        let is_hit = target.class(&state).is_some();
+        let is_hit = target.class(state.by_ref()).is_some();
         let kept = if is_hit { math::exp(state.log_constraint.value() - most.value()) } else { 0.0 };
         Ok(Tried { draws: 1, hits: u64::from(is_hit), kept })
     };

@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Seed, Stream};
-//! use plaus_mcmc::{Chain, Mixture, ModelError, Move, Path, Proposal, Simulated, StateOf, Target};
+//! use plaus_mcmc::{Chain, Mixture, ModelError, Move, Path, Proposal, Simulated, StateOf, StateRefOf, Target};
 //!
 //! /// A throw of unknown strength that should land at 3.
 //! struct Throw { strength: Gaussian }
@@ -16,7 +16,7 @@
 //!     type Scratch = ();
 //!     fn start(&self, stream: &mut Stream) -> f64 { self.strength.sample(stream) }
 //!     fn log_prior(&self, draw: &f64) -> Result<LogDensity, ModelError> { Ok(self.strength.log_density(draw)?) }
-//!     fn simulate(&self, draw: &f64, _: Option<&StateOf<Self>>, _: LogPotential, _: &mut ())
+//!     fn simulate(&self, draw: &f64, _: Option<StateRefOf<'_, Self>>, _: LogPotential, _: &mut ())
 //!         -> Result<Simulated<f64>, ModelError> { Ok(Simulated::Complete(2.0 * draw)) }
 //!     fn log_constraint(&self, landing: &f64) -> Result<LogPotential, ModelError> {
 //!         Ok(LogPotential::new(-0.5 * ((landing - 3.0) / 0.1) * ((landing - 3.0) / 0.1))?)
@@ -27,12 +27,12 @@
 //! struct Nudge(Gaussian);
 //! impl Move<Throw> for Nudge {
 //!     fn name(&self) -> &str { "nudge" }
-//!     fn propose(&self, _: &Throw, _: &StateOf<Throw>, candidate: &mut f64, stream: &mut Stream)
+//!     fn propose(&self, _: &Throw, _: StateRefOf<'_, Throw>, candidate: &mut f64, stream: &mut Stream)
 //!         -> Result<Proposal, ModelError> {
 //!         *candidate += self.0.sample(stream);
 //!         Ok(Proposal::SYMMETRIC)
 //!     }
-//!     fn log_ratio(&self, _: &Throw, _: &StateOf<Throw>, _: &StateOf<Throw>, _: Path)
+//!     fn log_ratio(&self, _: &Throw, _: StateRefOf<'_, Throw>, _: StateRefOf<'_, Throw>, _: Path)
 //!         -> Result<LogRatio, ModelError> {
 //!         Ok(LogRatio::ONE)
 //!     }
@@ -90,6 +90,6 @@ pub use run::{
 };
 pub use scale::Scale;
 pub use solutions::{Distinct, FirstOfClass, Hits};
-pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
+pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, StateRef, StateRefOf, Target};
 pub use tempered::Tempered;
 pub use vars::{Member, Var, Variables, Vars};

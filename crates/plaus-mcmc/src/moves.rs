@@ -2,7 +2,7 @@
 
 use crate::fit::Fit;
 use crate::scale::Scale;
-use crate::target::{ModelError, StateOf, Target};
+use crate::target::{ModelError, StateRefOf, Target};
 use plaus_dist::{LogRatio, Stream, open_unit};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -66,7 +66,7 @@ pub trait Move<T: Target>: Send + Sync {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError>;
@@ -76,7 +76,13 @@ pub trait Move<T: Target>: Send + Sync {
     ///
     /// # Errors
     /// [`ModelError`] where a density is no number.
-    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, path: Path) -> Result<LogRatio, ModelError>;
+    fn log_ratio(
+        &self,
+        target: &T,
+        from: StateRefOf<'_, T>,
+        to: StateRefOf<'_, T>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError>;
 
     /// The path that leads back; most moves go back the way they came.
     fn reverse(&self, path: Path) -> Path {
@@ -90,8 +96,8 @@ pub trait Move<T: Target>: Send + Sync {
     fn log_ratio_after(
         &self,
         _target: &T,
-        _current: &StateOf<T>,
-        _candidate: &StateOf<T>,
+        _current: StateRefOf<'_, T>,
+        _candidate: StateRefOf<'_, T>,
         _path: Path,
     ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
@@ -115,7 +121,7 @@ pub trait Move<T: Target>: Send + Sync {
     }
 
     /// Those numbers of a state.
-    fn learn_from(&self, _target: &T, _state: &StateOf<T>) -> Vec<f64> {
+    fn learn_from(&self, _target: &T, _state: StateRefOf<'_, T>) -> Vec<f64> {
         Vec::new()
     }
 

@@ -1,7 +1,7 @@
 //! The independence move: a whole new draw, whatever the current one.
 
 use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateOf, Target};
+use crate::target::{ModelError, StateRefOf, Target};
 use plaus_dist::{LogRatio, Stream};
 
 /// Proposes [`Target::start`]'s draw. Right for a target whose start has the law of its prior, density and all: then
@@ -18,7 +18,7 @@ impl<T: Target> Move<T> for Redraw {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -31,7 +31,13 @@ impl<T: Target> Move<T> for Redraw {
         Ok(Proposal::with_ratio(LogRatio::new(current.log_prior.value() - there.value())?))
     }
 
-    fn log_ratio(&self, _: &T, from: &StateOf<T>, to: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(
+        &self,
+        _: &T,
+        from: StateRefOf<'_, T>,
+        to: StateRefOf<'_, T>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
     }
 }

@@ -9,10 +9,9 @@ use crate::chain::ChainError;
 use crate::moves::Mixture;
 use crate::record::Block;
 use crate::run::{Control, Ending, Plan, Progress, Pulse, RunError, Sink, Snapshot, Start, run_some};
-use crate::target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
+use crate::target::{Goal, ModelError, Simulated, SolutionClass, State, StateRef, StateRefOf, Target};
 use crate::view::{Sees, lent};
 use plaus_dist::{LogDensity, LogPotential, Stream};
-use std::borrow::Cow;
 use std::ops::Range;
 
 /// What a requirement says of a state.
@@ -38,20 +37,22 @@ pub trait Requirement<T: Target>: Sync {
     ///
     /// # Errors
     /// [`ModelError`] where it cannot.
-    fn judge(&self, target: &T, state: &StateOf<T>, scratch: &T::Scratch) -> Result<Mark, ModelError>;
+    fn judge(&self, target: &T, state: StateRefOf<'_, T>, scratch: &T::Scratch) -> Result<Mark, ModelError>;
 }
 
-/// An outcome with the whole state of the target it came from, and its mark.
+/// An outcome, and the mark of its state.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judged<D, O> {
-    /// The state as the target alone has it.
-    pub seen: State<D, O>,
+pub struct Judged<O> {
+    /// The outcome as the target alone has it.
+    pub outcome: O,
+    /// The target's own log constraint.
+    pub own: LogPotential,
     /// What the requirement says of it.
     pub mark: Mark,
 }
 
-/// The judged state of a target.
-type JudgedOf<T> = Judged<<T as Target>::Draw, <T as Target>::Outcome>;
+/// The judged outcome of a target.
+type JudgedOf<T> = Judged<<T as Target>::Outcome>;
 
 /// Where the chains of a target go on from.
 type StartsOf<T> = Vec<Start<<T as Target>::Draw, <T as Target>::Outcome>>;
@@ -78,21 +79,20 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
         lent(moves)
     }
 
-    /// Judges a state of the target; `scratch` is the memory that it was simulated with, or a new one.
+    /// What the requirement says of a state of the target; `scratch` is the memory that it was simulated with, or a
+    /// new one.
     ///
     /// # Errors
     /// [`ModelError`] where the requirement fails, or its log potential exceeds what it said is the most.
-    pub fn judge(&self, seen: StateOf<T>, scratch: &T::Scratch) -> Result<State<T::Draw, JudgedOf<T>>, ModelError> {
-        let mark = self.requirement.judge(self.target, &seen, scratch)?;
+    pub fn judge(&self, state: StateRefOf<'_, T>, scratch: &T::Scratch) -> Result<Mark, ModelError> {
+        let mark = self.requirement.judge(self.target, state, scratch)?;
         if let Some(most) = self.requirement.most().filter(|most| mark.log > *most) {
             let (found, most) = (mark.log.value(), most.value());
             return Err(ModelError::new(format!(
                 "a requirement's log potential {found} exceeds the most it said, {most}"
             )));
         }
-        let (draw, log_prior) = (seen.draw.clone(), seen.log_prior);
-        let log_constraint = seen.log_constraint + mark.log;
-        Ok(State { draw, outcome: Judged { seen, mark }, log_prior, log_constraint })
+        Ok(mark)
     }
 
     /// A start of the target's chain, as [`Plain`] left it, as a start of this one's: every state is judged again.
@@ -100,12 +100,13 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
         let Start { snapshot, distinct } = start;
         let snapshot = snapshot.try_map(|recorded| {
             let own = self.target.log_constraint(&recorded.outcome)?;
-            let wanted = recorded.log_constraint;
-            let again = self.judge(State { log_constraint: own, ..recorded }, &T::Scratch::default())?;
-            if again.log_constraint == wanted {
-                return Ok(again);
+            let alone = StateRef { log_constraint: own, ..recorded.by_ref() };
+            let mark = self.judge(alone, &T::Scratch::default())?;
+            let State { draw, outcome, log_prior, log_constraint } = recorded;
+            if own + mark.log == log_constraint {
+                return Ok(State { draw, outcome: Judged { outcome, own, mark }, log_prior, log_constraint });
             }
-            let (was, is) = (wanted.value(), again.log_constraint.value());
+            let (was, is) = (log_constraint.value(), (own + mark.log).value());
             Err(ModelError::new(format!(
                 "the requirement is another one: a stored state has log potential {was}, judged again it has {is}"
             )))
@@ -113,9 +114,8 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
         Ok(Start { snapshot, distinct })
     }
 
-    /// What the target's own constraint must exceed where this one's must exceed `floor`. Rounding is monotone: own ≤
-    /// `seen` ≤ floor − most
-    /// gives own + log ≤ floor, also in floating point.
+    /// What the target's own constraint must exceed where this one's must exceed `floor`. Rounding is monotone, so that
+    /// own ≤ floor − most gives own + log ≤ floor, also in floating point.
     fn floor_seen(&self, floor: LogPotential) -> Result<LogPotential, ModelError> {
         let Some(most) = self.requirement.most() else { return Ok(LogPotential::ZERO) };
         if most == LogPotential::ONE || floor.is_zero() {
@@ -128,7 +128,7 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
 
 impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
     type Draw = T::Draw;
-    type Outcome = Judged<T::Draw, T::Outcome>;
+    type Outcome = Judged<T::Outcome>;
     type Scratch = T::Scratch;
 
     fn start(&self, stream: &mut Stream) -> T::Draw {
@@ -142,13 +142,13 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
     fn simulate(
         &self,
         draw: &T::Draw,
-        current: Option<&StateOf<Self>>,
+        current: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         scratch: &mut T::Scratch,
     ) -> Result<Simulated<Self::Outcome>, ModelError> {
         let seen_floor = self.floor_seen(floor)?;
         self.requirement.prepare(self.target, scratch);
-        let current = current.map(|state| &state.outcome.seen);
+        let current = current.map(Self::state);
         let Simulated::Complete(outcome) = self.target.simulate(draw, current, seen_floor, scratch)? else {
             return Ok(Simulated::CannotExceedFloor);
         };
@@ -157,12 +157,12 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
             return Ok(Simulated::CannotExceedFloor);
         }
         let log_prior = self.target.log_prior(draw)?;
-        let seen = State { draw: draw.clone(), outcome, log_prior, log_constraint };
-        self.judge(seen, scratch).map(|state| Simulated::Complete(state.outcome))
+        let mark = self.judge(StateRef { draw, outcome: &outcome, log_prior, log_constraint }, scratch)?;
+        Ok(Simulated::Complete(Judged { outcome, own: log_constraint, mark }))
     }
 
     fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError> {
-        Ok(outcome.seen.log_constraint + outcome.mark.log)
+        Ok(outcome.own + outcome.mark.log)
     }
 
     fn most(&self) -> Option<LogPotential> {
@@ -175,20 +175,23 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
 }
 
 impl<T: Goal, R: Requirement<T>> Goal for Required<'_, T, R> {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
-        if state.outcome.mark.met { self.target.class(&state.outcome.seen) } else { None }
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
+        if state.outcome.mark.met { self.target.class(Self::state(state)) } else { None }
     }
 }
 
-impl<T: Target + 'static, R: Requirement<T>> Sees for Required<'_, T, R> {
-    type Seen = T;
-
+impl<T: Target, R: Requirement<T>> Sees<T> for Required<'_, T, R> {
     fn seen(&self) -> &T {
         self.target
     }
 
-    fn state(state: &StateOf<Self>) -> Cow<'_, StateOf<T>> {
-        Cow::Borrowed(&state.outcome.seen)
+    fn state(state: StateRefOf<'_, Self>) -> StateRefOf<'_, T> {
+        let StateRef { draw, outcome: Judged { outcome, own, .. }, log_prior, .. } = state;
+        StateRef { draw, outcome, log_prior, log_constraint: *own }
+    }
+
+    fn draw_mut(draw: &mut T::Draw) -> &mut T::Draw {
+        draw
     }
 }
 
@@ -222,19 +225,19 @@ pub fn run<T: Goal + 'static, R: Requirement<T>, K: Sink<T::Draw, T::Outcome>>(
 struct Plain<'s, K>(&'s mut K);
 
 /// A state without its mark, but with the log constraint of both.
-fn plain<D, O>(state: State<D, Judged<D, O>>) -> State<D, O> {
+fn plain<D, O>(state: State<D, Judged<O>>) -> State<D, O> {
     let State { draw, outcome, log_prior, log_constraint } = state;
-    State { draw, outcome: outcome.seen.outcome, log_prior, log_constraint }
+    State { draw, outcome: outcome.outcome, log_prior, log_constraint }
 }
 
-impl<D: Clone, O: Clone, K: Sink<D, O>> Sink<D, Judged<D, O>> for Plain<'_, K> {
+impl<D: Clone, O: Clone, K: Sink<D, O>> Sink<D, Judged<O>> for Plain<'_, K> {
     type Error = K::Error;
 
     fn block(
         &mut self,
         chain: u32,
-        block: Block<D, Judged<D, O>>,
-        snapshot: &Snapshot<D, Judged<D, O>>,
+        block: Block<D, Judged<O>>,
+        snapshot: &Snapshot<D, Judged<O>>,
     ) -> Result<(), K::Error> {
         let snapshot = snapshot.clone().try_map(|state| Ok(plain(state)))?;
         self.0.block(chain, block.map(plain), &snapshot)

@@ -59,7 +59,7 @@ pub trait Target: Sync {
     fn simulate(
         &self,
         draw: &Self::Draw,
-        current: Option<&StateOf<Self>>,
+        current: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         scratch: &mut Self::Scratch,
     ) -> Result<Simulated<Self::Outcome>, ModelError>;
@@ -85,7 +85,7 @@ pub trait Target: Sync {
 pub trait Goal: Target {
     /// The class of solutions `state` belongs to, or `None` where it does not satisfy the constraint. Two satisfying
     /// states of the same class count as one distinct solution.
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass>;
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass>;
 }
 
 /// A label of a class of solutions: equal for solutions a user would call the same. See [`SolutionClass::of`].
@@ -145,7 +145,39 @@ pub struct State<D, O> {
 /// The state of a target.
 pub type StateOf<T> = State<<T as Target>::Draw, <T as Target>::Outcome>;
 
+/// A state that lies elsewhere, its parts perhaps in several places: a target that wraps another one lends the inner
+/// state without a copy.
+#[derive(Debug)]
+pub struct StateRef<'a, D, O> {
+    /// Values of all random variables.
+    pub draw: &'a D,
+    /// What the simulation made of them.
+    pub outcome: &'a O,
+    /// `log p_w(draw)`.
+    pub log_prior: LogDensity,
+    /// `log p_c(outcome)`.
+    pub log_constraint: LogPotential,
+}
+
+/// A state of a target that lies elsewhere.
+pub type StateRefOf<'a, T> = StateRef<'a, <T as Target>::Draw, <T as Target>::Outcome>;
+
+impl<D, O> Clone for StateRef<'_, D, O> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<D, O> Copy for StateRef<'_, D, O> {}
+
 impl<D, O> State<D, O> {
+    /// The state, lent.
+    #[must_use]
+    pub fn by_ref(&self) -> StateRef<'_, D, O> {
+        let Self { draw, outcome, log_prior, log_constraint } = self;
+        StateRef { draw, outcome, log_prior: *log_prior, log_constraint: *log_constraint }
+    }
+
     /// `log p(A)`, up to the target's constant.
     #[must_use]
     pub fn log_p(&self) -> LogPotential {

@@ -72,7 +72,7 @@ impl<T: Target> Reweighed for Tempered<'_, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::target::{Simulated, StateOf};
+    use crate::target::{Simulated, StateRefOf};
     use plaus_dist::{LogDensity, Purpose, Seed, Stream, open_unit};
 
     /// A target of which only the tempering is of interest.
@@ -89,7 +89,7 @@ mod tests {
         fn simulate(
             &self,
             (): &(),
-            _: Option<&StateOf<Self>>,
+            _: Option<StateRefOf<'_, Self>>,
             _: LogPotential,
             (): &mut (),
         ) -> Result<Simulated<f64>, ModelError> {

@@ -3,9 +3,8 @@
 use crate::fit::Fit;
 use crate::moves::{Mixture, MixtureError, Move, Path, Proposal};
 use crate::scale::Scale;
-use crate::target::{ModelError, Simulated, StateOf, Target};
+use crate::target::{ModelError, Simulated, StateRefOf, Target};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Stream};
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A target that shows another one under a different constraint, or simulates it in a different way, over the same
@@ -55,7 +54,7 @@ impl<W: Reweighed> Target for W {
     fn simulate(
         &self,
         draw: &Self::Draw,
-        current: Option<&StateOf<Self>>,
+        current: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         scratch: &mut Self::Scratch,
     ) -> Result<Simulated<Self::Outcome>, ModelError> {
@@ -95,34 +94,36 @@ pub fn lend<V: View>(moves: impl Into<Arc<Mixture<V::Seen>>>) -> Result<Mixture<
     Mixture::new(lent.collect())
 }
 
-/// A target over the draws of another, whose states hold all that makes one of the other's, whatever else they hold.
-/// The other one's moves propose for it: see [`lent`].
-pub trait Sees: Target {
+/// A target whose states hold all that makes a state of another one, whatever else they hold. The other one's moves
+/// propose for it: see [`lent`].
+pub trait Sees<S: Target>: Target {
     /// The target seen.
-    type Seen: Target<Draw = Self::Draw> + 'static;
+    fn seen(&self) -> &S;
 
-    /// The target seen.
-    fn seen(&self) -> &Self::Seen;
+    /// Its state in one of this target's.
+    fn state(state: StateRefOf<'_, Self>) -> StateRefOf<'_, S>;
 
-    /// Its state in one of this target's: lent where it lies there as a whole, else put together.
-    fn state(state: &StateOf<Self>) -> Cow<'_, StateOf<Self::Seen>>;
+    /// Its draw in one of this target's.
+    fn draw_mut(draw: &mut Self::Draw) -> &mut S::Draw;
 }
 
-impl<V: View> Sees for V {
-    type Seen = V::Seen;
-
+impl<V: View> Sees<V::Seen> for V {
     fn seen(&self) -> &V::Seen {
         View::seen(self)
     }
 
-    fn state(state: &StateOf<V>) -> Cow<'_, StateOf<V::Seen>> {
-        Cow::Borrowed(state)
+    fn state(state: StateRefOf<'_, V>) -> StateRefOf<'_, V::Seen> {
+        state
+    }
+
+    fn draw_mut(draw: &mut V::Draw) -> &mut V::Draw {
+        draw
     }
 }
 
 /// The moves of a target, with their probabilities, for one that sees its states.
 #[must_use]
-pub fn lent<V: Sees>(moves: &Mixture<V::Seen>) -> Mixture<V> {
+pub fn lent<S: Target + 'static, V: Sees<S>>(moves: &Mixture<S>) -> Mixture<V> {
     moves.map_all(|kernel| Box::new(Lent(kernel)))
 }
 
@@ -135,7 +136,7 @@ impl<T: Target> Lent<T> {
     }
 }
 
-impl<V: Sees> Move<V> for Lent<V::Seen> {
+impl<S: Target + 'static, V: Sees<S>> Move<V> for Lent<S> {
     fn name(&self) -> &str {
         self.kernel().name()
     }
@@ -143,15 +144,21 @@ impl<V: Sees> Move<V> for Lent<V::Seen> {
     fn propose(
         &self,
         target: &V,
-        current: &StateOf<V>,
+        current: StateRefOf<'_, V>,
         candidate: &mut V::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        self.kernel().propose(target.seen(), &V::state(current), candidate, stream)
+        self.kernel().propose(target.seen(), V::state(current), V::draw_mut(candidate), stream)
     }
 
-    fn log_ratio(&self, target: &V, from: &StateOf<V>, to: &StateOf<V>, path: Path) -> Result<LogRatio, ModelError> {
-        self.kernel().log_ratio(target.seen(), &V::state(from), &V::state(to), path)
+    fn log_ratio(
+        &self,
+        target: &V,
+        from: StateRefOf<'_, V>,
+        to: StateRefOf<'_, V>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.kernel().log_ratio(target.seen(), V::state(from), V::state(to), path)
     }
 
     fn reverse(&self, path: Path) -> Path {
@@ -161,11 +168,11 @@ impl<V: Sees> Move<V> for Lent<V::Seen> {
     fn log_ratio_after(
         &self,
         target: &V,
-        current: &StateOf<V>,
-        candidate: &StateOf<V>,
+        current: StateRefOf<'_, V>,
+        candidate: StateRefOf<'_, V>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        self.kernel().log_ratio_after(target.seen(), &V::state(current), &V::state(candidate), path)
+        self.kernel().log_ratio_after(target.seen(), V::state(current), V::state(candidate), path)
     }
 
     fn scales(&self) -> Vec<Scale> {
@@ -184,8 +191,8 @@ impl<V: Sees> Move<V> for Lent<V::Seen> {
         self.kernel().learns()
     }
 
-    fn learn_from(&self, target: &V, state: &StateOf<V>) -> Vec<f64> {
-        self.kernel().learn_from(target.seen(), &V::state(state))
+    fn learn_from(&self, target: &V, state: StateRefOf<'_, V>) -> Vec<f64> {
+        self.kernel().learn_from(target.seen(), V::state(state))
     }
 
     fn at_fit(&self, fit: &Fit) -> Option<Box<dyn Move<V>>> {

@@ -8,7 +8,7 @@ use plaus_mcmc::check::{OneStep, Statistic, one_step};
 use plaus_mcmc::diagnose::integrated_autocorrelation_time;
 use plaus_mcmc::{
     Block, Chain, Control, Distinct, Goal, Mixture, ModelError, Move, MoveId, Path, Plan, Progress, Proposal, Redraw,
-    Replicas, Scale, Scales, Simulated, Sink, Snapshot, SolutionClass, Start, State, StateOf, Target, Verdict, run,
+    Replicas, Scale, Scales, Simulated, Sink, Snapshot, SolutionClass, Start, State, StateRefOf, Target, Verdict, run,
 };
 
 /// A number; its prior is Gaussian, or exponential, which forbids what is below 0. The constraint is Gaussian about 0.
@@ -48,7 +48,7 @@ impl Target for Number {
     fn simulate(
         &self,
         draw: &f64,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<f64>, ModelError> {
@@ -60,7 +60,7 @@ impl Target for Number {
 }
 
 impl Goal for Number {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         (state.draw.abs() < 0.1).then(|| SolutionClass::of([(state.draw * 1e3) as i64]))
     }
 }
@@ -79,14 +79,20 @@ impl Move<Number> for Walk {
     fn propose(
         &self,
         _: &Number,
-        _: &StateOf<Number>,
+        _: StateRefOf<'_, Number>,
         x: &mut f64,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         *x += self.size * Gaussian::new(0.0, 1.0).unwrap().sample(stream);
         Ok(Proposal::SYMMETRIC)
     }
-    fn log_ratio(&self, _: &Number, _: &StateOf<Number>, _: &StateOf<Number>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(
+        &self,
+        _: &Number,
+        _: StateRefOf<'_, Number>,
+        _: StateRefOf<'_, Number>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
     fn scales(&self) -> Vec<Scale> {

@@ -6,7 +6,7 @@ use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, 
 use plaus_mcmc::chance::{
     ChanceError, ChancePulse, Estimate, Parts, Splitting, Stoned, Stones, count, disagree, split, stones,
 };
-use plaus_mcmc::{Goal, Mixture, ModelError, Move, Path, Proposal, Simulated, SolutionClass, StateOf, Target};
+use plaus_mcmc::{Goal, Mixture, ModelError, Move, Path, Proposal, Simulated, SolutionClass, StateRefOf, Target};
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ impl Target for Tail {
     fn simulate(
         &self,
         draw: &[f64; 2],
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<[f64; 2]>, ModelError> {
@@ -66,7 +66,7 @@ impl Target for Tail {
 }
 
 impl Goal for Tail {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let there = state.draw[0] >= self.past;
         there.then(|| SolutionClass::of([0]))
     }
@@ -82,7 +82,7 @@ impl Move<Tail> for Turn {
     fn propose(
         &self,
         target: &Tail,
-        current: &StateOf<Tail>,
+        current: StateRefOf<'_, Tail>,
         candidate: &mut [f64; 2],
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -92,7 +92,13 @@ impl Move<Tail> for Turn {
         let there = target.log_prior(candidate)?;
         Ok(Proposal::with_ratio(LogRatio::new(current.log_prior.value() - there.value())?))
     }
-    fn log_ratio(&self, _: &Tail, from: &StateOf<Tail>, to: &StateOf<Tail>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(
+        &self,
+        _: &Tail,
+        from: StateRefOf<'_, Tail>,
+        to: StateRefOf<'_, Tail>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
     }
 }
@@ -202,7 +208,7 @@ impl Target for Coins {
     fn simulate(
         &self,
         draw: &[bool; 10],
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<u32>, ModelError> {
@@ -214,12 +220,12 @@ impl Target for Coins {
 }
 
 impl Goal for Coins {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
-        (state.outcome == 10).then(|| SolutionClass::of([0]))
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
+        (*state.outcome == 10).then(|| SolutionClass::of([0]))
     }
 }
 
-const EACH: Parts<'static, Coins> = Parts { count: 10, met: &|_, state, met| met.copy_from_slice(&state.draw) };
+const EACH: Parts<'static, Coins> = Parts { count: 10, met: &|_, state, met| met.copy_from_slice(state.draw) };
 
 /// Throws one coin again.
 struct Toss;
@@ -231,7 +237,7 @@ impl Move<Coins> for Toss {
     fn propose(
         &self,
         target: &Coins,
-        current: &StateOf<Coins>,
+        current: StateRefOf<'_, Coins>,
         candidate: &mut [bool; 10],
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -242,8 +248,8 @@ impl Move<Coins> for Toss {
     fn log_ratio(
         &self,
         _: &Coins,
-        from: &StateOf<Coins>,
-        to: &StateOf<Coins>,
+        from: StateRefOf<'_, Coins>,
+        to: StateRefOf<'_, Coins>,
         _: Path,
     ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::new(from.log_prior.value() - to.log_prior.value())?)
@@ -333,7 +339,7 @@ impl Target for Hidden {
     fn simulate(
         &self,
         draw: &[f64; 2],
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<[f64; 2]>, ModelError> {
@@ -345,8 +351,8 @@ impl Target for Hidden {
 }
 
 impl Goal for Hidden {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
-        let there = state.draw[0] >= self.tail.past || self.is_in_square(&state.draw);
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
+        let there = state.draw[0] >= self.tail.past || self.is_in_square(state.draw);
         there.then(|| SolutionClass::of([0]))
     }
 }

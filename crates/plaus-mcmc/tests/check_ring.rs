@@ -12,7 +12,7 @@ use plaus_mcmc::check::{
     any_of, balance, one_step, prior, ratios, rejection, visited,
 };
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, State, StateOf, Target, Tempered};
+use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, State, StateRefOf, Target, Tempered};
 
 const RIGHT: Redraw = Redraw { symmetric: false };
 const SYMMETRIC: Redraw = Redraw { symmetric: true };
@@ -67,7 +67,7 @@ impl Move<Ring> for Lying<'_> {
     fn propose(
         &self,
         ring: &Ring,
-        current: &StateOf<Ring>,
+        current: StateRefOf<'_, Ring>,
         place: &mut usize,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -76,8 +76,8 @@ impl Move<Ring> for Lying<'_> {
     fn log_ratio(
         &self,
         ring: &Ring,
-        from: &StateOf<Ring>,
-        to: &StateOf<Ring>,
+        from: StateRefOf<'_, Ring>,
+        to: StateRefOf<'_, Ring>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         self.listed.log_ratio(ring, from, to, path)
@@ -88,7 +88,7 @@ impl Move<Ring> for Lying<'_> {
 }
 
 impl Enumerable<Ring> for Lying<'_> {
-    fn branches(&self, ring: &Ring, state: &StateOf<Ring>) -> Result<Vec<Branch<usize>>, ModelError> {
+    fn branches(&self, ring: &Ring, state: StateRefOf<'_, Ring>) -> Result<Vec<Branch<usize>>, ModelError> {
         self.listed.branches(ring, state)
     }
 }
@@ -124,7 +124,7 @@ impl Move<Ring> for Tilted {
     fn propose(
         &self,
         _: &Ring,
-        _: &StateOf<Ring>,
+        _: StateRefOf<'_, Ring>,
         place: &mut usize,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -134,8 +134,8 @@ impl Move<Ring> for Tilted {
     fn log_ratio(
         &self,
         ring: &Ring,
-        from: &StateOf<Ring>,
-        to: &StateOf<Ring>,
+        from: StateRefOf<'_, Ring>,
+        to: StateRefOf<'_, Ring>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         RIGHT.log_ratio(ring, from, to, path)
@@ -143,7 +143,7 @@ impl Move<Ring> for Tilted {
 }
 
 impl Enumerable<Ring> for Tilted {
-    fn branches(&self, ring: &Ring, state: &StateOf<Ring>) -> Result<Vec<Branch<usize>>, ModelError> {
+    fn branches(&self, ring: &Ring, state: StateRefOf<'_, Ring>) -> Result<Vec<Branch<usize>>, ModelError> {
         RIGHT.branches(ring, state)
     }
 }

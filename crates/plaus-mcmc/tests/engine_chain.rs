@@ -6,7 +6,7 @@ use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
 use plaus_mcmc::{
     Block, Chain, ChainError, Control, Ending, Goal, Mixture, MixtureError, ModelError, Move, MoveId, Path, Plan,
-    Progress, Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, State, StateOf, Target, Verdict, run,
+    Progress, Proposal, RunError, Simulated, Sink, Snapshot, SolutionClass, StateRef, StateRefOf, Target, Verdict, run,
 };
 
 /// Counts up from its start; some numbers are forbidden or break the model.
@@ -34,7 +34,7 @@ impl Target for Counter {
     fn simulate(
         &self,
         draw: &u64,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<u64>, ModelError> {
@@ -49,8 +49,8 @@ impl Target for Counter {
 }
 
 impl Goal for Counter {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
-        Some(SolutionClass(state.draw))
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
+        Some(SolutionClass(*state.draw))
     }
 }
 
@@ -69,7 +69,7 @@ impl Move<Counter> for Increment {
     fn propose(
         &self,
         _: &Counter,
-        _: &State<u64, u64>,
+        _: StateRef<'_, u64, u64>,
         draw: &mut u64,
         _: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -79,8 +79,8 @@ impl Move<Counter> for Increment {
     fn log_ratio(
         &self,
         _: &Counter,
-        _: &State<u64, u64>,
-        _: &State<u64, u64>,
+        _: StateRef<'_, u64, u64>,
+        _: StateRef<'_, u64, u64>,
         _: Path,
     ) -> Result<LogRatio, ModelError> {
         Ok(self.first)
@@ -88,8 +88,8 @@ impl Move<Counter> for Increment {
     fn log_ratio_after(
         &self,
         _: &Counter,
-        _: &State<u64, u64>,
-        _: &State<u64, u64>,
+        _: StateRef<'_, u64, u64>,
+        _: StateRef<'_, u64, u64>,
         _: Path,
     ) -> Result<LogRatio, ModelError> {
         Ok(self.later.map_or(LogRatio::ONE, |(_, after)| after))

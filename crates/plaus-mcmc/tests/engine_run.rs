@@ -7,14 +7,14 @@ use crate::toys::balls_moves::{ChangeAll, Fault, Redrop, Toggle};
 use plaus_dist::{LogRatio, Seed, Stream};
 use plaus_mcmc::{
     Block, Chain, ChainPulse, Control, Distinct, Ending, Entry, FirstOfClass, Goal, Hits, Mixture, ModelError, Move,
-    Path, Plan, PlanError, Progress, Proposal, Pulse, RunError, Sink, Snapshot, Start, StateOf, Verdict, run,
-    run_watched,
+    Path, Plan, PlanError, Progress, Proposal, Pulse, RunError, Sink, Snapshot, Start, StateOf, StateRefOf, Verdict,
+    run, run_watched,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 type Loads = Vec<u32>;
-type S = StateOf<Balls>;
+type S<'a> = StateRefOf<'a, Balls>;
 
 const PLAN: Plan = Plan {
     seed: Seed(21),
@@ -70,14 +70,14 @@ impl Sink<Drops, Loads> for Log {
 
 impl Log {
     /// What was recorded, whatever the blocks: the draw's iteration, its state, what was accepted on the way to it.
-    fn draws(&self, chain: usize, thin: u64) -> Vec<(u64, S, u32)> {
+    fn draws(&self, chain: usize, thin: u64) -> Vec<(u64, StateOf<Balls>, u32)> {
         let mut draws = Vec::new();
         for block in &self.blocks[chain] {
             assert_eq!(draws.len() as u64, block.first_iteration.div_ceil(thin), "blocks follow each other");
             for Entry { draws: times, accepted, by, class, state } in &block.entries {
                 // What a swap brought was made by no move.
                 assert!(*times > 0 && (by.is_none() || *accepted > 0));
-                assert_eq!(*class, balls().class(state));
+                assert_eq!(*class, balls().class(state.by_ref()));
                 for repeat in 0..*times {
                     let accepted = if repeat == 0 { *accepted } else { 0 };
                     draws.push((draws.len() as u64 * thin, state.clone(), accepted));
@@ -88,7 +88,7 @@ impl Log {
         draws
     }
 
-    fn all_draws(&self, thin: u64) -> Vec<Vec<(u64, S, u32)>> {
+    fn all_draws(&self, thin: u64) -> Vec<Vec<(u64, StateOf<Balls>, u32)>> {
         (0..self.blocks.len()).map(|chain| self.draws(chain, thin)).collect()
     }
 
@@ -97,7 +97,7 @@ impl Log {
         let start = |chain: usize| {
             let mut distinct = Distinct::default();
             for (iteration, state, _) in self.draws(chain, plan.thin) {
-                if let Some(class) = balls().class(&state).filter(|_| iteration >= plan.counts_from()) {
+                if let Some(class) = balls().class(state.by_ref()).filter(|_| iteration >= plan.counts_from()) {
                     distinct.note(FirstOfClass { iteration, chain: chain as u32, class });
                 }
             }
@@ -177,13 +177,19 @@ impl Move<Balls> for Interrupt {
     fn name(&self) -> &str {
         Toggle::RIGHT.name()
     }
-    fn propose(&self, world: &Balls, now: &S, drops: &mut Drops, stream: &mut Stream) -> Result<Proposal, ModelError> {
+    fn propose(
+        &self,
+        world: &Balls,
+        now: S<'_>,
+        drops: &mut Drops,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
         if self.left.fetch_sub(1, Relaxed) == 1 {
             self.pulse.stop();
         }
         Toggle::RIGHT.propose(world, now, drops, stream)
     }
-    fn log_ratio(&self, world: &Balls, from: &S, to: &S, path: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, world: &Balls, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
         Toggle::RIGHT.log_ratio(world, from, to, path)
     }
 }
@@ -240,7 +246,7 @@ fn first_iteration_with(wanted: u64, all: &Log, thin: u64) -> Option<u64> {
     let mut recorded: Vec<_> = all.all_draws(thin).into_iter().flatten().collect();
     recorded.sort_by_key(|(iteration, ..)| *iteration);
     recorded.into_iter().find_map(|(iteration, state, _)| {
-        classes.extend(balls().class(&state).filter(|class| !classes.contains(class)));
+        classes.extend(balls().class(state.by_ref()).filter(|class| !classes.contains(class)));
         (classes.len() as u64 >= wanted).then_some(iteration)
     })
 }
@@ -317,7 +323,7 @@ fn bookkeeping_agrees_with_a_chain_stepped_by_hand() {
                         bys.extend(last_by.take().map(Some));
                     }
                 }
-                if world.class(chain.state()).is_some() {
+                if world.class(chain.state().by_ref()).is_some() {
                     hits.count += 1;
                     hits.first = hits.first.or(Some(iteration));
                 }

@@ -5,8 +5,8 @@ use crate::toys::balls::{Balls, Drops, active, filled};
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Seed, Stream};
 use plaus_mcmc::check::{OneStep, OneStepReport, Statistic, one_step, rejection};
 use plaus_mcmc::{
-    Chain, ChainError, Independent, Mixture, ModelError, Move, Path, Proposal, Required, Simulated, StateOf, Target,
-    Verdict,
+    Chain, ChainError, Independent, Mixture, ModelError, Move, Path, Proposal, Required, Simulated, StateOf,
+    StateRefOf, Target, Verdict,
 };
 use plaus_mcmc::{Mark, Requirement};
 
@@ -40,7 +40,7 @@ impl Move<Balls> for Few {
     fn propose(
         &self,
         target: &Balls,
-        _: &StateOf<Balls>,
+        _: StateRefOf<'_, Balls>,
         draw: &mut Drops,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -48,7 +48,13 @@ impl Move<Balls> for Few {
         draw[0] = None;
         Ok(Proposal::Anew)
     }
-    fn log_ratio(&self, _: &Balls, _: &StateOf<Balls>, _: &StateOf<Balls>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(
+        &self,
+        _: &Balls,
+        _: StateRefOf<'_, Balls>,
+        _: StateRefOf<'_, Balls>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }
@@ -79,7 +85,7 @@ impl Target for Claims {
     fn simulate(
         &self,
         draw: &Drops,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         loads: &mut Vec<u32>,
     ) -> Result<Simulated<Vec<u32>>, ModelError> {
@@ -134,8 +140,8 @@ impl Requirement<Balls> for Sparse {
     fn most(&self) -> Option<LogPotential> {
         Some(LogPotential::new(self.0?).unwrap())
     }
-    fn judge(&self, _: &Balls, state: &StateOf<Balls>, _: &Vec<u32>) -> Result<Mark, ModelError> {
-        Ok(Mark { log: LogPotential::new(2.0 - 0.5 * active(&state.draw) as f64).unwrap(), met: true })
+    fn judge(&self, _: &Balls, state: StateRefOf<'_, Balls>, _: &Vec<u32>) -> Result<Mark, ModelError> {
+        Ok(Mark { log: LogPotential::new(2.0 - 0.5 * active(state.draw) as f64).unwrap(), met: true })
     }
 }
 

@@ -5,7 +5,7 @@ use plaus_dist::{Gaussian, LogDensity, LogPotential, Seed, Stream, math};
 use plaus_mcmc::diagnose::integrated_autocorrelation_time;
 use plaus_mcmc::library::{Learned, RedrawAll, Sizes, StepAll};
 use plaus_mcmc::{
-    Chain, Law, Mixture, ModelError, Move, MoveId, Recipe, Simulated, StateOf, Target, Var, Variables, Vars, vars,
+    Chain, Law, Mixture, ModelError, Move, MoveId, Recipe, Simulated, StateRefOf, Target, Var, Variables, Vars, vars,
 };
 
 /// Two standard normal numbers x and y; x is wanted about 2, and y about x, both with standard deviation 0.2.
@@ -51,7 +51,7 @@ impl Target for Near {
     fn simulate(
         &self,
         draw: &[f64; 2],
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<[f64; 2]>, ModelError> {

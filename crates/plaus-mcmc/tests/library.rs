@@ -9,10 +9,12 @@ use plaus_mcmc::library::{
     StepAll, Stride, Swap, Symmetry, Toggle,
 };
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Fit, Mixture, ModelError, Move, Path, Proposal, Recipe, State, StateOf, Target, Variables, vars};
+use plaus_mcmc::{
+    Fit, Mixture, ModelError, Move, Path, Proposal, Recipe, State, StateOf, StateRefOf, Target, Variables, vars,
+};
 
 type AnyMove = Box<dyn Move<Slots>>;
-type S = StateOf<Slots>;
+type S<'a> = StateRefOf<'a, Slots>;
 
 const PLAN: OneStep = OneStep { seed: Seed(3), samples: 20_000, steps: 1, cells: 16, false_alarm: 1e-6 };
 const NUMBERS: [usize; 4] = [SPEED, SIZE, HEIGHT, ANGLE];
@@ -32,19 +34,19 @@ fn step(kernel: AnyMove, constrained: bool) -> OneStepReport {
 
 fn statistics<'a>() -> Vec<Statistic<'a, Things, f64>> {
     vec![
-        Statistic::new("speed", |state: &S| state.draw.speed + state.draw.shift),
-        Statistic::new("size", |state: &S| state.draw.size),
-        Statistic::new("height", |state: &S| state.draw.height),
-        Statistic::new("room", |state: &S| state.draw.height - state.draw.size),
-        Statistic::new("angle", |state: &S| state.draw.angle),
-        Statistic::new("pin x", |state: &S| state.draw.pins[0][0]),
-        Statistic::new("pin y", |state: &S| state.draw.pins[1][1]),
-        Statistic::new("vertex", |state: &S| state.draw.vertex[0]),
-        Statistic::new("balls", |state: &S| state.draw.balls.iter().flatten().count() as f64),
-        Statistic::new("ball x", |state: &S| state.draw.balls[0].map_or(-1.0, |ball| ball[0])),
-        Statistic::new("ball y", |state: &S| state.draw.balls[2].map_or(-1.0, |ball| ball[1])),
-        Statistic::new("face", |state: &S| state.draw.face as f64),
-        Statistic::new("outcome", |state: &S| state.outcome),
+        Statistic::new("speed", |state: &StateOf<Slots>| state.draw.speed + state.draw.shift),
+        Statistic::new("size", |state: &StateOf<Slots>| state.draw.size),
+        Statistic::new("height", |state: &StateOf<Slots>| state.draw.height),
+        Statistic::new("room", |state: &StateOf<Slots>| state.draw.height - state.draw.size),
+        Statistic::new("angle", |state: &StateOf<Slots>| state.draw.angle),
+        Statistic::new("pin x", |state: &StateOf<Slots>| state.draw.pins[0][0]),
+        Statistic::new("pin y", |state: &StateOf<Slots>| state.draw.pins[1][1]),
+        Statistic::new("vertex", |state: &StateOf<Slots>| state.draw.vertex[0]),
+        Statistic::new("balls", |state: &StateOf<Slots>| state.draw.balls.iter().flatten().count() as f64),
+        Statistic::new("ball x", |state: &StateOf<Slots>| state.draw.balls[0].map_or(-1.0, |ball| ball[0])),
+        Statistic::new("ball y", |state: &StateOf<Slots>| state.draw.balls[2].map_or(-1.0, |ball| ball[1])),
+        Statistic::new("face", |state: &StateOf<Slots>| state.draw.face as f64),
+        Statistic::new("outcome", |state: &StateOf<Slots>| state.outcome),
     ]
 }
 
@@ -53,14 +55,14 @@ fn strides() -> Vec<Stride> {
 }
 
 /// Left and right exchanged, and the pins with them.
-fn mirrored(_: &Slots, _: &S, draw: &mut Things, _: &mut Stream) -> bool {
+fn mirrored(_: &Slots, _: S<'_>, draw: &mut Things, _: &mut Stream) -> bool {
     draw.pins.swap(0, 1);
     draw.pins.iter_mut().for_each(|pin| pin[0] = -pin[0]);
     true
 }
 
 /// Any other face, each as likely.
-fn turned(_: &Slots, _: &S, draw: &mut Things, stream: &mut Stream) -> bool {
+fn turned(_: &Slots, _: S<'_>, draw: &mut Things, stream: &mut Stream) -> bool {
     draw.face = (draw.face + 1 + plaus_dist::stream::below(stream, FACES - 1)) % FACES;
     true
 }
@@ -165,7 +167,7 @@ impl Move<Slots> for Twin {
         self.0.name()
     }
 
-    fn propose(&self, slots: &Slots, now: &S, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
+    fn propose(&self, slots: &Slots, now: S<'_>, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let proposal = self.0.propose(slots, now, to, stream)?;
         if proposal == Proposal::Stay {
             return Ok(proposal);
@@ -195,7 +197,7 @@ impl Move<Slots> for Twin {
         Ok(proposal)
     }
 
-    fn log_ratio(&self, slots: &Slots, from: &S, to: &S, path: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, slots: &Slots, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
         self.0.log_ratio(slots, from, to, path)
     }
 }
@@ -208,7 +210,7 @@ impl Move<Slots> for ByKernel {
         "learned"
     }
 
-    fn propose(&self, slots: &Slots, now: &S, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
+    fn propose(&self, slots: &Slots, now: S<'_>, to: &mut Things, stream: &mut Stream) -> Result<Proposal, ModelError> {
         let proposal = self.0.propose(slots, now, to, stream)?;
         let Proposal::Candidate { log_ratio, path: Path(path @ 1..), .. } = proposal else { return Ok(proposal) };
         let point = self.1.point(slots, to);
@@ -216,7 +218,7 @@ impl Move<Slots> for ByKernel {
         Ok(Proposal::with_ratio(log_ratio.times(LogRatio::new(wrong)?)?))
     }
 
-    fn log_ratio(&self, slots: &Slots, from: &S, to: &S, path: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, slots: &Slots, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
         self.0.log_ratio(slots, from, to, path)
     }
 }

@@ -7,7 +7,7 @@
 use crate::toys::ring::{Redraw, Ring, Walk};
 use plaus_dist::{LogPotential, Seed};
 use plaus_mcmc::check::{OneStep, OneStepReport, Statistic, one_step, rejection};
-use plaus_mcmc::{Chain, Goal, Judged, Mark, Mixture, ModelError, Required, Requirement, State, StateOf};
+use plaus_mcmc::{Chain, Goal, Judged, Mark, Mixture, ModelError, Required, Requirement, State, StateRefOf};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 const PLAN: OneStep = OneStep { seed: Seed(21), samples: 40_000, steps: 1, cells: 16, false_alarm: 1e-6 };
@@ -26,9 +26,9 @@ impl Requirement<Ring> for &Beyond {
         self.most.map(|most| LogPotential::new(most).unwrap())
     }
 
-    fn judge(&self, _: &Ring, state: &StateOf<Ring>, (): &()) -> Result<Mark, ModelError> {
+    fn judge(&self, _: &Ring, state: StateRefOf<'_, Ring>, (): &()) -> Result<Mark, ModelError> {
         let asked = self.asked.fetch_add(1, Relaxed);
-        let met = state.draw > 5;
+        let met = *state.draw > 5;
         let log = if self.fickle { (asked % 2) as f64 } else { f64::from(u8::from(met)) };
         Ok(Mark { log: LogPotential::new(log)?, met })
     }
@@ -42,7 +42,7 @@ fn stepped(beyond: &Beyond) -> OneStepReport {
     let ring = Ring::of_nine(1.0);
     let required = Required::new(&ring, beyond);
     let moves = Required::moves(&mixture());
-    let place = Statistic::new("place", |state: &State<usize, Judged<usize, usize>>| state.draw as f64);
+    let place = Statistic::new("place", |state: &State<usize, Judged<usize>>| state.draw as f64);
     let bound = LogPotential::new(2.0).unwrap();
     one_step(&required, &moves, rejection(&required, bound), &[place], PLAN).unwrap()
 }
@@ -66,7 +66,7 @@ fn walked(beyond: &Beyond) -> (Vec<(usize, bool)>, u64) {
     let mut seen = Vec::new();
     for _ in 0..5000 {
         chain.step().unwrap();
-        seen.push((chain.state().draw, required.class(chain.state()).is_some()));
+        seen.push((chain.state().draw, required.class(chain.state().by_ref()).is_some()));
     }
     (seen, beyond.asked.load(Relaxed))
 }

@@ -2,9 +2,10 @@
 
 use crate::errors::RunError;
 use crate::motion::Motion;
-use plaus_mcmc::{ModelError, State, StateOf};
+use plaus_mcmc::{Goal, ModelError, StateRef, StateRefOf};
+use plaus_run::Draw;
 use plaus_run::codec::{self, Kind};
-use plaus_scenes::{Animation, Scene};
+use plaus_scenes::{Animation, Scene, Stage};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::{Deserialize, Serialize};
@@ -13,30 +14,6 @@ use std::sync::{Arc, OnceLock};
 
 /// Read by the process that is of the same program, and kept nowhere.
 pub(crate) const KIND: Kind = Kind::new(*b"outc", 1, "an outcome");
-
-/// What a state can show of itself, whatever its scene.
-trait Shown: Send + Sync {
-    fn motion(&self) -> Result<Animation, ModelError>;
-
-    /// All that another process needs to make it again.
-    fn pack(&self, numbers: &Numbers) -> Result<Vec<u8>, ModelError>;
-}
-
-/// A draw and the scene that simulates it.
-struct Drawn<S: Scene> {
-    scene: Arc<S>,
-    draw: S::Draw,
-}
-
-impl<S: Scene> Shown for Drawn<S> {
-    fn motion(&self) -> Result<Animation, ModelError> {
-        self.scene.motion(&self.draw)
-    }
-
-    fn pack(&self, numbers: &Numbers) -> Result<Vec<u8>, ModelError> {
-        codec::encode(KIND, &(numbers, &self.draw)).map_err(ModelError::new)
-    }
-}
 
 /// What is known of a state without simulating it again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -53,7 +30,8 @@ pub(crate) struct Numbers {
 /// gets them from the simulation that was run anyway, where the scene keeps it; else by simulating once more.
 #[pyclass(frozen, module = "plaus")]
 pub(crate) struct Outcome {
-    shown: Box<dyn Shown>,
+    scene: Arc<Stage>,
+    draw: Draw,
     names: Arc<[String]>,
     numbers: Numbers,
     motion: OnceLock<Motion>,
@@ -63,15 +41,15 @@ pub(crate) struct Outcome {
 
 impl Outcome {
     /// What came of a state; `looks` is told when its motion is asked for, `motion` is that, where it is known.
-    pub(crate) fn of<S: Scene>(
-        scene: &Arc<S>,
+    pub(crate) fn of(
+        scene: &Arc<Stage>,
         names: &Arc<[String]>,
-        state: &StateOf<S>,
+        state: StateRefOf<'_, Stage>,
         (looks, motion): (&Arc<AtomicBool>, Option<Animation>),
     ) -> Self {
         let mut values = vec![0.0; names.len()];
         scene.write_scalars(state, &mut values);
-        let State { draw, log_prior, log_constraint, .. } = state;
+        let StateRef { draw, log_prior, log_constraint, .. } = state;
         let (log_prior, log_constraint) = (log_prior.value(), log_constraint.value());
         let numbers = Numbers { values, log_prior, log_constraint, satisfied: scene.class(state).is_some() };
         let motion = motion.map_or_else(OnceLock::new, |motion| Motion(Arc::new(motion)).into());
@@ -83,13 +61,12 @@ impl Outcome {
     /// # Errors
     /// [`ModelError`] where the draw is too long.
     pub(crate) fn pack(&self) -> Result<Vec<u8>, ModelError> {
-        self.shown.pack(&self.numbers)
+        codec::encode(KIND, &(&self.numbers, &self.draw)).map_err(ModelError::new)
     }
 
     /// What came of `draw`.
-    pub(crate) fn new<S: Scene>(scene: &Arc<S>, names: &Arc<[String]>, numbers: Numbers, draw: S::Draw) -> Self {
-        let shown = Box::new(Drawn { scene: Arc::clone(scene), draw });
-        Self { shown, names: Arc::clone(names), numbers, motion: OnceLock::new(), looks: None }
+    pub(crate) fn new(scene: &Arc<Stage>, names: &Arc<[String]>, numbers: Numbers, draw: Draw) -> Self {
+        Self { scene: Arc::clone(scene), draw, names: Arc::clone(names), numbers, motion: OnceLock::new(), looks: None }
     }
 }
 
@@ -140,7 +117,7 @@ impl Outcome {
             return Ok(motion.clone());
         }
         // Other chains go on meanwhile.
-        let made = py.detach(|| self.shown.motion()).map_err(|error| RunError::new_err(error.to_string()))?;
+        let made = py.detach(|| self.scene.motion(&self.draw)).map_err(|error| RunError::new_err(error.to_string()))?;
         Ok(self.motion.get_or_init(|| Motion(Arc::new(made))).clone())
     }
 

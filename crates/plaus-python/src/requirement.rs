@@ -5,9 +5,9 @@ use crate::clock::now;
 use crate::errors::Raised;
 use crate::outcome::Outcome;
 use plaus_dist::LogPotential;
-use plaus_mcmc::{Mark, Mixture, ModelError, Required, Requirement, Sink, StateOf};
-use plaus_run::{Drive, Driven, Journey, RunFileError};
-use plaus_scenes::Scene;
+use plaus_mcmc::{Mark, Mixture, ModelError, Required, Requirement, Sink, StateRefOf};
+use plaus_run::{Draw, Drive, Driven, Journey, RunFileError};
+use plaus_scenes::{AnyScratch, Scene, Stage};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyTuple};
@@ -98,34 +98,34 @@ impl Asked {
     }
 }
 
-/// A requirement of a known scene.
-struct OfScene<S: Scene> {
+/// A requirement of a scene.
+struct OfScene {
     by: ByPython,
-    scene: Arc<S>,
+    scene: Arc<Stage>,
     names: Arc<[String]>,
     most: Option<LogPotential>,
 }
 
-impl<S: Scene> OfScene<S> {
+impl OfScene {
     /// Whether the function looks at motions, here: another process simulates for itself.
     fn keeps(&self) -> bool {
         self.by.others.is_none() && self.by.asked.get().looks.load(Relaxed)
     }
 }
 
-impl<S: Scene> Requirement<S> for OfScene<S> {
+impl Requirement<Stage> for OfScene {
     fn most(&self) -> Option<LogPotential> {
         self.most
     }
 
-    fn prepare(&self, scene: &S, scratch: &mut S::Scratch) {
+    fn prepare(&self, scene: &Stage, scratch: &mut AnyScratch) {
         if self.keeps() {
             scene.record_motions(scratch);
         }
     }
 
-    fn judge(&self, scene: &S, state: &StateOf<S>, scratch: &S::Scratch) -> Result<Mark, ModelError> {
-        let motion = self.keeps().then(|| scene.motion_simulated(&state.draw, scratch)).transpose()?;
+    fn judge(&self, scene: &Stage, state: StateRefOf<'_, Stage>, scratch: &AnyScratch) -> Result<Mark, ModelError> {
+        let motion = self.keeps().then(|| scene.motion_simulated(state.draw, scratch)).transpose()?;
         let outcome = Outcome::of(&self.scene, &self.names, state, (&self.by.asked.get().looks, motion));
         self.by.asked.get().ask(outcome, self.by.others.as_deref())
     }
@@ -145,11 +145,11 @@ impl Drive for ByPython {
         Some(self.asked.get().name.clone())
     }
 
-    fn drive<S: Scene, K: Sink<S::Draw, S::Outcome, Error = RunFileError>>(
+    fn drive<K: Sink<Draw, plaus_run::Outcome, Error = RunFileError>>(
         &self,
-        scene: &Arc<S>,
-        moves: &Mixture<S>,
-        journey: Journey<'_, S>,
+        scene: &Arc<Stage>,
+        moves: &Mixture<Stage>,
+        journey: Journey<'_>,
         sink: &mut K,
     ) -> Driven {
         let names = scene.scalars().into_iter().map(|scalar| scalar.name).collect();

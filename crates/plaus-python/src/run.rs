@@ -6,7 +6,7 @@ use crate::motion::Motion;
 use plaus_gallery::Options;
 use plaus_mcmc::parallel;
 use plaus_run::replay::{Replay, replay, replay_at, replay_each};
-use plaus_run::{Diagnosis, Error, Folder, Phase, RunFileProblem, RunOf, RunVisitor, SampleId, solutions};
+use plaus_run::{Diagnosis, Error, Folder, Phase, RunFileProblem, RunReader, SampleId, solutions};
 use plaus_scenes::{AccuracyPreset, Role, Scalar, Scene};
 use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
 use pyo3::prelude::*;
@@ -31,42 +31,18 @@ pub(crate) fn apart<T: Send>(py: Python<'_>, threads: usize, work: impl FnOnce()
 }
 
 impl RunFolder {
-    fn visit<V>(&self, py: Python<'_>, visitor: V) -> PyResult<V::Made>
-    where
-        V: Look + Send,
-        V::Made: Send,
-    {
-        struct Visit<V>(V);
-        impl<V: Look> RunVisitor for Visit<V> {
-            type Output = Result<V::Made, Error>;
-            fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-                self.0.look(&run)
-            }
-        }
-        let made = apart(py, 0, || self.run.visit(Visit(visitor)).and_then(|made| made))?;
+    /// What `look` finds out about the run, without Python's lock.
+    fn read<T: Send>(
+        &self,
+        py: Python<'_>,
+        look: impl FnOnce(&RunReader<'_>) -> Result<T, Error> + Send,
+    ) -> PyResult<T> {
+        let made = apart(py, 0, || self.run.reader().and_then(|run| look(&run)))?;
         made.map_err(|error| of_run(py, &error))
     }
 }
 
-/// Something to find out about a run.
-trait Look {
-    type Made;
-    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error>;
-}
-
-/// Draws of the warm-up and of the sampling phase that each chain has, and iterations done.
-struct Size;
-
-impl Look for Size {
-    type Made = (u64, u64, u64);
-    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
-        Ok((run.draws(Phase::Warmup), run.draws(Phase::Sampling), run.iterations()))
-    }
-}
-
 /// All draws of a phase, a column a number.
-struct Columns(Phase);
-
 struct Table {
     scalars: Vec<Scalar>,
     chains: usize,
@@ -76,104 +52,68 @@ struct Table {
     satisfied: Vec<bool>,
 }
 
-impl Look for Columns {
-    type Made = PyResult<Table>;
-    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
-        let scalars = run.scene().scalars();
-        let (chains, draws) = (run.chains().len(), run.draws(self.0) as usize);
-        let rooms = || -> PyResult<_> {
-            let count = volume(&[chains, draws])?;
-            let numbers: Vec<Vec<f64>> = (0..scalars.len() + 2).map(|_| room(0.0, count)).collect::<PyResult<_>>()?;
-            Ok((numbers, room(false, count)?))
-        };
-        let (mut numbers, mut satisfied) = match rooms() {
-            Ok(rooms) => rooms,
-            Err(error) => return Ok(Err(error)),
-        };
-        if draws > 0 {
-            let mut parts: Vec<(Vec<&mut [f64]>, &mut [bool])> =
-                satisfied.chunks_mut(draws).map(|part| (Vec::new(), part)).collect();
-            for column in &mut numbers {
-                column.chunks_mut(draws).zip(&mut parts).for_each(|(chunk, part)| part.0.push(chunk));
-            }
-            let first = run.chains().start;
-            let filled = parallel::map_mut(&mut parts, |k, part| self.fill(run, first + k as u32, part));
-            filled.into_iter().collect::<Result<(), _>>()?;
+fn table(run: &RunReader<'_>, phase: Phase) -> Result<PyResult<Table>, Error> {
+    let scalars = run.scene().scalars();
+    let (chains, draws) = (run.chains().len(), run.draws(phase) as usize);
+    let rooms = || -> PyResult<_> {
+        let count = volume(&[chains, draws])?;
+        let numbers: Vec<Vec<f64>> = (0..scalars.len() + 2).map(|_| room(0.0, count)).collect::<PyResult<_>>()?;
+        Ok((numbers, room(false, count)?))
+    };
+    let (mut numbers, mut satisfied) = match rooms() {
+        Ok(rooms) => rooms,
+        Err(error) => return Ok(Err(error)),
+    };
+    if draws > 0 {
+        let mut parts: Vec<(Vec<&mut [f64]>, &mut [bool])> =
+            satisfied.chunks_mut(draws).map(|part| (Vec::new(), part)).collect();
+        for column in &mut numbers {
+            column.chunks_mut(draws).zip(&mut parts).for_each(|(chunk, part)| part.0.push(chunk));
         }
-        Ok(Ok(Table { scalars, chains, draws, numbers, satisfied }))
+        let first = run.chains().start;
+        let filled = parallel::map_mut(&mut parts, |k, part| fill(run, (first + k as u32, phase), part));
+        filled.into_iter().collect::<Result<(), _>>()?;
     }
+    Ok(Ok(Table { scalars, chains, draws, numbers, satisfied }))
 }
 
-impl Columns {
-    fn fill<S: Scene>(
-        &self,
-        run: &RunOf<'_, S>,
-        chain: u32,
-        (numbers, satisfied): &mut (Vec<&mut [f64]>, &mut [bool]),
-    ) -> Result<(), Error> {
-        let thin = run.run().manifest().plan.thin as f64;
-        let count = numbers.len() - 2;
-        let mut values = vec![0.0; count];
-        run.walk(chain, self.0, |stretch| -> Result<(), Error> {
-            run.scene().write_scalars(&stretch.entry.state, &mut values);
-            let first = stretch.draw as usize;
-            let span = first..first + stretch.draws as usize;
-            for (column, &value) in numbers.iter_mut().zip(&values) {
-                column[span.clone()].fill(value);
-            }
-            numbers[count][span.clone()].fill(stretch.entry.state.log_p().value());
-            // As in an export: the first draw of a stretch is where something was accepted; a swap comes on top.
-            numbers[count + 1][first] = (f64::from(stretch.accepted) / thin).min(1.0);
-            satisfied[span].fill(stretch.entry.class.is_some());
-            Ok(())
-        })
-    }
+fn fill(
+    run: &RunReader<'_>,
+    (chain, phase): (u32, Phase),
+    (numbers, satisfied): &mut (Vec<&mut [f64]>, &mut [bool]),
+) -> Result<(), Error> {
+    let thin = run.run().manifest().plan.thin as f64;
+    let count = numbers.len() - 2;
+    let mut values = vec![0.0; count];
+    run.walk(chain, phase, |stretch| -> Result<(), Error> {
+        run.scene().write_scalars(stretch.entry.state.by_ref(), &mut values);
+        let first = stretch.draw as usize;
+        let span = first..first + stretch.draws as usize;
+        for (column, &value) in numbers.iter_mut().zip(&values) {
+            column[span.clone()].fill(value);
+        }
+        numbers[count][span.clone()].fill(stretch.entry.state.log_p().value());
+        // As in an export: the first draw of a stretch is where something was accepted; a swap comes on top.
+        numbers[count + 1][first] = (f64::from(stretch.accepted) / thin).min(1.0);
+        satisfied[span].fill(stretch.entry.class.is_some());
+        Ok(())
+    })
 }
 
-struct Solutions;
-
-impl Look for Solutions {
-    type Made = Vec<Found>;
-    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
-        let found = solutions::distinct(run)?;
-        let early = |one: &plaus_run::Solution| !one.sample.phase.is_sampling();
-        let tell = |one: &plaus_run::Solution| -> Found {
-            let plaus_run::Solution { sample, iteration, log_p } = *one;
-            (sample.chain, sample.draw, iteration, log_p, early(one))
-        };
-        Ok(found.iter().map(tell).collect())
-    }
+fn solutions_of(run: &RunReader<'_>) -> Result<Vec<Found>, Error> {
+    let tell = |one: &plaus_run::Solution| -> Found {
+        let plaus_run::Solution { sample, iteration, log_p } = *one;
+        (sample.chain, sample.draw, iteration, log_p, !sample.phase.is_sampling())
+    };
+    Ok(solutions::distinct(run)?.iter().map(tell).collect())
 }
 
 /// Samples simulated again, each as it was or at another accuracy.
-struct Replays(Vec<SampleId>, Option<AccuracyPreset>);
-
-impl Look for Replays {
-    type Made = Vec<Replay>;
-    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
-        match (self.1, self.0.as_slice()) {
-            (Some(accuracy), all) => all.iter().map(|&sample| replay_at(run, sample, accuracy)).collect(),
-            (None, &[one]) => Ok(vec![replay(run, one)?]),
-            (None, all) => replay_each(run, all, |replay| replay),
-        }
-    }
-}
-
-struct Page(Options);
-
-impl Look for Page {
-    type Made = plaus_gallery::Gallery;
-    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
-        plaus_gallery::gallery(run, &self.0)
-    }
-}
-
-struct Diagnose(Option<u64>);
-
-impl Look for Diagnose {
-    type Made = Diagnosis;
-    fn look<S: Scene>(self, run: &RunOf<'_, S>) -> Result<Self::Made, Error> {
-        Ok(Diagnosis::of(run, self.0)?)
+fn replays(run: &RunReader<'_>, samples: &[SampleId], accuracy: Option<AccuracyPreset>) -> Result<Vec<Replay>, Error> {
+    match (accuracy, samples) {
+        (Some(accuracy), all) => all.iter().map(|&sample| replay_at(run, sample, accuracy)).collect(),
+        (None, &[one]) => Ok(vec![replay(run, one)?]),
+        (None, all) => replay_each(run, all, |replay| replay),
     }
 }
 
@@ -205,7 +145,7 @@ impl RunFolder {
 
     /// Draws of the warm-up and of the sampling phase that each chain has, and iterations done.
     fn size(&self, py: Python<'_>) -> PyResult<(u64, u64, u64)> {
-        self.visit(py, Size)
+        self.read(py, |run| Ok((run.draws(Phase::Warmup), run.draws(Phase::Sampling), run.iterations())))
     }
 
     /// Numbers of the chains that the folder holds: the first, and one past the last.
@@ -220,7 +160,7 @@ impl RunFolder {
 
     /// Columns of a phase: the scene's numbers, then `lp`, `acceptance_rate` and `satisfied`.
     fn columns<'py>(&self, py: Python<'py>, warmup: bool) -> PyResult<Vec<Column<'py>>> {
-        let Table { scalars, chains, draws, numbers, satisfied } = self.visit(py, Columns(phase(warmup)))??;
+        let Table { scalars, chains, draws, numbers, satisfied } = self.read(py, |run| table(run, phase(warmup)))??;
         let role = |role| match role {
             Role::Draw => "draw",
             Role::Outcome => "outcome",
@@ -237,7 +177,7 @@ impl RunFolder {
 
     /// The first draw of each distinct solution: chain, draw, iteration, log p, and whether it is of the warm-up.
     fn solutions(&self, py: Python<'_>) -> PyResult<Vec<Found>> {
-        self.visit(py, Solutions)
+        self.read(py, solutions_of)
     }
 
     /// What is known of samples that are simulated again, as JSON, and their motions.
@@ -249,8 +189,9 @@ impl RunFolder {
         accuracy: Option<String>,
     ) -> PyResult<Vec<(String, Motion)>> {
         let named = |(chain, draw, early)| SampleId { chain, phase: phase(early), draw };
-        let samples = samples.into_iter().map(named).collect();
-        let replays = self.visit(py, Replays(samples, accuracy.map(|name| preset(&name)).transpose()?))?;
+        let samples: Vec<SampleId> = samples.into_iter().map(named).collect();
+        let accuracy = accuracy.map(|name| preset(&name)).transpose()?;
+        let replays = self.read(py, |run| replays(run, &samples, accuracy))?;
         let manifest = self.run.manifest();
         let show = |replay: Replay| {
             let facts = plaus_cli::label_of(manifest, &replay).facts;
@@ -262,14 +203,14 @@ impl RunFolder {
     /// A page that plays solutions, how many it shows, and how many there are.
     fn gallery(&self, py: Python<'_>, count: usize) -> PyResult<(String, usize, usize)> {
         let options = Options { count, run: self.run.folder().path().display().to_string() };
-        let made = self.visit(py, Page(options))?;
+        let made = self.read(py, |run| plaus_gallery::gallery(run, &options))?;
         Ok((made.html, made.shown, made.distinct))
     }
 
     /// What `plaus diagnose --json` says.
     #[pyo3(signature = (most = None))]
     fn diagnose(&self, py: Python<'_>, most: Option<u64>) -> PyResult<String> {
-        let diagnosis = self.visit(py, Diagnose(most))?;
+        let diagnosis = self.read(py, |run| Ok(Diagnosis::of(run, most)?))?;
         Ok(plaus_cli::diagnosis_to_json(self.run.manifest(), &diagnosis).to_string())
     }
 }

@@ -2,12 +2,10 @@
 
 use crate::errors::{ScenarioError, of_scenario};
 use crate::wait::{Wait, Watched};
-use plaus_mcmc::ModelError;
 use plaus_run::{Recipe, ScenarioFolder};
 use plaus_scenes::files::{Assets, Files, NoFiles};
 use plaus_scenes::require::Tally;
 use plaus_scenes::scenario::ScenarioError as Wrong;
-use plaus_scenes::{Scene, Visitor};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
@@ -66,21 +64,10 @@ impl Scenario {
 impl Scenario {
     /// What so many draws from the prior meet; Ctrl-C ends it.
     fn drawn(&self, py: Python<'_>, draws: u64) -> PyResult<Tally> {
-        struct OfPrior {
-            draws: u64,
-            seed: u64,
-            stopped: Arc<AtomicBool>,
-        }
-        impl Visitor for OfPrior {
-            type Output = Result<Tally, ModelError>;
-            fn visit<S: Scene>(self, scene: S) -> Self::Output {
-                Tally::of_prior(&scene, self.seed, self.draws, |_| !self.stopped.load(Relaxed))
-            }
-        }
         let stopped = Arc::new(AtomicBool::new(false));
         let (seed, scenario) = (self.recipe.scenario.sampler.seed, self.recipe.scenario.clone());
-        let visitor = OfPrior { draws, seed, stopped: Arc::clone(&stopped) };
-        let job = move || Ok(scenario.visit(visitor)??);
+        let told = Arc::clone(&stopped);
+        let job = move || Ok(Tally::of_prior(&scenario.stage()?, seed, draws, |_| !told.load(Relaxed))?);
         let over = Wait { py, max_time: None, poll: None, interval: f64::INFINITY }.over(&Stopped(stopped), job)?;
         match over.why {
             Some(_) => Err(PyKeyboardInterrupt::new_err(())),

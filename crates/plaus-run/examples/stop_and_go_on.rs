@@ -2,9 +2,9 @@
 #![allow(clippy::print_stdout, reason = "an example shows what it does")]
 
 use plaus_mcmc::{Control, Ending, Progress};
-use plaus_run::{Diagnosis, Error, Folder, More, Recipe, Run, RunOf, RunVisitor, Sampling, Unwatched, Watch};
+use plaus_run::{Diagnosis, Folder, More, Recipe, Run, Sampling, Unwatched, Watch};
+use plaus_scenes::Scenario;
 use plaus_scenes::scenario::template;
-use plaus_scenes::{Scenario, Scene};
 
 /// Stops at the first chance after half the iterations, as a user with Ctrl-C might.
 struct Halfway {
@@ -14,17 +14,6 @@ struct Halfway {
 impl Watch for Halfway {
     fn round(&mut self, progress: &Progress<'_>) -> Control {
         if progress.end_iteration * 2 >= self.iterations { Control::Stop } else { Control::Continue }
-    }
-}
-
-/// Diagnoses a run, whatever its scene is.
-struct Diagnose;
-
-impl RunVisitor for Diagnose {
-    type Output = Result<Diagnosis, Error>;
-
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        Ok(Diagnosis::of(&run, None)?)
     }
 }
 
@@ -42,7 +31,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("second session: {ending:?}");
     assert!(matches!(ending, Ending::Complete), "nothing stopped the second session");
 
-    let diagnosis = Run::open(&folder)?.visit(Diagnose)??;
+    let run = Run::open(&folder)?;
+    let diagnosis = Diagnosis::of(&run.reader()?, None)?;
     println!("{} draws of each chain", diagnosis.draws);
     for found in &diagnosis.scalars {
         if let Some(summary) = &found.summary {

@@ -13,7 +13,7 @@
 
 use crate::diagnosis::{Diagnosis, columns};
 use crate::error::Error;
-use crate::read::RunOf;
+use crate::read::RunReader;
 use plaus_dist::math;
 use plaus_mcmc::{keep_draws, parallel};
 use plaus_scenes::Scene;
@@ -74,7 +74,7 @@ impl Beside {
     ///
     /// # Errors
     /// [`Error`] where a draw fails, or the records are damaged.
-    pub fn of<S: Scene>(run: &RunOf<'_, S>, diagnosis: &Diagnosis) -> Result<Option<Self>, Error> {
+    pub fn of(run: &RunReader<'_>, diagnosis: &Diagnosis) -> Result<Option<Self>, Error> {
         let manifest = run.run().manifest();
         if manifest.is_independent() || !manifest.exact || manifest.requirement.is_some() || diagnosis.draws == 0 {
             return Ok(None);
@@ -97,7 +97,7 @@ impl Beside {
         let mut exact = vec![Vec::with_capacity(kept.len()); scalars.len()];
         let mut values = vec![0.0; scalars.len()];
         for state in &kept {
-            scene.write_scalars(state, &mut values);
+            scene.write_scalars(state.by_ref(), &mut values);
             exact.iter_mut().zip(&values).for_each(|(column, &value)| column.push(value));
         }
         let cells = (kept.len() / IN_CELL).min(CELLS);

@@ -6,13 +6,13 @@
 use crate::disk::Disk;
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::folder::Folder;
-use crate::read::RunOf;
+use crate::read::RunReader;
 use crate::replay::{at_accuracy, states};
 use crate::sample_id::Phase;
 use crate::sample_id::SampleId;
 use crate::solutions::{Solution, distinct};
-use plaus_mcmc::{State, parallel};
-use plaus_scenes::{AccuracyPreset, Scenario, Scene, Visitor};
+use plaus_mcmc::{Goal, State, parallel};
+use plaus_scenes::{AccuracyPreset, AnyScratch, Scenario, Stage};
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 
@@ -65,14 +65,7 @@ pub struct Confirmation {
 /// # Errors
 /// [`Error::Request`] where it has none to choose.
 pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Error> {
-    struct Ask<'a>(&'a str, AccuracyPreset);
-    impl Visitor for Ask<'_> {
-        type Output = Result<(), Error>;
-        fn visit<S: Scene>(self, scene: S) -> Self::Output {
-            at_accuracy(&scene, self.0, self.1).map(drop)
-        }
-    }
-    scenario.visit(Ask(scenario.world.name(), accuracy))?
+    at_accuracy(&scenario.stage()?, scenario.world.name(), accuracy).map(drop)
 }
 
 impl Confirmation {
@@ -81,8 +74,8 @@ impl Confirmation {
     ///
     /// # Errors
     /// [`Error`] where the scene has no accuracy to choose, the records are damaged or a simulation fails.
-    pub fn of<S: Scene>(
-        run: &RunOf<'_, S>,
+    pub fn of(
+        run: &RunReader<'_>,
         accuracy: AccuracyPreset,
         threads: usize,
         mut go_on: impl FnMut(usize, usize) -> bool,
@@ -136,7 +129,7 @@ impl Confirmation {
     ///
     /// # Errors
     /// [`RunFileError`] where there is none, or it is damaged or another run's.
-    pub fn read<S: Scene>(run: &RunOf<'_, S>) -> Result<Self, RunFileError> {
+    pub fn read(run: &RunReader<'_>) -> Result<Self, RunFileError> {
         let path = run.run().folder().confirmed();
         let fail = |message: String| RunFileError::new(&path, RunFileProblem::List(message));
         let json = std::fs::read(&path).map_err(|error| match error.kind() {
@@ -152,13 +145,13 @@ impl Confirmation {
     }
 }
 
-fn check<S: Scene>(run: &RunOf<'_, S>, scene: &S, solutions: &[Solution]) -> Result<Vec<Checked>, Error> {
+fn check(run: &RunReader<'_>, scene: &Stage, solutions: &[Solution]) -> Result<Vec<Checked>, Error> {
     let samples: Vec<SampleId> = solutions.iter().map(|solution| solution.sample).collect();
     let found = states(run, &samples)?;
-    let check = |(index, stored, _): &(usize, plaus_mcmc::StateOf<S>, bool)| -> Result<Checked, Error> {
+    let check = |(index, stored, _): &(usize, plaus_mcmc::StateOf<Stage>, bool)| -> Result<Checked, Error> {
         let Solution { sample, iteration, log_p } = solutions[*index];
-        let there = State::evaluate(scene, stored.draw.clone(), &mut S::Scratch::default())?;
-        let class = scene.class(&there);
+        let there = State::evaluate(scene, stored.draw.clone(), &mut AnyScratch::default())?;
+        let class = scene.class(there.by_ref());
         let log_p_there = there.log_p().value();
         Ok(Checked {
             chain: sample.chain,
@@ -166,7 +159,7 @@ fn check<S: Scene>(run: &RunOf<'_, S>, scene: &S, solutions: &[Solution]) -> Res
             draw: sample.draw,
             iteration,
             holds: class.is_some(),
-            same: class.is_some() && class == run.scene().class(stored),
+            same: class.is_some() && class == run.scene().class(stored.by_ref()),
             log_p,
             log_p_there: log_p_there.is_finite().then_some(log_p_there),
         })

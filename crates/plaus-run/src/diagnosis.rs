@@ -1,7 +1,7 @@
 //! Whether a run has converged: the diagnostics of every scalar, the variables of the draw first.
 
 use crate::error::RunFileError;
-use crate::read::RunOf;
+use crate::read::RunReader;
 use crate::sample_id::Phase;
 use crate::streamed::Moments;
 use crate::tally::Tally;
@@ -128,7 +128,7 @@ impl Diagnosis {
     ///
     /// # Errors
     /// [`RunFileError`] where the records are damaged.
-    pub fn of<S: Scene>(run: &RunOf<'_, S>, most: Option<u64>) -> Result<Self, RunFileError> {
+    pub fn of(run: &RunReader<'_>, most: Option<u64>) -> Result<Self, RunFileError> {
         let recorded = run.draws(Phase::Sampling);
         let room = (HELD / run.chains().len().max(1) as u64).max(1);
         let stride = recorded.div_ceil(most.map_or(room, |most| most.clamp(1, room))).max(1);
@@ -181,7 +181,7 @@ pub(crate) fn worth_of(chains: &[Vec<f64>], satisfied: &[Vec<bool>]) -> Option<f
 }
 
 /// Solutions that were drawn by themselves in the sampling phase, of all chains, as far as they were recorded.
-fn kept<S: Scene>(run: &RunOf<'_, S>) -> Result<u64, RunFileError> {
+fn kept(run: &RunReader<'_>) -> Result<u64, RunFileError> {
     let chain = |chain| -> Result<u64, RunFileError> {
         let mut kept = 0;
         run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
@@ -194,7 +194,7 @@ fn kept<S: Scene>(run: &RunOf<'_, S>) -> Result<u64, RunFileError> {
 }
 
 /// Per chain, per draw: whether it satisfies the constraint.
-fn satisfied<S: Scene>(run: &RunOf<'_, S>, stride: u64) -> Result<Vec<Vec<bool>>, RunFileError> {
+fn satisfied(run: &RunReader<'_>, stride: u64) -> Result<Vec<Vec<bool>>, RunFileError> {
     let chain = |chain| -> Result<Vec<bool>, RunFileError> {
         let mut column = Vec::new();
         run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
@@ -211,8 +211,8 @@ fn satisfied<S: Scene>(run: &RunOf<'_, S>, stride: u64) -> Result<Vec<Vec<bool>>
 ///
 /// # Errors
 /// [`RunFileError`] where the records are damaged.
-pub fn columns<S: Scene>(
-    run: &RunOf<'_, S>,
+pub fn columns(
+    run: &RunReader<'_>,
     from: usize,
     count: usize,
     stride: u64,
@@ -224,8 +224,8 @@ pub fn columns<S: Scene>(
 type Columns = Vec<Vec<Vec<f64>>>;
 
 /// As [`columns`], with the moments of all draws of each scalar where only some draws are asked for.
-fn streamed<S: Scene>(
-    run: &RunOf<'_, S>,
+fn streamed(
+    run: &RunReader<'_>,
     from: usize,
     count: usize,
     stride: u64,
@@ -237,7 +237,7 @@ fn streamed<S: Scene>(
         run.walk(chain, Phase::Sampling, |stretch| -> Result<(), RunFileError> {
             let times = (stretch.draw + stretch.draws).div_ceil(stride) - stretch.draw.div_ceil(stride);
             if times > 0 || stride > 1 {
-                run.scene().write_scalars(&stretch.entry.state, &mut values);
+                run.scene().write_scalars(stretch.entry.state.by_ref(), &mut values);
                 for (column, &value) in columns.iter_mut().zip(&values[from..]) {
                     column.extend(std::iter::repeat_n(value, times as usize));
                 }

@@ -1,22 +1,23 @@
 //! How the chains of a run are driven: by the scene alone, or under something more that is asked of it.
 
 use crate::error::RunFileError;
-use plaus_mcmc::{Ending, Goal, Mixture, Plan, Pulse, RunError, Sink, Start, Target};
-use plaus_scenes::Scene;
+use crate::{Draw, Outcome};
+use plaus_mcmc::{Ending, Mixture, Plan, Pulse, RunError, Sink, Start};
+use plaus_scenes::Stage;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Where the chains of a scene go on from.
-pub(crate) type Starts<S> = Vec<Start<<S as Target>::Draw, <S as Target>::Outcome>>;
+pub(crate) type Starts = Vec<Start<Draw, Outcome>>;
 
 /// What of a run is not in its scene.
-pub struct Journey<'a, S: Goal> {
+pub struct Journey<'a> {
     /// How long, how often, from which seed.
     pub plan: Plan,
     /// Which of the plan's chains: all, or those of a piece.
     pub chains: Range<u32>,
     /// Where the chains go on from; empty for a new run.
-    pub starts: Starts<S>,
+    pub starts: Starts,
     /// Threads; 0 is one a core.
     pub threads: usize,
     /// What the chains report to, and are stopped by.
@@ -37,11 +38,11 @@ pub trait Drive {
     ///
     /// # Errors
     /// As [`plaus_mcmc::run_some()`].
-    fn drive<S: Scene, K: Sink<S::Draw, S::Outcome, Error = RunFileError>>(
+    fn drive<K: Sink<Draw, Outcome, Error = RunFileError>>(
         &self,
-        scene: &Arc<S>,
-        moves: &Mixture<S>,
-        journey: Journey<'_, S>,
+        scene: &Arc<Stage>,
+        moves: &Mixture<Stage>,
+        journey: Journey<'_>,
         sink: &mut K,
     ) -> Driven;
 }
@@ -55,11 +56,11 @@ impl Drive for Alone {
         None
     }
 
-    fn drive<S: Scene, K: Sink<S::Draw, S::Outcome, Error = RunFileError>>(
+    fn drive<K: Sink<Draw, Outcome, Error = RunFileError>>(
         &self,
-        scene: &Arc<S>,
-        moves: &Mixture<S>,
-        journey: Journey<'_, S>,
+        scene: &Arc<Stage>,
+        moves: &Mixture<Stage>,
+        journey: Journey<'_>,
         sink: &mut K,
     ) -> Driven {
         let Journey { plan, chains, starts, threads, pulse } = journey;

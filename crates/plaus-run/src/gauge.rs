@@ -3,9 +3,10 @@
 
 use crate::error::RunFileError;
 use crate::records::{Blocks, Extent};
+use crate::{Draw, Outcome};
 use plaus_mcmc::diagnose::summarize;
 use plaus_mcmc::{Block, Plan, parallel};
-use plaus_scenes::{Role, Scene};
+use plaus_scenes::{Role, Scene, Stage};
 use std::ops::Range;
 use std::path::Path;
 
@@ -28,8 +29,8 @@ pub struct Mixing {
 }
 
 /// Thinned values of a scene's outcomes, as the chains record them.
-pub(crate) struct Gauge<'a, S: Scene> {
-    scene: &'a S,
+pub(crate) struct Gauge<'a> {
+    scene: &'a Stage,
     /// Names of the outcomes, and their numbers among the scalars.
     outcomes: Vec<(String, usize)>,
     /// Per outcome, per chain: every 2^`shift`-th draw from the `first` on, the first after the warm-up.
@@ -42,9 +43,9 @@ pub(crate) struct Gauge<'a, S: Scene> {
     lowest: u32,
 }
 
-impl<'a, S: Scene> Gauge<'a, S> {
+impl<'a> Gauge<'a> {
     /// Of no draws yet.
-    pub(crate) fn new(scene: &'a S, plan: &Plan, chains: Range<u32>) -> Self {
+    pub(crate) fn new(scene: &'a Stage, plan: &Plan, chains: Range<u32>) -> Self {
         let all = scene.scalars();
         let scalars = vec![0.0; all.len()];
         let outcomes = all.into_iter().enumerate().filter(|(_, scalar)| scalar.role == Role::Outcome);
@@ -60,14 +61,14 @@ impl<'a, S: Scene> Gauge<'a, S> {
         while draws >> self.shift >= MOST as u64 {
             self.shift += 1;
         }
-        for block in Blocks::<S::Draw, S::Outcome>::open(path, extent)? {
+        for block in Blocks::<Draw, Outcome>::open(path, extent)? {
             self.note(extent.chain, &block?);
         }
         Ok(())
     }
 
     /// Takes in a block that a chain recorded.
-    pub(crate) fn note(&mut self, chain: u32, block: &Block<S::Draw, S::Outcome>) {
+    pub(crate) fn note(&mut self, chain: u32, block: &Block<Draw, Outcome>) {
         let (first, shift) = (self.first, self.shift);
         let kept_before = |draw: u64| (draw.saturating_sub(first) + (1 << shift) - 1) >> shift;
         let mut next = block.first_iteration.div_ceil(self.thin);
@@ -77,7 +78,7 @@ impl<'a, S: Scene> Gauge<'a, S> {
             if times == 0 {
                 continue;
             }
-            self.scene.write_scalars(&entry.state, &mut self.scalars);
+            self.scene.write_scalars(entry.state.by_ref(), &mut self.scalars);
             for ((_, number), chains) in self.outcomes.iter().zip(&mut self.values) {
                 chains[(chain - self.lowest) as usize]
                     .extend(std::iter::repeat_n(self.scalars[*number], times as usize));

@@ -1,8 +1,8 @@
 //! Runs on disk: sampled, resumed, read back, diagnosed and exported.
 //!
 //! ```
-//! use plaus_run::{Folder, Phase, Recipe, Run, RunOf, RunVisitor, Sampling, Unwatched};
-//! use plaus_scenes::{Scenario, Scene};
+//! use plaus_run::{Folder, Phase, Recipe, Run, Sampling, Unwatched};
+//! use plaus_scenes::Scenario;
 //! # let place = tempfile::tempdir()?;
 //! # let path = place.path().join("run");
 //!
@@ -14,19 +14,12 @@
 //! plaus_run::sample(&folder, &recipe, Sampling::new(1, &mut Unwatched))?;
 //!
 //! // Read it back, whatever its scene is.
-//! struct Satisfying;
-//! impl RunVisitor for Satisfying {
-//!     type Output = Result<u64, plaus_run::Error>;
-//!     fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-//!         let mut satisfying = 0;
-//!         run.walk(0, Phase::Sampling, |stretch| -> Result<(), plaus_run::Error> {
-//!             satisfying += if stretch.entry.class.is_some() { stretch.draws } else { 0 };
-//!             Ok(())
-//!         })?;
-//!         Ok(satisfying)
-//!     }
-//! }
-//! let satisfying = Run::open(&folder)?.visit(Satisfying)??;
+//! let run = Run::open(&folder)?;
+//! let mut satisfying = 0;
+//! run.reader()?.walk(0, Phase::Sampling, |stretch| -> Result<(), plaus_run::Error> {
+//!     satisfying += if stretch.entry.class.is_some() { stretch.draws } else { 0 };
+//!     Ok(())
+//! })?;
 //! assert!((300..900).contains(&satisfying), "{satisfying}");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -89,7 +82,7 @@ pub use folder::Folder;
 pub use gauge::Mixing;
 pub use manifest::{Manifest, Recipe};
 pub use merge::merge;
-pub use read::{Run, RunOf, RunVisitor};
+pub use read::{Run, RunReader};
 pub use sample::{More, Sampling, resume, resume_by, sample, sample_by, sample_or_go_on, sample_shard};
 pub use sample_id::{Phase, SampleId};
 pub use shard::{Shard, ShardError};
@@ -97,3 +90,11 @@ pub use solutions::Solution;
 pub use tally::Tally;
 pub use watch::{Unwatched, Watch};
 pub use way::Way;
+
+use plaus_mcmc::Target;
+use plaus_scenes::Stage;
+
+/// What runs hold draws of.
+pub type Draw = <Stage as Target>::Draw;
+/// What runs hold outcomes of.
+pub type Outcome = <Stage as Target>::Outcome;

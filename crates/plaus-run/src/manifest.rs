@@ -7,7 +7,7 @@ use crate::shard::Shard;
 use crate::way::{Way, is_independent, moves_of};
 use plaus_mcmc::{Mixture, Plan};
 use plaus_scenes::files::{Assets, hash_of};
-use plaus_scenes::{Role, Rules, Scenario, Scene};
+use plaus_scenes::{Role, Rules, Scenario, Scene, Stage};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -131,7 +131,7 @@ impl Recipe {
     ///
     /// # Errors
     /// [`Error`] where the weights of its moves make no mixture.
-    pub fn manifest<S: Scene>(&self, scene: &S) -> Result<Manifest, Error> {
+    pub fn manifest(&self, scene: &Stage) -> Result<Manifest, Error> {
         let rules = &self.scenario.sampler.rules;
         let way = Way::said(&self.scenario);
         let effective = self.scenario.to_toml();
@@ -205,7 +205,7 @@ fn draft(folder: &Folder) -> std::path::PathBuf {
 }
 
 /// The scalars of a scene, as a manifest names them.
-pub(crate) fn stored_scalars<S: Scene>(scene: &S) -> Vec<StoredScalar> {
+pub(crate) fn stored_scalars(scene: &Stage) -> Vec<StoredScalar> {
     let role = |role| match role {
         Role::Draw => "draw",
         Role::Outcome => "outcome",
@@ -334,7 +334,7 @@ impl Manifest {
     ///
     /// # Errors
     /// [`Error`] where the stored scenario cannot be read, or its weights make no mixture.
-    pub fn mixture<S: Scene>(&self, scene: &S) -> Result<Mixture<S>, Error> {
+    pub fn mixture(&self, scene: &Stage) -> Result<Mixture<Stage>, Error> {
         Ok(moves_of(scene, &self.scenario()?.sampler.rules, self.way.as_ref())?)
     }
 
@@ -342,7 +342,7 @@ impl Manifest {
     ///
     /// # Errors
     /// [`Error`] where the weights of its moves make no mixture.
-    pub(crate) fn made<S: Scene>(self, way: Way, scene: &S, rules: &Rules) -> Result<Self, Error> {
+    pub(crate) fn made(self, way: Way, scene: &Stage, rules: &Rules) -> Result<Self, Error> {
         let way = Some(way);
         let moves = moves_of(scene, rules, way.as_ref())?.names();
         let exact = rules.is_exact() || is_independent(way.as_ref());

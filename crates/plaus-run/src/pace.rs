@@ -1,9 +1,8 @@
 //! How fast a run's chains are on this machine: a folder knows no clock.
 
 use crate::error::Error;
-use crate::read::RunOf;
+use crate::read::RunReader;
 use plaus_mcmc::{Block, Control, Distinct, Plan, Progress, Pulse, Sink, Snapshot, Start, run_some};
-use plaus_scenes::Scene;
 
 /// Forgets what it is given.
 struct Nowhere;
@@ -23,7 +22,7 @@ impl<D, O> Sink<D, O> for Nowhere {
 ///
 /// # Errors
 /// [`Error`] where an iteration fails, or the run has a requirement that its folder does not hold.
-pub fn pace<S: Scene>(run: &RunOf<'_, S>, pulse: &Pulse) -> Result<Option<u64>, Error> {
+pub fn pace(run: &RunReader<'_>, pulse: &Pulse) -> Result<Option<u64>, Error> {
     let manifest = run.run().manifest();
     manifest.judges_alone()?;
     let first = run.chains().start;

@@ -6,8 +6,9 @@ use crate::folder::Folder;
 use crate::manifest::{Manifest, stored_scalars};
 use crate::records::{self, Blocks, Extent};
 use crate::sample_id::{Phase, SampleId};
-use plaus_mcmc::{Entry, Snapshot, Target, parallel};
-use plaus_scenes::{Scenario, Scene, Visitor};
+use crate::{Draw, Outcome};
+use plaus_mcmc::{Entry, Snapshot, parallel};
+use plaus_scenes::{Scenario, Stage};
 use std::ops::Range;
 
 /// A run that was found on the disk.
@@ -19,27 +20,19 @@ pub struct Run {
     salvage: bool,
 }
 
-/// Something to do with a run whose scene is known only from its manifest.
-pub trait RunVisitor {
-    /// What comes of it.
-    type Output;
-    /// Does it.
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output;
-}
-
-/// A run of a known scene.
-pub struct RunOf<'a, S: Scene> {
+/// A run with its scene, ready to be read.
+pub struct RunReader<'a> {
     run: &'a Run,
-    scene: S,
-    chains: Vec<ChainOf<S>>,
+    scene: Stage,
+    chains: Vec<ChainOf>,
 }
 
 /// What is known of a chain without reading its records.
-struct ChainOf<S: Target> {
+struct ChainOf {
     extent: Extent,
     /// Bytes of its records behind what can be read.
     lost: u64,
-    snapshot: Option<Snapshot<S::Draw, S::Outcome>>,
+    snapshot: Option<Snapshot<Draw, Outcome>>,
 }
 
 /// Consecutive draws of one phase at the same state.
@@ -55,8 +48,8 @@ pub struct Stretch<'a, D, O> {
     pub entry: &'a Entry<D, O>,
 }
 
-/// A stretch of the draws of a scene.
-pub type StretchOf<'a, S> = Stretch<'a, <S as Target>::Draw, <S as Target>::Outcome>;
+/// A stretch of a run's draws.
+pub type StretchOf<'a> = Stretch<'a, Draw, Outcome>;
 
 impl Run {
     /// Opens a run.
@@ -93,32 +86,25 @@ impl Run {
         &self.scenario
     }
 
-    /// Hands the run, with its scene, to `visitor`.
+    /// The run with its scene, ready to be read.
     ///
     /// # Errors
     /// [`Error`] where the scene cannot be built, or is not the one of the manifest, or a checkpoint is damaged.
-    pub fn visit<V: RunVisitor>(&self, visitor: V) -> Result<V::Output, Error> {
-        struct Build<'a, V>(&'a Run, V);
-        impl<V: RunVisitor> Visitor for Build<'_, V> {
-            type Output = Result<V::Output, Error>;
-            fn visit<S: Scene>(self, scene: S) -> Self::Output {
-                Ok(self.1.visit(RunOf::new(self.0, scene)?))
-            }
-        }
-        self.scenario.visit(Build(self, visitor))?
+    pub fn reader(&self) -> Result<RunReader<'_>, Error> {
+        RunReader::new(self, self.scenario.stage()?)
     }
 }
 
-impl<'a, S: Scene> RunOf<'a, S> {
-    fn new(run: &'a Run, scene: S) -> Result<Self, Error> {
+impl<'a> RunReader<'a> {
+    fn new(run: &'a Run, scene: Stage) -> Result<Self, Error> {
         if stored_scalars(&scene) != run.manifest.scalars {
             let message = "the scene's scalars are not those of the manifest".to_owned();
             return Err(RunFileError::new(run.folder.manifest(), RunFileProblem::Differs(message)).into());
         }
         let open = if run.salvage { ChainOf::salvage } else { ChainOf::open };
-        let chains: Vec<ChainOf<S>> =
+        let chains: Vec<ChainOf> =
             run.manifest.chains().map(|chain| open(run, chain)).collect::<Result<_, RunFileError>>()?;
-        let end = |chain: &ChainOf<S>| chain.snapshot.as_ref().map(|snapshot| snapshot.end_iteration);
+        let end = |chain: &ChainOf| chain.snapshot.as_ref().map(|snapshot| snapshot.end_iteration);
         if let Some(newest) = chains.iter().filter_map(end).max() {
             for (chain, _) in run.manifest.chains().zip(&chains).filter(|(_, chain)| chain.snapshot.is_none()) {
                 // One that is about to take its place is there in a run that was killed as its checkpoints were
@@ -147,7 +133,7 @@ impl<'a, S: Scene> RunOf<'a, S> {
 
     /// The scene.
     #[must_use]
-    pub fn scene(&self) -> &S {
+    pub fn scene(&self) -> &Stage {
         &self.scene
     }
 
@@ -166,13 +152,13 @@ impl<'a, S: Scene> RunOf<'a, S> {
         parallel::try_map(chains.len(), |k| job(chains.start + k as u32))
     }
 
-    fn chain(&self, chain: u32) -> Option<&ChainOf<S>> {
+    fn chain(&self, chain: u32) -> Option<&ChainOf> {
         self.chains.get(chain.checked_sub(self.chains().start)? as usize)
     }
 
     /// A chain as of its checkpoint; `None` where there is none yet, or the run is read for salvage.
     #[must_use]
-    pub fn snapshot(&self, chain: u32) -> Option<&Snapshot<S::Draw, S::Outcome>> {
+    pub fn snapshot(&self, chain: u32) -> Option<&Snapshot<Draw, Outcome>> {
         self.chain(chain)?.snapshot.as_ref()
     }
 
@@ -217,7 +203,7 @@ impl<'a, S: Scene> RunOf<'a, S> {
     ///
     /// # Errors
     /// [`RunFileError`] where the records cannot be opened.
-    pub fn blocks(&self, chain: u32) -> Result<Blocks<S::Draw, S::Outcome>, RunFileError> {
+    pub fn blocks(&self, chain: u32) -> Result<Blocks<Draw, Outcome>, RunFileError> {
         let extent = self.chain(chain).map(|chain| chain.extent);
         let missing = || {
             let Range { start, end } = self.chains();
@@ -235,7 +221,7 @@ impl<'a, S: Scene> RunOf<'a, S> {
         &self,
         chain: u32,
         phase: Phase,
-        mut look: impl FnMut(StretchOf<'_, S>) -> Result<(), E>,
+        mut look: impl FnMut(StretchOf<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
         let mut failed = None;
         self.walk_until(chain, phase, &mut |stretch| {
@@ -250,7 +236,7 @@ impl<'a, S: Scene> RunOf<'a, S> {
         &self,
         chain: u32,
         phase: Phase,
-        look: &mut dyn FnMut(StretchOf<'_, S>) -> bool,
+        look: &mut dyn FnMut(StretchOf<'_>) -> bool,
     ) -> Result<(), RunFileError> {
         let range = self.range(phase);
         if range.is_empty() {
@@ -280,7 +266,7 @@ impl<'a, S: Scene> RunOf<'a, S> {
     ///
     /// # Errors
     /// [`RunFileProblem::NoSample`] where there is no such draw, or [`RunFileError`] where the records are damaged.
-    pub fn sample(&self, sample: SampleId) -> Result<Entry<S::Draw, S::Outcome>, RunFileError> {
+    pub fn sample(&self, sample: SampleId) -> Result<Entry<Draw, Outcome>, RunFileError> {
         let SampleId { chain, phase, draw } = sample;
         let blocks = self.blocks(chain)?;
         let draws = self.draws(phase);
@@ -306,7 +292,7 @@ impl<'a, S: Scene> RunOf<'a, S> {
     }
 }
 
-impl<S: Scene> ChainOf<S> {
+impl ChainOf {
     fn open(run: &Run, chain: u32) -> Result<Self, RunFileError> {
         let (id, thin) = (run.manifest.run_id(), run.manifest.plan.thin);
         let checkpoint = Checkpoint::read(&run.folder.checkpoint(chain), id, chain)?;
@@ -324,7 +310,7 @@ impl<S: Scene> ChainOf<S> {
         let bytes = whole;
         let mut extent = Extent { run: id, chain, thin, bytes, end_iteration: plan.end() };
         let (bytes, end_iteration) =
-            if bytes == 0 { (0, 0) } else { Blocks::<S::Draw, S::Outcome>::open(&path, extent)?.intact() };
+            if bytes == 0 { (0, 0) } else { Blocks::<Draw, Outcome>::open(&path, extent)?.intact() };
         extent = Extent { bytes, end_iteration, ..extent };
         Ok(Self { extent, lost: whole - bytes, snapshot: None })
     }

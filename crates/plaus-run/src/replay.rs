@@ -1,10 +1,10 @@
 //! An animation rebuilt from a stored draw.
 
 use crate::error::{Error, RunFileError, RunFileProblem};
-use crate::read::RunOf;
+use crate::read::RunReader;
 use crate::sample_id::SampleId;
-use plaus_mcmc::{State, StateOf, parallel};
-use plaus_scenes::{AccuracyPreset, Animation, Scene, Until};
+use plaus_mcmc::{Goal, State, StateOf, parallel};
+use plaus_scenes::{AccuracyPreset, Animation, AnyScratch, Scene, Stage, Until};
 use serde::Serialize;
 
 /// A recorded draw, simulated again.
@@ -46,7 +46,7 @@ pub struct Recorded {
 ///
 /// # Errors
 /// [`Error`] where there is no such draw, or this program makes something else of it than the one that sampled it.
-pub fn replay<S: Scene>(run: &RunOf<'_, S>, sample: SampleId) -> Result<Replay, Error> {
+pub fn replay(run: &RunReader<'_>, sample: SampleId) -> Result<Replay, Error> {
     let entry = run.sample(sample)?;
     rebuild(run, sample, &entry.state, entry.class.is_some(), Until::Rest)
 }
@@ -56,19 +56,19 @@ pub fn replay<S: Scene>(run: &RunOf<'_, S>, sample: SampleId) -> Result<Replay, 
 ///
 /// # Errors
 /// As [`replay`], and where the scene has no accuracy to choose.
-pub fn replay_at<S: Scene>(run: &RunOf<'_, S>, sample: SampleId, accuracy: AccuracyPreset) -> Result<Replay, Error> {
+pub fn replay_at(run: &RunReader<'_>, sample: SampleId, accuracy: AccuracyPreset) -> Result<Replay, Error> {
     let entry = run.sample(sample)?;
     run.run().manifest().judges_alone()?;
     same(run, sample, &entry.state)?;
     let scene = at_accuracy(run.scene(), run.run().scenario().world.name(), accuracy)?;
-    let state = State::evaluate(&scene, entry.state.draw.clone(), &mut S::Scratch::default())?;
-    let satisfied = scene.class(&state).is_some();
+    let state = State::evaluate(&scene, entry.state.draw.clone(), &mut AnyScratch::default())?;
+    let satisfied = scene.class(state.by_ref()).is_some();
     let recorded = Recorded { accuracy, log_p: entry.state.log_p().value(), satisfied: entry.class.is_some() };
     Ok(Replay { recorded: Some(recorded), ..shown(run, &scene, (sample, satisfied), &state, Until::Rest)? })
 }
 
 /// A scene at another accuracy, or why there is none.
-pub(crate) fn at_accuracy<S: Scene>(scene: &S, name: &str, accuracy: AccuracyPreset) -> Result<S, Error> {
+pub(crate) fn at_accuracy(scene: &Stage, name: &str, accuracy: AccuracyPreset) -> Result<Stage, Error> {
     scene.at_accuracy(accuracy)?.ok_or_else(|| {
         Error::Request(format!("{name} moves in closed form, which is exact at any accuracy: there is none to choose"))
     })
@@ -79,8 +79,8 @@ pub(crate) fn at_accuracy<S: Scene>(scene: &S, name: &str, accuracy: AccuracyPre
 ///
 /// # Errors
 /// As [`replay`].
-pub fn replay_each<S: Scene, T: Send>(
-    run: &RunOf<'_, S>,
+pub fn replay_each<T: Send>(
+    run: &RunReader<'_>,
     samples: &[SampleId],
     make: impl Fn(Replay) -> T + Sync,
 ) -> Result<Vec<T>, Error> {
@@ -91,8 +91,8 @@ pub fn replay_each<S: Scene, T: Send>(
 ///
 /// # Errors
 /// As [`replay`].
-pub fn replay_each_until<S: Scene, T: Send>(
-    run: &RunOf<'_, S>,
+pub fn replay_each_until<T: Send>(
+    run: &RunReader<'_>,
     samples: &[SampleId],
     until: Until,
     make: impl Fn(Replay) -> T + Sync,
@@ -105,12 +105,12 @@ pub fn replay_each_until<S: Scene, T: Send>(
 }
 
 /// A recorded state with its place in a list, and whether it satisfies the constraint.
-pub(crate) type Found<S> = (usize, StateOf<S>, bool);
+pub(crate) type Found = (usize, StateOf<Stage>, bool);
 
 /// The recorded states of many draws, in their order, each chain's records being read once.
-pub(crate) fn states<S: Scene>(run: &RunOf<'_, S>, samples: &[SampleId]) -> Result<Vec<Found<S>>, Error> {
+pub(crate) fn states(run: &RunReader<'_>, samples: &[SampleId]) -> Result<Vec<Found>, Error> {
     let order = in_order(samples);
-    let mut states: Vec<Option<Found<S>>> = samples.iter().map(|_| None).collect();
+    let mut states: Vec<Option<Found>> = samples.iter().map(|_| None).collect();
     let part = |index: usize| (samples[index].chain, samples[index].phase);
     for wanted in order.chunk_by(|&a, &b| part(a) == part(b)) {
         let mut wanted = wanted.iter().copied().peekable();
@@ -136,10 +136,10 @@ fn in_order(samples: &[SampleId]) -> Vec<usize> {
     order
 }
 
-fn rebuild<S: Scene>(
-    run: &RunOf<'_, S>,
+fn rebuild(
+    run: &RunReader<'_>,
     sample: SampleId,
-    stored: &StateOf<S>,
+    stored: &StateOf<Stage>,
     satisfied: bool,
     until: Until,
 ) -> Result<Replay, Error> {
@@ -148,7 +148,7 @@ fn rebuild<S: Scene>(
 }
 
 /// The state evaluated again, which must have the stored bits.
-fn same<S: Scene>(run: &RunOf<'_, S>, sample: SampleId, stored: &StateOf<S>) -> Result<StateOf<S>, Error> {
+fn same(run: &RunReader<'_>, sample: SampleId, stored: &StateOf<Stage>) -> Result<StateOf<Stage>, Error> {
     evaluate_again(run.scene(), stored, run.run().manifest().requirement.is_some()).map_err(|problem| match problem {
         Ok(problem) => RunFileError::new(run.run().folder().records(sample.chain), problem).into(),
         Err(error) => error,
@@ -156,16 +156,16 @@ fn same<S: Scene>(run: &RunOf<'_, S>, sample: SampleId, stored: &StateOf<S>) -> 
 }
 
 /// A state as `scene` shows it.
-fn shown<S: Scene>(
-    run: &RunOf<'_, S>,
-    scene: &S,
+fn shown(
+    run: &RunReader<'_>,
+    scene: &Stage,
     (sample, satisfied): (SampleId, bool),
-    state: &StateOf<S>,
+    state: &StateOf<Stage>,
     until: Until,
 ) -> Result<Replay, Error> {
     let names = scene.scalars().into_iter().map(|scalar| scalar.name);
     let mut values = vec![0.0; names.len()];
-    scene.write_scalars(state, &mut values);
+    scene.write_scalars(state.by_ref(), &mut values);
     Ok(Replay {
         sample,
         iteration: run.iteration_of(sample.phase, sample.draw),
@@ -182,17 +182,17 @@ fn shown<S: Scene>(
 /// Evaluates the draw of a stored state, which must give that state's bits: otherwise other code made it. Where the run
 /// has a requirement, the log constraint
 /// holds a factor that is not known here, and is taken as it was stored.
-pub(crate) fn evaluate_again<S: Scene>(
-    scene: &S,
-    stored: &StateOf<S>,
+pub(crate) fn evaluate_again(
+    scene: &Stage,
+    stored: &StateOf<Stage>,
     required: bool,
-) -> Result<StateOf<S>, Result<RunFileProblem, Error>> {
+) -> Result<StateOf<Stage>, Result<RunFileProblem, Error>> {
     let mut again =
-        State::evaluate(scene, stored.draw.clone(), &mut S::Scratch::default()).map_err(|error| Err(error.into()))?;
+        State::evaluate(scene, stored.draw.clone(), &mut AnyScratch::default()).map_err(|error| Err(error.into()))?;
     if required {
         again.log_constraint = stored.log_constraint;
     }
-    let bits = |state: &StateOf<S>| (state.log_prior.value().to_bits(), state.log_constraint.value().to_bits());
+    let bits = |state: &StateOf<Stage>| (state.log_prior.value().to_bits(), state.log_constraint.value().to_bits());
     if bits(&again) == bits(stored) && again.outcome == stored.outcome {
         return Ok(again);
     }

@@ -16,9 +16,10 @@ use crate::trail;
 use crate::trial;
 use crate::watch::Watch;
 use crate::way::Way;
+use crate::{Draw, Outcome};
 use plaus_mcmc::{Distinct, Ending, RunError, Start, parallel};
 use plaus_scenes::scenario::Method;
-use plaus_scenes::{Scenario, Scene, Visitor};
+use plaus_scenes::{Scenario, Stage};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
 use std::sync::Arc;
@@ -90,20 +91,13 @@ fn begin<D: Drive>(
     sampling: Sampling<'_>,
     drive: &D,
 ) -> Result<Ending, Error> {
-    struct Begin<'a, 'b, D>(&'a Folder, &'a Recipe, Option<Shard>, Sampling<'b>, &'a D);
-    impl<D: Drive> Visitor for Begin<'_, '_, D> {
-        type Output = Result<Ending, Error>;
-        fn visit<S: Scene>(self, scene: S) -> Self::Output {
-            let Self(folder, recipe, shard, sampling, drive) = self;
-            let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
-            let manifest = settled(manifest, recipe, &scene, &sampling)?;
-            let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
-            folder.create(sampling.disk, &json, &manifest.contents)?;
-            let _claim = folder.claim()?;
-            go_on(folder, &manifest, &Arc::new(scene), Vec::new(), sampling, drive)
-        }
-    }
-    recipe.scenario.visit(Begin(folder, recipe, shard, sampling, drive))?
+    let scene = recipe.scenario.stage()?;
+    let manifest = Manifest { requirement: drive.requirement(), ..piece(recipe, &scene, shard)? };
+    let manifest = settled(manifest, recipe, &scene, &sampling)?;
+    let json = manifest.to_json().map_err(|problem| RunFileError::new(folder.path(), problem))?;
+    folder.create(sampling.disk, &json, &manifest.contents)?;
+    let _claim = folder.claim()?;
+    go_on(folder, &manifest, &Arc::new(scene), Vec::new(), sampling, drive)
 }
 
 /// Samples a new run, or a piece of one, into `folder`; where that holds this very run already, goes on with it. So a
@@ -117,13 +111,6 @@ pub fn sample_or_go_on(
     shard: Option<Shard>,
     mut sampling: Sampling<'_>,
 ) -> Result<Ending, Error> {
-    struct Expected<'a>(&'a Recipe, Option<Shard>);
-    impl Visitor for Expected<'_> {
-        type Output = Result<Manifest, Error>;
-        fn visit<S: Scene>(self, scene: S) -> Self::Output {
-            piece(self.0, &scene, self.1)
-        }
-    }
     if !folder.manifest().exists() {
         let Sampling { threads, disk, ref mut watch } = sampling;
         let begun = sample_shard(folder, recipe, shard, Sampling { threads, disk, watch: &mut **watch });
@@ -138,7 +125,7 @@ pub fn sample_or_go_on(
         }
     }
     let found = Manifest::read(folder)?;
-    let mut expected = recipe.scenario.visit(Expected(recipe, shard))??;
+    let mut expected = piece(recipe, &recipe.scenario.stage()?, shard)?;
     if recipe.scenario.method() == Method::Auto {
         // A trial finds the same each time.
         (expected.way, expected.moves, expected.exact) = (found.way.clone(), found.moves.clone(), found.exact);
@@ -150,12 +137,7 @@ pub fn sample_or_go_on(
 }
 
 /// The manifest of a run of which it is settled how its draws are made.
-fn settled<S: Scene>(
-    manifest: Manifest,
-    recipe: &Recipe,
-    scene: &S,
-    sampling: &Sampling<'_>,
-) -> Result<Manifest, Error> {
+fn settled(manifest: Manifest, recipe: &Recipe, scene: &Stage, sampling: &Sampling<'_>) -> Result<Manifest, Error> {
     if manifest.way.is_some() || recipe.scenario.method() != Method::Auto {
         return Ok(manifest);
     }
@@ -167,7 +149,7 @@ fn settled<S: Scene>(
     manifest.made(way, scene, &recipe.scenario.sampler.rules)
 }
 
-fn piece<S: Scene>(recipe: &Recipe, scene: &S, shard: Option<Shard>) -> Result<Manifest, Error> {
+fn piece(recipe: &Recipe, scene: &Stage, shard: Option<Shard>) -> Result<Manifest, Error> {
     let manifest = Manifest { shard, ..recipe.manifest(scene)? };
     if let Some(shard) = shard {
         shard.range(manifest.plan.chains).map_err(|error| Error::Request(error.to_string()))?;
@@ -198,15 +180,6 @@ pub fn resume(folder: &Folder, more: More, sampling: Sampling<'_>) -> Result<End
 /// # Errors
 /// As [`resume`], and where `drive` is another one than the run's.
 pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, drive: &D) -> Result<Ending, Error> {
-    struct GoOn<'a, 'b, D>(&'a Folder, Manifest, Sampling<'b>, &'a D);
-    impl<D: Drive> Visitor for GoOn<'_, '_, D> {
-        type Output = Result<Ending, Error>;
-        fn visit<S: Scene>(self, scene: S) -> Self::Output {
-            let Self(folder, manifest, sampling, drive) = self;
-            let starts = restore(folder, &manifest, &scene, &sampling)?;
-            go_on(folder, &manifest, &Arc::new(scene), starts, sampling, drive)
-        }
-    }
     Manifest::read(folder)?; // what is no run gets no lock file
     let _claim = loop {
         match folder.claim() {
@@ -230,7 +203,9 @@ pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, 
     if extend(&mut manifest, &scenario, more)? {
         manifest.replace(folder, sampling.disk)?;
     }
-    scenario.visit(GoOn(folder, manifest, sampling, drive))?
+    let scene = scenario.stage()?;
+    let starts = restore(folder, &manifest, &scene, &sampling)?;
+    go_on(folder, &manifest, &Arc::new(scene), starts, sampling, drive)
 }
 
 /// Writes `more` into the plan; says whether that changes it.
@@ -270,19 +245,14 @@ fn extend(manifest: &mut Manifest, scenario: &Scenario, more: More) -> Result<bo
 }
 
 /// The states to go on from. Cuts off what was written after the last checkpoint.
-fn restore<S: Scene>(
-    folder: &Folder,
-    manifest: &Manifest,
-    scene: &S,
-    sampling: &Sampling<'_>,
-) -> Result<Starts<S>, Error> {
+fn restore(folder: &Folder, manifest: &Manifest, scene: &Stage, sampling: &Sampling<'_>) -> Result<Starts, Error> {
     let disk = sampling.disk;
     if stored_scalars(scene) != manifest.scalars {
         let message = "the scene's scalars are not those of the manifest".to_owned();
         return Err(RunFileError::new(folder.manifest(), RunFileProblem::Differs(message)).into());
     }
     let (run, chains) = (manifest.run_id(), manifest.chains());
-    let checkpoints = checkpoint::settle::<S::Draw, S::Outcome>(folder, disk, run, chains.clone())?;
+    let checkpoints = checkpoint::settle::<Draw, Outcome>(folder, disk, run, chains.clone())?;
     if checkpoints.is_empty() {
         chains.into_iter().try_for_each(|chain| cut(&folder.records(chain), disk, 0))?;
     }
@@ -297,13 +267,13 @@ fn restore<S: Scene>(
     restored.into_iter().flatten().collect()
 }
 
-fn restore_chain<S: Scene>(
+fn restore_chain(
     folder: &Folder,
     manifest: &Manifest,
-    scene: &S,
+    scene: &Stage,
     disk: &dyn Disk,
-    checkpoint: Checkpoint<S::Draw, S::Outcome>,
-) -> Result<Start<S::Draw, S::Outcome>, Error> {
+    checkpoint: Checkpoint<Draw, Outcome>,
+) -> Result<Start<Draw, Outcome>, Error> {
     let Checkpoint { chain, records, snapshot, .. } = checkpoint;
     let states = snapshot.replicas.iter().flat_map(|replicas| &replicas.states).chain([&snapshot.state]);
     for state in states {
@@ -315,7 +285,7 @@ fn restore_chain<S: Scene>(
     let path = folder.records(chain);
     let end_iteration = snapshot.end_iteration;
     let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes: records, end_iteration };
-    let distinct: Distinct = records::distinct::<S::Draw, S::Outcome>(&path, extent, manifest.plan.counts_from())?;
+    let distinct: Distinct = records::distinct::<Draw, Outcome>(&path, extent, manifest.plan.counts_from())?;
     if snapshot.counts.len() != manifest.moves.len() {
         let message = format!("{} moves are counted, the scene has {}", snapshot.counts.len(), manifest.moves.len());
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
@@ -342,15 +312,15 @@ fn cut(path: &Path, disk: &dyn Disk, bytes: u64) -> Result<(), RunFileError> {
     Ok(())
 }
 
-fn go_on<S: Scene, D: Drive>(
+fn go_on<D: Drive>(
     folder: &Folder,
     manifest: &Manifest,
-    scene: &Arc<S>,
-    starts: Starts<S>,
+    scene: &Arc<Stage>,
+    starts: Starts,
     sampling: Sampling<'_>,
     drive: &D,
 ) -> Result<Ending, Error> {
-    let moves = manifest.mixture(&**scene)?;
+    let moves = manifest.mixture(scene)?;
     let done = starts.first().map_or(0, |start| start.snapshot.end_iteration);
     let lengths =
         manifest.chains().map(|chain| records::length(&folder.records(chain))).collect::<Result<Vec<_>, _>>()?;
@@ -359,7 +329,7 @@ fn go_on<S: Scene, D: Drive>(
     watch.begin(manifest, done);
     let (plan, pulse, run) = (manifest.plan, watch.pulse(), manifest.run_id());
     let looks = watch.looks_at_mixing();
-    let gauge = if looks { Some(gauge(folder, &**scene, manifest, &lengths, done)?) } else { None };
+    let gauge = if looks { Some(gauge(folder, scene, manifest, &lengths, done)?) } else { None };
     let chains = manifest.chains();
     let place = Place { folder, disk, run, pool, first: chains.start };
     let hunt = plan.solutions.filter(|_| manifest.shard.is_some());
@@ -379,13 +349,13 @@ fn go_on<S: Scene, D: Drive>(
 }
 
 /// A gauge that has seen what is recorded already.
-fn gauge<'a, S: Scene>(
+fn gauge<'a>(
     folder: &Folder,
-    scene: &'a S,
+    scene: &'a Stage,
     manifest: &Manifest,
     lengths: &[u64],
     end_iteration: u64,
-) -> Result<Gauge<'a, S>, RunFileError> {
+) -> Result<Gauge<'a>, RunFileError> {
     let mut gauge = Gauge::new(scene, &manifest.plan, manifest.chains());
     for (chain, &bytes) in manifest.chains().zip(lengths).filter(|_| end_iteration > manifest.plan.warmup) {
         let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes, end_iteration };

@@ -9,8 +9,8 @@ use crate::records;
 use crate::siblings::Siblings;
 use crate::trail;
 use crate::watch::Watch;
-use plaus_mcmc::{Block, Control, FirstOfClass, Progress, Sink, Snapshot, Target, parallel};
-use plaus_scenes::Scene;
+use crate::{Draw, Outcome};
+use plaus_mcmc::{Block, Control, FirstOfClass, Progress, Sink, Snapshot, parallel};
 use rayon::ThreadPool;
 
 /// Where a run is written, and by whom.
@@ -33,21 +33,18 @@ impl Hunt {
     }
 }
 
-type BlockOf<S> = Block<<S as Target>::Draw, <S as Target>::Outcome>;
-type SnapshotOf<S> = Snapshot<<S as Target>::Draw, <S as Target>::Outcome>;
-
 /// The sink that writes a run folder.
-pub(crate) struct FolderSink<'a, S: Scene> {
+pub(crate) struct FolderSink<'a> {
     place: Place<'a>,
     watch: &'a mut dyn Watch,
     /// Where somebody looks at it.
-    gauge: Option<Gauge<'a, S>>,
+    gauge: Option<Gauge<'a>>,
     /// Bytes in each chain's records.
     lengths: Vec<u64>,
     /// Blocks of this round, to be written at its end.
-    blocks: Vec<(u32, BlockOf<S>)>,
+    blocks: Vec<(u32, Block<Draw, Outcome>)>,
     /// Each chain as of the last round.
-    snapshots: Vec<SnapshotOf<S>>,
+    snapshots: Vec<Snapshot<Draw, Outcome>>,
     /// Iterations the last checkpoint covers.
     safe: u64,
     /// Iterations that were done before this round.
@@ -63,12 +60,12 @@ pub(crate) struct Hunt {
     pub(crate) over: bool,
 }
 
-impl<'a, S: Scene> FolderSink<'a, S> {
+impl<'a> FolderSink<'a> {
     /// A sink for chains that have `lengths` bytes of records each, of `safe` iterations.
     pub(crate) fn new(
         place: Place<'a>,
         watch: &'a mut dyn Watch,
-        gauge: Option<Gauge<'a, S>>,
+        gauge: Option<Gauge<'a>>,
         lengths: Vec<u64>,
         safe: u64,
         hunt: Option<Hunt>,
@@ -109,7 +106,7 @@ impl<'a, S: Scene> FolderSink<'a, S> {
     }
 
     /// All chains as of the last round.
-    fn checkpoints(&self) -> Vec<Checkpoint<S::Draw, S::Outcome>> {
+    fn checkpoints(&self) -> Vec<Checkpoint<Draw, Outcome>> {
         let run = self.place.run;
         let chains = (self.place.first..).zip(&self.lengths).zip(self.snapshots.iter().cloned());
         chains.map(|((chain, &records), snapshot)| Checkpoint { run, chain, records, snapshot }).collect()
@@ -140,10 +137,15 @@ impl<'a, S: Scene> FolderSink<'a, S> {
     }
 }
 
-impl<S: Scene> Sink<S::Draw, S::Outcome> for FolderSink<'_, S> {
+impl Sink<Draw, Outcome> for FolderSink<'_> {
     type Error = RunFileError;
 
-    fn block(&mut self, chain: u32, block: BlockOf<S>, snapshot: &SnapshotOf<S>) -> Result<(), RunFileError> {
+    fn block(
+        &mut self,
+        chain: u32,
+        block: Block<Draw, Outcome>,
+        snapshot: &Snapshot<Draw, Outcome>,
+    ) -> Result<(), RunFileError> {
         match self.snapshots.get_mut((chain - self.place.first) as usize) {
             Some(last) => last.clone_from(snapshot),
             None => self.snapshots.push(snapshot.clone()),

@@ -1,10 +1,9 @@
 //! The distinct satisfying solutions of a run: what a gallery shows, and what `--all-distinct` exports.
 
 use crate::error::RunFileError;
-use crate::read::RunOf;
+use crate::read::RunReader;
 use crate::sample_id::SampleId;
 use plaus_mcmc::SolutionClass;
-use plaus_scenes::Scene;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
@@ -24,7 +23,7 @@ pub struct Solution {
 ///
 /// # Errors
 /// [`RunFileError`] where the records are damaged.
-pub fn distinct<S: Scene>(run: &RunOf<'_, S>) -> Result<Vec<Solution>, RunFileError> {
+pub fn distinct(run: &RunReader<'_>) -> Result<Vec<Solution>, RunFileError> {
     let parts: Vec<BTreeMap<SolutionClass, Solution>> = run.each_chain(|chain| of_chain(run, chain))?;
     Ok(firsts(parts.into_iter().flatten().collect()))
 }
@@ -38,7 +37,7 @@ fn firsts(mut all: Vec<(SolutionClass, Solution)>) -> Vec<Solution> {
     solutions
 }
 
-fn of_chain<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<BTreeMap<SolutionClass, Solution>, RunFileError> {
+fn of_chain(run: &RunReader<'_>, chain: u32) -> Result<BTreeMap<SolutionClass, Solution>, RunFileError> {
     let mut firsts = BTreeMap::new();
     for &phase in run.counted() {
         run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {

@@ -1,10 +1,9 @@
 //! What the records of a run add up to.
 
 use crate::error::RunFileError;
-use crate::read::RunOf;
+use crate::read::RunReader;
 use crate::sample_id::SampleId;
 use plaus_mcmc::{Climb, Distinct, FirstOfClass, Hits, Ladder, MoveCounts, MoveId, Scales};
-use plaus_scenes::Scene;
 use serde::Serialize;
 
 /// What one chain's records add up to.
@@ -48,7 +47,7 @@ pub struct ScaleTally {
     pub accepted: u64,
 }
 
-fn scales<S: Scene>(run: &RunOf<'_, S>, scales: &Scales) -> Vec<ScaleTally> {
+fn scales(run: &RunReader<'_>, scales: &Scales) -> Vec<ScaleTally> {
     // A run that was opened has a scenario that makes a scene, and moves.
     let Ok(moves) = run.run().manifest().mixture(run.scene()) else { return Vec::new() };
     let mut all = Vec::new();
@@ -113,7 +112,7 @@ impl Tally {
     ///
     /// # Errors
     /// [`RunFileError`] where they are damaged.
-    pub fn of<S: Scene>(run: &RunOf<'_, S>) -> Result<Self, RunFileError> {
+    pub fn of(run: &RunReader<'_>) -> Result<Self, RunFileError> {
         let parts: Vec<(ChainTally, Distinct)> = run.each_chain(|chain| tally(run, chain))?;
         let mut firsts: Vec<FirstOfClass> =
             parts.iter().flat_map(|(_, distinct)| distinct.firsts().iter().copied()).collect();
@@ -158,7 +157,7 @@ impl Tally {
 ///
 /// # Errors
 /// [`RunFileError`] where its records are damaged.
-pub(crate) fn firsts<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<Distinct, RunFileError> {
+pub(crate) fn firsts(run: &RunReader<'_>, chain: u32) -> Result<Distinct, RunFileError> {
     let mut distinct = Distinct::default();
     for &phase in run.counted() {
         run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
@@ -171,7 +170,7 @@ pub(crate) fn firsts<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<Distinc
     Ok(distinct)
 }
 
-fn tally<S: Scene>(run: &RunOf<'_, S>, chain: u32) -> Result<(ChainTally, Distinct), RunFileError> {
+fn tally(run: &RunReader<'_>, chain: u32) -> Result<(ChainTally, Distinct), RunFileError> {
     let snapshot = run.snapshot(chain);
     let mut tally = ChainTally {
         chain,

@@ -8,8 +8,8 @@ use crate::error::Error;
 use crate::manifest::Recipe;
 use crate::way::Way;
 use plaus_dist::Seed;
-use plaus_mcmc::{Chain, ChainError, Mixture, Plan, Pulse, Tried, Verdict, parallel, try_draws};
-use plaus_scenes::{Role, Scene};
+use plaus_mcmc::{Chain, ChainError, Goal, Mixture, Plan, Pulse, Tried, Verdict, parallel, try_draws};
+use plaus_scenes::{Role, Scene, Stage};
 
 /// Draws of the prior between two looks at what they come to.
 const AT_A_TIME: u64 = 32;
@@ -37,7 +37,7 @@ const SHARE: f64 = 0.1;
 ///
 /// # Errors
 /// [`Error`] where the model fails, or `pulse` was stopped.
-pub(crate) fn tried<S: Scene>(recipe: &Recipe, scene: &S, pulse: &Pulse) -> Result<Way, Error> {
+pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way, Error> {
     let plan = recipe.plan();
     let total = plan.end().saturating_mul(u64::from(plan.chains));
     let most = if plan.solutions.is_some() { DRAWS_FOR_SOME } else { DRAWS[1] };
@@ -84,7 +84,7 @@ struct Trial {
 
 impl Trial {
     /// Walks chains through a warm-up of `iterations`, and as many that count.
-    fn of<S: Scene>(scene: &S, recipe: &Recipe, iterations: u64, pulse: &Pulse) -> Result<Self, Error> {
+    fn of(scene: &Stage, recipe: &Recipe, iterations: u64, pulse: &Pulse) -> Result<Self, Error> {
         let plan = recipe.plan();
         let moves = scene.moves(&recipe.scenario.sampler.rules)?;
         let course = Course { scene, moves: &moves, plan, iterations, pulse };
@@ -101,9 +101,9 @@ impl Trial {
 }
 
 /// What the chains of a trial share.
-struct Course<'a, S: Scene> {
-    scene: &'a S,
-    moves: &'a Mixture<S>,
+struct Course<'a> {
+    scene: &'a Stage,
+    moves: &'a Mixture<Stage>,
     plan: Plan,
     iterations: u64,
     pulse: &'a Pulse,
@@ -117,7 +117,7 @@ struct Walked {
     simulations: u64,
 }
 
-impl<S: Scene> Course<'_, S> {
+impl Course<'_> {
     fn walk(&self, chain: u32) -> Result<Walked, ChainError> {
         // No run has a seed of 2⁶³ or more, so none has these chains.
         let streams = Seed(!self.plan.seed.0).chain(u64::from(chain));
@@ -140,8 +140,8 @@ impl<S: Scene> Course<'_, S> {
             }
             walked.simulations += u64::from(!matches!(verdict, Verdict::Stayed | Verdict::RejectedByPrior));
             if verdict == Verdict::Accepted || walked.satisfied.is_empty() {
-                self.scene.write_scalars(chain.state(), &mut values);
-                is_hit = self.scene.class(chain.state()).is_some();
+                self.scene.write_scalars(chain.state().by_ref(), &mut values);
+                is_hit = self.scene.class(chain.state().by_ref()).is_some();
             }
             walked.columns.iter_mut().zip(&variables).for_each(|(column, &var)| column.push(values[var]));
             walked.satisfied.push(is_hit);

@@ -2,7 +2,7 @@
 
 use plaus_mcmc::{Independent, Mixture};
 use plaus_scenes::scenario::Method;
-use plaus_scenes::{ConfigError, Rules, Scenario, Scene};
+use plaus_scenes::{ConfigError, Rules, Scenario, Scene, Stage};
 use serde::{Deserialize, Serialize};
 
 /// How draws are made, and why so.
@@ -34,6 +34,6 @@ pub(crate) fn is_independent(way: Option<&Way>) -> bool {
 }
 
 /// The moves of chains that make draws this way.
-pub(crate) fn moves_of<S: Scene>(scene: &S, rules: &Rules, way: Option<&Way>) -> Result<Mixture<S>, ConfigError> {
+pub(crate) fn moves_of(scene: &Stage, rules: &Rules, way: Option<&Way>) -> Result<Mixture<Stage>, ConfigError> {
     if is_independent(way) { Ok(Independent::mixture()) } else { scene.moves(rules) }
 }

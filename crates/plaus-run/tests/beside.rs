@@ -2,7 +2,7 @@
 
 use crate::common::recipe;
 use plaus_run::diagnosis::columns;
-use plaus_run::{Beside, Diagnosis, Folder, Recipe, Run, RunOf, RunVisitor, Sampling, Unwatched, sample};
+use plaus_run::{Beside, Diagnosis, Folder, Recipe, Run, Sampling, Unwatched, sample};
 use plaus_scenes::{Role, Scenario, Scene};
 
 /// A ball that bounces once, where the target can be met by two bands of angles; the second holds about a tenth.
@@ -24,17 +24,13 @@ fn run(seed: u64, keys: &[&str]) -> (tempfile::TempDir, Run) {
 }
 
 /// The angles of all draws, what diagnostics find, and what exact draws say.
-struct Looked;
-
-impl RunVisitor for Looked {
-    type Output = (Vec<f64>, Diagnosis, Option<Beside>);
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        let angle = run.scene().scalars().iter().position(|scalar| scalar.role == Role::Draw).unwrap();
-        let angles = columns(&run, angle, 1, 1).unwrap().concat().concat();
-        let diagnosis = Diagnosis::of(&run, None).unwrap();
-        let beside = Beside::of(&run, &diagnosis).unwrap();
-        (angles, diagnosis, beside)
-    }
+fn looked(run: &Run) -> (Vec<f64>, Diagnosis, Option<Beside>) {
+    let run = run.reader().unwrap();
+    let angle = run.scene().scalars().iter().position(|scalar| scalar.role == Role::Draw).unwrap();
+    let angles = columns(&run, angle, 1, 1).unwrap().concat().concat();
+    let diagnosis = Diagnosis::of(&run, None).unwrap();
+    let beside = Beside::of(&run, &diagnosis).unwrap();
+    (angles, diagnosis, beside)
 }
 
 /// The middle of the widest gap between values.
@@ -47,7 +43,7 @@ fn widest_gap(mut values: Vec<f64>) -> f64 {
 #[test]
 fn a_mode_that_all_chains_missed_is_seen() {
     let (_place, exact) = run(1, &["method=independent", "iterations=40000", "warmup=4000"]);
-    let (angles, _, beside) = exact.visit(Looked).unwrap();
+    let (angles, _, beside) = looked(&exact);
     assert_eq!(beside, None, "exact draws have nothing beside them");
     let gap = widest_gap(angles.clone());
     let above = |angles: &[f64]| angles.iter().filter(|angle| **angle > gap).count() as f64 / angles.len() as f64;
@@ -56,7 +52,7 @@ fn a_mode_that_all_chains_missed_is_seen() {
     let (mut missed, mut lulled, mut seen) = (0, 0, 0);
     for seed in 1..=8 {
         let (_place, run) = run(seed, SMALL_STEPS);
-        let (angles, diagnosis, beside) = run.visit(Looked).unwrap();
+        let (angles, diagnosis, beside) = looked(&run);
         let (found, there) = (beside.unwrap(), above(&angles));
         assert!(found.says_something(), "{found:?}");
         if there == 0.0 || there == 1.0 {
@@ -73,7 +69,7 @@ fn a_mode_that_all_chains_missed_is_seen() {
     assert!(missed >= 2 && lulled >= 2 && seen + 1 >= lulled, "{missed} missed it, {lulled} unsaid, {seen} seen");
     for seed in 1..=8 {
         let (_place, run) = run(seed, &["chains=2", "warmup=1000"]);
-        let (angles, _, beside) = run.visit(Looked).unwrap();
+        let (angles, _, beside) = looked(&run);
         assert!((above(&angles) - share).abs() < 0.1, "the default moves find both");
         assert_eq!(beside.unwrap().missed, None, "seed {seed}");
     }
@@ -83,7 +79,7 @@ fn a_mode_that_all_chains_missed_is_seen() {
 #[test]
 fn what_cannot_be_known_is_not_claimed() {
     let (_place, run) = run(1, &["sigma_d=0.00001", "tolerance=0.00001", "warmup=1000"]);
-    let (_, _, beside) = run.visit(Looked).unwrap();
+    let (_, _, beside) = looked(&run);
     let beside = beside.unwrap();
     assert!(!beside.says_something() && beside.missed.is_none() && beside.draws == 40_000, "{beside:?}");
 }

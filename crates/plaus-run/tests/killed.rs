@@ -2,9 +2,8 @@
 
 use crate::common::{FailingDisk, adapting, bytes_of, recipe, tempered};
 use plaus_run::disk::{Disk, RealDisk};
-use plaus_run::{Error, Folder, More, Recipe, Run, RunOf, RunVisitor, Sampling, Shard, Unwatched};
+use plaus_run::{Error, Folder, More, Recipe, Run, Sampling, Shard, Unwatched};
 use plaus_run::{Watch, resume, sample, sample_shard};
-use plaus_scenes::Scene;
 
 /// Asks for checkpoints only now and then, as the clock would.
 struct Seldom(u32);
@@ -103,18 +102,11 @@ fn a_run_killed_while_it_adapts_loses_nothing_final() {
 #[test]
 fn a_longer_run_keeps_its_scales() {
     use plaus_run::tally::{ScaleTally, Tally};
-    use plaus_run::{Run, RunOf, RunVisitor};
-    struct Scales;
-    impl RunVisitor for Scales {
-        type Output = Vec<Vec<ScaleTally>>;
-        fn visit<S: plaus_scenes::Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-            Tally::of(&run).unwrap().chains.into_iter().map(|chain| chain.scales).collect()
-        }
-    }
     let place = tempfile::tempdir().unwrap();
     let folder = Folder::new(place.path().join("run"));
     let values = || {
-        let chains = Run::open(&folder).unwrap().visit(Scales).unwrap();
+        let tally = Tally::of(&Run::open(&folder).unwrap().reader().unwrap()).unwrap();
+        let chains: Vec<Vec<ScaleTally>> = tally.chains.into_iter().map(|chain| chain.scales).collect();
         let one = |scales: &Vec<ScaleTally>| {
             assert!(scales.len() == 1 && scales[0].frozen && scales[0].kernel == "perturb", "{scales:?}");
             (scales[0].value.unwrap(), scales[0].tried)
@@ -155,14 +147,7 @@ fn a_full_disk_is_named_with_what_is_safe() {
     let disk = FailingDisk::new(20_000, u64::MAX, false);
     let error = sample_on(&disk, &folder, &recipe(None), &mut Unwatched).unwrap_err();
     let Error::DiskFull { safe, .. } = &error else { panic!("{error}") };
-    struct Iterations;
-    impl RunVisitor for Iterations {
-        type Output = u64;
-        fn visit<S: Scene>(self, run: RunOf<'_, S>) -> u64 {
-            run.iterations()
-        }
-    }
-    assert!(*safe > 0 && Run::open(&folder).unwrap().visit(Iterations).unwrap() == *safe, "{safe}");
+    assert!(*safe > 0 && Run::open(&folder).unwrap().reader().unwrap().iterations() == *safe, "{safe}");
     assert!(error.to_string().contains("free some space, then `plaus resume`"), "{error}");
 }
 
@@ -192,7 +177,7 @@ fn a_longer_run_begins_like_the_shorter() {
     sample(&long, &more, Sampling::new(1, &mut Unwatched)).unwrap();
     resume(&short, More { iterations: Some(700), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap();
     assert_eq!(Manifest::read(&short).unwrap().extended_from, [430]);
-    let draws = |folder: &Folder| Run::open(folder).unwrap().visit(crate::common::AllDraws(Phase::Sampling)).unwrap();
+    let draws = |folder: &Folder| crate::common::all_draws(&Run::open(folder).unwrap(), Phase::Sampling);
     assert_eq!(draws(&short), draws(&long));
     let shorter =
         resume(&short, More { iterations: Some(5), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap_err();

@@ -3,8 +3,8 @@
 use crate::common::FailingDisk;
 use plaus_mcmc::{Control, Progress};
 use plaus_run::disk::Disk;
-use plaus_run::{Diagnosis, Folder, Mixing, More, Recipe, Run, RunOf, RunVisitor, Sampling, Watch, resume, sample};
-use plaus_scenes::{Role, Scene};
+use plaus_run::{Diagnosis, Folder, Mixing, More, Recipe, Run, RunReader, Sampling, Watch, resume, sample};
+use plaus_scenes::Role;
 
 /// Asks after each round, and may stop the run.
 #[derive(Default)]
@@ -35,18 +35,13 @@ impl Watch for Curious {
 }
 
 /// The same from the records, of at most so many draws a chain.
-struct OfRecords(u64);
-
-impl RunVisitor for OfRecords {
-    type Output = Mixing;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Mixing {
-        let diagnosis = Diagnosis::of(&run, Some(self.0)).unwrap();
-        let rows = diagnosis.scalars.iter().filter(|row| row.scalar.role == Role::Outcome);
-        let rows: Vec<_> = rows.map(|row| (row.scalar.name.clone(), row.summary.unwrap())).collect();
-        let rhat = rows.iter().map(|(name, row)| (name.clone(), row.rhat.unwrap()));
-        let ess = rows.iter().map(|(name, row)| (name.clone(), row.ess_bulk.min(row.ess_tail)));
-        Mixing { rhat: rhat.max_by(|a, b| a.1.total_cmp(&b.1)), ess: ess.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap() }
-    }
+fn of_records(run: &RunReader<'_>, most: u64) -> Mixing {
+    let diagnosis = Diagnosis::of(run, Some(most)).unwrap();
+    let rows = diagnosis.scalars.iter().filter(|row| row.scalar.role == Role::Outcome);
+    let rows: Vec<_> = rows.map(|row| (row.scalar.name.clone(), row.summary.unwrap())).collect();
+    let rhat = rows.iter().map(|(name, row)| (name.clone(), row.rhat.unwrap()));
+    let ess = rows.iter().map(|(name, row)| (name.clone(), row.ess_bulk.min(row.ess_tail)));
+    Mixing { rhat: rhat.max_by(|a, b| a.1.total_cmp(&b.1)), ess: ess.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap() }
 }
 
 fn recipe(iterations: u64, thin: u64) -> Recipe {
@@ -69,7 +64,7 @@ fn what_is_said_meanwhile_is_what_the_records_say() {
             ["whole", "parts"].map(|name| Folder::new(place.path().join(format!("{name}{iterations}"))));
         let mut watch = Curious::default();
         sample(&whole, &recipe, Sampling { threads: 1, disk, watch: &mut watch }).unwrap();
-        let of_records = Run::open(&whole).unwrap().visit(OfRecords(1024)).unwrap();
+        let of_records = of_records(&Run::open(&whole).unwrap().reader().unwrap(), 1024);
         let (end, last) = watch.found.last().unwrap();
         assert_eq!((*end, last), (100 + iterations, &of_records));
         assert!(watch.found.iter().all(|(end, _)| *end > 100), "nothing is said of the warm-up");

@@ -2,10 +2,7 @@
 
 use crate::common::{bytes_of, recipe};
 use plaus_run::disk::{Disk, RealDisk};
-use plaus_run::{
-    Diagnosis, Error, Folder, Manifest, More, Run, RunFileError, RunOf, RunVisitor, Sampling, Unwatched, resume, sample,
-};
-use plaus_scenes::Scene;
+use plaus_run::{Diagnosis, Error, Folder, Manifest, More, Run, Sampling, Unwatched, resume, sample};
 use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -156,25 +153,21 @@ fn a_disk_without_room_for_a_manifest_is_blamed_on_the_run() {
 /// Thinning counts from iteration 0, so that a short phase may hold a draw more than its length says.
 #[test]
 fn recorded_draws_are_counted_not_divided() {
-    struct Recorded;
-    impl RunVisitor for Recorded {
-        type Output = Result<(u64, u64), RunFileError>;
-        fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-            let diagnosis = Diagnosis::of(&run, None)?;
-            Ok((diagnosis.recorded, diagnosis.tally.chains.iter().map(|chain| chain.satisfying_draws).sum()))
-        }
-    }
+    let recorded = |folder: &Folder| -> (u64, u64) {
+        let diagnosis = Diagnosis::of(&Run::open(folder).unwrap().reader().unwrap(), None).unwrap();
+        (diagnosis.recorded, diagnosis.tally.chains.iter().map(|chain| chain.satisfying_draws).sum())
+    };
     let place = tempfile::tempdir().unwrap();
     let folder = Folder::new(place.path().join("run"));
     let mut short = recipe(None);
     // Records 300 and, with thin 3, 301..303: none.
     (short.scenario.sampler.warmup, short.scenario.sampler.iterations) = (299, 4);
     sample(&folder, &short, Sampling::new(1, &mut Unwatched)).unwrap();
-    let (recorded, satisfying) = Run::open(&folder).unwrap().visit(Recorded).unwrap().unwrap();
-    assert_eq!(recorded, 1);
-    assert!(satisfying <= 3 * recorded);
+    let (draws, satisfying) = recorded(&folder);
+    assert_eq!(draws, 1);
+    assert!(satisfying <= 3 * draws);
     (short.scenario.sampler.warmup, short.scenario.sampler.iterations) = (300, 4); // 300 and 303
     let folder = Folder::new(place.path().join("longer"));
     sample(&folder, &short, Sampling::new(1, &mut Unwatched)).unwrap();
-    assert_eq!(Run::open(&folder).unwrap().visit(Recorded).unwrap().unwrap().0, 2);
+    assert_eq!(recorded(&folder).0, 2);
 }

@@ -1,15 +1,15 @@
 //! Runs by independent draws of the prior, and the trial that decides between these and chains.
 
-use crate::common::{AllDraws, bytes_of, recipe};
+use crate::common::{all_draws, bytes_of, recipe};
 use plaus_mcmc::{Control, Progress};
 use plaus_run::disk::RealDisk;
 use plaus_run::merge::{MergePulse, Merging, merge};
 use plaus_run::{
-    Diagnosis, Error, Folder, Manifest, More, Phase, Recipe, Run, RunOf, RunVisitor, Sampling, Shard, Unwatched, Watch,
-    resume, sample, sample_or_go_on, sample_shard,
+    Diagnosis, Error, Folder, Manifest, More, Phase, Recipe, Run, Sampling, Shard, Unwatched, Watch, resume, sample,
+    sample_or_go_on, sample_shard,
 };
 use plaus_scenes::scenario::{explain, template};
-use plaus_scenes::{Role, Scenario, Scene};
+use plaus_scenes::{Role, Scenario};
 
 /// The small run with other keys.
 fn with(solutions: Option<u64>, keys: &[&str]) -> Recipe {
@@ -24,15 +24,6 @@ fn sampled(place: &tempfile::TempDir, name: &str, recipe: &Recipe, threads: usiz
     sample(&folder, recipe, Sampling::new(threads, &mut Unwatched)).unwrap();
     let manifest = Manifest::read(&folder).unwrap();
     (folder, manifest)
-}
-
-struct Diagnosed;
-
-impl RunVisitor for Diagnosed {
-    type Output = Diagnosis;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Diagnosis {
-        Diagnosis::of(&run, None).unwrap()
-    }
 }
 
 #[test]
@@ -97,7 +88,7 @@ fn both_ways_have_one_law() {
     let long = ["sigma_d=0.3", "tolerance=0.3", "iterations=40000", "thin=1", "checkpoint_every=40000", "warmup=1000"];
     let means = |name: &str, keys: &[&str]| {
         let (folder, _) = sampled(&place, name, &with(None, &[long.as_slice(), keys].concat()), 2);
-        let diagnosis = Run::open(&folder).unwrap().visit(Diagnosed).unwrap();
+        let diagnosis = Diagnosis::of(&Run::open(&folder).unwrap().reader().unwrap(), None).unwrap();
         let rows = diagnosis.scalars.iter().map(|row| row.summary.unwrap());
         (rows.map(|row| (row.mean, row.mcse_mean)).collect::<Vec<_>>(), diagnosis)
     };
@@ -162,7 +153,7 @@ fn tempered_chains_are_no_draws_of_the_prior() {
     let other = with(None, &["method=independent"]);
     let refused = sample_or_go_on(&folder, &other, None, Sampling::new(1, &mut Unwatched));
     assert!(matches!(refused, Err(Error::File(_))), "{refused:?}");
-    let draws = |name: &str| Run::open(&Folder::new(place.path().join(name))).unwrap().visit(AllDraws(Phase::Sampling));
+    let draws = |name: &str| all_draws(&Run::open(&Folder::new(place.path().join(name))).unwrap(), Phase::Sampling);
     sampled(&place, "unset", &with(None, &[]), 1);
-    assert_eq!(draws("chain").unwrap().unwrap(), draws("unset").unwrap().unwrap());
+    assert_eq!(draws("chain").unwrap(), draws("unset").unwrap());
 }

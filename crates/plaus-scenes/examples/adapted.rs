@@ -11,7 +11,7 @@ mod shared;
 
 use plaus_dist::Seed;
 use plaus_mcmc::{Chain, Mixture, MoveCounts, MoveId, SolutionClass, diagnose};
-use plaus_scenes::{Role, Scenario, Scene, Visitor};
+use plaus_scenes::{Role, Scenario, Scene, Stage};
 use shared::seconds;
 use std::collections::BTreeSet;
 
@@ -57,9 +57,9 @@ impl Measure {
             let (mut classes, mut rows) = (BTreeSet::<SolutionClass>::new(), vec![Vec::new(); width]);
             for _ in 0..self.iterations {
                 chain.step()?;
-                scene.write_scalars(chain.state(), &mut values);
+                scene.write_scalars(chain.state().by_ref(), &mut values);
                 rows.iter_mut().zip(&values).for_each(|(row, value)| row.push(*value));
-                let class = scene.class(chain.state());
+                let class = scene.class(chain.state().by_ref());
                 made.satisfied += u64::from(class.is_some());
                 classes.extend(class);
             }
@@ -90,13 +90,12 @@ fn show<S: Scene>(moves: &Mixture<S>, scales: &plaus_mcmc::Scales, seed: u64) {
     println!();
 }
 
-impl Visitor for Measure {
-    type Output = Result<()>;
-    fn visit<S: Scene>(self, scene: S) -> Result<()> {
+impl Measure {
+    fn of(&self, scene: &Stage) -> Result<()> {
         let moves = scene.moves(&self.scenario.sampler.rules)?;
         for adapts in [false, true] {
             println!("{}", if adapts { "with adaptation" } else { "without adaptation" });
-            let made = self.make(&scene, &moves, adapts)?;
+            let made = self.make(scene, &moves, adapts)?;
             let per_second = |column: &Vec<Vec<f64>>| diagnose::ess_bulk(column).unwrap_or(f64::NAN) / made.seconds;
             let (mut draws, mut text) = (Vec::new(), String::new());
             for (scalar, column) in scene.scalars().iter().zip(&made.columns) {
@@ -134,5 +133,6 @@ fn main() -> Result<()> {
     let overrides: Vec<String> = args.collect();
     let scenario = Scenario::read(&path, &std::fs::read_to_string(&path)?, &overrides)?;
     println!("{path}, {overrides:?}: {seeds} seeds, {warmup} + {iterations} iterations");
-    scenario.clone().visit(Measure { scenario, seeds, warmup, iterations })?
+    let scene = scenario.stage()?;
+    Measure { scenario, seeds, warmup, iterations }.of(&scene)
 }

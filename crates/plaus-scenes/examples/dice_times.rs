@@ -43,11 +43,11 @@ fn run(scene: &Dice, moves: &Mixture<Dice>, seed: u64, iterations: u64, stops: b
     for iteration in 1..=iterations {
         chain.step()?;
         if iteration > iterations / 2 && iteration.is_multiple_of(10) {
-            scene.write_scalars(chain.state(), &mut values);
+            scene.write_scalars(chain.state().by_ref(), &mut values);
             run.columns.iter_mut().zip(&values).for_each(|(column, value)| column.push(*value));
         }
         run.most = run.most.max(chain.state().outcome.marks.iter().filter(|mark| mark.met).count());
-        let Some(class) = scene.class(chain.state()) else { continue };
+        let Some(class) = scene.class(chain.state().by_ref()) else { continue };
         run.first.get_or_insert_with(|| (iteration, seconds() - begin));
         run.satisfied += 1;
         run.classes.insert(class);

@@ -10,7 +10,7 @@
 
 use plaus_dist::{LogDensity, LogPotential, Seed, Stream, math};
 use plaus_mcmc::view::{View, lend};
-use plaus_mcmc::{Chain, ModelError, Simulated, StateOf, Target};
+use plaus_mcmc::{Chain, ModelError, Simulated, StateRefOf, Target};
 use plaus_scenes::spelling::{Config, Drops, Rest, Spelling, Work};
 use plaus_scenes::{Scenario, Scene, World};
 use plaus_sim::motion::Parabola;
@@ -139,7 +139,7 @@ impl Target for Watched {
     fn simulate(
         &self,
         draw: &Drops,
-        current: Option<&StateOf<Self>>,
+        current: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         work: &mut Work,
     ) -> std::result::Result<Simulated<Rest>, ModelError> {

@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for _ in 0..STRIDE {
             chain.step()?;
         }
-        let Some(class) = ball.class(chain.state()).filter(|class| !seen.contains(class)) else { continue };
+        let Some(class) = ball.class(chain.state().by_ref()).filter(|class| !seen.contains(class)) else { continue };
         seen.push(class);
         show(&ball, &chain);
     }

@@ -7,9 +7,9 @@
 #![allow(clippy::print_stdout, reason = "it is run to be read")]
 
 use plaus_dist::Seed;
-use plaus_mcmc::{Chain, Mixture};
+use plaus_mcmc::{Chain, Goal, Mixture};
 use plaus_scenes::require::Tally;
-use plaus_scenes::{Scenario, Scene, Visitor};
+use plaus_scenes::{Scenario, Scene, Stage};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -27,12 +27,10 @@ struct Look {
     chains: u64,
 }
 
-impl Visitor for Look {
-    type Output = String;
-
-    fn visit<S: Scene>(self, scene: S) -> String {
+impl Look {
+    fn at(&self, scene: &Stage) -> String {
         let begin = Instant::now();
-        let tally = match Tally::of_prior(&scene, self.seed, DRAWS, |_| true) {
+        let tally = match Tally::of_prior(scene, self.seed, DRAWS, |_| true) {
             Ok(tally) => tally,
             Err(error) => return error.to_string(),
         };
@@ -40,11 +38,11 @@ impl Visitor for Look {
         let free = tally.clauses.first().map_or(0, |clause| clause.met);
         let prior = format!("{:.2} ms a draw, {free} of {DRAWS} free, {} meet all", each * 1e3, tally.all);
         let rules = plaus_scenes::Rules::default();
-        let moves: Mixture<S> = match scene.moves(&rules) {
+        let moves: Mixture<Stage> = match scene.moves(&rules) {
             Ok(moves) => moves,
             Err(error) => return error.to_string(),
         };
-        let start = |chain| Chain::start(&scene, &moves, Seed(self.seed).chain(chain));
+        let start = |chain| Chain::start(scene, &moves, Seed(self.seed).chain(chain));
         let mut chains = match (0..self.chains).map(start).collect::<Result<Vec<_>, _>>() {
             Ok(chains) => chains,
             Err(error) => return format!("{prior}; {error}"),
@@ -55,7 +53,7 @@ impl Visitor for Look {
                 if let Err(error) = chain.step() {
                     return format!("{prior}; {error}");
                 }
-                let Some(class) = scene.class(chain.state()) else { continue };
+                let Some(class) = scene.class(chain.state().by_ref()) else { continue };
                 first.get_or_insert((iteration, begin.elapsed().as_secs_f64()));
                 found.insert(class);
             }
@@ -81,7 +79,7 @@ fn main() {
             Ok(text) => match Scenario::read_with(&path, &text, &[], &beside(&path)) {
                 Ok(scenario) => {
                     let look = Look { seed: scenario.sampler.seed, chains: scenario.sampler.chains.into() };
-                    scenario.visit(look).unwrap_or_else(|error| error.to_string())
+                    scenario.stage().map_or_else(|error| error.to_string(), |scene| look.at(&scene))
                 }
                 Err(error) => error.to_string(),
             },

@@ -25,6 +25,7 @@
 //! paper prints it.
 
 pub mod accuracy;
+mod any;
 pub mod ball2d;
 pub mod bowling;
 pub mod custom;
@@ -48,8 +49,12 @@ pub use files::{Assets, Files};
 pub use model::{Member, Moves, Role, Scalar, Weights};
 pub use plaus_animation as animation;
 pub use plaus_animation::Animation;
-pub use registry::{Visitor, World};
+pub use registry::{AnyDraw, AnyOutcome, AnyScene, AnyScratch, World};
+pub use require::{Answer, Asked};
 pub use rules::Rules;
 pub use scenario::Scenario;
 pub use scene::{ConfigError, Scene, Until};
 pub use world::{Physical, PlainWorld};
+
+/// The scene of a scenario, under what is required besides: ready to be sampled. Made by [`Scenario::stage`].
+pub type Stage = Asked<AnyScene>;

@@ -2,19 +2,39 @@
 
 use crate::files::{Assets, Files};
 use crate::scene::{ConfigError, Scene};
+use plaus_mcmc::{StateRef, StateRefOf, Target};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Something to do with a scene whose type is known only from the scenario file.
-pub trait Visitor {
-    /// What comes of it.
-    type Output;
-    /// Does it.
-    fn visit<S: Scene>(self, scene: S) -> Self::Output;
+/// A scene among [all](World): it finds what is its own in what may be any scene's.
+pub(crate) trait Known: Scene {
+    fn of(scene: &AnyScene) -> &Self;
+    fn draw(draw: &AnyDraw) -> &Self::Draw;
+    fn draw_mut(draw: &mut AnyDraw) -> &mut Self::Draw;
+    fn outcome(outcome: &AnyOutcome) -> &Self::Outcome;
+    /// A new one where it holds none of this scene.
+    fn scratch(scratch: &mut AnyScratch) -> &mut Self::Scratch;
+    /// What there is, if it is this scene's.
+    fn scratch_kept(scratch: &AnyScratch) -> Option<&Self::Scratch>;
+    fn any(self) -> AnyScene;
+    fn any_draw(draw: Self::Draw) -> AnyDraw;
+    fn any_outcome(outcome: Self::Outcome) -> AnyOutcome;
+
+    fn state(state: StateRefOf<'_, AnyScene>) -> StateRefOf<'_, Self> {
+        let StateRef { draw, outcome, log_prior, log_constraint } = state;
+        StateRef { draw: Self::draw(draw), outcome: Self::outcome(outcome), log_prior, log_constraint }
+    }
 }
 
+/// Draws, outcomes and moves meet the scene that they were made by: a run says which one that is, and is not read
+/// where another one was made of its scenario.
+fn of_another_scene() -> ! {
+    unreachable!("a draw, an outcome or a move of another scene")
+}
+
+// `$d` is the dollar sign: a macro that a macro makes needs it for its own parameters.
 macro_rules! scenes {
-    ($($(#[$doc:meta])* $name:literal $variant:ident => $module:ident,)+) => {
+    ($d:tt $($(#[$doc:meta])* $name:literal $variant:ident => $module:ident,)+) => {
         /// The world of a scenario: which scene, and its settings.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
         pub enum World {
@@ -37,24 +57,112 @@ macro_rules! scenes {
                 match name { $($name => Some(Self::$variant(Box::default())),)+ _ => None }
             }
 
-            /// Whether its moves' scales are adapted where a scenario does not say.
-            #[must_use]
-            pub fn adapts(&self) -> bool {
-                match self { $(Self::$variant(_) => <crate::$module::$variant as Scene>::ADAPTS),+ }
-            }
-
-            /// Builds the scene and hands it to `visitor`.
+            /// The scene.
             ///
             /// # Errors
             /// [`ConfigError`] where the settings make no scene.
-            pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, ConfigError> {
-                match self { $(Self::$variant(config) => Ok(visitor.visit(crate::$module::$variant::new(config)?))),+ }
+            pub fn scene(&self) -> Result<AnyScene, ConfigError> {
+                match self { $(Self::$variant(config) => Ok(crate::$module::$variant::new(config)?.any())),+ }
             }
         }
+
+        /// One of the scenes, where which one is known only from a scenario. What samples, reads and shows runs is
+        /// compiled for this type alone.
+        #[derive(Debug)]
+        pub enum AnyScene {
+            $($(#[$doc])* $variant(Box<crate::$module::$variant>),)+
+        }
+
+        /// A draw of one of the scenes.
+        #[derive(Debug, PartialEq, Serialize, Deserialize)]
+        #[expect(missing_docs, reason = "its variants are those of `AnyScene`")]
+        pub enum AnyDraw {
+            $($variant(<crate::$module::$variant as Target>::Draw),)+
+        }
+
+        impl Clone for AnyDraw {
+            fn clone(&self) -> Self {
+                match self { $(Self::$variant(draw) => Self::$variant(draw.clone()),)+ }
+            }
+
+            fn clone_from(&mut self, from: &Self) {
+                match (self, from) {
+                    $((Self::$variant(draw), Self::$variant(from)) => draw.clone_from(from),)+
+                    (draw, from) => *draw = from.clone(),
+                }
+            }
+        }
+
+        /// An outcome of one of the scenes.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[expect(missing_docs, reason = "its variants are those of `AnyScene`")]
+        pub enum AnyOutcome {
+            $($variant(<crate::$module::$variant as Target>::Outcome),)+
+        }
+
+        /// Working memory for one of the scenes.
+        #[derive(Default)]
+        #[expect(missing_docs, reason = "its variants are those of `AnyScene`")]
+        pub enum AnyScratch {
+            /// For whichever comes first.
+            #[default]
+            New,
+            $($variant(Box<<crate::$module::$variant as Target>::Scratch>),)+
+        }
+
+        $(impl Known for crate::$module::$variant {
+            fn of(scene: &AnyScene) -> &Self {
+                if let AnyScene::$variant(scene) = scene { scene } else { of_another_scene() }
+            }
+
+            fn draw(draw: &AnyDraw) -> &Self::Draw {
+                if let AnyDraw::$variant(draw) = draw { draw } else { of_another_scene() }
+            }
+
+            fn draw_mut(draw: &mut AnyDraw) -> &mut Self::Draw {
+                if let AnyDraw::$variant(draw) = draw { draw } else { of_another_scene() }
+            }
+
+            fn outcome(outcome: &AnyOutcome) -> &Self::Outcome {
+                if let AnyOutcome::$variant(outcome) = outcome { outcome } else { of_another_scene() }
+            }
+
+            fn scratch(scratch: &mut AnyScratch) -> &mut Self::Scratch {
+                if !matches!(scratch, AnyScratch::$variant(_)) {
+                    *scratch = AnyScratch::$variant(Box::default());
+                }
+                if let AnyScratch::$variant(scratch) = scratch { scratch } else { of_another_scene() }
+            }
+
+            fn scratch_kept(scratch: &AnyScratch) -> Option<&Self::Scratch> {
+                if let AnyScratch::$variant(scratch) = scratch { Some(scratch) } else { None }
+            }
+
+            fn any(self) -> AnyScene {
+                AnyScene::$variant(Box::new(self))
+            }
+
+            fn any_draw(draw: Self::Draw) -> AnyDraw {
+                AnyDraw::$variant(draw)
+            }
+
+            fn any_outcome(outcome: Self::Outcome) -> AnyOutcome {
+                AnyOutcome::$variant(outcome)
+            }
+        })+
+
+        /// Does the same with whichever scene it is.
+        macro_rules! with_scene {
+            ($d of:expr, $d scene:ident => $d body:expr) => {
+                match $d of { $($crate::registry::AnyScene::$variant($d scene) => $d body,)+ }
+            };
+        }
+        pub(crate) use with_scene;
     };
 }
 
 scenes! {
+    $
     /// A ball bounces on a table whose surface normal is uncertain at every bounce; it should come to rest in a given
     /// place.
     "ball2d" Ball2d => ball2d,
@@ -70,6 +178,12 @@ scenes! {
 }
 
 impl World {
+    /// Whether its moves' scales are adapted where a scenario does not say: where that was measured to be better.
+    #[must_use]
+    pub fn adapts(&self) -> bool {
+        matches!(self, Self::Dice(_))
+    }
+
     /// Reads the files that it names.
     pub(crate) fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
         match self {

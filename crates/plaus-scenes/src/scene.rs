@@ -6,7 +6,7 @@ use crate::model::Scalar;
 use crate::require::{Cast, Mark, Probe, Require, Timed};
 use crate::rules::Rules;
 use crate::world::PlainWorld;
-use plaus_mcmc::{Goal, Mixture, ModelError, StateOf, Variables};
+use plaus_mcmc::{Goal, Mixture, ModelError, StateRefOf, Variables};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -20,10 +20,6 @@ pub trait Scene:
     + Send
     + 'static
 {
-    /// Whether the scales of its moves are adapted in the warm-up where a scenario does not say: where that was
-    /// measured to be better.
-    const ADAPTS: bool = false;
-
     /// The moves this scene is sampled with, under `rules`.
     ///
     /// # Errors
@@ -35,7 +31,7 @@ pub trait Scene:
     fn scalars(&self) -> Vec<Scalar>;
 
     /// Writes the values of [`Scene::scalars`] for `state`; `values` has as many places.
-    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]);
+    fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]);
 
     /// The animation of a draw, rebuilt by simulation.
     ///
@@ -132,7 +128,7 @@ pub trait Scene:
 
     /// How well a state meets each thing that is asked. Of what the scene demands itself the margin is its log
     /// constraint where it is not met.
-    fn answers(&self, state: &StateOf<Self>) -> Vec<Mark> {
+    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
         let met = self.class(state).is_some();
         let lacks = state.log_constraint.value().min(-f64::MIN_POSITIVE);
         vec![Mark::of(if met { 0.0 } else { lacks })]

@@ -6,8 +6,8 @@ use crate::common::shapes;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::check::{OneStep, PriorOnly, Statistic, one_step, prior};
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Chain, ModelError, Move, Path, Proposal, State, StateOf, Target, Variables};
-use plaus_scenes::{Rules, Scenario, Scene, Visitor, World, custom::Custom};
+use plaus_mcmc::{Chain, ModelError, Move, Path, Proposal, State, StateOf, StateRefOf, Target, Variables};
+use plaus_scenes::{AnyScratch, Rules, Scenario, Scene, Stage, World, custom::Custom};
 use std::sync::Arc;
 
 /// Draws from the prior, and iterations of a chain.
@@ -116,7 +116,7 @@ fn scenario([world, ball, required]: &[&str; 3]) -> Scenario {
 }
 
 /// Numbers of a state that every state has: all but times of rest, which may never come, and margins.
-fn looked_at<S: Scene>(scene: &S, state: &StateOf<S>) -> Vec<f64> {
+fn looked_at<S: Scene>(scene: &S, state: StateRefOf<'_, S>) -> Vec<f64> {
     let scalars = scene.scalars();
     let mut values = vec![0.0; scalars.len()];
     scene.write_scalars(state, &mut values);
@@ -132,7 +132,7 @@ fn weighed<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
         let state = State::evaluate(scene, draw, &mut scratch).unwrap();
         let weight = state.log_constraint.value().exp();
         if weight > 0.0 {
-            seen.push((weight, looked_at(scene, &state)));
+            seen.push((weight, looked_at(scene, state.by_ref())));
         }
     }
     assert!(seen.len() as u64 > DRAWS / 4, "only {} draws count", seen.len());
@@ -157,7 +157,7 @@ fn sampled<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
         let mut sums: Vec<f64> = Vec::new();
         for _ in 0..each {
             chain.step().unwrap();
-            let values = looked_at(scene, chain.state());
+            let values = looked_at(scene, chain.state().by_ref());
             sums.resize(values.len(), 0.0);
             sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value / each as f64);
         }
@@ -171,23 +171,6 @@ fn sampled<S: Scene>(scene: &S) -> Vec<[f64; 2]> {
         [mean, (squares / (n - 1.0) / n).sqrt()]
     };
     (0..stretches[0].len()).map(column).collect()
-}
-
-struct Weighed;
-struct Sampled;
-
-impl Visitor for Weighed {
-    type Output = Vec<[f64; 2]>;
-    fn visit<S: Scene>(self, scene: S) -> Self::Output {
-        weighed(&scene)
-    }
-}
-
-impl Visitor for Sampled {
-    type Output = Vec<[f64; 2]>;
-    fn visit<S: Scene>(self, scene: S) -> Self::Output {
-        sampled(&scene)
-    }
 }
 
 /// By how many standard errors two lists of means are apart, at most. Both may know a number for certain.
@@ -204,37 +187,31 @@ fn apart(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
 fn chains_sample_what_is_described_and_required() {
     for case in CASES {
         let asked = scenario(case);
-        let truth = asked.visit(Weighed).unwrap();
-        let z = apart(&truth, &asked.visit(Sampled).unwrap());
+        let truth = weighed(&asked.stage().unwrap());
+        let z = apart(&truth, &sampled(&asked.stage().unwrap()));
         assert!(z < LIMIT, "{case:?}: {z} standard errors");
         let free = Scenario { require: Vec::new(), ..asked };
-        let z = apart(&truth, &free.visit(Sampled).unwrap());
+        let z = apart(&truth, &sampled(&free.stage().unwrap()));
         assert!(z > LIMIT, "{case:?}: a chain that forgets what is required is only {z} standard errors off");
     }
 }
 
 /// A number of what a chain of the trick shot goes through, bit for bit, over so many iterations.
 fn trace(iterations: u32) -> u64 {
-    struct Trace(u32);
-    impl Visitor for Trace {
-        type Output = u64;
-        fn visit<S: Scene>(self, scene: S) -> u64 {
-            let moves = scene.moves(&Rules::default()).unwrap();
-            let mut chain = Chain::start(&scene, &moves, Seed(1).chain(0)).unwrap();
-            let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-            for _ in 0..self.0 {
-                chain.step().unwrap();
-                let mut values = vec![0.0; scene.scalars().len()];
-                scene.write_scalars(chain.state(), &mut values);
-                // What is no number has many bits.
-                let bits = values.iter().map(|value| if value.is_nan() { 0 } else { value.to_bits() });
-                hash = bits.fold(hash, |hash, bits| (hash ^ bits).wrapping_mul(0x0100_0000_01b3));
-            }
-            hash
-        }
-    }
     let text = include_str!("../../../scenarios/worlds/trick-shot.toml");
-    Scenario::read("trick-shot.toml", text, &[]).unwrap().visit(Trace(iterations)).unwrap()
+    let scene = Scenario::read("trick-shot.toml", text, &[]).unwrap().stage().unwrap();
+    let moves = scene.moves(&Rules::default()).unwrap();
+    let mut chain = Chain::start(&scene, &moves, Seed(1).chain(0)).unwrap();
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    for _ in 0..iterations {
+        chain.step().unwrap();
+        let mut values = vec![0.0; scene.scalars().len()];
+        scene.write_scalars(chain.state().by_ref(), &mut values);
+        // What is no number has many bits.
+        let bits = values.iter().map(|value| if value.is_nan() { 0 } else { value.to_bits() });
+        hash = bits.fold(hash, |hash, bits| (hash ^ bits).wrapping_mul(0x0100_0000_01b3));
+    }
+    hash
 }
 
 /// The same scenario, seed and version give the same bits. Where another number is meant, CHANGELOG says so.
@@ -246,15 +223,6 @@ fn a_chain_is_pinned() {
 /// Every world that comes with the project is read, and its first draws are simulated.
 #[test]
 fn the_worlds_in_the_folder_are_worlds() {
-    struct Draw;
-    impl Visitor for Draw {
-        type Output = bool;
-        fn visit<S: Scene>(self, scene: S) -> bool {
-            let draw = |nth| scene.start(&mut Seed(1).chain(0).at(nth, Purpose::START));
-            let state = |nth| State::evaluate(&scene, draw(nth), &mut S::Scratch::default()).unwrap();
-            (0..5).map(state).any(|state| !state.log_constraint.is_zero() && scene.animate(&state.draw).is_ok())
-        }
-    }
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/worlds");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -267,7 +235,11 @@ fn the_worlds_in_the_folder_are_worlds() {
             |file: &str, _: bool| std::fs::read(path.with_file_name(file)).map(Arc::from).map_err(|e| e.to_string());
         let scenario = Scenario::read_with(&path.to_string_lossy(), &text, &[], &beside);
         let scenario = scenario.unwrap_or_else(|error| panic!("{error}"));
-        assert!(scenario.visit(Draw).unwrap(), "{}", path.display());
+        let scene = scenario.stage().unwrap();
+        let draw = |nth| scene.start(&mut Seed(1).chain(0).at(nth, Purpose::START));
+        let state = |nth| State::evaluate(&scene, draw(nth), &mut AnyScratch::default()).unwrap();
+        let moves = |state: StateOf<Stage>| !state.log_constraint.is_zero() && scene.animate(&state.draw).is_ok();
+        assert!((0..5).map(state).any(moves), "{}", path.display());
         count += 1;
     }
     assert!(count >= 7);
@@ -334,13 +306,13 @@ impl Move<Custom> for HalfRight {
     fn propose(
         &self,
         world: &Custom,
-        current: &StateOf<Custom>,
+        current: StateRefOf<'_, Custom>,
         draw: &mut <Custom as Target>::Draw,
         stream: &mut plaus_dist::Stream,
     ) -> Result<Proposal, ModelError> {
         let all = world.vars().which(|_| true);
         let var = all[plaus_dist::stream::below(stream, all.len())];
-        let before = plaus_mcmc::vars::log_density(world, &current.draw, var)?;
+        let before = plaus_mcmc::vars::log_density(world, current.draw, var)?;
         plaus_mcmc::vars::renew(world, draw, var, plaus_mcmc::Recipe::Exact, stream);
         let after = plaus_mcmc::vars::log_density(world, draw, var)?;
         Ok(Proposal::with_ratio(plaus_dist::LogRatio::new(0.5 * (before.value() - after.value()))?))
@@ -349,8 +321,8 @@ impl Move<Custom> for HalfRight {
     fn log_ratio(
         &self,
         _: &Custom,
-        _: &StateOf<Custom>,
-        _: &StateOf<Custom>,
+        _: StateRefOf<'_, Custom>,
+        _: StateRefOf<'_, Custom>,
         _: Path,
     ) -> Result<plaus_dist::LogRatio, ModelError> {
         Ok(plaus_dist::LogRatio::ONE)

@@ -2,7 +2,8 @@
 //! agree within three standard errors. A twin that forgets what is required is found out.
 
 use plaus_dist::{Purpose, Seed};
-use plaus_mcmc::{Chain, State, StateOf, Target};
+use plaus_mcmc::view::Sees;
+use plaus_mcmc::{Chain, State, StateRefOf, Target};
 use plaus_scenes::ball2d::{self, Ball2d};
 use plaus_scenes::require::{Asked, Mark, Require, Tally};
 use plaus_scenes::{Rules, Scene};
@@ -45,13 +46,10 @@ fn ball() -> Ball2d {
 }
 
 /// What is compared: where the ball comes to rest, two angles, and whether all that `asked` requires is met.
-fn looked_at(asked: &Asked<Ball2d>, state: &StateOf<Asked<Ball2d>>) -> [f64; 4] {
+fn looked_at(asked: &Asked<Ball2d>, state: StateRefOf<'_, Asked<Ball2d>>) -> [f64; 4] {
     let mut values = vec![0.0; 4];
-    let State { draw, outcome, log_prior, .. } = state;
-    let own =
-        State { draw: draw.clone(), outcome: outcome.outcome, log_prior: *log_prior, log_constraint: outcome.own };
-    asked.scene().write_scalars(&own, &mut values);
-    let met = asked.judge(&asked.motion(draw).unwrap()).iter().all(Mark::met);
+    asked.scene().write_scalars(<Asked<Ball2d> as Sees<Ball2d>>::state(state), &mut values);
+    let met = asked.judge(&asked.motion(state.draw).unwrap()).iter().all(Mark::met);
     [values[0], values[1], values[2], f64::from(u8::from(met))]
 }
 
@@ -61,7 +59,7 @@ fn weighed(scene: &Asked<Ball2d>) -> [[f64; 2]; 4] {
     for nth in 0..DRAWS {
         let draw = scene.start(&mut Seed(3).chain(9).at(nth, Purpose::START));
         let state = State::evaluate(scene, draw, &mut ()).unwrap();
-        seen.push((state.log_constraint.value().exp(), looked_at(scene, &state)));
+        seen.push((state.log_constraint.value().exp(), looked_at(scene, state.by_ref())));
     }
     let whole: f64 = seen.iter().map(|(weight, _)| weight).sum();
     std::array::from_fn(|k| {
@@ -83,7 +81,7 @@ fn sampled(scene: &Asked<Ball2d>, asked: &Asked<Ball2d>) -> [[f64; 2]; 4] {
     for stretch in &mut stretches {
         for _ in 0..each {
             chain.step().unwrap();
-            let values = looked_at(asked, chain.state());
+            let values = looked_at(asked, chain.state().by_ref());
             (0..4).for_each(|k| stretch[k] += values[k] / each as f64);
         }
     }

@@ -6,7 +6,7 @@ use plaus_dist::{LogPotential, Stream};
 use plaus_mcmc::check::{OneStep, OneStepReport, Ratios, any_of, one_step, prior, ratios, rejection, visited};
 use plaus_mcmc::library::{RedrawAll, RedrawOne, RedrawSome, Symmetry};
 use plaus_mcmc::view::lend;
-use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Recipe, StateOf, Variables};
+use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Recipe, StateRefOf, Variables};
 use plaus_scenes::bowling::{Aim, Bowling, Delivery, Quantity, Shot, mirror};
 use plaus_scenes::{Rules, Scene};
 
@@ -75,7 +75,7 @@ impl Move<Bowling> for Faulty {
     fn propose(
         &self,
         target: &Bowling,
-        current: &StateOf<Bowling>,
+        current: StateRefOf<'_, Bowling>,
         candidate: &mut Shot,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -103,8 +103,8 @@ impl Move<Bowling> for Faulty {
     fn log_ratio(
         &self,
         target: &Bowling,
-        from: &StateOf<Bowling>,
-        to: &StateOf<Bowling>,
+        from: StateRefOf<'_, Bowling>,
+        to: StateRefOf<'_, Bowling>,
         path: Path,
     ) -> Result<plaus_dist::LogRatio, ModelError> {
         self.0.log_ratio(target, from, to, path)

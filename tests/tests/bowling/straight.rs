@@ -5,7 +5,7 @@ use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
 use plaus_mcmc::library::{RedrawAll, RedrawOne, RedrawSome, ShiftAll, ShiftSome, Sizes, Stride, Symmetry};
 use plaus_mcmc::view::View;
-use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target, Variables};
+use plaus_mcmc::{ModelError, Move, Simulated, State, StateRefOf, Target, Variables};
 use plaus_scenes::bowling::{Aim, Bowling, Config, Delivery, Entry, Fate, Quantity, Rest, Shot, mirror};
 
 pub(crate) type AnyMove = Box<dyn Move<Bowling>>;
@@ -42,7 +42,7 @@ impl Target for Straight<'_> {
     fn simulate(
         &self,
         draw: &Shot,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<Rest>, ModelError> {

@@ -2,7 +2,7 @@
 
 use super::plain::scene;
 use plaus_dist::{LogDensity, LogPotential, LogRatio, Purpose, Seed, Stream};
-use plaus_mcmc::{Chain, Mixture, ModelError, Move, Path, Proposal, Simulated, State, StateOf, Target};
+use plaus_mcmc::{Chain, Mixture, ModelError, Move, Path, Proposal, Simulated, State, StateRefOf, Target};
 use plaus_run::codec::{Kind, decode, encode};
 use plaus_scenes::dice::{Dice, Draw, Field, Realisation, Rest, Site, Work};
 use plaus_scenes::{Rules, Scene};
@@ -45,7 +45,7 @@ impl Target for Booked<'_> {
     fn simulate(
         &self,
         draw: &Draw,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
@@ -73,7 +73,7 @@ impl Move<Booked<'_>> for OnScores {
     fn propose(
         &self,
         target: &Booked<'_>,
-        current: &StateOf<Booked<'_>>,
+        current: StateRefOf<'_, Booked<'_>>,
         candidate: &mut Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -83,15 +83,15 @@ impl Move<Booked<'_>> for OnScores {
             // Drawn anew: whole again.
             make_whole(&mut candidate.tables[0]);
         }
-        let points = LogRatio::new(booked(&current.draw) - booked(candidate))?;
+        let points = LogRatio::new(booked(current.draw) - booked(candidate))?;
         Ok(Proposal::Candidate { log_ratio: log_ratio.times(points)?, path, later })
     }
 
     fn log_ratio(
         &self,
         _: &Booked<'_>,
-        _: &StateOf<Booked<'_>>,
-        _: &StateOf<Booked<'_>>,
+        _: StateRefOf<'_, Booked<'_>>,
+        _: StateRefOf<'_, Booked<'_>>,
         _: Path,
     ) -> Result<LogRatio, ModelError> {
         Err(ModelError::new("not asked for by a chain"))
@@ -100,8 +100,8 @@ impl Move<Booked<'_>> for OnScores {
     fn log_ratio_after(
         &self,
         target: &Booked<'_>,
-        current: &StateOf<Booked<'_>>,
-        candidate: &StateOf<Booked<'_>>,
+        current: StateRefOf<'_, Booked<'_>>,
+        candidate: StateRefOf<'_, Booked<'_>>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         self.inner.get(self.index).1.log_ratio_after(target.0, current, candidate, path)

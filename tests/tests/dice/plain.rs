@@ -5,7 +5,7 @@ use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
 use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Symmetry};
 use plaus_mcmc::view::View;
-use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target};
+use plaus_mcmc::{ModelError, Move, Simulated, State, StateRefOf, Target};
 use plaus_scenes::dice::{
     Config, Constraint, Dice, Draw, FaceUp, Field, Near, Point, Rest, RestAt, Shift, Site, Trip, component, turn,
 };
@@ -64,7 +64,7 @@ impl Target for Plain<'_> {
     fn simulate(
         &self,
         draw: &Draw,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<Rest>, ModelError> {

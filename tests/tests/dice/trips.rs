@@ -88,7 +88,7 @@ fn chains_find_solutions() {
         let mut chain = Chain::start(&scene, &moves, Seed(2).chain(0)).unwrap();
         let found = (0..5000).any(|_| {
             chain.step().unwrap();
-            scene.class(chain.state()).is_some()
+            scene.class(chain.state().by_ref()).is_some()
         });
         assert!(found, "{:?}", scene.config().constraints);
     }

@@ -4,7 +4,7 @@ use super::moves::{constrained, free};
 use super::plain::{AnyMove, small};
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Symmetry};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 use plaus_scenes::dice::{Dice, Draw, Near, Point, Shift, component, turn};
 
 /// What is done to a right move to make it wrong.
@@ -28,7 +28,7 @@ impl Move<Dice> for Faulty {
     fn propose(
         &self,
         target: &Dice,
-        current: &StateOf<Dice>,
+        current: StateRefOf<'_, Dice>,
         candidate: &mut Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -53,8 +53,8 @@ impl Move<Dice> for Faulty {
     fn log_ratio(
         &self,
         t: &Dice,
-        from: &StateOf<Dice>,
-        to: &StateOf<Dice>,
+        from: StateRefOf<'_, Dice>,
+        to: StateRefOf<'_, Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         self.0.log_ratio(t, from, to, path)
@@ -63,8 +63,8 @@ impl Move<Dice> for Faulty {
     fn log_ratio_after(
         &self,
         target: &Dice,
-        current: &StateOf<Dice>,
-        candidate: &StateOf<Dice>,
+        current: StateRefOf<'_, Dice>,
+        candidate: StateRefOf<'_, Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         self.0.log_ratio_after(target, current, candidate, path)

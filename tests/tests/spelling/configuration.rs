@@ -62,7 +62,7 @@ fn any_word_is_spelled() {
         let mut chain = Chain::start(&scene, &moves, plaus_dist::Seed(2).chain(0)).unwrap();
         let full = (0..10_000).any(|_| {
             chain.step().unwrap();
-            scene.class(chain.state()).is_some()
+            scene.class(chain.state().by_ref()).is_some()
         });
         assert!(full, "{text} was not spelled in 10,000 iterations");
     }

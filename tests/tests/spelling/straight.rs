@@ -5,7 +5,7 @@ use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::check::Statistic;
 use plaus_mcmc::library::{RedrawAll, RedrawSome, ShiftOne, ShiftSome, Swap, Toggle};
 use plaus_mcmc::view::View;
-use plaus_mcmc::{ModelError, Move, Simulated, State, StateOf, Target, Variables};
+use plaus_mcmc::{ModelError, Move, Simulated, State, StateRefOf, Target, Variables};
 use plaus_scenes::spelling::{BirthDeath, Config, Drops, Redrop, Rest, Spelling, Vertices};
 
 pub(crate) type AnyMove = Box<dyn Move<Spelling>>;
@@ -32,7 +32,7 @@ impl Target for Straight<'_> {
     fn simulate(
         &self,
         draw: &Drops,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<Rest>, ModelError> {

@@ -5,7 +5,7 @@ use super::moves::{constrained, free};
 use super::straight::{AnyMove, change_ball, change_vertices, redraw_vertices, small, toggle};
 use plaus_dist::{LogRatio, Stream, math};
 use plaus_mcmc::library::RedrawAll;
-use plaus_mcmc::{ModelError, Move, Path, Proposal, Recipe, StateOf, Target, Variables};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, Recipe, StateRefOf, Target, Variables};
 use plaus_scenes::spelling::{BirthDeath, Drops, Redrop, Spelling};
 use plaus_scenes::{Rules, Scene};
 
@@ -34,7 +34,7 @@ impl Move<Spelling> for Faulty {
     fn propose(
         &self,
         target: &Spelling,
-        current: &StateOf<Spelling>,
+        current: StateRefOf<'_, Spelling>,
         candidate: &mut Drops,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -82,8 +82,8 @@ impl Move<Spelling> for Faulty {
     fn log_ratio(
         &self,
         t: &Spelling,
-        from: &StateOf<Spelling>,
-        to: &StateOf<Spelling>,
+        from: StateRefOf<'_, Spelling>,
+        to: StateRefOf<'_, Spelling>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         self.0.log_ratio(t, from, to, path)
@@ -96,8 +96,8 @@ impl Move<Spelling> for Faulty {
     fn log_ratio_after(
         &self,
         target: &Spelling,
-        current: &StateOf<Spelling>,
-        candidate: &StateOf<Spelling>,
+        current: StateRefOf<'_, Spelling>,
+        candidate: StateRefOf<'_, Spelling>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         self.0.log_ratio_after(target, current, candidate, path)

@@ -86,7 +86,7 @@ impl<S: Scene> Sampler<S> {
         let mut columns = vec![Vec::with_capacity(length.iterations as usize); wanted.len()];
         for _ in 0..length.iterations {
             chain.step()?;
-            self.scene.write_scalars(chain.state(), &mut values);
+            self.scene.write_scalars(chain.state().by_ref(), &mut values);
             for (column, &index) in columns.iter_mut().zip(wanted) {
                 column.push(values[index]);
             }
@@ -101,7 +101,7 @@ impl<S: Scene> Sampler<S> {
     pub(crate) fn first_hits(&self, seed: u64, chains: u64, limit: u64) -> Result<Vec<Option<u64>>> {
         let first = |chain| -> Result<Option<u64>> {
             let mut chain = Chain::start(&self.scene, &self.moves, Seed(seed).chain(chain))?;
-            while self.scene.class(chain.state()).is_none() {
+            while self.scene.class(chain.state().by_ref()).is_none() {
                 if chain.iteration() == limit {
                     return Ok(None);
                 }
@@ -116,9 +116,9 @@ impl<S: Scene> Sampler<S> {
     pub(crate) fn first(&self, streams: ChainStreams, limit: u64) -> Result<First<S>> {
         let begin = seconds();
         let mut chain = Chain::start(&self.scene, &self.moves, streams)?;
-        let mut found = self.scene.class(chain.state()).is_some();
+        let mut found = self.scene.class(chain.state().by_ref()).is_some();
         while !found && chain.iteration() < limit {
-            found = chain.step()?.verdict == Verdict::Accepted && self.scene.class(chain.state()).is_some();
+            found = chain.step()?.verdict == Verdict::Accepted && self.scene.class(chain.state().by_ref()).is_some();
         }
         let (iterations, state) = (chain.iteration(), chain.state().clone());
         Ok(First { iterations, seconds: seconds() - begin, state, found })

@@ -4,10 +4,9 @@ use crate::console;
 use crate::failure::{Failure, Outcome};
 use crate::output;
 use crate::scenario_file;
-use crate::why::{self, OfPrior};
-use plaus_run::Manifest;
+use crate::why;
+use plaus_scenes::Scene;
 use plaus_scenes::scenario::ScenarioError;
-use plaus_scenes::{Scene, Visitor};
 use std::path::PathBuf;
 
 /// Which scenario.
@@ -29,29 +28,20 @@ pub(crate) struct Args {
     quiet: bool,
 }
 
-/// Makes the scene and its moves, and so the manifest a run would have, and says what is to be known of the world.
-struct Try<'a>(&'a plaus_run::Recipe);
-
-impl Visitor for Try<'_> {
-    type Output = Result<(Manifest, Vec<String>), plaus_run::Error>;
-    fn visit<S: Scene>(self, scene: S) -> Self::Output {
-        Ok((self.0.manifest(&scene)?, scene.notes()))
-    }
-}
-
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let recipe = scenario_file::read(&self.scenario, self.overrides, None)?;
         let name = self.scenario.display().to_string();
         let locate = |error| Failure::from(ScenarioError::locate(&name, &recipe.text, &error));
-        let manifest = recipe.scenario.visit(Try(&recipe)).map_err(locate)?;
-        let (manifest, notes) = manifest.map_err(|error| match error {
+        let scene = recipe.scenario.stage().map_err(locate)?;
+        // The manifest that a run would have, with the scene's moves.
+        let manifest = recipe.manifest(&scene).map_err(|error| match error {
             plaus_run::Error::Config(error) => locate(error),
             other => other.into(),
         })?;
         if let Some(draws) = self.draws {
             let (seed, tells) = (recipe.scenario.sampler.seed, !self.quiet && !self.json);
-            let tally = recipe.scenario.visit(OfPrior { draws, seed, tells }).map_err(locate)?;
+            let tally = why::of_prior(&scene, seed, draws, tells);
             let tally = tally.map_err(|error| Failure::Message(format!("{name}: {error}")))?;
             let text = if self.json { format!("{}\n", why::to_json(&tally)) } else { why::in_words(&tally, "draws") };
             output::print(&text)?;
@@ -64,7 +54,7 @@ impl Args {
                 manifest.moves.join(", "),
                 scalars.join(", ")
             ));
-            notes.iter().for_each(|note| console::note_line(note));
+            scene.notes().iter().for_each(|note| console::note_line(note));
             console::note_line("With all keys in force:");
             output::print(&manifest.scenario.effective)?;
         }

@@ -8,8 +8,7 @@ use crate::output;
 use crate::progress::Monitor;
 use crate::table::{amount, grouped, short};
 use plaus_mcmc::chance::{ChancePulse, Parts, count};
-use plaus_run::{Diagnosis, Run, RunOf, RunVisitor};
-use plaus_scenes::Scene;
+use plaus_run::{Diagnosis, RunReader};
 use serde_json::json;
 
 /// Draws between two looks at the clock.
@@ -17,7 +16,12 @@ const AT_A_TIME: u64 = 4;
 
 /// Makes draws of the prior for as long as the chains sampled after their warm-up, on one thread, and says how many
 /// independent solutions either makes in a minute of one processor.
-pub(super) fn with_prior(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, as_json: bool) -> Result<(), Failure> {
+pub(super) fn with_prior(
+    run: &RunReader<'_>,
+    diagnosis: &Diagnosis,
+    monitor: &Monitor,
+    as_json: bool,
+) -> Result<(), Failure> {
     let share = diagnosis.iterations as f64 / monitor.done().saturating_sub(monitor.begun_at()).max(1) as f64;
     let (Some(found), true) = (&diagnosis.independent, share <= 1.0) else {
         console::note_line(
@@ -27,7 +31,7 @@ pub(super) fn with_prior(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, as
     };
     let seconds = monitor.processor_seconds() * share;
     let clock = ProcessorClock::start();
-    let (draws, hits) = run.visit(Plain { goes_on: &|| clock.seconds() < seconds && !interrupt::asked() })??;
+    let (draws, hits) = plain(run, &|| clock.seconds() < seconds && !interrupt::asked())?;
     let took = clock.seconds();
     let minute = |count: f64, seconds: f64| 60.0 * count / seconds;
     let (chains, prior) = (minute(found.ess, seconds), minute(hits as f64, took));
@@ -53,25 +57,18 @@ pub(super) fn with_prior(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, as
     Ok(())
 }
 
-/// Draws of the prior, of which only hits are counted.
-struct Plain<'a> {
-    goes_on: &'a dyn Fn() -> bool,
-}
-
-impl RunVisitor for Plain<'_> {
-    type Output = Result<(u64, u64), Failure>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        let manifest = run.run().manifest();
-        manifest.judges_alone()?;
-        let (pulse, mut sums) = (ChancePulse::default(), (0, 0));
-        for batch in 0.. {
-            if !(self.goes_on)() {
-                break;
-            }
-            let made = count(run.scene(), Parts::NONE, manifest.plan.seed, batch, AT_A_TIME, &pulse);
-            let made = made.map_err(|error| Failure::Message(error.to_string()))?;
-            sums = (sums.0 + made.draws, sums.1 + made.hits.first().copied().unwrap_or(0));
+/// Draws of the prior and hits among them, for as long as it `goes_on`.
+fn plain(run: &RunReader<'_>, goes_on: &dyn Fn() -> bool) -> Result<(u64, u64), Failure> {
+    let manifest = run.run().manifest();
+    manifest.judges_alone()?;
+    let (pulse, mut sums) = (ChancePulse::default(), (0, 0));
+    for batch in 0.. {
+        if !goes_on() {
+            break;
         }
-        Ok(sums)
+        let made = count(run.scene(), Parts::NONE, manifest.plan.seed, batch, AT_A_TIME, &pulse);
+        let made = made.map_err(|error| Failure::Message(error.to_string()))?;
+        sums = (sums.0 + made.draws, sums.1 + made.hits.first().copied().unwrap_or(0));
     }
+    Ok(sums)
 }

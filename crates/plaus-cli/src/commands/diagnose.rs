@@ -8,8 +8,7 @@ use crate::table::short;
 use crate::{plots, report};
 use plaus_mcmc::Pulse;
 use plaus_run::pace::pace;
-use plaus_run::{Beside, Diagnosis, Folder, Phase, Run, RunOf, RunVisitor};
-use plaus_scenes::Scene;
+use plaus_run::{Beside, Diagnosis, Folder, Phase, Run, RunReader};
 use serde_json::json;
 use std::path::PathBuf;
 use std::thread;
@@ -31,71 +30,38 @@ pub(crate) struct Args {
     force: bool,
 }
 
-struct Plots<'a>(&'a std::path::Path, bool);
-
-impl RunVisitor for Plots<'_> {
-    type Output = Result<usize, plaus_run::Error>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        plots::write(&run, self.0, self.1)
-    }
-}
-
-/// Counts the draws of each chain.
-pub(super) struct CountDraws {
-    /// Only those that statistics are made of; else all among which there may be solutions.
-    pub(super) statistics: bool,
-}
-
-impl RunVisitor for CountDraws {
-    type Output = u64;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> u64 {
-        let phases = if self.statistics { &[Phase::Sampling] } else { run.counted() };
-        phases.iter().map(|&phase| run.draws(phase)).sum()
-    }
+/// How many draws each chain of a run has among which there may be solutions.
+pub(super) fn draws_that_count(run: &RunReader<'_>) -> u64 {
+    run.counted().iter().map(|&phase| run.draws(phase)).sum()
 }
 
 /// How long a run's chains are gone on with to find out how fast they are here.
 const TRIED: Duration = Duration::from_millis(300);
 
 /// Goes on with a chain for a moment, to nowhere; gives the seconds an iteration takes.
-struct Pace;
-
-impl RunVisitor for Pace {
-    type Output = Option<f64>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Option<f64> {
-        let (pulse, clock) = (Pulse::default(), ProcessorClock::start());
-        let made = thread::scope(|scope| {
-            scope.spawn(|| {
-                thread::sleep(TRIED);
-                pulse.stop();
-            });
-            pace(&run, &pulse)
+fn seconds_each(run: &RunReader<'_>) -> Option<f64> {
+    let (pulse, clock) = (Pulse::default(), ProcessorClock::start());
+    let made = thread::scope(|scope| {
+        scope.spawn(|| {
+            thread::sleep(TRIED);
+            pulse.stop();
         });
-        // What cannot be told is not told.
-        made.ok().flatten().filter(|&made| made > 0).map(|made| clock.seconds() / made as f64)
-    }
+        pace(run, &pulse)
+    });
+    // What cannot be told is not told.
+    made.ok().flatten().filter(|&made| made > 0).map(|made| clock.seconds() / made as f64)
 }
 
 /// Independent solutions, and how many come in a minute of one processor here.
-fn at_this_pace(run: &Run, diagnosis: &Diagnosis) -> Result<String, Failure> {
-    let Some(found) = &diagnosis.independent else { return Ok(String::new()) };
+fn at_this_pace(run: &RunReader<'_>, diagnosis: &Diagnosis) -> String {
+    let Some(found) = &diagnosis.independent else { return String::new() };
     let mut text = report::independent(diagnosis, None);
-    let iterations = diagnosis.iterations as f64 * run.manifest().chains().len() as f64;
-    if let Some(each) = run.visit(Pace)? {
+    let iterations = diagnosis.iterations as f64 * run.chains().len() as f64;
+    if let Some(each) = seconds_each(run) {
         let minute = short(60.0 * found.ess / (iterations * each));
         text.insert_str(text.find(" (by").unwrap_or(0), &format!(", {minute} a minute of one processor here"));
     }
-    Ok(text)
-}
-
-/// Holds a run's chains against exact draws.
-struct BesidePrior<'a>(&'a Diagnosis);
-
-impl RunVisitor for BesidePrior<'_> {
-    type Output = Result<Option<Beside>, plaus_run::Error>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        Beside::of(&run, self.0)
-    }
+    text
 }
 
 impl Args {
@@ -104,17 +70,18 @@ impl Args {
         if run.folder().is_being_written() {
             console::note_line("note: the run is being written; this is as of its last checkpoint");
         }
-        if run.visit(CountDraws { statistics: true })? == 0 {
+        let reader = run.reader()?;
+        if reader.draws(Phase::Sampling) == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         if let Some(folder) = &self.plots {
             let out = folder.display().to_string();
-            let made = run.visit(Plots(folder, self.force))?.map_err(|error| Failure::from(error).about(&out))?;
+            let made = plots::write(&reader, folder, self.force).map_err(|error| Failure::from(error).about(&out))?;
             console::note_line(&format!("{out}: {made} plots"));
         }
-        let diagnosis = report::diagnose(&run, None)?;
+        let diagnosis = Diagnosis::of(&reader, None)?;
         let manifest = run.manifest();
-        let beside = run.visit(BesidePrior(&diagnosis))??;
+        let beside = Beside::of(&reader, &diagnosis)?;
         let is_healthy = diagnosis.is_healthy() && beside.as_ref().is_none_or(|beside| beside.missed.is_none());
         if let Some(warning) = report::warning(manifest) {
             console::note_line(&warning);
@@ -125,8 +92,9 @@ impl Args {
             object["healthy"] = json!(is_healthy);
             output::print_line(&object.to_string())?;
         } else {
-            let solutions =
-                report::solutions(&diagnosis) + &at_this_pace(&run, &diagnosis)? + &report::tempering(&diagnosis, None);
+            let solutions = report::solutions(&diagnosis)
+                + &at_this_pace(&reader, &diagnosis)
+                + &report::tempering(&diagnosis, None);
             let findings: String = diagnosis.findings.iter().map(|finding| format!("  {finding}\n")).collect();
             let some = match diagnosis.stride {
                 1 => String::new(),

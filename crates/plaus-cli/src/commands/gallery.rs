@@ -5,8 +5,7 @@ use crate::failure::{Failure, Outcome};
 use plaus_export::ours;
 use plaus_gallery::{Gallery, HEAD, Options, gallery};
 use plaus_run::export::output;
-use plaus_run::{Error, Folder, Run, RunOf, RunVisitor};
-use plaus_scenes::Scene;
+use plaus_run::{Error, Folder, Run, RunReader};
 use std::path::PathBuf;
 
 /// Pages longer than this are slow to open, in bytes.
@@ -31,36 +30,32 @@ pub(crate) struct Args {
     salvage: bool,
 }
 
-struct Page<'a>(&'a Args);
-
-impl RunVisitor for Page<'_> {
-    type Output = Result<Gallery, Error>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        let options = Options { count: self.0.count as usize, run: self.0.run.display().to_string() };
+impl Args {
+    fn write(&self, run: &RunReader<'_>) -> Result<Gallery, Error> {
+        let options = Options { count: self.count as usize, run: self.run.display().to_string() };
         let is_ours = |path: &std::path::Path| ours::begins_with(path, HEAD.as_bytes());
         let mut made = None;
-        output::file(&self.0.out, self.0.force, is_ours, |out| {
-            let page = made.insert(gallery(&run, &options)?);
+        output::file(&self.out, self.force, is_ours, |out| {
+            let page = made.insert(gallery(run, &options)?);
             out.write_all(page.html.as_bytes()).map_err(Error::Output)
         })?;
         made.ok_or_else(|| Error::Request("nothing was written".to_owned()))
     }
-}
 
-impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let mut run = Run::open(&Folder::new(&self.run))?;
         if self.salvage {
             run = run.salvaged();
-            console::note_line(&run.visit(super::Salvage)?);
+            console::note_line(&super::salvage(&run.reader()?));
         } else if run.folder().is_being_written() {
             console::note_line("note: the run is being written; this shows it as of its last checkpoint");
         }
-        if run.visit(super::diagnose::CountDraws { statistics: false })? == 0 {
+        let reader = run.reader()?;
+        if super::diagnose::draws_that_count(&reader) == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
         let out = self.out.display().to_string();
-        let made = run.visit(Page(&self))?.map_err(|error| Failure::from(error).about(&out))?;
+        let made = self.write(&reader).map_err(|error| Failure::from(error).about(&out))?;
         let (shown, distinct, size) = (made.shown, made.distinct, made.html.len());
         console::note_line(&format!(
             "{out}: {shown} of {distinct} distinct solutions, {:.1} MB; open it in a browser",

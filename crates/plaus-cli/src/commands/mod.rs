@@ -25,31 +25,22 @@ mod wanted;
 use crate::failure::{Failure, Outcome};
 use crate::table::grouped;
 use clap::Subcommand;
-use plaus_run::{RunOf, RunVisitor};
-use plaus_scenes::Scene;
+use plaus_run::RunReader;
 
-/// Says what is left of a run that is read for salvage, and what is lost.
-struct Salvage;
-
-impl RunVisitor for Salvage {
-    type Output = String;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> String {
-        let (kept, planned) = (run.iterations(), run.run().manifest().plan.end());
-        let lost = run.lost();
-        let chains: Vec<String> =
-            lost.iter().take(8).map(|(chain, bytes)| format!("{} bytes of chain {chain}", grouped(*bytes))).collect();
-        let more = if lost.len() > chains.len() {
-            format!(" and of {} more", lost.len() - chains.len())
-        } else {
-            String::new()
-        };
-        let damage = if lost.is_empty() {
-            "no damage in the records".to_owned()
-        } else {
-            format!("lost: {}{more}", chains.join(", "))
-        };
-        format!("salvaged: the first {} of {} iterations of each chain; {damage}", grouped(kept), grouped(planned))
-    }
+/// What is left of a run that is read for salvage, and what is lost.
+fn salvage(run: &RunReader<'_>) -> String {
+    let (kept, planned) = (run.iterations(), run.run().manifest().plan.end());
+    let lost = run.lost();
+    let chains: Vec<String> =
+        lost.iter().take(8).map(|(chain, bytes)| format!("{} bytes of chain {chain}", grouped(*bytes))).collect();
+    let others = lost.len() - chains.len();
+    let more = if others > 0 { format!(" and of {others} more") } else { String::new() };
+    let damage = if lost.is_empty() {
+        "no damage in the records".to_owned()
+    } else {
+        format!("lost: {}{more}", chains.join(", "))
+    };
+    format!("salvaged: the first {} of {} iterations of each chain; {damage}", grouped(kept), grouped(planned))
 }
 
 /// What to do.

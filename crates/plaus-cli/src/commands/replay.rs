@@ -6,8 +6,8 @@ use crate::label;
 use crate::output;
 use plaus_export::{Clip, Cut, Label, table};
 use plaus_run::replay::{Replay, replay, replay_at};
-use plaus_run::{Error, Folder, Manifest, Run, RunOf, RunVisitor, SampleId};
-use plaus_scenes::{AccuracyPreset, Scene};
+use plaus_run::{Folder, Manifest, Run, SampleId};
+use plaus_scenes::AccuracyPreset;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -39,22 +39,14 @@ enum Format {
     Json,
 }
 
-struct Rebuild(SampleId, Option<AccuracyPreset>);
-
-impl RunVisitor for Rebuild {
-    type Output = Result<Replay, Error>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        match self.1 {
-            Some(accuracy) => replay_at(&run, self.0, accuracy),
-            None => replay(&run, self.0),
-        }
-    }
-}
-
 impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let run = Run::open(&Folder::new(&self.run))?;
-        let replay = run.visit(Rebuild(self.sample, self.accuracy))??;
+        let reader = run.reader()?;
+        let replay = match self.accuracy {
+            Some(accuracy) => replay_at(&reader, self.sample, accuracy)?,
+            None => replay(&reader, self.sample)?,
+        };
         let cut = Cut::new(self.fps, None, &replay.animation).map_err(|error| Failure::Message(error.to_string()))?;
         let label = Label::default();
         let clip = Clip::new(&replay.animation, &label, cut);

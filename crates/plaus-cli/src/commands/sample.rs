@@ -12,9 +12,9 @@ use crate::output;
 use crate::progress::{Monitor, Rounds, Stop, Style};
 use crate::report;
 use crate::table::{grouped, rate};
-use crate::why::{self, OfRun};
+use crate::why;
 use plaus_mcmc::{Ending, Plan};
-use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, Sampling};
+use plaus_run::{Confirmation, Diagnosis, Error, Folder, Manifest, Run, RunReader, Sampling};
 use plaus_scenes::scenario::ScenarioError;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -175,9 +175,10 @@ impl Watching {
             return self.interrupted(&path, monitor);
         }
         let run = Run::open(folder)?;
-        let diagnosis = report::diagnose(&run, Some(SUMMARISED / run.manifest().chains().len().max(1) as u64))?;
+        let reader = run.reader()?;
+        let diagnosis = Diagnosis::of(&reader, Some(SUMMARISED / run.manifest().chains().len().max(1) as u64))?;
         let confirmed = if self.confirm {
-            let Some(list) = confirm::confirm(&run, self.threads(), !self.json && !self.quiet)? else {
+            let Some(list) = confirm::confirm(&reader, self.threads(), !self.json && !self.quiet)? else {
                 console::note_line(&format!("interrupted while confirming; go on: plaus resume {path} --confirm"));
                 return Ok(Outcome::Interrupted);
             };
@@ -186,18 +187,18 @@ impl Watching {
             None
         };
         if self.json {
-            let end = end_as_json(&run, &diagnosis, monitor, ending, confirmed.as_ref())?;
+            let end = end_as_json(&reader, &diagnosis, monitor, ending, confirmed.as_ref())?;
             output::print_line(&end.to_string())?;
         } else if !self.quiet {
             output::print(&summary(&run, &diagnosis, monitor, ending))?;
         }
         if self.compare_prior {
-            compare::with_prior(&run, &diagnosis, monitor, self.json)?;
+            compare::with_prior(&reader, &diagnosis, monitor, self.json)?;
         }
         if run.manifest().shard.is_some() {
             return self.end_of_piece(&run, ending);
         }
-        let is_satisfied = self.tell_what_is_missing(&run, &diagnosis, monitor, ending)?;
+        let is_satisfied = self.tell_what_is_missing(&reader, &diagnosis, monitor, ending)?;
         if is_empty(&diagnosis, ending) {
             return Ok(Outcome::Unsatisfied); // the summary has said why
         }
@@ -224,12 +225,12 @@ impl Watching {
     /// Whether the run found what it was asked for; where it did not, says what is missing, and how to go on.
     fn tell_what_is_missing(
         &self,
-        run: &Run,
+        run: &RunReader<'_>,
         diagnosis: &Diagnosis,
         monitor: &Monitor,
         ending: Ending,
     ) -> Result<bool, Failure> {
-        let (plan, tally, path) = (run.manifest().plan, &diagnosis.tally, quoted(run.folder().path()));
+        let (plan, tally, path) = (run.run().manifest().plan, &diagnosis.tally, quoted(run.run().folder().path()));
         let missing = plan.solutions.filter(|&wanted| tally.distinct < wanted);
         if let Some(wanted) = missing {
             let found = tally.distinct;
@@ -248,7 +249,7 @@ impl Watching {
             return Ok(false);
         }
         if !self.json && !self.quiet {
-            console::note_line(&why::in_words(&run.visit(OfRun)??, "recorded states"));
+            console::note_line(&why::in_words(&why::of_run(run)?, "recorded states"));
         }
         console::note_line("no sample satisfies the constraint: sample longer, or ask for less (`plaus explain`)");
         Ok(false)
@@ -262,19 +263,19 @@ fn is_empty(diagnosis: &Diagnosis, ending: Ending) -> bool {
 
 /// The last line of `--json`.
 fn end_as_json(
-    run: &Run,
+    run: &RunReader<'_>,
     diagnosis: &Diagnosis,
     monitor: &Monitor,
     ending: Ending,
     confirmed: Option<&Confirmation>,
 ) -> Result<Value, Failure> {
-    let mut end = report::to_json(run.manifest(), diagnosis);
+    let mut end = report::to_json(run.run().manifest(), diagnosis);
     end["event"] = json!("end");
     end["ending"] = json!(ending_in_words(ending));
     end["seconds"] = json!(monitor.seconds());
     end["iterations_per_second"] = json!(monitor.rate());
     if !diagnosis.tally.is_satisfied() {
-        end["asked"] = why::to_json(&run.visit(OfRun)??);
+        end["asked"] = why::to_json(&why::of_run(run)?);
     }
     if let Some(list) = confirmed {
         let (held, checked) = (list.held, list.solutions.len());

@@ -37,7 +37,7 @@ pub fn count<T: Goal>(
     for draw in 0..draws {
         let state = prior(target, &mut streams.at(draw, DRAW), &mut scratch);
         let state = state.map_err(|source| ChanceError::Model { batch, draw, source })?;
-        parts.look(target, &state, &mut met);
+        parts.look(target, state.by_ref(), &mut met);
         hits.iter_mut().zip(&met).for_each(|(hits, &met)| *hits += u64::from(met));
         if (draw + 1).is_multiple_of(AT_A_TIME) || draw + 1 == draws {
             pulse.made(if draw + 1 == draws { draw % AT_A_TIME + 1 } else { AT_A_TIME })?;

@@ -26,7 +26,7 @@ pub use split::{Split, Splitting, split};
 pub use stones::{Stoned, Stones, stones};
 
 use crate::chain::ChainError;
-use crate::target::{Goal, ModelError, State, StateOf, Target};
+use crate::target::{Goal, ModelError, State, StateOf, StateRefOf, Target};
 use plaus_dist::{ChainStreams, Purpose, Seed, Stream};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
@@ -128,7 +128,7 @@ pub(crate) fn prior<T: Target>(
 }
 
 /// Says of each part of a goal whether a state meets it, in as many places as there are parts.
-pub type Met<'a, T> = &'a (dyn Fn(&T, &StateOf<T>, &mut [bool]) + Sync);
+pub type Met<'a, T> = &'a (dyn Fn(&T, StateRefOf<'_, T>, &mut [bool]) + Sync);
 
 /// Parts of a goal that states may meet one by one: each is an event of its own, besides the goal.
 pub struct Parts<'a, T: Target> {
@@ -152,7 +152,7 @@ impl<T: Target> Parts<'_, T> {
 
 impl<T: Goal> Parts<'_, T> {
     /// Whether a state reaches the goal, then whether it meets each part; `met` has a place more than there are parts.
-    fn look(&self, target: &T, state: &StateOf<T>, met: &mut [bool]) {
+    fn look(&self, target: &T, state: StateRefOf<'_, T>, met: &mut [bool]) {
         if let Some((all, parts)) = met.split_first_mut() {
             *all = target.class(state).is_some();
             (self.met)(target, state, parts);

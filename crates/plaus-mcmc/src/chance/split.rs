@@ -210,7 +210,7 @@ impl<D: Clone, O: Clone> Particle<D, O> {
         T: Goal<Draw = D, Outcome = O>,
     {
         let mut met = vec![false; count];
-        parts.look(target, &state, &mut met);
+        parts.look(target, state.by_ref(), &mut met);
         Self { level: state.log_constraint, met, ancestor, state }
     }
 }

@@ -156,7 +156,7 @@ impl Walk {
             }
         }
         let top = replicas.top().state();
-        let satisfies = target.class(top).is_some();
+        let satisfies = target.class(top.by_ref()).is_some();
         self.satisfying += u64::from(satisfies);
         self.goal.note(if satisfies { -top.log_constraint.value() } else { f64::NEG_INFINITY });
     }

@@ -181,7 +181,7 @@ fn ways<T: Target>(target: &T, kernel: &dyn Enumerable<T>, states: &[StateOf<T>]
         if state.log_p().is_zero() {
             return Ok(vec![Way { to: None, probability: 1.0, path: crate::Path(0) }]);
         }
-        let branches = kernel.branches(target, state).map_err(CheckError::model(from as u64))?;
+        let branches = kernel.branches(target, state.by_ref()).map_err(CheckError::model(from as u64))?;
         let mut row = Vec::with_capacity(branches.len());
         for branch in branches {
             let to = branch.draw.as_ref().and_then(|draw| states.iter().position(|state| state.draw == *draw));
@@ -232,7 +232,7 @@ fn acceptance<T: Target>(
     if to.log_p().is_zero() {
         return Ok(0.0);
     }
-    let ratio = kernel.log_ratio(target, from, to, way.path)?;
+    let ratio = kernel.log_ratio(target, from.by_ref(), to.by_ref(), way.path)?;
     Ok(math::exp((to.log_p().value() - from.log_p().value() + ratio.value()).min(0.0)))
 }
 

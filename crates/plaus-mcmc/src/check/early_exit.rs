@@ -3,7 +3,7 @@
 use super::CheckError;
 use crate::chain::{Chain, ChainError, Verdict};
 use crate::moves::Mixture;
-use crate::target::{ModelError, Simulated, State, StateOf, Target};
+use crate::target::{ModelError, Simulated, State, StateRefOf, Target};
 use crate::view::{View, lend};
 use plaus_dist::{LogDensity, LogPotential, Seed, Stream};
 use std::fmt;
@@ -40,7 +40,7 @@ impl<T: Target> Target for NeverEarly<'_, T> {
     fn simulate(
         &self,
         draw: &T::Draw,
-        _current: Option<&StateOf<Self>>,
+        _current: Option<StateRefOf<'_, Self>>,
         _floor: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<T::Outcome>, ModelError> {

@@ -15,7 +15,7 @@
 //! use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Stream};
 //! use plaus_mcmc::check::{OneStep, PriorOnly, Statistic, one_step, prior};
 //! use plaus_mcmc::view::lend;
-//! # use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Simulated, State, StateOf, Target};
+//! # use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Simulated, State, StateOf, StateRefOf, Target};
 //! # struct Throw { strength: Gaussian }
 //! # impl Target for Throw {
 //! #     type Draw = f64;
@@ -23,7 +23,7 @@
 //! #     type Scratch = ();
 //! #     fn start(&self, stream: &mut Stream) -> f64 { self.strength.sample(stream) }
 //! #     fn log_prior(&self, draw: &f64) -> Result<LogDensity, ModelError> { Ok(self.strength.log_density(draw)?) }
-//! #     fn simulate(&self, draw: &f64, _: Option<&StateOf<Self>>, _: LogPotential, _: &mut ())
+//! #     fn simulate(&self, draw: &f64, _: Option<StateRefOf<'_, Self>>, _: LogPotential, _: &mut ())
 //! #         -> Result<Simulated<f64>, ModelError> { Ok(Simulated::Complete(2.0 * draw)) }
 //! #     fn log_constraint(&self, landing: &f64) -> Result<LogPotential, ModelError> {
 //! #         Ok(LogPotential::new(-0.5 * (landing - 3.0) * (landing - 3.0))?)
@@ -33,12 +33,12 @@
 //! struct Redraw;
 //! impl Move<Throw> for Redraw {
 //!     fn name(&self) -> &str { "redraw" }
-//!     fn propose(&self, target: &Throw, _: &StateOf<Throw>, candidate: &mut f64, stream: &mut Stream)
+//!     fn propose(&self, target: &Throw, _: StateRefOf<'_, Throw>, candidate: &mut f64, stream: &mut Stream)
 //!         -> Result<Proposal, ModelError> {
 //!         *candidate = target.strength.sample(stream);
 //!         Ok(Proposal::SYMMETRIC)
 //!     }
-//!     fn log_ratio(&self, _: &Throw, _: &StateOf<Throw>, _: &StateOf<Throw>, _: Path)
+//!     fn log_ratio(&self, _: &Throw, _: StateRefOf<'_, Throw>, _: StateRefOf<'_, Throw>, _: Path)
 //!         -> Result<LogRatio, ModelError> {
 //!         Ok(LogRatio::ONE)
 //!     }

@@ -4,7 +4,7 @@ use super::laws::{LogP, multinomial};
 use super::ratios::compare;
 use super::{CheckError, TRY};
 use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateOf, Target};
+use crate::target::{ModelError, StateOf, StateRefOf, Target};
 use plaus_dist::Seed;
 
 /// One way a move may go from a state.
@@ -25,7 +25,7 @@ pub trait Enumerable<T: Target>: Move<T> {
     ///
     /// # Errors
     /// [`ModelError`] where the model fails.
-    fn branches(&self, target: &T, state: &StateOf<T>) -> Result<Vec<Branch<T::Draw>>, ModelError>;
+    fn branches(&self, target: &T, state: StateRefOf<'_, T>) -> Result<Vec<Branch<T::Draw>>, ModelError>;
 }
 
 /// How what a move proposes compares with its list.
@@ -60,7 +60,7 @@ fn frequencies_from<T: Target>(
     (seed, tries): (Seed, u64),
 ) -> Result<(LogP, f64), ModelError> {
     let state = &states[from];
-    let branches = kernel.branches(target, state)?;
+    let branches = kernel.branches(target, state.by_ref())?;
     let streams = seed.chain(from as u64);
     // Branches told apart by nothing that can be seen share the cell of the first of them.
     let alike = |a: &Branch<T::Draw>, b: &Branch<T::Draw>| a.draw == b.draw && (a.draw.is_none() || a.path == b.path);
@@ -73,7 +73,7 @@ fn frequencies_from<T: Target>(
     let mut candidate = state.draw.clone();
     for index in 0..tries {
         candidate.clone_from(&state.draw);
-        let proposal = kernel.propose(target, state, &mut candidate, &mut streams.at(index, TRY))?;
+        let proposal = kernel.propose(target, state.by_ref(), &mut candidate, &mut streams.at(index, TRY))?;
         let seen = match proposal {
             Proposal::Stay => Branch { draw: None, probability: 0.0, path: Path(0) },
             Proposal::Anew => Branch { draw: Some(candidate.clone()), probability: 0.0, path: Path(0) },

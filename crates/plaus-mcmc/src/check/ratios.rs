@@ -204,7 +204,7 @@ pub fn ratio_pair<T: Target>(
     let mut pair = || {
         let from = states(&mut streams.at(index, EXACT))?;
         let mut draw = from.draw.clone();
-        let proposal = kernel.propose(target, &from, &mut draw, &mut streams.at(index, TRY))?;
+        let proposal = kernel.propose(target, from.by_ref(), &mut draw, &mut streams.at(index, TRY))?;
         let Proposal::Candidate { log_ratio, path, later } = proposal else {
             return Ok(Pair { from, proposal, to: None, ratios: None });
         };
@@ -228,15 +228,19 @@ pub(super) fn compare<T: Target>(
 ) -> Result<PairRatios, ModelError> {
     let (used, excess) = match later {
         Some(bound) => {
-            let after = kernel.log_ratio_after(target, from, to, path)?;
+            let after = kernel.log_ratio_after(target, from.by_ref(), to.by_ref(), path)?;
             (known.times(after)?, if after <= bound { 0.0 } else { after.value() - bound.value() })
         }
         None => (known, 0.0),
     };
-    let forth = kernel.log_ratio(target, from, to, path)?;
+    let forth = kernel.log_ratio(target, from.by_ref(), to.by_ref(), path)?;
     let reverse = kernel.reverse(path);
     // A way that cannot be undone has no ratio back.
-    let back = if used == LogRatio::ZERO { forth.inverse() } else { kernel.log_ratio(target, to, from, reverse)? };
+    let back = if used == LogRatio::ZERO {
+        forth.inverse()
+    } else {
+        kernel.log_ratio(target, to.by_ref(), from.by_ref(), reverse)?
+    };
     Ok(PairRatios { used, forth, back, excess, path_returns: kernel.reverse(reverse) == path })
 }
 

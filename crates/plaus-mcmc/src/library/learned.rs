@@ -4,7 +4,7 @@ use super::happens;
 use crate::fit::Fit;
 use crate::law::Recipe;
 use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::{Variables, Vars, log_density_of};
 use plaus_dist::{LogRatio, Stream, math};
 use std::sync::Arc;
@@ -87,7 +87,7 @@ impl<T: Variables> Move<T> for Learned {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -105,19 +105,25 @@ impl<T: Variables> Move<T> for Learned {
             // The chain rejects it for its prior; no ratio is needed.
             return Ok(Proposal::SYMMETRIC);
         }
-        Ok(Proposal::Candidate { log_ratio: self.ratio(target, &current.draw, candidate)?, path, later: None })
+        Ok(Proposal::Candidate { log_ratio: self.ratio(target, current.draw, candidate)?, path, later: None })
     }
 
-    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
-        self.ratio(target, &from.draw, &to.draw)
+    fn log_ratio(
+        &self,
+        target: &T,
+        from: StateRefOf<'_, T>,
+        to: StateRefOf<'_, T>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.ratio(target, from.draw, to.draw)
     }
 
     fn learns(&self) -> usize {
         self.among.len()
     }
 
-    fn learn_from(&self, target: &T, state: &StateOf<T>) -> Vec<f64> {
-        self.point(target, &state.draw)
+    fn learn_from(&self, target: &T, state: StateRefOf<'_, T>) -> Vec<f64> {
+        self.point(target, state.draw)
     }
 
     fn at_fit(&self, fit: &Fit) -> Option<Box<dyn Move<T>>> {

@@ -2,7 +2,7 @@
 
 use crate::law::Recipe;
 use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::{Variables, log_density};
 use plaus_dist::{LogRatio, Stream};
 
@@ -44,13 +44,13 @@ impl<T: Variables> Move<T> for RedrawAll {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         target.renew_all(candidate, self.recipe, stream);
         if self.symmetric {
-            return Ok(Proposal::with_ratio(Self::printed(target, &current.draw, candidate)?));
+            return Ok(Proposal::with_ratio(Self::printed(target, current.draw, candidate)?));
         }
         let there = target.log_prior(candidate)?;
         if there.is_zero() {
@@ -58,13 +58,19 @@ impl<T: Variables> Move<T> for RedrawAll {
             return Ok(Proposal::SYMMETRIC);
         }
         // Not what the state says, which is that of a view where one lends this move.
-        Ok(Proposal::with_ratio(LogRatio::of(target.log_prior(&current.draw)?, there)?))
+        Ok(Proposal::with_ratio(LogRatio::of(target.log_prior(current.draw)?, there)?))
     }
 
-    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(
+        &self,
+        target: &T,
+        from: StateRefOf<'_, T>,
+        to: StateRefOf<'_, T>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
         if self.symmetric {
-            return Self::printed(target, &from.draw, &to.draw);
+            return Self::printed(target, from.draw, to.draw);
         }
-        Ok(LogRatio::of(target.log_prior(&from.draw)?, target.log_prior(&to.draw)?)?)
+        Ok(LogRatio::of(target.log_prior(from.draw)?, target.log_prior(to.draw)?)?)
     }
 }

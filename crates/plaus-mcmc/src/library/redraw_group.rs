@@ -2,7 +2,7 @@
 
 use super::old_over_new;
 use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
@@ -23,7 +23,7 @@ impl<T: Variables> Move<T> for RedrawGroup {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -31,11 +31,17 @@ impl<T: Variables> Move<T> for RedrawGroup {
         let chosen = below(stream, groups.len());
         let Some(vars) = groups.get(chosen) else { return Ok(Proposal::Stay) };
         target.renew_group(candidate, chosen, stream);
-        let log_ratio = old_over_new(target, vars, &current.draw, candidate)?;
+        let log_ratio = old_over_new(target, vars, current.draw, candidate)?;
         Ok(Proposal::Candidate { log_ratio, path: Path(chosen as u64), later: None })
     }
 
-    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, path: Path) -> Result<LogRatio, ModelError> {
-        old_over_new(target, &target.vars().groups()[path.0 as usize], &from.draw, &to.draw)
+    fn log_ratio(
+        &self,
+        target: &T,
+        from: StateRefOf<'_, T>,
+        to: StateRefOf<'_, T>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        old_over_new(target, &target.vars().groups()[path.0 as usize], from.draw, to.draw)
     }
 }

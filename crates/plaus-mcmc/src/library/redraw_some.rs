@@ -3,7 +3,7 @@
 use super::{happens, old_over_new};
 use crate::law::Recipe;
 use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::{Variables, renew};
 use plaus_dist::{LogRatio, Stream};
 
@@ -28,7 +28,7 @@ impl<T: Variables> Move<T> for RedrawSome {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -42,10 +42,16 @@ impl<T: Variables> Move<T> for RedrawSome {
         if !any {
             return Ok(Proposal::Stay);
         }
-        Ok(Proposal::with_ratio(old_over_new(target, &self.among, &current.draw, candidate)?))
+        Ok(Proposal::with_ratio(old_over_new(target, &self.among, current.draw, candidate)?))
     }
 
-    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
-        old_over_new(target, &self.among, &from.draw, &to.draw)
+    fn log_ratio(
+        &self,
+        target: &T,
+        from: StateRefOf<'_, T>,
+        to: StateRefOf<'_, T>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
+        old_over_new(target, &self.among, from.draw, to.draw)
     }
 }

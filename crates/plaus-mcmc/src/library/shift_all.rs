@@ -3,7 +3,7 @@
 use super::{Sizes, is_adapted, marked, walk};
 use crate::moves::{Move, Path, Proposal};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream, standard_normal};
 
@@ -58,7 +58,7 @@ impl<T: Variables> Move<T> for ShiftAll {
     fn propose(
         &self,
         target: &T,
-        _: &StateOf<T>,
+        _: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -81,7 +81,7 @@ impl<T: Variables> Move<T> for ShiftAll {
         Ok(Proposal::Candidate { log_ratio: LogRatio::ONE, path: marked(Path(0), is_wide), later: None })
     }
 
-    fn log_ratio(&self, _: &T, _: &StateOf<T>, _: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 

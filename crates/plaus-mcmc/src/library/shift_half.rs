@@ -2,7 +2,7 @@
 
 use crate::moves::{Move, Path, Proposal};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream, open_unit};
 use rand::Rng;
@@ -27,7 +27,7 @@ impl<T: Variables> Move<T> for ShiftHalf {
     fn propose(
         &self,
         target: &T,
-        _: &StateOf<T>,
+        _: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -44,7 +44,7 @@ impl<T: Variables> Move<T> for ShiftHalf {
         Ok(if chosen.trailing_zeros() as usize >= self.among.len() { Proposal::Stay } else { Proposal::SYMMETRIC })
     }
 
-    fn log_ratio(&self, _: &T, _: &StateOf<T>, _: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 

@@ -2,7 +2,7 @@
 
 use super::walk_var;
 use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
@@ -27,18 +27,18 @@ impl<T: Variables> Move<T> for ShiftOne {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        let present = || self.among.iter().filter(|&&var| target.get(&current.draw, var).is_some());
+        let present = || self.among.iter().filter(|&&var| target.get(current.draw, var).is_some());
         let chosen = below(stream, present().count());
         let Some(&var) = present().nth(chosen) else { return Ok(Proposal::Stay) };
         walk_var(target, candidate, var, self.sd, stream);
         Ok(Proposal::SYMMETRIC)
     }
 
-    fn log_ratio(&self, _: &T, _: &StateOf<T>, _: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }

@@ -3,7 +3,7 @@
 use super::{happens, walk_var};
 use crate::moves::{Move, Path, Proposal};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream};
 
@@ -31,7 +31,7 @@ impl<T: Variables> Move<T> for ShiftSome {
     fn propose(
         &self,
         target: &T,
-        _: &StateOf<T>,
+        _: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -44,7 +44,7 @@ impl<T: Variables> Move<T> for ShiftSome {
         Ok(if any { Proposal::SYMMETRIC } else { Proposal::Stay })
     }
 
-    fn log_ratio(&self, _: &T, _: &StateOf<T>, _: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 

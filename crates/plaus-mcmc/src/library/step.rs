@@ -5,7 +5,7 @@ use super::{Sizes, is_adapted, marked, unmarked};
 use crate::law::Law;
 use crate::moves::{Move, Path, Proposal};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{Density, LogDensity, LogRatio, NotANumber, Stream, standard_normal};
@@ -97,7 +97,7 @@ impl<T: Variables> Move<T> for Step {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -106,13 +106,19 @@ impl<T: Variables> Move<T> for Step {
         let Some(&Way { var, size }) = self.ways.get(index) else { return Ok(Proposal::Stay) };
         let (length, is_wide) = self.sizes[size].1.sample(stream);
         step_by(target, candidate, var, length, stream);
-        let log_ratio = ratio(target, &current.draw, candidate, var)?;
+        let log_ratio = ratio(target, current.draw, candidate, var)?;
         Ok(Proposal::Candidate { log_ratio, path: marked(Path(index as u64), is_wide), later: None })
     }
 
-    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, path: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(
+        &self,
+        target: &T,
+        from: StateRefOf<'_, T>,
+        to: StateRefOf<'_, T>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
         match self.way(path) {
-            Some(way) => ratio(target, &from.draw, &to.draw, way.var),
+            Some(way) => ratio(target, from.draw, to.draw, way.var),
             None => Ok(LogRatio::ONE),
         }
     }

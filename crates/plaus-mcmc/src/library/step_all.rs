@@ -4,7 +4,7 @@ use super::step::{ratio, step_by};
 use super::{Sizes, is_adapted, marked};
 use crate::moves::{Move, Path, Proposal};
 use crate::scale::Scale;
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::{LogRatio, Stream};
 
@@ -38,7 +38,7 @@ impl<T: Variables> Move<T> for StepAll {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -47,12 +47,18 @@ impl<T: Variables> Move<T> for StepAll {
         }
         let (size, is_wide) = self.sizes.sample(stream);
         self.among.iter().for_each(|&var| step_by(target, candidate, var, size, stream));
-        let log_ratio = self.ratio(target, &current.draw, candidate)?;
+        let log_ratio = self.ratio(target, current.draw, candidate)?;
         Ok(Proposal::Candidate { log_ratio, path: marked(Path(0), is_wide), later: None })
     }
 
-    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
-        self.ratio(target, &from.draw, &to.draw)
+    fn log_ratio(
+        &self,
+        target: &T,
+        from: StateRefOf<'_, T>,
+        to: StateRefOf<'_, T>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
+        self.ratio(target, from.draw, to.draw)
     }
 
     fn scales(&self) -> Vec<Scale> {

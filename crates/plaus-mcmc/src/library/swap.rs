@@ -2,7 +2,7 @@
 
 use super::MOST;
 use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::Variables;
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
@@ -43,14 +43,14 @@ impl<T: Variables> Move<T> for Swap {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         let count = self.among.len();
         let (a, b) = (below(stream, count), below(stream, count));
         let (Some(&a), Some(&b)) = (self.among.get(a), self.among.get(b)) else { return Ok(Proposal::Stay) };
-        let (first, second) = (values(target, &current.draw, a), values(target, &current.draw, b));
+        let (first, second) = (values(target, current.draw, a), values(target, current.draw, b));
         if first == second {
             return Ok(Proposal::Stay);
         }
@@ -59,7 +59,7 @@ impl<T: Variables> Move<T> for Swap {
         Ok(Proposal::SYMMETRIC)
     }
 
-    fn log_ratio(&self, _: &T, _: &StateOf<T>, _: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }

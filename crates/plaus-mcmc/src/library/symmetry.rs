@@ -1,11 +1,11 @@
 //! A symmetry of a world.
 
 use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateOf, Target};
+use crate::target::{ModelError, StateRefOf, Target};
 use plaus_dist::{LogRatio, Stream};
 
 /// Changes the candidate, which comes in as a copy of the current draw; whether there was anything to change.
-pub type Map<T> = fn(&T, &StateOf<T>, &mut <T as Target>::Draw, &mut Stream) -> bool;
+pub type Map<T> = fn(&T, StateRefOf<'_, T>, &mut <T as Target>::Draw, &mut Stream) -> bool;
 
 /// A map of draws that keeps volumes and is its own reverse, or one of several of which each is as likely as its
 /// reverse: a reflection, a turn, a renumbering. Symmetric; where the prior is not, the prior says so. Where there is
@@ -25,7 +25,7 @@ impl<T: Target> Move<T> for Symmetry<T> {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -33,7 +33,7 @@ impl<T: Target> Move<T> for Symmetry<T> {
         Ok(if changed { Proposal::SYMMETRIC } else { Proposal::Stay })
     }
 
-    fn log_ratio(&self, _: &T, _: &StateOf<T>, _: &StateOf<T>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, _: &T, _: StateRefOf<'_, T>, _: StateRefOf<'_, T>, _: Path) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 }

@@ -3,7 +3,7 @@
 use super::happens;
 use crate::law::Recipe;
 use crate::moves::{Move, Path, Proposal};
-use crate::target::{ModelError, StateOf};
+use crate::target::{ModelError, StateRefOf};
 use crate::vars::{Variables, log_density, renew};
 use plaus_dist::{LogRatio, Stream, math};
 
@@ -59,7 +59,7 @@ impl<T: Variables> Move<T> for Toggle {
     fn propose(
         &self,
         target: &T,
-        current: &StateOf<T>,
+        current: StateRefOf<'_, T>,
         candidate: &mut T::Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -78,14 +78,20 @@ impl<T: Variables> Move<T> for Toggle {
         if !any {
             return Ok(Proposal::Stay);
         }
-        let back = self.log_q(target, candidate, &current.draw, Path(1 - path.0))?;
-        let log_ratio = LogRatio::new(back - self.log_q(target, &current.draw, candidate, path)?)?;
+        let back = self.log_q(target, candidate, current.draw, Path(1 - path.0))?;
+        let log_ratio = LogRatio::new(back - self.log_q(target, current.draw, candidate, path)?)?;
         Ok(Proposal::Candidate { log_ratio, path, later: None })
     }
 
-    fn log_ratio(&self, target: &T, from: &StateOf<T>, to: &StateOf<T>, path: Path) -> Result<LogRatio, ModelError> {
-        let back = self.log_q(target, &to.draw, &from.draw, Path(1 - path.0))?;
-        Ok(LogRatio::new(back - self.log_q(target, &from.draw, &to.draw, path)?)?)
+    fn log_ratio(
+        &self,
+        target: &T,
+        from: StateRefOf<'_, T>,
+        to: StateRefOf<'_, T>,
+        path: Path,
+    ) -> Result<LogRatio, ModelError> {
+        let back = self.log_q(target, to.draw, from.draw, Path(1 - path.0))?;
+        Ok(LogRatio::new(back - self.log_q(target, from.draw, to.draw, path)?)?)
     }
 
     fn reverse(&self, path: Path) -> Path {

@@ -67,7 +67,7 @@ impl<'a, T: Goal> Worker<'a, T> {
     pub(super) fn resume(job: &Job<'a, T>, index: u32, start: Start<T::Draw, T::Outcome>) -> Self {
         let Start { snapshot, distinct } = start;
         let Snapshot { end_iteration, state, counts, scales, hits, pending, replicas } = snapshot;
-        let class = job.target.class(&state);
+        let class = job.target.class(state.by_ref());
         let (course, seed, iteration) = (job.course(), job.plan.seed, end_iteration - 1);
         let replicas = match replicas {
             Some(snapshot) => Replicas::resume(course, seed, index, iteration, snapshot),
@@ -105,7 +105,7 @@ impl<'a, T: Goal> Worker<'a, T> {
         }
         if replicas.is_none() && end > 0 {
             let started = Replicas::start(job.course(), job.plan.seed, books.index)?.adapting(job.adapts_until());
-            books.class = job.target.class(started.top().state());
+            books.class = job.target.class(started.top().state().by_ref());
             books.note::<T>(job, 0, started.top(), made, hunt);
             *replicas = Some(started);
         }
@@ -117,12 +117,12 @@ impl<'a, T: Goal> Worker<'a, T> {
             let next = (now / stride + 1).saturating_mul(stride).min(end - 1);
             let went_on = replicas.advance_while(next, goes_on, |chain, step| match step {
                 TopStep::Swapped => {
-                    books.class = job.target.class(chain.state());
+                    books.class = job.target.class(chain.state().by_ref());
                     books.pending = (books.pending.0.saturating_add(1), None);
                 }
                 TopStep::Step(step) => {
                     if step.verdict == Verdict::Accepted {
-                        books.class = job.target.class(chain.state());
+                        books.class = job.target.class(chain.state().by_ref());
                         books.pending = (books.pending.0.saturating_add(1), Some(step.move_id));
                     }
                     books.note::<T>(job, books.end_iteration, chain, made, hunt);

@@ -2,7 +2,7 @@
 
 use super::below;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream, math, open_unit};
-use plaus_mcmc::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
+use plaus_mcmc::{Goal, ModelError, Simulated, SolutionClass, StateRef, StateRefOf, Target};
 
 /// For each ball, where it drops, or that it does not.
 pub type Drops = Vec<Option<f64>>;
@@ -84,7 +84,7 @@ impl Target for Balls {
     fn simulate(
         &self,
         draw: &Drops,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         loads: &mut Vec<u32>,
     ) -> Result<Simulated<Vec<u32>>, ModelError> {
@@ -112,7 +112,7 @@ impl Target for Balls {
 
 impl Goal for Balls {
     /// Which ball lies in which bin.
-    fn class(&self, State { draw, outcome, .. }: &StateOf<Self>) -> Option<SolutionClass> {
+    fn class(&self, StateRef { draw, outcome, .. }: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let bin = |place: &Option<f64>| place.map_or(-1, |place| self.bin(place) as i64);
         (filled(outcome) == self.bins as u64).then(|| SolutionClass::of(draw.iter().map(bin)))
     }

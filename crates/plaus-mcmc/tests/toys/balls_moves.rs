@@ -4,9 +4,9 @@ use super::balls::{Balls, Drops, active};
 use super::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::check::{Branch, Enumerable};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
-type S = StateOf<Balls>;
+type S<'a> = StateRefOf<'a, Balls>;
 
 /// Activates: each inactive ball drops somewhere with probability η. Its reverse deactivates: each active ball leaves
 /// with probability η. One move that does either with probability ½, or only one of the two.
@@ -57,7 +57,13 @@ impl Move<Balls> for Toggle {
             Ways::Deactivate => "deactivate",
         }
     }
-    fn propose(&self, balls: &Balls, now: &S, drops: &mut Drops, stream: &mut Stream) -> Result<Proposal, ModelError> {
+    fn propose(
+        &self,
+        balls: &Balls,
+        now: S<'_>,
+        drops: &mut Drops,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
         let path = match self.ways {
             Ways::Both => Path(below(2, stream) as u64),
             Ways::Activate => ACTIVATE,
@@ -68,14 +74,14 @@ impl Move<Balls> for Toggle {
                 *drop = if drop.is_none() { Some(balls.place(stream)) } else { None };
             }
         }
-        if *drops == now.draw {
+        if *drops == *now.draw {
             return Ok(Proposal::Stay);
         }
-        let log_ratio = self.ratio(balls, &now.draw, drops, path)?;
+        let log_ratio = self.ratio(balls, now.draw, drops, path)?;
         Ok(Proposal::Candidate { log_ratio, path, later: None })
     }
-    fn log_ratio(&self, balls: &Balls, from: &S, to: &S, path: Path) -> Result<LogRatio, ModelError> {
-        self.ratio(balls, &from.draw, &to.draw, path)
+    fn log_ratio(&self, balls: &Balls, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
+        self.ratio(balls, from.draw, to.draw, path)
     }
     fn reverse(&self, path: Path) -> Path {
         Path(1 - path.0)
@@ -83,8 +89,8 @@ impl Move<Balls> for Toggle {
 }
 
 impl Enumerable<Balls> for Toggle {
-    fn branches(&self, balls: &Balls, state: &S) -> Result<Vec<Branch<Drops>>, ModelError> {
-        let from = &state.draw;
+    fn branches(&self, balls: &Balls, state: S<'_>) -> Result<Vec<Branch<Drops>>, ModelError> {
+        let from = state.draw;
         let ways: &[(Path, f64)] = match self.ways {
             Ways::Both => &[(ACTIVATE, 0.5), (DEACTIVATE, 0.5)],
             Ways::Activate => &[(ACTIVATE, 1.0)],
@@ -128,17 +134,23 @@ impl Move<Balls> for ChangeAll {
     fn name(&self) -> &str {
         "change-all"
     }
-    fn propose(&self, balls: &Balls, now: &S, drops: &mut Drops, stream: &mut Stream) -> Result<Proposal, ModelError> {
+    fn propose(
+        &self,
+        balls: &Balls,
+        now: S<'_>,
+        drops: &mut Drops,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
         *drops = balls.fresh(stream);
-        Ok(Proposal::with_ratio(self.ratio(balls, &now.draw, drops)?))
+        Ok(Proposal::with_ratio(self.ratio(balls, now.draw, drops)?))
     }
-    fn log_ratio(&self, balls: &Balls, from: &S, to: &S, _: Path) -> Result<LogRatio, ModelError> {
-        self.ratio(balls, &from.draw, &to.draw)
+    fn log_ratio(&self, balls: &Balls, from: S<'_>, to: S<'_>, _: Path) -> Result<LogRatio, ModelError> {
+        self.ratio(balls, from.draw, to.draw)
     }
 }
 
 impl Enumerable<Balls> for ChangeAll {
-    fn branches(&self, balls: &Balls, _: &S) -> Result<Vec<Branch<Drops>>, ModelError> {
+    fn branches(&self, balls: &Balls, _: S<'_>) -> Result<Vec<Branch<Drops>>, ModelError> {
         let half_each = math::powi(0.5, balls.count as i32);
         let chance = |to: &Drops| half_each * math::powi(balls.area, -(active(to) as i32));
         let branch = |to: Drops| Branch { probability: chance(&to), draw: Some(to), path: Path(0) };
@@ -165,7 +177,7 @@ pub enum Fault {
 }
 
 /// The useless balls of a state.
-fn useless(balls: &Balls, state: &S) -> Vec<usize> {
+fn useless(balls: &Balls, state: S<'_>) -> Vec<usize> {
     let shared =
         |(ball, drop): (usize, &Option<f64>)| drop.filter(|place| state.outcome[balls.bin(*place)] > 1).map(|_| ball);
     state.draw.iter().enumerate().filter_map(shared).collect()
@@ -173,7 +185,7 @@ fn useless(balls: &Balls, state: &S) -> Vec<usize> {
 
 impl Redrop {
     /// Log probability of choosing the ball of this path again.
-    fn log_back(&self, balls: &Balls, to: &S, path: Path) -> Result<LogRatio, ModelError> {
+    fn log_back(&self, balls: &Balls, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
         let choices = useless(balls, to);
         let found = choices.contains(&(path.0 as usize));
         Ok(if found { LogRatio::new(-math::ln(choices.len() as f64))? } else { LogRatio::ZERO })
@@ -184,7 +196,13 @@ impl Move<Balls> for Redrop {
     fn name(&self) -> &str {
         "redrop"
     }
-    fn propose(&self, balls: &Balls, now: &S, drops: &mut Drops, stream: &mut Stream) -> Result<Proposal, ModelError> {
+    fn propose(
+        &self,
+        balls: &Balls,
+        now: S<'_>,
+        drops: &mut Drops,
+        stream: &mut Stream,
+    ) -> Result<Proposal, ModelError> {
         let choices = useless(balls, now);
         if choices.is_empty() {
             return Ok(Proposal::Stay);
@@ -203,20 +221,20 @@ impl Move<Balls> for Redrop {
         };
         Ok(Proposal::Candidate { log_ratio, path, later: (self.fault != Fault::Unannounced).then_some(bound) })
     }
-    fn log_ratio(&self, balls: &Balls, from: &S, to: &S, path: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(&self, balls: &Balls, from: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
         if self.fault == Fault::Forgotten {
             return Ok(LogRatio::ONE);
         }
         let log_forth = -math::ln(useless(balls, from).len() as f64);
         Ok(LogRatio::new(self.log_back(balls, to, path)?.value() - log_forth)?)
     }
-    fn log_ratio_after(&self, balls: &Balls, _: &S, to: &S, path: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio_after(&self, balls: &Balls, _: S<'_>, to: S<'_>, path: Path) -> Result<LogRatio, ModelError> {
         self.log_back(balls, to, path)
     }
 }
 
 impl Enumerable<Balls> for Redrop {
-    fn branches(&self, balls: &Balls, state: &S) -> Result<Vec<Branch<Drops>>, ModelError> {
+    fn branches(&self, balls: &Balls, state: S<'_>) -> Result<Vec<Branch<Drops>>, ModelError> {
         let choices = useless(balls, state);
         if choices.is_empty() {
             return Ok(vec![Branch { draw: None, probability: 1.0, path: Path(0) }]);

@@ -10,7 +10,7 @@ pub mod slots;
 pub mod vertices;
 
 use plaus_dist::{LogDensity, LogPotential, Stream, open_unit};
-use plaus_mcmc::{ModelError, Simulated, StateOf, Target, view::View};
+use plaus_mcmc::{ModelError, Simulated, StateRefOf, Target, view::View};
 
 /// A whole number below `n`, each equally likely up to 2⁻⁵².
 pub fn below(n: usize, stream: &mut Stream) -> usize {
@@ -34,7 +34,7 @@ impl<T: Target> Target for IgnoresForbidden<'_, T> {
     fn simulate(
         &self,
         draw: &T::Draw,
-        current: Option<&StateOf<Self>>,
+        current: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         scratch: &mut T::Scratch,
     ) -> Result<Simulated<T::Outcome>, ModelError> {

@@ -3,7 +3,7 @@
 
 use super::balls::{Balls, Drops};
 use plaus_dist::{LogDensity, LogPotential, Stream};
-use plaus_mcmc::{ModelError, Simulated, StateOf, Target, view::View};
+use plaus_mcmc::{ModelError, Simulated, StateRefOf, Target, view::View};
 
 pub struct Remembering {
     pub balls: Balls,
@@ -31,7 +31,7 @@ impl Target for Remembering {
     fn simulate(
         &self,
         draw: &Drops,
-        current: Option<&StateOf<Self>>,
+        current: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         memory: &mut Memory,
     ) -> Result<Simulated<Vec<u32>>, ModelError> {

@@ -3,7 +3,7 @@
 use super::below;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, LogRatio, Stream, math, open_unit};
 use plaus_mcmc::check::{Branch, Enumerable};
-use plaus_mcmc::{Goal, ModelError, Move, Path, Proposal, Simulated, SolutionClass, StateOf, Target};
+use plaus_mcmc::{Goal, ModelError, Move, Path, Proposal, Simulated, SolutionClass, StateRefOf, Target};
 
 pub struct Ring {
     pub weights: Vec<f64>,
@@ -52,7 +52,7 @@ impl Target for Ring {
     fn simulate(
         &self,
         place: &usize,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<usize>, ModelError> {
@@ -64,8 +64,8 @@ impl Target for Ring {
 }
 
 impl Goal for Ring {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
-        state.draw.is_multiple_of(2).then(|| SolutionClass::of([state.draw as i64]))
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
+        state.draw.is_multiple_of(2).then(|| SolutionClass::of([*state.draw as i64]))
     }
 }
 
@@ -79,7 +79,7 @@ impl Move<Ring> for Walk {
     fn propose(
         &self,
         ring: &Ring,
-        _: &StateOf<Ring>,
+        _: StateRefOf<'_, Ring>,
         place: &mut usize,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -88,7 +88,13 @@ impl Move<Ring> for Walk {
         *place = (*place + if path == 0 { 1 } else { size - 1 }) % size;
         Ok(Proposal::Candidate { log_ratio: LogRatio::ONE, path: Path(path), later: None })
     }
-    fn log_ratio(&self, _: &Ring, _: &StateOf<Ring>, _: &StateOf<Ring>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(
+        &self,
+        _: &Ring,
+        _: StateRefOf<'_, Ring>,
+        _: StateRefOf<'_, Ring>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
     fn reverse(&self, path: Path) -> Path {
@@ -97,7 +103,7 @@ impl Move<Ring> for Walk {
 }
 
 impl Enumerable<Ring> for Walk {
-    fn branches(&self, ring: &Ring, state: &StateOf<Ring>) -> Result<Vec<Branch<usize>>, ModelError> {
+    fn branches(&self, ring: &Ring, state: StateRefOf<'_, Ring>) -> Result<Vec<Branch<usize>>, ModelError> {
         let size = ring.weights.len();
         let to = |path, step| Branch { draw: Some((state.draw + step) % size), probability: 0.5, path: Path(path) };
         Ok(vec![to(0, 1), to(1, size - 1)])
@@ -117,21 +123,21 @@ impl Move<Ring> for Redraw {
     fn propose(
         &self,
         ring: &Ring,
-        current: &StateOf<Ring>,
+        current: StateRefOf<'_, Ring>,
         place: &mut usize,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         *place = ring.draw(stream);
-        Ok(Proposal::with_ratio(self.ratio(ring, current.draw, *place)?))
+        Ok(Proposal::with_ratio(self.ratio(ring, *current.draw, *place)?))
     }
     fn log_ratio(
         &self,
         ring: &Ring,
-        from: &StateOf<Ring>,
-        to: &StateOf<Ring>,
+        from: StateRefOf<'_, Ring>,
+        to: StateRefOf<'_, Ring>,
         _: Path,
     ) -> Result<LogRatio, ModelError> {
-        self.ratio(ring, from.draw, to.draw)
+        self.ratio(ring, *from.draw, *to.draw)
     }
 }
 
@@ -142,7 +148,7 @@ impl Redraw {
 }
 
 impl Enumerable<Ring> for Redraw {
-    fn branches(&self, ring: &Ring, _: &StateOf<Ring>) -> Result<Vec<Branch<usize>>, ModelError> {
+    fn branches(&self, ring: &Ring, _: StateRefOf<'_, Ring>) -> Result<Vec<Branch<usize>>, ModelError> {
         let to = |place| Branch { draw: Some(place), probability: ring.probability(place), path: Path(0) };
         Ok(ring.all().into_iter().map(to).collect())
     }

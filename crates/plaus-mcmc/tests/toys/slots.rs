@@ -2,7 +2,9 @@
 
 use plaus_dist::stream::below;
 use plaus_dist::{Gaussian, LogDensity, LogPotential, Stream, TruncatedGaussian, WrappedUniform};
-use plaus_mcmc::{Law, ModelError, Offset, Recipe, Rectangle, Simulated, StateOf, Target, Var, Variables, Vars, vars};
+use plaus_mcmc::{
+    Law, ModelError, Offset, Recipe, Rectangle, Simulated, StateRefOf, Target, Var, Variables, Vars, vars,
+};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Things {
@@ -129,7 +131,7 @@ impl Target for Slots {
     fn simulate(
         &self,
         draw: &Things,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<f64>, ModelError> {

@@ -2,7 +2,7 @@
 
 use super::below;
 use plaus_dist::{Density, Gibbs, IsotropicGaussian, LogDensity, LogPotential, LogRatio, Radial, Sample, Stream, math};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, Simulated, StateOf, Target};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, Simulated, StateRefOf, Target};
 
 pub type Offsets = Vec<[f64; 3]>;
 
@@ -43,7 +43,7 @@ impl Target for Vertices {
     fn simulate(
         &self,
         draw: &Offsets,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<u64>, ModelError> {
@@ -92,21 +92,21 @@ impl Move<Vertices> for ChangeAll {
     fn propose(
         &self,
         world: &Vertices,
-        current: &StateOf<Vertices>,
+        current: StateRefOf<'_, Vertices>,
         candidate: &mut Offsets,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         candidate.iter_mut().for_each(|offset| *offset = self.fresh.vertex(world, stream));
-        Ok(Proposal::with_ratio(self.ratio(world, &current.draw, candidate)?))
+        Ok(Proposal::with_ratio(self.ratio(world, current.draw, candidate)?))
     }
     fn log_ratio(
         &self,
         world: &Vertices,
-        from: &StateOf<Vertices>,
-        to: &StateOf<Vertices>,
+        from: StateRefOf<'_, Vertices>,
+        to: StateRefOf<'_, Vertices>,
         _: Path,
     ) -> Result<LogRatio, ModelError> {
-        self.ratio(world, &from.draw, &to.draw)
+        self.ratio(world, from.draw, to.draw)
     }
 }
 
@@ -120,7 +120,7 @@ impl Move<Vertices> for RedrawOne {
     fn propose(
         &self,
         world: &Vertices,
-        current: &StateOf<Vertices>,
+        current: StateRefOf<'_, Vertices>,
         candidate: &mut Offsets,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -132,8 +132,8 @@ impl Move<Vertices> for RedrawOne {
     fn log_ratio(
         &self,
         world: &Vertices,
-        from: &StateOf<Vertices>,
-        to: &StateOf<Vertices>,
+        from: StateRefOf<'_, Vertices>,
+        to: StateRefOf<'_, Vertices>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         let which = path.0 as usize;
@@ -151,7 +151,7 @@ impl Move<Vertices> for WalkOne {
     fn propose(
         &self,
         world: &Vertices,
-        _: &StateOf<Vertices>,
+        _: StateRefOf<'_, Vertices>,
         candidate: &mut Offsets,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -163,8 +163,8 @@ impl Move<Vertices> for WalkOne {
     fn log_ratio(
         &self,
         _: &Vertices,
-        _: &StateOf<Vertices>,
-        _: &StateOf<Vertices>,
+        _: StateRefOf<'_, Vertices>,
+        _: StateRefOf<'_, Vertices>,
         _: Path,
     ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)

@@ -9,8 +9,7 @@ use crate::errors::WorldError;
 use crate::scenario::Scenario;
 use batch::{Batch, Made, Starts};
 use parts::{Body, Law, Surface, Whole};
-use plaus_mcmc::ModelError;
-use plaus_scenes::{Physical, PlainWorld, Scene, Visitor};
+use plaus_scenes::{Physical, PlainWorld, Scene};
 use plaus_sim::worlds::{Bins, DieOnTable};
 use plaus_sim::{Accuracy, Preset};
 use pyo3::exceptions::PyValueError;
@@ -139,16 +138,9 @@ impl SimWorld {
     /// The world of a scenario, with all that is random left out.
     #[staticmethod]
     fn of_scenario(scenario: &Scenario) -> PyResult<Self> {
-        struct Plain;
-        impl Visitor for Plain {
-            type Output = Result<Option<PlainWorld>, ModelError>;
-            fn visit<S: Scene>(self, scene: S) -> Self::Output {
-                scene.world()
-            }
-        }
         let world = &scenario.recipe.scenario.world;
-        let made = world.visit(Plain).map_err(|error| WorldError::new_err(error.to_string()))?;
-        let made = made.map_err(|error| WorldError::new_err(error.to_string()))?;
+        let scene = world.scene().map_err(|error| WorldError::new_err(error.to_string()))?;
+        let made = Scene::world(&scene).map_err(|error| WorldError::new_err(error.to_string()))?;
         let PlainWorld { world, places } = made.ok_or_else(|| {
             PyValueError::new_err(format!("{} moves in closed form: it has no simulator", world.name()))
         })?;

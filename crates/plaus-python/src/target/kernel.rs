@@ -1,6 +1,6 @@
 //! Moves whose proposals are functions in Python.
 
-use super::{ByFunctions, Point, lend, number, read, shown};
+use super::{ByFunctions, PointRef, lend, number, read, shown};
 use crate::errors::Raised;
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::{Mixture, ModelError, Move, Path, Proposal, Redraw};
@@ -57,13 +57,13 @@ impl Move<ByFunctions> for Made {
     fn propose(
         &self,
         _: &ByFunctions,
-        current: &Point,
+        current: PointRef<'_>,
         candidate: &mut Vec<f64>,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         let Some(propose) = &self.0.get().propose else { return Ok(Proposal::Stay) };
         let nats = Python::attach(|py| {
-            let given = shown(py, &current.draw);
+            let given = shown(py, current.draw);
             let made = lend(py, stream, |rng| {
                 let made = propose.bind(py).call1((&given, rng))?;
                 if made.is_none() {
@@ -80,7 +80,7 @@ impl Move<ByFunctions> for Made {
                     let (now, then) = (current.draw.len(), point.len());
                     return Err(PyTypeError::new_err(format!("propose gave {then} numbers for a point of {now}")));
                 }
-                let ratio = ratio.map_or_else(|| self.ratio(py, &current.draw, &point), Ok)?;
+                let ratio = ratio.map_or_else(|| self.ratio(py, current.draw, &point), Ok)?;
                 candidate.clone_from(&point);
                 Ok(Some(ratio))
             });
@@ -92,10 +92,16 @@ impl Move<ByFunctions> for Made {
         })
     }
 
-    fn log_ratio(&self, _: &ByFunctions, from: &Point, to: &Point, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(
+        &self,
+        _: &ByFunctions,
+        from: PointRef<'_>,
+        to: PointRef<'_>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
         let nats = Python::attach(|py| {
-            self.ratio(py, &from.draw, &to.draw)
-                .map_err(|error| Raised::wrap(py, error, Some(shown(py, &from.draw).unbind())))
+            self.ratio(py, from.draw, to.draw)
+                .map_err(|error| Raised::wrap(py, error, Some(shown(py, from.draw).unbind())))
         })?;
         Ok(LogRatio::new(nats)?)
     }

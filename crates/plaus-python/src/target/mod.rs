@@ -12,7 +12,7 @@ pub(crate) use sample::sample_target;
 use crate::errors::Raised;
 use numpy::{PyArray1, PyArrayMethods};
 use plaus_dist::{LogDensity, LogPotential, Stream, open_unit};
-use plaus_mcmc::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, Target};
+use plaus_mcmc::{Goal, ModelError, Simulated, SolutionClass, State, StateRef, StateRefOf, Target};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
@@ -116,6 +116,9 @@ pub(crate) struct Said {
 /// A state of such a target.
 pub(crate) type Point = State<Vec<f64>, Said>;
 
+/// The same, lent.
+pub(crate) type PointRef<'a> = StateRef<'a, Vec<f64>, Said>;
+
 impl ByFunctions {
     /// Calls a function with a point; what it raises comes with the point.
     fn call<T>(
@@ -177,7 +180,7 @@ impl Target for ByFunctions {
     fn simulate(
         &self,
         draw: &Vec<f64>,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<Said>, ModelError> {
@@ -195,7 +198,7 @@ impl Target for ByFunctions {
 }
 
 impl Goal for ByFunctions {
-    fn class(&self, state: &Point) -> Option<SolutionClass> {
+    fn class(&self, state: PointRef<'_>) -> Option<SolutionClass> {
         state.outcome.class
     }
 }

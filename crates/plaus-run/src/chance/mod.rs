@@ -17,8 +17,8 @@ use plaus_dist::Seed;
 use plaus_mcmc::chance::{
     ChanceError, ChancePulse, Counted, Method, Parts, Split, Splitting, Stoned, Stones, count, split, stones,
 };
-use plaus_mcmc::{Mixture, StateOf, parallel};
-use plaus_scenes::{Scene, Visitor};
+use plaus_mcmc::{Mixture, StateRefOf, parallel};
+use plaus_scenes::{Scene, Stage};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -150,26 +150,20 @@ pub struct Inquiry<'a> {
 /// # Errors
 /// [`Error`] where the scenario makes no scene, the file holds something else, a batch fails, or the disk refuses.
 pub fn ask(inquiry: &Inquiry<'_>, shown: &(dyn Fn(&Chance) + Sync)) -> Result<Chance, Error> {
-    struct Ask<'a, 'b>(&'a Inquiry<'b>, &'a (dyn Fn(&Chance) + Sync));
-    impl Visitor for Ask<'_, '_> {
-        type Output = Result<Chance, Error>;
-        fn visit<S: Scene>(self, scene: S) -> Self::Output {
-            let rules = &self.0.recipe.scenario.sampler.rules;
-            let moves = Arc::new(scene.moves(rules)?);
-            Asked { scene, moves, inquiry: self.0 }.run(self.1)
-        }
-    }
-    inquiry.recipe.scenario.visit(Ask(inquiry, shown))?
+    let scenario = &inquiry.recipe.scenario;
+    let scene = scenario.stage()?;
+    let moves = Arc::new(scene.moves(&scenario.sampler.rules)?);
+    Asked { scene, moves, inquiry }.run(shown)
 }
 
 /// An inquiry into a scene.
-struct Asked<'a, 'b, S: Scene> {
-    scene: S,
-    moves: Arc<Mixture<S>>,
+struct Asked<'a, 'b> {
+    scene: Stage,
+    moves: Arc<Mixture<Stage>>,
     inquiry: &'a Inquiry<'b>,
 }
 
-impl<S: Scene> Asked<'_, '_, S> {
+impl Asked<'_, '_> {
     fn run(&self, shown: &(dyn Fn(&Chance) + Sync)) -> Result<Chance, Error> {
         let Inquiry { asking, shard, place, threads, pulse, .. } = self.inquiry;
         if asking.batches < 2 {
@@ -266,8 +260,8 @@ impl<S: Scene> Asked<'_, '_, S> {
     }
 
     /// What of that a state meets.
-    fn parts(&self) -> Parts<'_, S> {
-        Parts { count: self.names().len(), met: &meets::<S> }
+    fn parts(&self) -> Parts<'_, Stage> {
+        Parts { count: self.names().len(), met: &meets }
     }
 
     fn begin(&self, methods: Vec<Method>, why: String) -> Result<Chance, Error> {
@@ -290,6 +284,6 @@ impl<S: Scene> Asked<'_, '_, S> {
 }
 
 /// Says of each thing that is asked whether a state meets it.
-fn meets<S: Scene>(scene: &S, state: &StateOf<S>, met: &mut [bool]) {
+fn meets(scene: &Stage, state: StateRefOf<'_, Stage>, met: &mut [bool]) {
     met.iter_mut().zip(scene.answers(state)).for_each(|(met, mark)| *met = mark.met());
 }

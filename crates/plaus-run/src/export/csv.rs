@@ -5,7 +5,7 @@
 //! end with `\n`.
 
 use crate::error::Error;
-use crate::read::RunOf;
+use crate::read::RunReader;
 use crate::sample_id::Phase;
 use plaus_scenes::Scene;
 use std::fmt::Write as _;
@@ -28,7 +28,7 @@ pub fn is_ours(path: &Path) -> bool {
 ///
 /// # Errors
 /// [`Error`] where the records are damaged or `out` refuses.
-pub fn write<S: Scene>(run: &RunOf<'_, S>, out: &mut dyn Write) -> Result<(), Error> {
+pub fn write(run: &RunReader<'_>, out: &mut dyn Write) -> Result<(), Error> {
     let scalars = run.scene().scalars();
     let names: Vec<&str> = scalars.iter().map(|scalar| scalar.name.as_str()).collect();
     writeln!(out, "{HEAD}{}", names.join(",")).map_err(Error::Output)?;
@@ -36,7 +36,7 @@ pub fn write<S: Scene>(run: &RunOf<'_, S>, out: &mut dyn Write) -> Result<(), Er
     let mut rest = String::new();
     for chain in run.chains() {
         run.walk(chain, Phase::Sampling, |stretch| -> Result<(), Error> {
-            run.scene().write_scalars(&stretch.entry.state, &mut values);
+            run.scene().write_scalars(stretch.entry.state.by_ref(), &mut values);
             rest.clear();
             let state = &stretch.entry.state;
             // Writing to a string cannot fail.

@@ -1,6 +1,6 @@
 //! Scalars as variables: those of several members of a kind are one, with a dimension of its own.
 
-use plaus_scenes::{Member, Role, Scene};
+use plaus_scenes::{Member, Role, Scene, Stage};
 use std::borrow::Cow;
 
 /// One or several scalars of a scene.
@@ -35,7 +35,7 @@ impl Variable {
 
 /// The variables of a scene in the order of their first scalars: as they are declared, also where a kind has one member
 /// only.
-pub(super) fn of<S: Scene>(scene: &S) -> Vec<Variable> {
+pub(super) fn of(scene: &Stage) -> Vec<Variable> {
     let mut variables: Vec<Variable> = Vec::new();
     for (column, scalar) in scene.scalars().into_iter().enumerate() {
         let is_same = |known: &&mut Variable| known.name == scalar.base && scalar.member.is_some();
@@ -57,6 +57,7 @@ pub(super) fn of<S: Scene>(scene: &S) -> Vec<Variable> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use plaus_scenes::Scenario;
 
     type Row = (Cow<'static, str>, usize, bool, Option<&'static str>);
 
@@ -66,19 +67,15 @@ mod tests {
 
     #[test]
     fn scalars_of_one_kind_are_one_variable() {
-        struct Count;
-        impl plaus_scenes::Visitor for Count {
-            type Output = Vec<Row>;
-            fn visit<S: Scene>(self, scene: S) -> Self::Output {
-                let kind = |variable: &Variable| variable.first.map(|member| member.kind);
-                let one = |variable: Variable| {
-                    let (count, whole, kind) = (variable.columns.len(), variable.whole, kind(&variable));
-                    (variable.name, count, whole, kind)
-                };
-                of(&scene).into_iter().map(one).collect()
-            }
-        }
-        let of = |name: &str| plaus_scenes::World::default_of(name).unwrap().visit(Count).unwrap();
+        let kind = |variable: &Variable| variable.first.map(|member| member.kind);
+        let one = |variable: Variable| -> Row {
+            let (count, whole, kind) = (variable.columns.len(), variable.whole, kind(&variable));
+            (variable.name, count, whole, kind)
+        };
+        let of = |name: &str| -> Vec<Row> {
+            let scene = Scenario::default_of(name).unwrap().stage().unwrap();
+            super::of(&scene).into_iter().map(one).collect()
+        };
         assert_eq!(of("ball2d"), [row("rest_x", 1, false, None), row("theta", 5, false, Some("bounce"))]);
         let dice = of("dice");
         assert_eq!(dice.len(), 13, "{dice:?}");

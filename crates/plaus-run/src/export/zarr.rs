@@ -9,9 +9,8 @@
 use super::variables::{self, Variable};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::manifest::Manifest;
-use crate::read::{RunOf, StretchOf};
+use crate::read::{RunReader, StretchOf};
 use crate::sample_id::Phase;
-use plaus_mcmc::StateOf;
 use plaus_scenes::Scene;
 use serde_json::{Map, Value, json};
 use std::fs::{self, File};
@@ -77,7 +76,7 @@ pub fn is_ours(path: &Path) -> bool {
 ///
 /// # Errors
 /// [`Error`] where the run has no draws, its records are damaged or the disk refuses.
-pub fn write<S: Scene>(run: &RunOf<'_, S>, out: &Path) -> Result<(), Error> {
+pub fn write(run: &RunReader<'_>, out: &Path) -> Result<(), Error> {
     if run.draws(Phase::Sampling) == 0 {
         return Err(RunFileError::new(run.run().folder().path(), RunFileProblem::Empty).into());
     }
@@ -213,8 +212,8 @@ impl Chunks {
     }
 }
 
-fn write_chain<S: Scene>(
-    run: &RunOf<'_, S>,
+fn write_chain(
+    run: &RunReader<'_>,
     phase: Phase,
     (index, chain): (u32, u32),
     out: &Path,
@@ -223,9 +222,9 @@ fn write_chain<S: Scene>(
     let mut chunks = Chunks::create(out, groups, index)?;
     let thin = run.run().manifest().plan.thin as f64;
     let mut values = vec![0.0; run.scene().scalars().len()];
-    run.walk(chain, phase, |stretch: StretchOf<'_, S>| -> Result<(), Error> {
-        let state: &StateOf<S> = &stretch.entry.state;
-        run.scene().write_scalars(state, &mut values);
+    run.walk(chain, phase, |stretch: StretchOf<'_>| -> Result<(), Error> {
+        let state = &stretch.entry.state;
+        run.scene().write_scalars(state.by_ref(), &mut values);
         let lp = state.log_p().value();
         for (index, variable) in variables.iter().enumerate() {
             chunks.put(index, &variable.bytes(&values), stretch.draws)?;

@@ -11,12 +11,12 @@ use super::{Merging, copy_chain, refuse, seal, write};
 use crate::checkpoint;
 use crate::error::{Error, RunFileError};
 use crate::folder::Folder;
-use crate::read::{Run, RunOf, RunVisitor};
+use crate::read::{Run, RunReader};
 use crate::sample::{More, Sampling, resume};
 use crate::watch::Unwatched;
+use crate::{Draw, Outcome};
 use crate::{tally, trail};
 use plaus_mcmc::{Distinct, Ending, FirstOfClass, parallel};
-use plaus_scenes::Scene;
 use rayon::ThreadPool;
 use std::collections::BTreeSet;
 
@@ -31,7 +31,7 @@ pub(super) fn end(pieces: &Pieces, pool: &ThreadPool) -> Result<Option<u64>, Err
     let least = ends.iter().copied().min().unwrap_or(0);
     let mut firsts: Vec<FirstOfClass> = Vec::new();
     for piece in &pieces.all {
-        let found = parallel::install(pool, || Run::open(&piece.folder)?.visit(Firsts))??;
+        let found = parallel::install(pool, || Ok::<_, Error>(firsts_of(&Run::open(&piece.folder)?.reader()?)?))?;
         firsts.extend(found.into_iter().filter(|first| first.iteration < least));
     }
     firsts.sort_unstable();
@@ -69,15 +69,9 @@ fn done(pieces: &Pieces, piece: &Piece) -> Result<u64, Error> {
 }
 
 /// What each chain of a run found first where.
-struct Firsts;
-
-impl RunVisitor for Firsts {
-    type Output = Result<Vec<FirstOfClass>, RunFileError>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        let chain = |chain| tally::firsts(&run, chain).map(|distinct| distinct.firsts().to_vec());
-        let found: Vec<Vec<FirstOfClass>> = run.each_chain(chain)?;
-        Ok(found.into_iter().flatten().collect())
-    }
+fn firsts_of(run: &RunReader<'_>) -> Result<Vec<FirstOfClass>, RunFileError> {
+    let found = run.each_chain(|chain| tally::firsts(run, chain).map(|distinct| distinct.firsts().to_vec()))?;
+    Ok(found.into_iter().flatten().collect())
 }
 
 /// Makes the run that ends once iteration `last` is recorded; gives the bytes of records that were copied.
@@ -93,8 +87,7 @@ pub(super) fn merge(
     out.make(merging.disk, |draft| -> Result<(), Error> {
         for piece in pieces.all.iter().filter(|_| cut > 0) {
             merging.pulse.go_on()?;
-            let run = Run::open(&piece.folder)?;
-            bytes += parallel::install(pool, || run.visit(Cut { pieces, piece, cut, draft, merging }))??;
+            bytes += parallel::install(pool, || copy(pieces, piece, cut, draft, merging))?;
         }
         seal(pieces, draft, merging.disk)?;
         let sampling = Sampling { threads: merging.threads, disk: merging.disk, watch: &mut Unwatched };
@@ -123,31 +116,19 @@ fn common_round(pieces: &Pieces, last: u64) -> Result<u64, Error> {
     Ok(common.and_then(|ends| ends.last().copied()).unwrap_or(0))
 }
 
-/// Copies the chains of a piece up to a round.
-struct Cut<'a> {
-    pieces: &'a Pieces,
-    piece: &'a Piece,
-    cut: u64,
-    draft: &'a Folder,
-    merging: &'a Merging<'a>,
-}
-
-impl RunVisitor for Cut<'_> {
-    type Output = Result<u64, Error>;
-    fn visit<S: Scene>(self, _: RunOf<'_, S>) -> Self::Output {
-        let Self { pieces, piece, cut, draft, merging } = self;
-        let path = piece.folder.trail();
-        let rounds = trail::rounds(&path, pieces.run)?;
-        let Some(&(_, begin, end)) = rounds.iter().find(|round| round.0 == cut) else {
-            return Err(refuse(&piece.folder, format!("its trail has no round that ends at iteration {cut}")));
-        };
-        let checkpoints = trail::read::<S::Draw, S::Outcome>(&path, begin, end)?;
-        let copy = |one: &checkpoint::Checkpoint<S::Draw, S::Outcome>| -> Result<u64, Error> {
-            copy_chain(pieces, piece, one.chain, (one.records, one.snapshot.end_iteration), draft, merging)?;
-            let bytes = checkpoint::encode(&draft.checkpoint(one.chain), one)?;
-            write(draft, merging.disk, one.chain, &bytes)?;
-            Ok(one.records)
-        };
-        Ok(parallel::try_map(checkpoints.len(), |k| copy(&checkpoints[k]))?.into_iter().sum())
-    }
+/// Copies the chains of a piece up to a round; gives the bytes of records.
+fn copy(pieces: &Pieces, piece: &Piece, cut: u64, draft: &Folder, merging: &Merging<'_>) -> Result<u64, Error> {
+    let path = piece.folder.trail();
+    let rounds = trail::rounds(&path, pieces.run)?;
+    let Some(&(_, begin, end)) = rounds.iter().find(|round| round.0 == cut) else {
+        return Err(refuse(&piece.folder, format!("its trail has no round that ends at iteration {cut}")));
+    };
+    let checkpoints = trail::read::<Draw, Outcome>(&path, begin, end)?;
+    let one_of = |one: &checkpoint::Checkpoint<Draw, Outcome>| -> Result<u64, Error> {
+        copy_chain(pieces, piece, one.chain, (one.records, one.snapshot.end_iteration), draft, merging)?;
+        let bytes = checkpoint::encode(&draft.checkpoint(one.chain), one)?;
+        write(draft, merging.disk, one.chain, &bytes)?;
+        Ok(one.records)
+    };
+    Ok(parallel::try_map(checkpoints.len(), |k| one_of(&checkpoints[k]))?.into_iter().sum())
 }

@@ -1,9 +1,8 @@
 //! What the tests of runs share.
 #![allow(dead_code)] // each test binary uses a part
 
-use plaus_mcmc::State;
 use plaus_run::disk::{Disk, RealDisk};
-use plaus_run::{Folder, Phase, Recipe, RunOf, RunVisitor};
+use plaus_run::{Folder, Phase, Recipe, Run};
 use plaus_scenes::{Scenario, Scene};
 use std::collections::BTreeMap;
 use std::io;
@@ -40,27 +39,22 @@ pub(crate) fn bytes_of(folder: &Folder) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// All draws of a phase, as bits: per chain, per draw, the scalars and log p. Or the first error.
-pub(crate) struct AllDraws(pub(crate) Phase);
-
-impl RunVisitor for AllDraws {
-    type Output = Result<Vec<Vec<Vec<u64>>>, String>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
-        let chain = |chain| {
-            let mut draws = Vec::new();
-            let mut values = vec![0.0; run.scene().scalars().len()];
-            let walked = run.walk(chain, self.0, |stretch| -> Result<(), plaus_run::RunFileError> {
-                let state: &State<_, _> = &stretch.entry.state;
-                run.scene().write_scalars(state, &mut values);
-                let bits: Vec<u64> =
-                    values.iter().chain([&state.log_p().value()]).map(|value| value.to_bits()).collect();
-                assert_eq!(stretch.draw, draws.len() as u64);
-                draws.extend((0..stretch.draws).map(|_| bits.clone()));
-                Ok(())
-            });
-            walked.map(|()| draws).map_err(|error| error.to_string())
-        };
-        run.chains().map(chain).collect()
-    }
+pub(crate) fn all_draws(run: &Run, phase: Phase) -> Result<Vec<Vec<Vec<u64>>>, String> {
+    let run = run.reader().map_err(|error| error.to_string())?;
+    let chain = |chain| {
+        let mut draws = Vec::new();
+        let mut values = vec![0.0; run.scene().scalars().len()];
+        let walked = run.walk(chain, phase, |stretch| -> Result<(), plaus_run::RunFileError> {
+            let state = &stretch.entry.state;
+            run.scene().write_scalars(state.by_ref(), &mut values);
+            let bits: Vec<u64> = values.iter().chain([&state.log_p().value()]).map(|value| value.to_bits()).collect();
+            assert_eq!(stretch.draw, draws.len() as u64);
+            draws.extend((0..stretch.draws).map(|_| bits.clone()));
+            Ok(())
+        });
+        walked.map(|()| draws).map_err(|error| error.to_string())
+    };
+    run.chains().map(chain).collect()
 }
 
 /// A disk that has room for so many bytes, or dies after so many operations.

@@ -20,7 +20,7 @@ use flight::Table;
 use glam::DVec2;
 use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, NotANumber, Stream};
 use plaus_mcmc::{
-    Goal, Law, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Var, Variables, Vars,
+    Goal, Law, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Var, Variables, Vars,
 };
 use serde::{Deserialize, Serialize};
 
@@ -148,7 +148,7 @@ impl Target for Ball2d {
     fn simulate(
         &self,
         draw: &Normals,
-        _current: Option<&StateOf<Self>>,
+        _current: Option<StateRefOf<'_, Self>>,
         _floor: LogPotential,
         (): &mut (),
     ) -> Result<Simulated<Rest>, ModelError> {
@@ -186,7 +186,7 @@ impl Variables for Ball2d {
 
 /// Solutions are told apart by the cells their bounces fall into.
 impl Goal for Ball2d {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let x = state.outcome.x?;
         if (x - self.config.target).abs() >= self.config.tolerance {
             return None;
@@ -209,7 +209,7 @@ impl Scene for Ball2d {
         columns::scalars(vec![Column::result("rest_x", "D").of(None)], &self.vars)
     }
 
-    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
+    fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
         if let Some((rest, angles)) = values.split_first_mut() {
             *rest = state.outcome.x.unwrap_or(f64::NAN);
             angles.copy_from_slice(&state.draw.0);

@@ -30,7 +30,9 @@ use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
 use lane::{Lane, Pins};
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream};
-use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Variables, Vars, vars};
+use plaus_mcmc::{
+    Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
+};
 use plaus_sim::rigid::{Rigid, Start};
 
 /// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, k the pins that end as they should, m those that stand as they
@@ -144,7 +146,7 @@ impl Target for Bowling {
     fn simulate(
         &self,
         draw: &Shot,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
@@ -183,7 +185,7 @@ impl Variables for Bowling {
 /// Two solutions are the same where the ball met the first pin on the same board of the lane and struck the same pins
 /// in the same order.
 impl Goal for Bowling {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let rest = &state.outcome;
         let struck = rest.struck.iter().map(|&pin| i64::from(pin));
         self.is_satisfied(rest).then(|| SolutionClass::of(std::iter::once(board(rest) as i64).chain(struck)))
@@ -211,7 +213,7 @@ impl Scene for Bowling {
     }
 
     /// Where the ball met no pin, the board and the angle are 0.
-    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
+    fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
         if let [k, m, pinfall, at, angle, ball @ ..] = values {
             let rest = &state.outcome;
             let counts = self.counts(rest);
@@ -219,7 +221,7 @@ impl Scene for Bowling {
             *pinfall = rest.pins.iter().filter(|fate| !fate.stands()).count() as f64;
             *at = board(rest);
             *angle = rest.entry.map_or(0.0, |entry| entry.angle);
-            ball.iter_mut().zip(columns::values(self, &state.draw)).for_each(|(place, value)| *place = value);
+            ball.iter_mut().zip(columns::values(self, state.draw)).for_each(|(place, value)| *place = value);
         }
     }
 

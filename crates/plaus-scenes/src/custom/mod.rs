@@ -49,7 +49,9 @@ use crate::world::{Physical, PlainWorld};
 use flight::fly;
 use plan::{Moving, Plan};
 use plaus_dist::{LogDensity, LogPotential, Purpose, Seed, Stream};
-use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Variables, Vars, vars};
+use plaus_mcmc::{
+    Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars, vars,
+};
 use values::Slot;
 
 /// A world that a user describes: `p ∝ Π p(variable)`, 0 where things begin inside each other.
@@ -150,7 +152,7 @@ impl Target for Custom {
     fn simulate(
         &self,
         draw: &Drawn,
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Ending>, ModelError> {
@@ -199,7 +201,7 @@ impl Variables for Custom {
 }
 
 impl Goal for Custom {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let Ending::Done(done) = &state.outcome else { return None };
         Some(done.class(self.config.distinct_mm / 1e3, |body| self.plan.bodies[body].is_ball()))
     }
@@ -222,7 +224,7 @@ impl Scene for Custom {
         columns::scalars(ends, &self.vars)
     }
 
-    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
+    fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
         let (ends, variables) = values.split_at_mut(ENDS.len() * self.plan.free().len());
         ends.fill(f64::NAN);
         if let Ending::Done(done) = &state.outcome {
@@ -231,7 +233,7 @@ impl Scene for Custom {
                 end.copy_from_slice(&[x, y, z, last.rest.unwrap_or(f64::NAN)]);
             }
         }
-        variables.iter_mut().zip(columns::values(self, &state.draw)).for_each(|(place, value)| *place = value);
+        variables.iter_mut().zip(columns::values(self, state.draw)).for_each(|(place, value)| *place = value);
     }
 
     fn animate(&self, draw: &Drawn) -> Result<Animation, ModelError> {
@@ -275,7 +277,7 @@ impl Scene for Custom {
     }
 
     /// Of an overlap the margin is its depth in millimetres.
-    fn answers(&self, state: &StateOf<Self>) -> Vec<Mark> {
+    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
         let [depth, rest] = match &state.outcome {
             Ending::Done(_) => [0.0, 0.0],
             Ending::Overlap(overlap) => [(-1e3 * overlap.depth).min(-f64::MIN_POSITIVE), 0.0],

@@ -50,7 +50,7 @@ use draw::{EACH, ORIENTATION};
 use plan::{Demand, Plan};
 use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogPotential, Stream};
-use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateOf, Target, Variables, Vars};
+use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use surface::Touched;
@@ -208,7 +208,7 @@ impl Target for Dice {
     fn simulate(
         &self,
         draw: &Draw,
-        current: Option<&StateOf<Self>>,
+        current: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
@@ -233,12 +233,12 @@ impl Target for Dice {
 }
 
 impl Goal for Dice {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let rest = &state.outcome;
         rest.satisfied().then(|| {
             rest.trips.iter().enumerate().fold(SolutionClass::EMPTY, |class, (die, trip)| {
                 let pips = &self.plan.rotations[usize::from(state.draw.throws[die].turn)];
-                trip.class(class, pips, self.plan.looking.cell, self.offset(&state.draw, die))
+                trip.class(class, pips, self.plan.looking.cell, self.offset(state.draw, die))
             })
         })
     }
@@ -302,8 +302,6 @@ const RESULTS: [Column; 4] =
     [Column::result("rest_x", "mm"), Column::result("rest_y", "mm"), Column::count("face"), Column::count("impacts")];
 
 impl Scene for Dice {
-    const ADAPTS: bool = true;
-
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         self.config.weights.mix(self.config.moves, self, moves::all(self, rules))
     }
@@ -313,12 +311,12 @@ impl Scene for Dice {
         columns::scalars((1..=self.config.dice).flat_map(of).collect(), &self.vars)
     }
 
-    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
-        let mut variables = columns::values(self, &state.draw);
+    fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
+        let mut variables = columns::values(self, state.draw);
         let each = state.outcome.trips.iter().zip(&state.outcome.faces);
         for (die, ((trip, face), values)) in each.zip(values.chunks_exact_mut(RESULTS.len() + NUMBERS)).enumerate() {
             let (rest, thrown) = values.split_at_mut(RESULTS.len());
-            let at = (trip.position + self.offset(&state.draw, die)) * 1e3;
+            let at = (trip.position + self.offset(state.draw, die)) * 1e3;
             rest.copy_from_slice(&[at.x, at.y, f64::from(*face), trip.impacts.len() as f64]);
             thrown.iter_mut().zip(&mut variables).for_each(|(place, value)| *place = value);
         }
@@ -349,7 +347,7 @@ impl Scene for Dice {
         self.config.constraints.iter().map(name).chain(["all dice come to rest".to_owned()]).collect()
     }
 
-    fn answers(&self, state: &StateOf<Self>) -> Vec<required::Mark> {
+    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<required::Mark> {
         let rest = &state.outcome;
         let margin = |met: bool, log: f64| if met { 0.0 } else { log.min(-f64::MIN_POSITIVE) };
         let marks = rest.marks.iter().map(|mark| margin(mark.met, mark.log));

@@ -10,7 +10,7 @@ use crate::model::groups::Memory;
 use crate::world::{Physical, PlainWorld};
 use glam::DVec3;
 use plaus_dist::LogPotential;
-use plaus_mcmc::{ModelError, Simulated, StateOf};
+use plaus_mcmc::{ModelError, Simulated, StateRefOf};
 use plaus_sim::rigid::{BodySpec, Part, Rigid, RigidScratch, RigidWorld, Start, Turning};
 use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
@@ -58,12 +58,12 @@ impl Work {
         &mut self,
         scene: &Dice,
         draw: &Draw,
-        current: Option<&StateOf<Dice>>,
+        current: Option<StateRefOf<'_, Dice>>,
         floor: LogPotential,
     ) -> Result<Simulated<Rest>, ModelError> {
         let plan = &scene.plan;
         if plan.together {
-            let trips = self.throw_together(plan, draw, current.map(|state| &state.draw))?;
+            let trips = self.throw_together(plan, draw, current.map(|state| state.draw))?;
             return Ok(Simulated::Complete(scene.judge(draw, trips)));
         }
         self.last = None;
@@ -222,7 +222,7 @@ impl Plan {
 }
 
 /// The trip of a die of the current state, where that of another draw has the same bits.
-fn known<'a>(plan: &Plan, state: &'a StateOf<Dice>, draw: &Draw, die: usize) -> Option<&'a Trip> {
+fn known<'a>(plan: &Plan, state: StateRefOf<'a, Dice>, draw: &Draw, die: usize) -> Option<&'a Trip> {
     let (trip, table) = (&state.outcome.trips[die], draw.table_of(die));
     let (old, new) = (&state.draw.tables[table], &draw.tables[table]);
     if !state.draw.throws[die].moves_like(&draw.throws[die]) || !old.has_points_of(new) {

@@ -15,10 +15,9 @@ use crate::world::PlainWorld;
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use plaus_mcmc::view::{Sees, lent};
 use plaus_mcmc::{
-    Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, State, StateOf, Target, Variables, Vars,
+    Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf, Target, Variables, Vars,
 };
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A scene under requirements: `p ∝ p_w · p_c · Π p_r`. Its own moves propose, its own simulation still stops early.
@@ -44,10 +43,25 @@ struct Asks {
 pub struct Answer<O> {
     /// The scene's own outcome.
     pub outcome: O,
+    /// What the requirements say of it; `None` where there are none.
+    pub judged: Option<Box<Judged>>,
+}
+
+/// What requirements say of an outcome.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Judged {
     /// The scene's own log constraint.
     pub own: LogPotential,
     /// A mark a requirement, in their order.
     pub marks: Vec<Mark>,
+}
+
+impl<O> Answer<O> {
+    /// A mark a requirement, in their order.
+    #[must_use]
+    pub fn marks(&self) -> &[Mark] {
+        self.judged.as_ref().map_or(&[], |judged| &judged.marks)
+    }
 }
 
 /// A bound is taken for smaller than a floor only where it is by more than this part of it: sums in another order may
@@ -134,17 +148,6 @@ impl<S: Scene> Asked<S> {
         }
         Ok(self.judge(&self.scene.motion_simulated(draw, scratch)?))
     }
-
-    /// The state of the scene alone.
-    fn plain(state: &StateOf<Self>) -> StateOf<S> {
-        let State { draw, outcome, log_prior, .. } = state;
-        State {
-            draw: draw.clone(),
-            outcome: outcome.outcome.clone(),
-            log_prior: *log_prior,
-            log_constraint: outcome.own,
-        }
-    }
 }
 
 impl<S: Scene> Target for Asked<S> {
@@ -163,17 +166,23 @@ impl<S: Scene> Target for Asked<S> {
     fn simulate(
         &self,
         draw: &S::Draw,
-        current: Option<&StateOf<Self>>,
+        current: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         scratch: &mut S::Scratch,
     ) -> Result<Simulated<Self::Outcome>, ModelError> {
+        let current = current.map(Self::state);
+        if self.asks.requirements.is_empty() {
+            return Ok(match self.scene.simulate(draw, current, floor, scratch)? {
+                Simulated::Complete(outcome) => Simulated::Complete(Answer { outcome, judged: None }),
+                Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
+            });
+        }
         if !floor.is_zero() && self.is_hopeless(draw, floor)? {
             return Ok(Simulated::CannotExceedFloor);
         }
         self.scene.record_motions(scratch);
         let own_floor = self.own_floor(floor)?;
-        let current = current.map(Self::plain);
-        let Simulated::Complete(outcome) = self.scene.simulate(draw, current.as_ref(), own_floor, scratch)? else {
+        let Simulated::Complete(outcome) = self.scene.simulate(draw, current, own_floor, scratch)? else {
             return Ok(Simulated::CannotExceedFloor);
         };
         let own = self.scene.log_constraint(&outcome)?;
@@ -181,12 +190,13 @@ impl<S: Scene> Target for Asked<S> {
             return Ok(Simulated::CannotExceedFloor);
         }
         let marks = self.marks(draw, own, scratch)?;
-        Ok(Simulated::Complete(Answer { outcome, own, marks }))
+        Ok(Simulated::Complete(Answer { outcome, judged: Some(Box::new(Judged { own, marks })) }))
     }
 
     fn log_constraint(&self, answer: &Self::Outcome) -> Result<LogPotential, ModelError> {
-        let asked = answer.marks.iter().fold(0.0, |sum, mark| sum + mark.log);
-        Ok(answer.own + LogPotential::new(asked)?)
+        let Some(judged) = &answer.judged else { return self.scene.log_constraint(&answer.outcome) };
+        let asked = judged.marks.iter().fold(0.0, |sum, mark| sum + mark.log);
+        Ok(judged.own + LogPotential::new(asked)?)
     }
 
     fn most(&self) -> Option<LogPotential> {
@@ -199,21 +209,24 @@ impl<S: Scene> Target for Asked<S> {
 }
 
 impl<S: Scene> Goal for Asked<S> {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
-        let met = state.outcome.marks.iter().all(Mark::met);
-        if met { self.scene.class(&Self::plain(state)) } else { None }
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
+        let met = state.outcome.marks().iter().all(Mark::met);
+        if met { self.scene.class(Self::state(state)) } else { None }
     }
 }
 
-impl<S: Scene> Sees for Asked<S> {
-    type Seen = S;
-
+impl<S: Scene> Sees<S> for Asked<S> {
     fn seen(&self) -> &S {
         &self.scene
     }
 
-    fn state(state: &StateOf<Self>) -> Cow<'_, StateOf<S>> {
-        Cow::Owned(Self::plain(state))
+    fn state(state: StateRefOf<'_, Self>) -> StateRefOf<'_, S> {
+        let StateRef { draw, outcome: Answer { outcome, judged }, log_prior, log_constraint } = state;
+        StateRef { draw, outcome, log_prior, log_constraint: judged.as_ref().map_or(log_constraint, |own| own.own) }
+    }
+
+    fn draw_mut(draw: &mut S::Draw) -> &mut S::Draw {
+        draw
     }
 }
 
@@ -257,8 +270,6 @@ impl<S: Scene> Variables for Asked<S> {
 }
 
 impl<S: Scene> Scene for Asked<S> {
-    const ADAPTS: bool = S::ADAPTS;
-
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
         Ok(lent(&self.scene.moves(rules)?))
     }
@@ -271,10 +282,10 @@ impl<S: Scene> Scene for Asked<S> {
         self.scene.scalars().into_iter().chain(margins).collect()
     }
 
-    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
-        let marks = &state.outcome.marks;
+    fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
+        let marks = state.outcome.marks();
         let (own, margins) = values.split_at_mut(values.len().saturating_sub(marks.len()));
-        self.scene.write_scalars(&Self::plain(state), own);
+        self.scene.write_scalars(Self::state(state), own);
         for (value, mark) in margins.iter_mut().zip(marks) {
             *value = mark.margin;
         }
@@ -332,8 +343,8 @@ impl<S: Scene> Scene for Asked<S> {
         self.scene.asked().into_iter().chain(said).collect()
     }
 
-    fn answers(&self, state: &StateOf<Self>) -> Vec<Mark> {
-        let own = self.scene.answers(&Self::plain(state));
-        own.into_iter().chain(state.outcome.marks.iter().copied()).collect()
+    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
+        let own = self.scene.answers(Self::state(state));
+        own.into_iter().chain(state.outcome.marks().iter().copied()).collect()
     }
 }

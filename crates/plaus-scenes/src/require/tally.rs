@@ -61,7 +61,7 @@ impl Tally {
                 let draw = scene.start(&mut stream);
                 if !scene.log_prior(&draw)?.is_zero() {
                     let state = State::evaluate(scene, draw, &mut scratch)?;
-                    tally.add(&scene.answers(&state));
+                    tally.add(&scene.answers(state.by_ref()));
                     break;
                 }
             }

@@ -17,8 +17,9 @@ pub use overrides::NoKey;
 pub use problem::{Problem, SHOWN, ScenarioError, Source};
 pub use schema::{SCHEMA_FILE, SCHEMA_ID, published_schema, schema};
 
+use crate::Stage;
 use crate::files::{Files, NoFiles};
-use crate::registry::{Visitor, World};
+use crate::registry::World;
 use crate::require::{Asked, Require, agree};
 use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
@@ -198,35 +199,16 @@ impl Scenario {
         self.sampler.method.unwrap_or_default()
     }
 
-    /// Builds the scene, under what is required besides, and hands it to `visitor`.
+    /// The scene, under what is required besides.
     ///
     /// # Errors
     /// [`ConfigError`] where the settings make no scene, or a requirement can mean nothing in it.
-    pub fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, ConfigError> {
-        struct Ask<'a, V>(&'a [Require], V);
-        impl<V: Visitor> Visitor for Ask<'_, V> {
-            type Output = Result<V::Output, ConfigError>;
-            fn visit<S: Scene>(self, scene: S) -> Self::Output {
-                Ok(self.1.visit(Asked::new(scene, self.0)?))
-            }
-        }
-        if self.require.is_empty() {
-            self.world.visit(visitor)
-        } else {
-            self.world.visit(Ask(&self.require, visitor))?
-        }
+    pub fn stage(&self) -> Result<Stage, ConfigError> {
+        Asked::new(self.world.scene()?, &self.require)
     }
 
     /// Whether the scene can be built and sampled.
     fn try_building(&self) -> Result<(), ConfigError> {
-        struct Build<'a>(&'a Rules);
-        impl Visitor for Build<'_> {
-            type Output = Result<(), ConfigError>;
-            fn visit<S: Scene>(self, scene: S) -> Self::Output {
-                agree(&scene.demands(), &scene.cast())?;
-                scene.moves(self.0).map(drop)
-            }
-        }
         if self.sampler.tempering.rungs > 1 && !self.sampler.rules.is_exact() {
             let message = "tempering needs exact acceptance, as its swaps rest on the law of every rung: set sampler.rules.preset = \"exact\", or rungs = 1";
             return Err(ConfigError::new("sampler.tempering.rungs", message));
@@ -235,7 +217,9 @@ impl Scenario {
             let message = "tempering is for chains: set sampler.method = \"chain\", or rungs = 1";
             return Err(ConfigError::new("sampler.tempering.rungs", message));
         }
-        self.visit(Build(&self.sampler.rules))?
+        let scene = self.stage()?;
+        agree(&scene.demands(), &scene.cast())?;
+        scene.moves(&self.sampler.rules).map(drop)
     }
 
     /// The whole effective scenario as TOML: every key that is set, in full precision. Reading it back gives an equal

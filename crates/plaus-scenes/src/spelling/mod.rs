@@ -33,8 +33,8 @@ use crate::world::PlainWorld;
 use arena::Arena;
 use plaus_dist::{Gibbs, LogDensity, LogPotential, Stream, math};
 use plaus_mcmc::{
-    Goal, Mixture, ModelError, Offset, Recipe, Rectangle, Simulated, SolutionClass, StateOf, Target, Variables, Vars,
-    vars,
+    Goal, Mixture, ModelError, Offset, Recipe, Rectangle, Simulated, SolutionClass, StateRefOf, Target, Variables,
+    Vars, vars,
 };
 use serde::{Deserialize, Serialize};
 
@@ -173,7 +173,7 @@ impl Target for Spelling {
     fn simulate(
         &self,
         draw: &Drops,
-        current: Option<&StateOf<Self>>,
+        current: Option<StateRefOf<'_, Self>>,
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
@@ -186,7 +186,7 @@ impl Target for Spelling {
             work.skip();
             return Ok(Simulated::CannotExceedFloor);
         }
-        let known = current.map(|state| &state.draw).filter(|_| self.savings.reuse);
+        let known = current.map(|state| state.draw).filter(|_| self.savings.reuse);
         work.simulate(&self.arena, draw, known).map(Simulated::Complete)
     }
 
@@ -212,7 +212,7 @@ impl Target for Spelling {
 
 /// Two solutions are the same where every ball lies in the same bin.
 impl Goal for Spelling {
-    fn class(&self, state: &StateOf<Self>) -> Option<SolutionClass> {
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let rest = &state.outcome;
         let full = rest.complete && self.filled(rest) == self.word.designated().len();
         full.then(|| SolutionClass::of(rest.bins.iter().map(|bin| bin.map_or(-1, i64::from))))
@@ -233,9 +233,9 @@ impl Scene for Spelling {
     }
 
     /// A ball in no bin has bin −1.
-    fn write_scalars(&self, state: &StateOf<Self>, values: &mut [f64]) {
+    fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
         if let [k, active, rms, bins @ ..] = values {
-            *k = self.reward(&state.outcome) as f64;
+            *k = self.reward(state.outcome) as f64;
             *active = state.draw.active() as f64;
             let squares: f64 = state.draw.offsets.iter().flatten().map(|x| math::square(*x)).sum();
             *rms = (squares / (3 * state.draw.offsets.len()).max(1) as f64).sqrt();

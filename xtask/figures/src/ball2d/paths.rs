@@ -28,7 +28,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     let ball = &sampler.scene;
     let states = sampler.states(FIGURE_SEED, 0, SAMPLES)?;
     let satisfying: Vec<Sample> =
-        states.into_iter().enumerate().filter(|(_, state)| ball.class(state).is_some()).collect();
+        states.into_iter().enumerate().filter(|(_, state)| ball.class(state.by_ref()).is_some()).collect();
     let chosen = choose(ball, &satisfying)?;
     canvas::save(&work.out, "figure-1", SIZE, |area| draw(area, ball, &chosen))?;
     let iterations: Vec<String> = chosen.iter().map(|(iteration, _)| iteration.to_string()).collect();
@@ -52,7 +52,7 @@ fn choose<'a>(ball: &Ball2d, samples: &'a [Sample]) -> Result<Vec<&'a Sample>> {
     let mut chosen: Vec<&Sample> = Vec::new();
     for _ in 0..100_000 {
         let candidate = &samples[stream::below(&mut random, samples.len())];
-        if chosen.iter().all(|sample| ball.class(&sample.1) != ball.class(&candidate.1)) {
+        if chosen.iter().all(|sample| ball.class(sample.1.by_ref()) != ball.class(candidate.1.by_ref())) {
             chosen.push(candidate);
         }
         if chosen.len() == 3 {

@@ -6,7 +6,7 @@ use crate::canvas::{self, HPos, bold, colour, pen, px, write};
 use crate::report::{significant, table, thousands};
 use crate::{Result, Work};
 use plaus_dist::Seed;
-use plaus_mcmc::{Course, Goal, Mixture, Redraw, Replicas, StateOf, Tempering, TopStep, Verdict};
+use plaus_mcmc::{Course, Goal, Mixture, Redraw, Replicas, StateOf, StateRefOf, Tempering, TopStep, Verdict};
 use plaus_scenes::bowling::{Bowling, Shot, Work as Memory};
 use plaus_scenes::{AccuracyPreset, Scene};
 use plotters::prelude::*;
@@ -58,25 +58,25 @@ impl Reached {
         }
     }
 
-    fn note(&mut self, bowler: &Bowler, iteration: u64, state: &StateOf<Bowling>) {
-        let (k, _) = bowler.scene.counts(&state.outcome);
+    fn note(&mut self, bowler: &Bowler, iteration: u64, state: StateRefOf<'_, Bowling>) {
+        let (k, _) = bowler.scene.counts(state.outcome);
         self.best = self.best.max(k);
         self.one += u64::from(k == 1);
         if bowler.scene.class(state).is_some() {
             self.both += 1;
             self.first.get_or_insert(iteration);
-            if self.draws.last() != Some(&state.draw) {
+            if self.draws.last() != Some(state.draw) {
                 self.draws.push(state.draw.clone());
             }
         }
     }
 
     /// How near the two pins come in the animation of a state with one of them down.
-    fn look(&mut self, bowler: &Bowler, state: &StateOf<Bowling>) -> Result<()> {
-        if bowler.scene.counts(&state.outcome).0 == 0 {
+    fn look(&mut self, bowler: &Bowler, state: StateRefOf<'_, Bowling>) -> Result<()> {
+        if bowler.scene.counts(state.outcome).0 == 0 {
             return Ok(());
         }
-        let animation = bowler.scene.animate(&state.draw)?;
+        let animation = bowler.scene.animate(state.draw)?;
         let mut pins = plan::pins(&animation).map(|(_, track)| track);
         let (Some(seven), Some(ten)) = (pins.next(), pins.next()) else { return Ok(()) };
         let steps = (animation.duration / 0.002) as u32;
@@ -99,11 +99,11 @@ fn reach(bowler: &Bowler, chain: u32, rungs: u32, warmup: u64, iterations: u64) 
         replicas.advance(replicas.iteration() + LOOK, |chain, step| {
             moved |= !matches!(step, TopStep::Step(step) if step.verdict != Verdict::Accepted);
             if matches!(step, TopStep::Step(_)) {
-                reached.note(bowler, chain.iteration(), chain.state());
+                reached.note(bowler, chain.iteration(), chain.state().by_ref());
             }
         })?;
         if moved {
-            reached.look(bowler, replicas.top().state())?;
+            reached.look(bowler, replicas.top().state().by_ref())?;
         }
     }
     Ok(reached)

@@ -99,10 +99,10 @@ pub(super) fn by_chain(
     let begin = seconds();
     let mut chain = Chain::start(&bowler.scene, &bowler.moves, Seed(seed).chain(0))?;
     let mut haul = Haul::default();
-    let mut class = bowler.scene.class(chain.state());
+    let mut class = bowler.scene.class(chain.state().by_ref());
     while !until.is_over(&haul) {
         if chain.step()?.verdict == Verdict::Accepted {
-            class = bowler.scene.class(chain.state());
+            class = bowler.scene.class(chain.state().by_ref());
         }
         if let Some(class) = class {
             haul.hits += 1;
@@ -125,7 +125,7 @@ pub(super) fn by_rejection(bowler: &Bowler, seed: u64, until: Until) -> Result<H
         let draw = scene.start(&mut Seed(seed).chain(haul.draws).at(0, Purpose::START));
         if let Simulated::Complete(outcome) = scene.simulate(&draw, None, floor, &mut work)? {
             let (log_prior, log_constraint) = (scene.log_prior(&draw)?, scene.log_constraint(&outcome)?);
-            let class = scene.class(&StateOf::<Bowling> { draw, outcome, log_prior, log_constraint });
+            let class = scene.class(StateOf::<Bowling> { draw, outcome, log_prior, log_constraint }.by_ref());
             haul.hits += u64::from(class.is_some());
             haul.classes.extend(class);
         }

@@ -23,7 +23,7 @@ const PALE: RGBColor = RGBColor(255, 252, 244);
 fn choose(bowler: &Bowler, most: u64) -> Result<Vec<StateOf<Bowling>>> {
     let mut found: Vec<StateOf<Bowling>> = Vec::new();
     by_chain(bowler, SEED, Until::Draws(most), |state| {
-        if found.iter().all(|known| bowler.scene.class(known) != bowler.scene.class(state)) {
+        if found.iter().all(|known| bowler.scene.class(known.by_ref()) != bowler.scene.class(state.by_ref())) {
             found.push(state.clone());
         }
         Ok(())

@@ -34,7 +34,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     work.say(format_args!("figure-9: six dice, a chain of seed {SEED}"));
     let six = Thrown::new(SIX, |_| ())?;
     let (iteration, state) = six.solution(SEED, work.size(20_000, 2))?;
-    let is_solution = six.scene.class(&state).is_some();
+    let is_solution = six.scene.class(state.by_ref()).is_some();
     if !is_solution && !work.quick {
         return Err("the chain of figure 9 found no solution".into());
     }

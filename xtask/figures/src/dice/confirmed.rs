@@ -33,7 +33,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
         let again = |solution: &StateOf<Dice>| -> Result<(bool, bool, f64)> {
             let state = State::evaluate(&reference, solution.draw.clone(), &mut Memory::default())?;
             let off = (state.outcome.trips[0].position - solution.outcome.trips[0].position).length() * 1e3;
-            Ok((reference.class(&state).is_some(), state.outcome.faces == solution.outcome.faces, off))
+            Ok((reference.class(state.by_ref()).is_some(), state.outcome.faces == solution.outcome.faces, off))
         };
         let again = solutions.par_iter().map(again).collect::<Result<Vec<_>>>()?;
         let share = |is: fn(&(bool, bool, f64)) -> bool| {
@@ -74,7 +74,7 @@ fn solutions(thrown: &Thrown, chain: u64, wanted: usize, quick: bool) -> Result<
     let (mut found, mut next) = (Vec::new(), 0);
     while found.len() < each && chain.iteration() < if quick { 2 } else { 200_000 } {
         chain.step()?;
-        if chain.iteration() >= next && (quick || thrown.scene.class(chain.state()).is_some()) {
+        if chain.iteration() >= next && (quick || thrown.scene.class(chain.state().by_ref()).is_some()) {
             found.push(chain.state().clone());
             next = chain.iteration() + APART;
         }

@@ -85,7 +85,7 @@ fn one(thrown: &Thrown, seed: u64, length: &Length) -> Result<Seen> {
     let (mut first, mut classes) = (None, BTreeSet::new());
     while chain.iteration() < first.map_or(length.most, |(iteration, _)| iteration + length.after) {
         chain.step()?;
-        let Some(class) = thrown.scene.class(chain.state()) else { continue };
+        let Some(class) = thrown.scene.class(chain.state().by_ref()) else { continue };
         first.get_or_insert_with(|| (chain.iteration(), seconds() - begin));
         classes.insert(class);
     }

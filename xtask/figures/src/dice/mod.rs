@@ -39,7 +39,7 @@ impl Thrown {
     /// The first solution of a chain, with its iteration; the last state where there is none up to `limit`.
     fn solution(&self, seed: u64, limit: u64) -> Result<(u64, StateOf<Dice>)> {
         let mut chain = Chain::start(&self.scene, &self.moves, Seed(seed).chain(0))?;
-        while chain.iteration() < limit && self.scene.class(chain.state()).is_none() {
+        while chain.iteration() < limit && self.scene.class(chain.state().by_ref()).is_none() {
             chain.step()?;
         }
         Ok((chain.iteration(), chain.state().clone()))

@@ -6,7 +6,7 @@ use super::steering::{KINDS, Row, basis, contact, lift};
 use crate::{Result, Work};
 use plaus_dist::{Purpose, Seed, Stream, math, open_unit, standard_normal};
 use plaus_mcmc::diagnose::{mcse_mean, mcse_sd};
-use plaus_mcmc::{Chain, Goal, State, StateOf, Target};
+use plaus_mcmc::{Chain, Goal, State, StateOf, StateRefOf, Target};
 use plaus_scenes::dice::{Dice, Field, LARGEST_SCORE, Site, Work as Memory};
 use rayon::prelude::*;
 
@@ -27,7 +27,7 @@ pub(super) struct Free {
 }
 
 /// The heights at the contacts of every kind of one animation.
-fn lifts(scene: &Dice, state: &StateOf<Dice>) -> [Option<f64>; KINDS] {
+fn lifts(scene: &Dice, state: StateRefOf<'_, Dice>) -> [Option<f64>; KINDS] {
     let (trip, cell) = (&state.outcome.trips[0], scene.config().table.grid_mm * 1e-3);
     std::array::from_fn(|kind| {
         let [_, x, y] = trip.impacts[contact(kind, trip.impacts.len(), 0.5)?];
@@ -120,8 +120,8 @@ pub(super) fn of_solutions(work: &Work, thrown: &Thrown) -> Result<Free> {
         for iteration in 0..iterations {
             chain.step()?;
             let due = iteration >= iterations / 8 && iteration.is_multiple_of(apart);
-            if due && (work.quick || scene.class(chain.state()).is_some()) {
-                found.push(lifts(scene, chain.state()));
+            if due && (work.quick || scene.class(chain.state().by_ref()).is_some()) {
+                found.push(lifts(scene, chain.state().by_ref()));
             }
         }
         Ok(found)
@@ -132,7 +132,7 @@ pub(super) fn of_solutions(work: &Work, thrown: &Thrown) -> Result<Free> {
         for _ in 0..work.size(100, 2) {
             let state = State::evaluate(scene, scene.start(&mut stream), &mut memory)?;
             if state.outcome.complete() {
-                found.push(lifts(scene, &state));
+                found.push(lifts(scene, state.by_ref()));
             }
         }
         Ok(found)

@@ -5,7 +5,7 @@ use super::steering::{KINDS, Row, basis, contact};
 use crate::{Result, Work};
 use plaus_dist::stream::below;
 use plaus_dist::{Purpose, Seed, Stream, math, open_unit, standard_normal};
-use plaus_mcmc::{Chain, Goal, State, StateOf, Target};
+use plaus_mcmc::{Chain, Goal, State, StateRefOf, Target};
 use plaus_scenes::dice::{Dice, End, Field, Site, Work as Memory};
 use rayon::prelude::*;
 
@@ -33,7 +33,7 @@ pub(super) fn measure(work: &Work, thrown: &Thrown) -> Result<Felt> {
         loop {
             let state = State::evaluate(&thrown.scene, thrown.scene.start(&mut stream), &mut memory)?;
             if state.outcome.complete() {
-                return tried(&thrown.scene, &state, &mut stream);
+                return tried(&thrown.scene, state.by_ref(), &mut stream);
             }
         }
     });
@@ -47,8 +47,8 @@ pub(super) fn measure(work: &Work, thrown: &Thrown) -> Result<Felt> {
         while (found.len() as u64) < each && chain.iteration() < most {
             chain.step()?;
             let due = chain.iteration() >= work.size(300, 1) && chain.iteration().is_multiple_of(apart);
-            if due && (work.quick || thrown.scene.class(chain.state()).is_some()) {
-                found.push(tried(&thrown.scene, chain.state(), &mut stream)?);
+            if due && (work.quick || thrown.scene.class(chain.state().by_ref()).is_some()) {
+                found.push(tried(&thrown.scene, chain.state().by_ref(), &mut stream)?);
             }
         }
         Ok(found)
@@ -76,7 +76,7 @@ pub(super) fn measure(work: &Work, thrown: &Thrown) -> Result<Felt> {
     })
 }
 
-fn tried(scene: &Dice, state: &StateOf<Dice>, stream: &mut Stream) -> Result<Tried> {
+fn tried(scene: &Dice, state: StateRefOf<'_, Dice>, stream: &mut Stream) -> Result<Tried> {
     let trip = &state.outcome.trips[0];
     let cell = scene.config().table.grid_mm * 1e-3;
     let mut memory = Memory::default();

@@ -26,7 +26,7 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
     work.say("dice-surface: a table");
     let one = Thrown::new(ONE, |_| ())?;
     let (iteration, state) = one.solution(SEED, work.size(20_000, 2))?;
-    let is_solution = one.scene.class(&state).is_some();
+    let is_solution = one.scene.class(state.by_ref()).is_some();
     let animation = one.scene.animate(&state.draw)?;
     let shift = one.scene.offset(&state.draw, 0);
     let touched: Vec<[f64; 2]> =

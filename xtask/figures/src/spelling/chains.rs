@@ -78,12 +78,12 @@ impl Word {
         let mut seen = Seen { iterations: length.iterations, ..Seen::default() };
         let sharp = self.bins().div_ceil(2) as u64;
         let mut k = self.scene.reward(&chain.state().outcome);
-        let mut class = self.scene.class(chain.state());
+        let mut class = self.scene.class(chain.state().by_ref());
         for iteration in 1..=length.iterations {
             if chain.step()?.verdict == Verdict::Accepted {
                 let before = std::mem::replace(&mut k, self.scene.reward(&chain.state().outcome));
                 seen.drops += u64::from(before >= k + sharp);
-                class = self.scene.class(chain.state());
+                class = self.scene.class(chain.state().by_ref());
             }
             if seen.first.is_some() && iteration.is_multiple_of(100) {
                 seen.bins.push(chain.state().outcome.bins.clone());

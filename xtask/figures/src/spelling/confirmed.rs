@@ -27,9 +27,9 @@ pub(super) fn make(work: &mut Work) -> Result<()> {
                 let filled = scene.filled(&state.outcome);
                 let balls = solution.outcome.bins.iter().zip(&state.outcome.bins);
                 let same = balls.filter(|(a, b)| a == b).count() as f64 / state.outcome.bins.len() as f64;
-                let class = scene.class(&state);
+                let class = scene.class(state.by_ref());
                 let holds = f64::from(u8::from(class.is_some()));
-                let whole = f64::from(u8::from(class.is_some() && class == word.scene.class(solution)));
+                let whole = f64::from(u8::from(class.is_some() && class == word.scene.class(solution.by_ref())));
                 let missing = word.bins() - filled;
                 Ok([holds, whole, same, f64::from(u8::from(missing > 1))])
             };
@@ -73,7 +73,7 @@ fn solutions(word: &Word, wanted: usize, apart: u64) -> Result<Vec<plaus_mcmc::S
         let (mut found, mut next) = (Vec::new(), 0);
         while found.len() < each && chain.iteration() < 1_000_000 {
             chain.step()?;
-            if chain.iteration() >= next && word.scene.class(chain.state()).is_some() {
+            if chain.iteration() >= next && word.scene.class(chain.state().by_ref()).is_some() {
                 found.push(chain.state().clone());
                 next = chain.iteration() + apart;
             }

@@ -49,7 +49,7 @@ fn choose(word: &Word, looks: u64) -> Result<(Vec<Solution>, usize)> {
         chain.step()?;
         let state = chain.state();
         let due = found.is_empty() || chain.iteration().is_multiple_of(APART);
-        if !due || word.scene.class(state).is_none() {
+        if !due || word.scene.class(state.by_ref()).is_none() {
             continue;
         }
         let this = Solution { iteration: chain.iteration(), draw: state.draw.clone(), rest: state.outcome.clone() };

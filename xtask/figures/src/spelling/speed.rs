@@ -72,7 +72,7 @@ fn restarts(word: &Word, warmup: u64, iterations: u64) -> Result<Restarts> {
         let (mut pending, mut fruitful, mut before) = (false, 0_u64, 0);
         while replicas.iteration() < warmup + iterations {
             replicas.advance(replicas.iteration() + SWAP_EVERY, |chain, _| {
-                if let Some(class) = word.scene.class(chain.state()) {
+                if let Some(class) = word.scene.class(chain.state().by_ref()) {
                     distinct.insert(class);
                     fruitful += u64::from(std::mem::take(&mut pending));
                 }

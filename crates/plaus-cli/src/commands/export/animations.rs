@@ -5,8 +5,7 @@ use crate::{console, label};
 use plaus_export::{Clip, Cut, ExportError, Exporter, Label, glb, table};
 use plaus_run::export::output;
 use plaus_run::replay::{Replay, replay_each_until};
-use plaus_run::{Confirmation, Error, RunOf, SampleId, solutions};
-use plaus_scenes::Scene;
+use plaus_run::{Confirmation, Error, RunReader, SampleId, solutions};
 use plaus_scenes::animation::Animation;
 use plaus_scenes::scenario::nearest;
 use serde_json::{Value, json};
@@ -21,15 +20,15 @@ const AT_A_TIME: usize = 64;
 const INDEX: &str = "plaus-export.json";
 
 /// Animations to be written.
-pub(super) struct Animations<'a, S: Scene> {
-    run: &'a RunOf<'a, S>,
+pub(super) struct Animations<'a> {
+    run: &'a RunReader<'a>,
     args: &'a Args,
     format: &'static dyn Exporter,
     samples: Vec<SampleId>,
 }
 
-impl<'a, S: Scene> Animations<'a, S> {
-    pub(super) fn new(run: &'a RunOf<'a, S>, args: &'a Args, format: &'static dyn Exporter) -> Result<Self, Error> {
+impl<'a> Animations<'a> {
+    pub(super) fn new(run: &'a RunReader<'a>, args: &'a Args, format: &'static dyn Exporter) -> Result<Self, Error> {
         let samples = if args.all_distinct {
             solutions::distinct(run)?.iter().map(|solution| solution.sample).collect()
         } else if args.confirmed {

@@ -9,8 +9,8 @@ use animations::Animations;
 use formats::Format;
 use plaus_export::{Between, Style, Up};
 use plaus_run::export::{csv, output, zarr};
-use plaus_run::{Error, Folder, Run, RunOf, RunVisitor, SampleId};
-use plaus_scenes::{Scene, Until};
+use plaus_run::{Error, Folder, Phase, Run, RunReader, SampleId};
+use plaus_scenes::Until;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -188,39 +188,38 @@ impl Motion {
     }
 }
 
-impl RunVisitor for &Args {
-    type Output = Result<(), Error>;
-    fn visit<S: Scene>(self, run: RunOf<'_, S>) -> Self::Output {
+impl Args {
+    fn write(&self, run: &RunReader<'_>) -> Result<(), Error> {
         let out = self.path();
         match (self.format, out == Path::new("-")) {
             (Format::Csv, true) => {
                 let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
-                csv::write(&run, &mut out)?;
+                csv::write(run, &mut out)?;
                 out.flush().map_err(Error::Output)
             }
-            (Format::Csv, false) => output::file(out, self.force, csv::is_ours, |out| csv::write(&run, out)),
+            (Format::Csv, false) => output::file(out, self.force, csv::is_ours, |out| csv::write(run, out)),
             (Format::Zarr, true) => Err(Error::Request("a Zarr export is a folder: name one by --out PATH".to_owned())),
-            (Format::Zarr, false) => output::folder(out, self.force, zarr::is_ours, |out| zarr::write(&run, out)),
-            (Format::Animation(format), _) => Animations::new(&run, self, format)?.write(),
+            (Format::Zarr, false) => output::folder(out, self.force, zarr::is_ours, |out| zarr::write(run, out)),
+            (Format::Animation(format), _) => Animations::new(run, self, format)?.write(),
         }
     }
-}
 
-impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         self.check()?;
         let mut run = Run::open(&Folder::new(&self.run))?;
         if self.salvage {
             run = run.salvaged();
-            console::note_line(&run.visit(super::Salvage)?);
+            console::note_line(&super::salvage(&run.reader()?));
         } else if run.folder().is_being_written() {
             console::note_line("note: the run is being written; this exports it as of its last checkpoint");
         }
         let tables = !matches!(self.format, Format::Animation(_));
-        if run.visit(super::diagnose::CountDraws { statistics: tables })? == 0 {
+        let reader = run.reader()?;
+        let draws = if tables { reader.draws(Phase::Sampling) } else { super::diagnose::draws_that_count(&reader) };
+        if draws == 0 {
             return Err(plaus_run::RunFileError::new(&self.run, plaus_run::RunFileProblem::Empty).into());
         }
-        let written = run.visit(&self)?;
+        let written = self.write(&reader);
         let out = self.path().display().to_string();
         written.map_err(|error| Failure::from(error).about(&out))?;
         if self.path() != Path::new("-") {

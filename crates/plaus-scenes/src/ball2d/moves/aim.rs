@@ -15,7 +15,7 @@ use crate::ball2d::flight::{self, Pattern};
 use crate::ball2d::{Ball2d, Normals};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, LogRatio, Sample, Stream, math, open_unit, standard_normal};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
 /// Angles looked for, in standard deviations and in degrees at most: beyond, the proposal density is 0.
 const REACH_SD: f64 = 5.0;
@@ -213,7 +213,7 @@ impl Move<Ball2d> for Aim {
     fn propose(
         &self,
         scene: &Ball2d,
-        current: &StateOf<Ball2d>,
+        current: StateRefOf<'_, Ball2d>,
         candidate: &mut Normals,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -234,13 +234,13 @@ impl Move<Ball2d> for Aim {
     fn log_ratio(
         &self,
         scene: &Ball2d,
-        from: &StateOf<Ball2d>,
-        to: &StateOf<Ball2d>,
+        from: StateRefOf<'_, Ball2d>,
+        to: StateRefOf<'_, Ball2d>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         let choice = Choice::of(path);
         let density = |draw: &Normals| Aiming::new(scene, &draw.0, choice).ln_density(draw.0[choice.aimed]);
-        let (back, forth) = (density(&from.draw), density(&to.draw));
+        let (back, forth) = (density(from.draw), density(to.draw));
         ratio(back, forth, ln_redrawn(scene, &from.draw.0, &to.draw.0, choice)?)
     }
 }

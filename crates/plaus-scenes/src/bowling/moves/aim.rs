@@ -3,7 +3,7 @@
 use crate::bowling::{Bowling, Quantity, Shot};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, LogDensity, LogRatio, NotANumber, Sample, Stream, WrappedUniform, math, open_unit};
-use plaus_mcmc::{Law, ModelError, Move, Path, Proposal, Recipe, StateOf, Variables, vars};
+use plaus_mcmc::{Law, ModelError, Move, Path, Proposal, Recipe, StateRefOf, Variables, vars};
 
 /// How often the place across the lane is drawn from its law instead, so that places from where no pin is met are left
 /// and come back.
@@ -81,7 +81,7 @@ impl Move<Bowling> for Aim {
     fn propose(
         &self,
         target: &Bowling,
-        current: &StateOf<Bowling>,
+        current: StateRefOf<'_, Bowling>,
         candidate: &mut Shot,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -93,23 +93,23 @@ impl Move<Bowling> for Aim {
         candidate.ball[Quantity::Across as usize] = there.sample(stream);
         let to = log_q(target, candidate, &there, anew)?;
         // Places are the same where all else is.
-        let here = if anew { Places::of(target, &current.draw)? } else { Some(there) };
+        let here = if anew { Places::of(target, current.draw)? } else { Some(there) };
         let Some(here) = here else { return Ok(Proposal::Stay) };
-        let log_ratio = LogRatio::of(log_q(target, &current.draw, &here, anew)?, to)?;
+        let log_ratio = LogRatio::of(log_q(target, current.draw, &here, anew)?, to)?;
         Ok(Proposal::Candidate { log_ratio, path: Path(u64::from(anew)), later: None })
     }
 
     fn log_ratio(
         &self,
         target: &Bowling,
-        from: &StateOf<Bowling>,
-        to: &StateOf<Bowling>,
+        from: StateRefOf<'_, Bowling>,
+        to: StateRefOf<'_, Bowling>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         let anew = path == Path(1);
-        let (Some(here), Some(there)) = (Places::of(target, &from.draw)?, Places::of(target, &to.draw)?) else {
+        let (Some(here), Some(there)) = (Places::of(target, from.draw)?, Places::of(target, to.draw)?) else {
             return Ok(LogRatio::ZERO);
         };
-        Ok(LogRatio::of(log_q(target, &from.draw, &here, anew)?, log_q(target, &to.draw, &there, anew)?)?)
+        Ok(LogRatio::of(log_q(target, from.draw, &here, anew)?, log_q(target, to.draw, &there, anew)?)?)
     }
 }

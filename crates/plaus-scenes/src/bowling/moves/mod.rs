@@ -10,7 +10,7 @@ use crate::model::{Menu, Printed, Row};
 use crate::rules::Rules;
 use plaus_dist::Stream;
 use plaus_mcmc::library::{RedrawAll, RedrawOne, RedrawSome, ShiftAll, ShiftSome, Sizes, Stride, Symmetry};
-use plaus_mcmc::{Law, Move, StateOf};
+use plaus_mcmc::{Law, Move, StateRefOf};
 
 /// The moves of bowling.
 #[derive(Debug)]
@@ -87,7 +87,7 @@ fn stride(scene: &Bowling, var: usize) -> Stride {
 /// The whole shot as seen in a mirror along the lane. Where the delivery's laws are not the same from both sides, the
 /// prior says so. Where the pins that are set up, or those to be left, are not the same in the mirror, nothing changes:
 /// the mirrored shot is an answer to another question.
-pub fn mirror(target: &Bowling, current: &StateOf<Bowling>, candidate: &mut Shot, _: &mut Stream) -> bool {
+pub fn mirror(target: &Bowling, current: StateRefOf<'_, Bowling>, candidate: &mut Shot, _: &mut Stream) -> bool {
     let Some(order) = target.rack().mirrored() else { return false };
     for quantity in Quantity::ALL {
         candidate.ball[quantity as usize] = quantity.mirrored(current.draw.get(quantity));

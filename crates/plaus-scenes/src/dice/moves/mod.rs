@@ -23,7 +23,7 @@ use crate::rules::Rules;
 use plaus_dist::stream::below;
 use plaus_dist::{Stream, math};
 use plaus_mcmc::library::{RedrawAll, RedrawGroup, Sizes, Step, Symmetry, Way, marked, unmarked};
-use plaus_mcmc::{Move, Path, StateOf};
+use plaus_mcmc::{Move, Path, StateRefOf};
 
 /// The moves of the dice.
 #[derive(Debug)]
@@ -120,7 +120,7 @@ pub fn component(scene: &Dice, sizes: Sizes) -> Step {
 /// in another orientation, the body moves as before bit by bit, and another face comes up. A cube has 24 such
 /// rotations, a cuboid with two equal edges 8, any other 4: a face of a cuboid comes up only in place of one of its
 /// size.
-pub fn turn(target: &Dice, _: &StateOf<Dice>, candidate: &mut Draw, stream: &mut Stream) -> bool {
+pub fn turn(target: &Dice, _: StateRefOf<'_, Dice>, candidate: &mut Draw, stream: &mut Stream) -> bool {
     let die = below(stream, candidate.throws.len());
     let (turns, turn) = (target.plan.rotations.len(), &mut candidate.throws[die].turn);
     // Any but the current one.

@@ -5,7 +5,7 @@ use crate::dice::{Dice, Draw, Rest, Site};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::library::{Sizes, is_adapted};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
 /// One of the places where a die touched its table, or lies at last, the k-th of a die with a weight of 1/k: early ones
 /// steer, and there are many late ones; one of the sixteen control points that a field there depends on; and one of the
@@ -38,9 +38,9 @@ fn places<'a>(draw: &'a Draw, rest: &'a Rest, table: usize) -> impl Iterator<Ite
 }
 
 /// Log probability of choosing a site of a table, but for what is the same for all sites.
-fn log_q(target: &Dice, state: &StateOf<Dice>, table: usize, site: Site) -> f64 {
+fn log_q(target: &Dice, state: StateRefOf<'_, Dice>, table: usize, site: Site) -> f64 {
     let (mut all, mut hits) = (0.0, 0.0);
-    for ([x, y], weight) in places(&state.draw, &state.outcome, table) {
+    for ([x, y], weight) in places(state.draw, state.outcome, table) {
         all += weight;
         if target.plan.surface.support(x, y).any(|at| at == [site.i, site.j]) {
             hits += weight;
@@ -60,13 +60,13 @@ impl Move<Dice> for Near {
     fn propose(
         &self,
         target: &Dice,
-        current: &StateOf<Dice>,
+        current: StateRefOf<'_, Dice>,
         candidate: &mut Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         let Some(&field) = target.fields().get(below(stream, target.fields().len())) else { return Ok(Proposal::Stay) };
         let table = below(stream, candidate.tables.len());
-        let all = || places(&current.draw, &current.outcome, table);
+        let all = || places(current.draw, current.outcome, table);
         let mut left = all().map(|(_, weight)| weight).sum::<f64>() * open_unit(stream);
         let chosen = all().find(|(_, weight)| {
             left -= weight;
@@ -87,8 +87,8 @@ impl Move<Dice> for Near {
     fn log_ratio(
         &self,
         target: &Dice,
-        from: &StateOf<Dice>,
-        to: &StateOf<Dice>,
+        from: StateRefOf<'_, Dice>,
+        to: StateRefOf<'_, Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         let (table, site) = site(path);
@@ -99,8 +99,8 @@ impl Move<Dice> for Near {
     fn log_ratio_after(
         &self,
         target: &Dice,
-        _: &StateOf<Dice>,
-        candidate: &StateOf<Dice>,
+        _: StateRefOf<'_, Dice>,
+        candidate: StateRefOf<'_, Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         let (table, site) = site(path);

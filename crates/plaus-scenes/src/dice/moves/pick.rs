@@ -5,7 +5,7 @@ use super::recast::{Led, MOST_AT_ONCE, Recast, led, led_on_table, members, over,
 use crate::dice::{Dice, Draw, Rest};
 use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogRatio, Stream, math, open_unit};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
 /// Of dice thrown onto one table one, two or three that stand in a row are recast at once, each by tries that are made
 /// until one is picked: a try whose place of release is likely under the prior, and which, alone on its table, comes to
@@ -106,7 +106,7 @@ impl Move<Dice> for Pick {
     fn propose(
         &self,
         target: &Dice,
-        current: &StateOf<Dice>,
+        current: StateRefOf<'_, Dice>,
         candidate: &mut Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -114,7 +114,7 @@ impl Move<Dice> for Pick {
         let size = 1 + below(stream, count.min(MOST_AT_ONCE));
         let first = below(stream, count + 1 - size);
         let path = Path(aimed(target).skip(first).take(size).fold(0, |dice, (die, _)| dice | 1 << die));
-        let from = self.log_q_of(target, &current.draw, &current.outcome, path)?;
+        let from = self.log_q_of(target, current.draw, current.outcome, path)?;
         if from.is_zero() {
             return Ok(Proposal::Stay);
         }
@@ -130,14 +130,14 @@ impl Move<Dice> for Pick {
     fn log_ratio(
         &self,
         target: &Dice,
-        from: &StateOf<Dice>,
-        to: &StateOf<Dice>,
+        from: StateRefOf<'_, Dice>,
+        to: StateRefOf<'_, Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        let there = self.log_q_of(target, &to.draw, &to.outcome, path)?;
+        let there = self.log_q_of(target, to.draw, to.outcome, path)?;
         if there.is_zero() {
             return Ok(LogRatio::ZERO);
         }
-        over(self.log_q_of(target, &from.draw, &from.outcome, path)?, there)
+        over(self.log_q_of(target, from.draw, from.outcome, path)?, there)
     }
 }

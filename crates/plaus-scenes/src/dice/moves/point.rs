@@ -5,7 +5,7 @@ use crate::dice::{Dice, Draw, Site};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::library::{Sizes, is_adapted};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
 /// The paper's move: one control point of one table, each as likely, makes a step that leaves its law as it is. Most
 /// points are far from any die.
@@ -31,7 +31,7 @@ impl Move<Dice> for Point {
     fn propose(
         &self,
         target: &Dice,
-        _: &StateOf<Dice>,
+        _: StateRefOf<'_, Dice>,
         candidate: &mut Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -47,7 +47,13 @@ impl Move<Dice> for Point {
     }
 
     /// The step leaves the law of the point as it is, with respect to which densities are taken.
-    fn log_ratio(&self, _: &Dice, _: &StateOf<Dice>, _: &StateOf<Dice>, _: Path) -> Result<LogRatio, ModelError> {
+    fn log_ratio(
+        &self,
+        _: &Dice,
+        _: StateRefOf<'_, Dice>,
+        _: StateRefOf<'_, Dice>,
+        _: Path,
+    ) -> Result<LogRatio, ModelError> {
         Ok(LogRatio::ONE)
     }
 

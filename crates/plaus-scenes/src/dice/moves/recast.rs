@@ -6,7 +6,7 @@ use crate::dice::{Dice, Draw, End, MOST_DICE, Rest, Trip, Work};
 use glam::{DQuat, DVec3};
 use plaus_dist::stream::below;
 use plaus_dist::{Density, Gaussian, LogDensity, LogRatio, Sample, Stream, math, open_unit, standard_normal};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
 /// A die gets a fresh throw from the prior, and a fresh table where it has one of its own, from a place from where it
 /// should come to rest near its target, with its pips turned so that a demanded face is likely to be up.
@@ -246,7 +246,7 @@ impl Move<Dice> for Recast {
     fn propose(
         &self,
         target: &Dice,
-        current: &StateOf<Dice>,
+        current: StateRefOf<'_, Dice>,
         candidate: &mut Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -256,9 +256,9 @@ impl Move<Dice> for Recast {
         let first = below(stream, count + 1 - size);
         let (mut from, mut to, mut dice) = (LogDensity::ONE, LogDensity::ONE, 0);
         for (die, place) in aimed(target).skip(first).take(size) {
-            let Some(old) = led(target, &current.draw, Some(&current.outcome), die)? else { return Ok(Proposal::Stay) };
+            let Some(old) = led(target, current.draw, Some(current.outcome), die)? else { return Ok(Proposal::Stay) };
             let Some(new) = self.cast(target, candidate, (die, place), stream)? else { return Ok(Proposal::Stay) };
-            from = from + self.log_q(target, &current.draw, (die, Some(old)), LEFT)?;
+            from = from + self.log_q(target, current.draw, (die, Some(old)), LEFT)?;
             to = to + self.log_q(target, candidate, (die, Some(new)), LEFT)?;
             dice |= 1 << die;
         }
@@ -270,14 +270,14 @@ impl Move<Dice> for Recast {
     fn log_ratio(
         &self,
         target: &Dice,
-        from: &StateOf<Dice>,
-        to: &StateOf<Dice>,
+        from: StateRefOf<'_, Dice>,
+        to: StateRefOf<'_, Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        let log_q = |state: &StateOf<Dice>| {
+        let log_q = |state: StateRefOf<'_, Dice>| {
             members(path).try_fold(LogDensity::ONE, |sum, die| -> Result<_, ModelError> {
-                let led = led(target, &state.draw, Some(&state.outcome), die)?;
-                Ok(sum + self.log_q(target, &state.draw, (die, led), LEFT)?)
+                let led = led(target, state.draw, Some(state.outcome), die)?;
+                Ok(sum + self.log_q(target, state.draw, (die, led), LEFT)?)
             })
         };
         let there = log_q(to)?;
@@ -287,8 +287,8 @@ impl Move<Dice> for Recast {
     fn log_ratio_after(
         &self,
         _: &Dice,
-        _: &StateOf<Dice>,
-        candidate: &StateOf<Dice>,
+        _: StateRefOf<'_, Dice>,
+        candidate: StateRefOf<'_, Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         let are_at_rest = members(path).all(|die| candidate.outcome.trips[die].end == End::AtRest);

@@ -4,7 +4,7 @@ use super::{aimed, log_between};
 use crate::dice::{Dice, Draw};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, standard_normal};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
 /// A die's throw is shifted along the table so that, if all goes as before, it comes to rest near its target: at a
 /// place Gaussian about it.
@@ -23,9 +23,9 @@ pub struct Shift {
 impl Shift {
     /// Log probability, or density per m², of the shift from one draw to another, given where the die of the first came
     /// to rest.
-    fn log_q(self, target: &Dice, from: &StateOf<Dice>, to: &Draw, die: usize) -> f64 {
+    fn log_q(self, target: &Dice, from: StateRefOf<'_, Dice>, to: &Draw, die: usize) -> f64 {
         let Some(place) = target.plan.places[die] else { return f64::NEG_INFINITY };
-        let rest = from.outcome.trips[die].position + target.offset(&from.draw, die);
+        let rest = from.outcome.trips[die].position + target.offset(from.draw, die);
         let cell = target.plan.surface.spacing();
         let along = |axis: usize| {
             let aim = place[axis] - rest[axis];
@@ -62,13 +62,13 @@ impl Move<Dice> for Shift {
     fn propose(
         &self,
         target: &Dice,
-        current: &StateOf<Dice>,
+        current: StateRefOf<'_, Dice>,
         candidate: &mut Draw,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
         let count = aimed(target).count();
         let Some((die, place)) = aimed(target).nth(below(stream, count)) else { return Ok(Proposal::Stay) };
-        let rest = current.outcome.trips[die].position + target.offset(&current.draw, die);
+        let rest = current.outcome.trips[die].position + target.offset(current.draw, die);
         for axis in 0..2 {
             let aim = place[axis] - rest[axis] + self.sd * standard_normal(stream);
             if target.plan.carries() {
@@ -87,22 +87,22 @@ impl Move<Dice> for Shift {
     fn log_ratio(
         &self,
         target: &Dice,
-        from: &StateOf<Dice>,
-        to: &StateOf<Dice>,
+        from: StateRefOf<'_, Dice>,
+        to: StateRefOf<'_, Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         let die = path.0 as usize;
-        let forth = LogRatio::new(self.log_q(target, from, &to.draw, die))?;
-        Ok(LogRatio::new(self.log_q(target, to, &from.draw, die))?.times(forth.inverse())?)
+        let forth = LogRatio::new(self.log_q(target, from, to.draw, die))?;
+        Ok(LogRatio::new(self.log_q(target, to, from.draw, die))?.times(forth.inverse())?)
     }
 
     fn log_ratio_after(
         &self,
         target: &Dice,
-        current: &StateOf<Dice>,
-        candidate: &StateOf<Dice>,
+        current: StateRefOf<'_, Dice>,
+        candidate: StateRefOf<'_, Dice>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        Ok(LogRatio::new(self.log_q(target, candidate, &current.draw, path.0 as usize))?)
+        Ok(LogRatio::new(self.log_q(target, candidate, current.draw, path.0 as usize))?)
     }
 }

@@ -5,7 +5,7 @@ use super::happens;
 use crate::spelling::{Drops, Spelling};
 use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
 /// Half of the time a birth: one of the N − n balls that are not dropped, each as likely, is, at a position that mostly
 /// lies over an empty designated bin. Else a death: one of the n balls that are dropped, each as likely, no longer is.
@@ -34,13 +34,13 @@ impl BirthDeath {
     }
 
     /// Log of h in the state with one ball less.
-    fn log_aim(self, target: &Spelling, less: &StateOf<Spelling>, ball: usize, position: [f64; 2]) -> f64 {
-        Aim::new(target, self.aimed, &less.outcome, ball).log_density(position)
+    fn log_aim(self, target: &Spelling, less: StateRefOf<'_, Spelling>, ball: usize, position: [f64; 2]) -> f64 {
+        Aim::new(target, self.aimed, less.outcome, ball).log_density(position)
     }
 
-    fn birth(self, target: &Spelling, less: &StateOf<Spelling>, ball: usize, position: [f64; 2]) -> f64 {
+    fn birth(self, target: &Spelling, less: StateRefOf<'_, Spelling>, ball: usize, position: [f64; 2]) -> f64 {
         let death = -math::ln((less.draw.active() + 1) as f64);
-        death - Self::log_choice(target, &less.draw) - self.log_aim(target, less, ball, position)
+        death - Self::log_choice(target, less.draw) - self.log_aim(target, less, ball, position)
     }
 }
 
@@ -52,7 +52,7 @@ impl Move<Spelling> for BirthDeath {
     fn propose(
         &self,
         target: &Spelling,
-        current: &StateOf<Spelling>,
+        current: StateRefOf<'_, Spelling>,
         candidate: &mut Drops,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
@@ -61,7 +61,7 @@ impl Move<Spelling> for BirthDeath {
             let chosen = below(stream, target.balls() - n);
             let mut absent = (0..candidate.balls.len()).filter(|&ball| candidate.balls[ball].is_none());
             let Some(ball) = absent.nth(chosen) else { return Ok(Proposal::Stay) };
-            let position = Aim::new(target, self.aimed, &current.outcome, ball).sample(stream);
+            let position = Aim::new(target, self.aimed, current.outcome, ball).sample(stream);
             candidate.balls[ball] = Some(position);
             let log_ratio = LogRatio::new(self.birth(target, current, ball, position))?;
             return Ok(Proposal::Candidate { log_ratio, path: Path(2 * ball as u64), later: None });
@@ -78,8 +78,8 @@ impl Move<Spelling> for BirthDeath {
     fn log_ratio(
         &self,
         target: &Spelling,
-        from: &StateOf<Spelling>,
-        to: &StateOf<Spelling>,
+        from: StateRefOf<'_, Spelling>,
+        to: StateRefOf<'_, Spelling>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         let ball = ball_of(path);
@@ -96,8 +96,8 @@ impl Move<Spelling> for BirthDeath {
     fn log_ratio_after(
         &self,
         target: &Spelling,
-        current: &StateOf<Spelling>,
-        candidate: &StateOf<Spelling>,
+        current: StateRefOf<'_, Spelling>,
+        candidate: StateRefOf<'_, Spelling>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         let ball = ball_of(path);

@@ -3,7 +3,7 @@
 use super::aim::Aim;
 use crate::spelling::{Drops, Rest, Spelling};
 use plaus_dist::{LogRatio, Stream, math, open_unit};
-use plaus_mcmc::{ModelError, Move, Path, Proposal, StateOf};
+use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
 /// How much likelier a ball that fills no designated bin by itself is chosen than one that does.
 const USELESS: f64 = 10.0;
@@ -34,15 +34,15 @@ fn weights<'a>(target: &'a Spelling, draw: &'a Drops, rest: &'a Rest) -> impl It
 
 impl Redrop {
     /// Log probability of choosing `ball`, and log density of dropping it at `position`.
-    fn log_q(self, target: &Spelling, from: &StateOf<Spelling>, ball: usize, position: [f64; 2]) -> f64 {
+    fn log_q(self, target: &Spelling, from: StateRefOf<'_, Spelling>, ball: usize, position: [f64; 2]) -> f64 {
         let (mut chosen, mut sum) = (0.0, 0.0);
-        for (index, weight) in weights(target, &from.draw, &from.outcome).enumerate() {
+        for (index, weight) in weights(target, from.draw, from.outcome).enumerate() {
             sum += weight;
             if index == ball {
                 chosen = weight;
             }
         }
-        let aim = Aim::new(target, self.aimed, &from.outcome, ball);
+        let aim = Aim::new(target, self.aimed, from.outcome, ball);
         math::ln(chosen / sum) + aim.log_density(position)
     }
 
@@ -51,7 +51,7 @@ impl Redrop {
         self,
         target: &Spelling,
         from: &Drops,
-        to: &StateOf<Spelling>,
+        to: StateRefOf<'_, Spelling>,
         ball: usize,
     ) -> Result<LogRatio, ModelError> {
         Ok(match from.balls.get(ball).copied().flatten() {
@@ -69,13 +69,13 @@ impl Move<Spelling> for Redrop {
     fn propose(
         &self,
         target: &Spelling,
-        current: &StateOf<Spelling>,
+        current: StateRefOf<'_, Spelling>,
         candidate: &mut Drops,
         stream: &mut Stream,
     ) -> Result<Proposal, ModelError> {
-        let sum: f64 = weights(target, &current.draw, &current.outcome).sum();
+        let sum: f64 = weights(target, current.draw, current.outcome).sum();
         let mut left = sum * open_unit(stream);
-        let chosen = weights(target, &current.draw, &current.outcome).position(|weight| {
+        let chosen = weights(target, current.draw, current.outcome).position(|weight| {
             left -= weight;
             left < 0.0
         });
@@ -83,7 +83,7 @@ impl Move<Spelling> for Redrop {
         let Some(ball) = chosen.or_else(|| candidate.balls.iter().rposition(Option::is_some)) else {
             return Ok(Proposal::Stay);
         };
-        let position = Aim::new(target, self.aimed, &current.outcome, ball).sample(stream);
+        let position = Aim::new(target, self.aimed, current.outcome, ball).sample(stream);
         candidate.balls[ball] = Some(position);
         let log_ratio = LogRatio::new(-self.log_q(target, current, ball, position))?;
         let later = Some(LogRatio::new(Aim::highest(target, self.aimed))?);
@@ -93,23 +93,23 @@ impl Move<Spelling> for Redrop {
     fn log_ratio(
         &self,
         target: &Spelling,
-        from: &StateOf<Spelling>,
-        to: &StateOf<Spelling>,
+        from: StateRefOf<'_, Spelling>,
+        to: StateRefOf<'_, Spelling>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
         let ball = path.0 as usize;
         let Some(position) = to.draw.balls[ball] else { return Ok(LogRatio::ZERO) };
         let forth = LogRatio::new(self.log_q(target, from, ball, position))?;
-        Ok(self.back(target, &from.draw, to, ball)?.times(forth.inverse())?)
+        Ok(self.back(target, from.draw, to, ball)?.times(forth.inverse())?)
     }
 
     fn log_ratio_after(
         &self,
         target: &Spelling,
-        current: &StateOf<Spelling>,
-        candidate: &StateOf<Spelling>,
+        current: StateRefOf<'_, Spelling>,
+        candidate: StateRefOf<'_, Spelling>,
         path: Path,
     ) -> Result<LogRatio, ModelError> {
-        self.back(target, &current.draw, candidate, path.0 as usize)
+        self.back(target, current.draw, candidate, path.0 as usize)
     }
 }

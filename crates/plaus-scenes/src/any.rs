@@ -1,0 +1,225 @@
+//! Whichever scene a scenario asks for, as one type: each method is that of the scene it is.
+
+use crate::accuracy::AccuracyPreset;
+use crate::animation::Animation;
+use crate::model::Scalar;
+use crate::registry::{AnyDraw, AnyOutcome, AnyScene, AnyScratch, Known, with_scene};
+use crate::require::{Cast, Mark, Require, Timed};
+use crate::rules::Rules;
+use crate::scene::{ConfigError, Scene, Until};
+use crate::world::PlainWorld;
+use plaus_dist::{LogDensity, LogPotential, Stream};
+use plaus_mcmc::view::{Sees, lent};
+use plaus_mcmc::{Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRefOf, Target, Variables, Vars};
+
+impl<S: Known> Sees<S> for AnyScene {
+    fn seen(&self) -> &S {
+        S::of(self)
+    }
+
+    fn state(state: StateRefOf<'_, Self>) -> StateRefOf<'_, S> {
+        S::state(state)
+    }
+
+    fn draw_mut(draw: &mut AnyDraw) -> &mut S::Draw {
+        S::draw_mut(draw)
+    }
+}
+
+// What follows finds the type of a scene by the scene itself.
+
+fn draw_of<'a, S: Known>(_: &S, draw: &'a AnyDraw) -> &'a S::Draw {
+    S::draw(draw)
+}
+
+fn draw_mut<'a, S: Known>(_: &S, draw: &'a mut AnyDraw) -> &'a mut S::Draw {
+    S::draw_mut(draw)
+}
+
+fn outcome_of<'a, S: Known>(_: &S, outcome: &'a AnyOutcome) -> &'a S::Outcome {
+    S::outcome(outcome)
+}
+
+fn state_of<'a, S: Known>(_: &S, state: StateRefOf<'a, AnyScene>) -> StateRefOf<'a, S> {
+    S::state(state)
+}
+
+fn scratch_of<'a, S: Known>(_: &S, scratch: &'a mut AnyScratch) -> &'a mut S::Scratch {
+    S::scratch(scratch)
+}
+
+fn scratch_kept<'a, S: Known>(_: &S, scratch: &'a AnyScratch) -> Option<&'a S::Scratch> {
+    S::scratch_kept(scratch)
+}
+
+fn simulate<S: Known>(
+    scene: &S,
+    draw: &AnyDraw,
+    current: Option<StateRefOf<'_, AnyScene>>,
+    floor: LogPotential,
+    scratch: &mut AnyScratch,
+) -> Result<Simulated<AnyOutcome>, ModelError> {
+    Ok(match scene.simulate(S::draw(draw), current.map(S::state), floor, S::scratch(scratch))? {
+        Simulated::Complete(outcome) => Simulated::Complete(S::any_outcome(outcome)),
+        Simulated::CannotExceedFloor => Simulated::CannotExceedFloor,
+    })
+}
+
+#[warn(clippy::missing_trait_methods)]
+impl Target for AnyScene {
+    type Draw = AnyDraw;
+    type Outcome = AnyOutcome;
+    type Scratch = AnyScratch;
+
+    fn start(&self, stream: &mut Stream) -> AnyDraw {
+        fn start<S: Known>(scene: &S, stream: &mut Stream) -> AnyDraw {
+            S::any_draw(scene.start(stream))
+        }
+        with_scene!(self, scene => start(&**scene, stream))
+    }
+
+    fn log_prior(&self, draw: &AnyDraw) -> Result<LogDensity, ModelError> {
+        with_scene!(self, scene => scene.log_prior(draw_of(&**scene, draw)))
+    }
+
+    fn simulate(
+        &self,
+        draw: &AnyDraw,
+        current: Option<StateRefOf<'_, Self>>,
+        floor: LogPotential,
+        scratch: &mut AnyScratch,
+    ) -> Result<Simulated<AnyOutcome>, ModelError> {
+        with_scene!(self, scene => simulate(&**scene, draw, current, floor, scratch))
+    }
+
+    fn log_constraint(&self, outcome: &AnyOutcome) -> Result<LogPotential, ModelError> {
+        with_scene!(self, scene => scene.log_constraint(outcome_of(&**scene, outcome)))
+    }
+
+    fn most(&self) -> Option<LogPotential> {
+        with_scene!(self, scene => scene.most())
+    }
+
+    fn settle(&self, accepted: bool, scratch: &mut AnyScratch) {
+        with_scene!(self, scene => scene.settle(accepted, scratch_of(&**scene, scratch)));
+    }
+}
+
+impl Goal for AnyScene {
+    fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
+        with_scene!(self, scene => scene.class(state_of(&**scene, state)))
+    }
+}
+
+#[warn(clippy::missing_trait_methods)]
+impl Variables for AnyScene {
+    fn vars(&self) -> &Vars {
+        with_scene!(self, scene => scene.vars())
+    }
+
+    fn get<'a>(&self, draw: &'a AnyDraw, var: usize) -> Option<&'a [f64]> {
+        with_scene!(self, scene => scene.get(draw_of(&**scene, draw), var))
+    }
+
+    fn get_mut<'a>(&self, draw: &'a mut AnyDraw, var: usize) -> Option<&'a mut [f64]> {
+        with_scene!(self, scene => scene.get_mut(draw_mut(&**scene, draw), var))
+    }
+
+    fn set_present(&self, draw: &mut AnyDraw, var: usize, present: bool) {
+        with_scene!(self, scene => scene.set_present(draw_mut(&**scene, draw), var, present));
+    }
+
+    fn shift(&self, draw: &AnyDraw, var: usize) -> f64 {
+        with_scene!(self, scene => scene.shift(draw_of(&**scene, draw), var))
+    }
+
+    fn renew_own(&self, draw: &mut AnyDraw, var: usize, stream: &mut Stream) {
+        with_scene!(self, scene => scene.renew_own(draw_mut(&**scene, draw), var, stream));
+    }
+
+    fn step_own(&self, draw: &mut AnyDraw, var: usize, size: f64, stream: &mut Stream) {
+        with_scene!(self, scene => scene.step_own(draw_mut(&**scene, draw), var, size, stream));
+    }
+
+    fn renew_all(&self, draw: &mut AnyDraw, recipe: Recipe, stream: &mut Stream) {
+        with_scene!(self, scene => scene.renew_all(draw_mut(&**scene, draw), recipe, stream));
+    }
+
+    fn renew_group(&self, draw: &mut AnyDraw, group: usize, stream: &mut Stream) {
+        with_scene!(self, scene => scene.renew_group(draw_mut(&**scene, draw), group, stream));
+    }
+}
+
+#[warn(clippy::missing_trait_methods)]
+impl Scene for AnyScene {
+    fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError> {
+        with_scene!(self, scene => Ok(lent(&scene.moves(rules)?)))
+    }
+
+    fn scalars(&self) -> Vec<Scalar> {
+        with_scene!(self, scene => scene.scalars())
+    }
+
+    fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
+        with_scene!(self, scene => scene.write_scalars(state_of(&**scene, state), values));
+    }
+
+    fn animate(&self, draw: &AnyDraw) -> Result<Animation, ModelError> {
+        with_scene!(self, scene => scene.animate(draw_of(&**scene, draw)))
+    }
+
+    fn animate_until(&self, draw: &AnyDraw, until: Until) -> Result<Animation, ModelError> {
+        with_scene!(self, scene => scene.animate_until(draw_of(&**scene, draw), until))
+    }
+
+    fn motion(&self, draw: &AnyDraw) -> Result<Animation, ModelError> {
+        with_scene!(self, scene => scene.motion(draw_of(&**scene, draw)))
+    }
+
+    fn record_motions(&self, scratch: &mut AnyScratch) {
+        with_scene!(self, scene => scene.record_motions(scratch_of(&**scene, scratch)));
+    }
+
+    fn motion_simulated(&self, draw: &AnyDraw, scratch: &AnyScratch) -> Result<Animation, ModelError> {
+        with_scene!(self, scene => match scratch_kept(&**scene, scratch) {
+            Some(scratch) => scene.motion_simulated(draw_of(&**scene, draw), scratch),
+            None => scene.motion(draw_of(&**scene, draw)),
+        })
+    }
+
+    fn at_accuracy(&self, accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
+        with_scene!(self, scene => Ok(scene.at_accuracy(accuracy)?.map(Known::any)))
+    }
+
+    fn cast(&self) -> Cast {
+        with_scene!(self, scene => scene.cast())
+    }
+
+    fn demands(&self) -> Vec<(String, Require)> {
+        with_scene!(self, scene => scene.demands())
+    }
+
+    fn times(&self, motion: &Animation) -> Vec<(String, Timed)> {
+        with_scene!(self, scene => scene.times(motion))
+    }
+
+    fn motion_to(&self, draw: &AnyDraw, time: f64) -> Result<Option<Animation>, ModelError> {
+        with_scene!(self, scene => scene.motion_to(draw_of(&**scene, draw), time))
+    }
+
+    fn notes(&self) -> Vec<String> {
+        with_scene!(self, scene => scene.notes())
+    }
+
+    fn asked(&self) -> Vec<String> {
+        with_scene!(self, scene => scene.asked())
+    }
+
+    fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
+        with_scene!(self, scene => scene.answers(state_of(&**scene, state)))
+    }
+
+    fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
+        with_scene!(self, scene => Scene::world(&**scene))
+    }
+}
