@@ -155,7 +155,7 @@ class Job:
         other = ["--shard", "2/4", "--out", pieces / "2", "--quiet", "--set", "sigma_d=0.3"]
         self.call("sample", self.place / FILE, *self.run, *other, "--max-time", "0s", code=1)
         said = self.call(*merge, code=2)
-        demand("is no piece of the run" in said and "pieces/2" in said, f"another scenario is not named: {said}")
+        demand("does not belong to the same run" in said and "pieces/2" in said, f"another scenario is not named: {said}")
         shutil.rmtree(pieces / "2")
         aside.rename(pieces / "2")
         shutil.copytree(pieces / "2", pieces / "twice")
@@ -199,7 +199,7 @@ class ChanceJob(Job):
         other = ["--method", "counting", "--batches", "16", "--seed", "4", "--quiet"]
         self.call("chance", self.place / FILE, "--shard", "2/4", "--out", two, *other)
         said = self.call(*merge, code=2)
-        demand("is no piece of the same" in said and "2.json" in said, f"another scenario is not named: {said}")
+        demand("does not belong to the other pieces" in said and "2.json" in said, f"another scenario is not named: {said}")
         shutil.copy(aside, two)
         shutil.copy(aside, pieces / "twice.json")
         said = self.call(*merge, code=2)

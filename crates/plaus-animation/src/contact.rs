@@ -1,9 +1,9 @@
-//! Contact that lasts, for the sound of rolling and sliding.
+//! Contacts that last, for the sound of rolling and sliding.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A time during which a body rolls or slides on something. Long ones come in several that follow each other.
+/// A time during which a body rolls or slides on something. A long one is divided into several in a row.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// When it begins, in s.
@@ -18,9 +18,9 @@ pub struct Contact {
     pub point: DVec3,
     /// Mean speed of the body's surface over the other's, m/s.
     pub slip: f64,
-    /// Mean speed at which the place of contact goes along the surface without slipping, m/s.
+    /// Mean speed at which the point of contact moves along the surface without slipping, m/s.
     pub roll: f64,
-    /// Mean force between the two, N: what bears the body, and what changes its velocity.
+    /// Mean force between the two, N: it supports the body, and changes its velocity.
     pub force: f64,
 }
 

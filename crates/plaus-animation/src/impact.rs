@@ -1,4 +1,4 @@
-//! Contacts, for sound and for marks on a time line.
+//! Impacts, for sound and for marks on a time line.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -16,19 +16,19 @@ pub struct Impact {
     pub point: DVec3,
     /// Unit normal of the surface hit, towards the body.
     pub normal: DVec3,
-    /// Speed at which the two met along the normal, m/s; 0 where unknown.
+    /// Speed at which the two met along the normal, m/s; 0 if unknown.
     pub speed: f64,
-    /// Size of the impulse between them, N·s; 0 where unknown.
+    /// Size of the impulse between them, N·s; 0 if unknown.
     pub impulse: f64,
 }
 
 impl Impact {
-    /// A contact of unknown strength.
+    /// An impact of unknown strength.
     pub fn new(time: f64, body: impl Into<String>, other: impl Into<String>, point: DVec3, normal: DVec3) -> Self {
         Self { time, body: body.into(), other: other.into(), point, normal, speed: 0.0, impulse: 0.0 }
     }
 
-    /// The same with the speed at which the two met along the normal (m/s), and the impulse between them (N·s).
+    /// The same impact with the speed at which the two met along the normal (m/s), and the impulse between them (N·s).
     #[must_use]
     pub fn with_strength(self, speed: f64, impulse: f64) -> Self {
         Self { speed, impulse, ..self }

@@ -1,4 +1,4 @@
-//! An animation as closed-form pieces, from which any frame rate can be drawn exactly, and all that is needed to show
+//! An animation as closed-form pieces, from which any frame rate can be drawn exactly, with everything needed to show
 //! it.
 //!
 //! ```
@@ -34,20 +34,20 @@ pub use shape::{Shape, Stripe};
 
 use serde::{Deserialize, Serialize};
 
-/// Motion of all bodies from time 0 to `duration`, between things that do not move.
+/// Motion of all bodies from time 0 to `duration`, among scenery.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Animation {
     /// Seconds.
     pub duration: f64,
-    /// One a body, with stable names.
+    /// One for each body, with stable names.
     pub tracks: Vec<Track>,
     /// Impacts in order of time.
     pub impacts: Vec<Impact>,
     /// Contacts that last, in order of their starts.
     pub contacts: Vec<Contact>,
-    /// What stands still.
+    /// Scenery.
     pub scenery: Vec<Prop>,
-    /// From where it is best looked at, if the scene knows.
+    /// The best place to look from, if the scene knows it.
     pub view: Option<View>,
 }
 
@@ -64,14 +64,14 @@ impl Animation {
         Self { contacts, ..self }
     }
 
-    /// What a body or a part of the scenery looks like; `None` where nothing has that name.
+    /// The look of a body or a part of the scenery; `None` if nothing has that name.
     #[must_use]
     pub fn look_of(&self, name: &str) -> Option<Look> {
         let body = self.tracks.iter().find(|track| track.name == name).map(|track| track.look);
         body.or_else(|| self.scenery.iter().find(|prop| prop.name == name).map(|prop| prop.look))
     }
 
-    /// One body alone, with its impacts and contacts; `None` where no body has that name.
+    /// One body alone, with its impacts and contacts; `None` if no body has that name.
     #[must_use]
     pub fn only(&self, body: &str) -> Option<Self> {
         let track = self.tracks.iter().find(|track| track.name == body)?;
@@ -80,7 +80,7 @@ impl Animation {
         Some(Self::new(self.duration, vec![track.clone()], impacts).with_contacts(contacts.collect()))
     }
 
-    /// The same until `end` s: bodies stay as they are then where it ends earlier, and what comes later is left out.
+    /// The same until `end` s: if it ends earlier, bodies then stay where they are; anything later is left out.
     #[must_use]
     pub fn until(mut self, end: f64) -> Self {
         for track in &mut self.tracks {
@@ -98,7 +98,7 @@ impl Animation {
         self
     }
 
-    /// When the last body has come to rest, or where it ends.
+    /// When the last body has come to rest, or the end of the animation.
     #[must_use]
     pub fn rest(&self) -> f64 {
         let rest = |track: &Track| match track.pieces.last() {
@@ -109,7 +109,7 @@ impl Animation {
         self.tracks.iter().map(rest).fold(0.0, f64::max).min(self.duration)
     }
 
-    /// The same among things that stand still.
+    /// The same among scenery.
     #[must_use]
     pub fn with_scenery(self, scenery: Vec<Prop>) -> Self {
         Self { scenery, ..self }

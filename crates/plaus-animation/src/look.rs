@@ -1,4 +1,4 @@
-//! Colours and materials: hints for whoever draws, without influence on anything that is sampled.
+//! Colours and materials: hints for drawing, without influence on anything that is sampled.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ pub enum Material {
     Matte,
     /// Lacquer, plastic, marbles.
     Glossy,
-    /// Lets light through.
+    /// Transparent.
     Glass,
     /// Steel.
     Metal,
@@ -22,7 +22,7 @@ pub enum Material {
     Wood,
     /// Cloth of a gaming table.
     Felt,
-    /// Not really there: a mark, drawn translucent and without shadow.
+    /// Not a real thing: a mark, drawn translucent and without shadow.
     Mark,
 }
 
@@ -35,7 +35,7 @@ pub struct Look {
     pub material: Material,
 }
 
-/// Colours that are told apart also by people who do not see all of them (after Okabe & Ito), brightest first.
+/// Colours that remain distinct for people with colour blindness (after Okabe & Ito), brightest first.
 const PALETTE: [[u8; 3]; 8] = [
     [230, 120, 40],
     [40, 130, 200],
@@ -67,7 +67,7 @@ impl Look {
         Self { colour: Colour(colour), material }
     }
 
-    /// The n-th of colours that are easily told apart, glossy; begins again after eight.
+    /// The n-th of several colours that are easy to distinguish, glossy; starts over after eight.
     #[must_use]
     pub const fn nth(n: usize) -> Self {
         Self::new(PALETTE[n % PALETTE.len()], Material::Glossy)

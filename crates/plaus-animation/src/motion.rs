@@ -37,8 +37,8 @@ pub struct Piece {
 
 /// Turning in closed form: `R(t) = Rot(spin·t) · R(0) · Rot(e₃, own·t)`.
 ///
-/// With `own` 0 that is any body at constant angular velocity; with it, the free symmetric top, which precesses about
-/// its angular momentum while it spins about its own third axis.
+/// With `own` = 0 this is any body at constant angular velocity; with `own`, the free symmetric top, which precesses
+/// about its angular momentum while it spins about its own third axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Turn {
     /// Orientation at the piece's start, from the body's frame to the world's.
@@ -56,8 +56,9 @@ impl Turn {
         Self { orientation, ..Self::default() }
     }
 
-    /// The same orientation, but at that constant angular velocity, of all that reach `end` after `t` > 0 seconds,
-    /// which is nearest to `spin`: where torques act, the mean over the piece, so that a piece ends as the next begins.
+    /// The same orientation with another constant angular velocity: of those that reach `end` after `t` > 0 seconds,
+    /// the one nearest to `spin`. If torques act, this is the mean over the piece, so that a piece ends as the next
+    /// begins.
     #[must_use]
     pub fn reaching(self, end: DQuat, t: f64) -> Self {
         let way = end * self.orientation.conjugate();
@@ -66,7 +67,7 @@ impl Turn {
             return self;
         }
         let (axis, angle) = (way.xyz() / sine, 2.0 * atan2(sine, way.w));
-        // The same turn, and any number of full turns more.
+        // The same turn, plus any number of full turns.
         let full = ((self.spin.dot(axis) * t - angle) / TAU).round();
         Self { spin: axis * ((angle + TAU * full) / t), ..self }
     }
@@ -111,8 +112,9 @@ impl Piece {
         Self { turn, ..self }
     }
 
-    /// Has each piece that turns end as the next begins. A body's spin may change within a piece, where friction acts
-    /// or its moments of inertia differ, and a piece has one: that which leads to where the next begins.
+    /// Makes each piece that turns end as the next begins. A body's spin may change within a piece, because of friction
+    /// or different moments of inertia; but a piece has only one, so it gets the one that leads to the start of the
+    /// next.
     pub fn lead_on(pieces: &mut [Self]) {
         for index in 1..pieces.len() {
             let (next, piece) = (pieces[index], &mut pieces[index - 1]);
@@ -122,7 +124,7 @@ impl Piece {
         }
     }
 
-    /// Position at `time`, in s; where the piece begins for times before that.
+    /// Position at `time`, in s; before the piece begins, the position at its start.
     #[must_use]
     pub fn position(&self, time: f64) -> DVec3 {
         let t = (time - self.start).max(0.0);
@@ -148,14 +150,14 @@ impl Track {
         Self { name: name.into(), shape, look, pieces }
     }
 
-    /// The piece that is valid at `time`: the first for times before it, `None` where there is none.
+    /// The piece that is valid at `time`: the first for times before it, `None` if there is none.
     #[must_use]
     pub fn piece(&self, time: f64) -> Option<&Piece> {
         let next = self.pieces.partition_point(|piece| piece.start <= time);
         self.pieces.get(next.saturating_sub(1))
     }
 
-    /// Position at `time`; before the first piece the body is where that begins.
+    /// Position at `time`; before the first piece, the position at its start.
     #[must_use]
     pub fn position(&self, time: f64) -> DVec3 {
         self.piece(time).map_or(DVec3::ZERO, |piece| piece.position(time))
@@ -167,7 +169,7 @@ impl Track {
         self.piece(time).map_or(DQuat::IDENTITY, |piece| piece.orientation(time))
     }
 
-    /// Whether the body ever has an orientation other than that of the world.
+    /// Whether the body ever has an orientation other than the world's.
     #[must_use]
     pub fn turns(&self) -> bool {
         self.pieces.iter().any(|piece| piece.turn != Turn::default())

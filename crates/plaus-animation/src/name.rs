@@ -1,8 +1,8 @@
-//! Names of looks, for whoever opens an export: `maple`, `glossy red`.
+//! Names of looks, for readers of an export: `maple`, `glossy red`.
 
 use super::look::{Colour, Look, Material};
 
-/// Looks that have a name of their own.
+/// Looks with names of their own.
 const KNOWN: [(Look, &str); 6] = [
     (Look::WOOD, "maple"),
     (Look::FELT, "green felt"),
@@ -33,7 +33,7 @@ const COLOURS: [(&str, [u8; 3]); 16] = [
 ];
 
 impl Look {
-    /// A name in lower-case words, such as `maple` or `glossy red`. Looks of nearly one colour share theirs.
+    /// A name in lower-case words, such as `maple` or `glossy red`. Looks of similar colour share a name.
     #[must_use]
     pub fn name(self) -> String {
         if let Some((_, name)) = KNOWN.iter().find(|(look, _)| *look == self) {

@@ -1,13 +1,13 @@
-//! What stands still, and where to look from.
+//! Scenery, and where to look from.
 
 use super::look::Look;
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// A thing that does not move.
+/// A piece of scenery.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Prop {
-    /// Stable name; unique within an animation, also among its bodies.
+    /// Stable name; unique within an animation, including its bodies.
     pub name: String,
     /// Colour and material.
     pub look: Look,
@@ -15,7 +15,7 @@ pub struct Prop {
     pub form: Form,
 }
 
-/// The form of a thing that does not move, in metres and in the world's frame.
+/// The form of a piece of scenery, in metres and in the world's frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
@@ -50,7 +50,7 @@ pub enum Form {
         origin: DVec3,
         /// Distance between neighbours along x and along z.
         step: [f64; 2],
-        /// How many heights follow each other along x before the next row in z begins.
+        /// How many heights there are along x before the next row in z begins.
         columns: u32,
         /// Heights above the origin's y; a whole number of rows.
         heights: Vec<f64>,
@@ -60,11 +60,11 @@ pub enum Form {
 /// A place to look from.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct View {
-    /// Direction from what is looked at to the eye; of any length.
+    /// Direction from the point looked at to the eye; of any length.
     pub from: DVec3,
-    /// Points that should be seen, besides all that moves: two corners of a box.
+    /// Points that should be visible, besides everything that moves: two corners of a box.
     pub frame: Option<[DVec3; 2]>,
-    /// Whether that box is all that must be seen, wherever bodies go.
+    /// Whether that box is all that must be visible, wherever bodies go.
     pub alone: bool,
 }
 
@@ -79,26 +79,26 @@ impl Prop {
         Self::new(name, look, Form::Block { centre, half, orientation: DQuat::IDENTITY })
     }
 
-    /// Marks a box, by its middle and half its lengths, as the place that is to be reached.
+    /// Marks a box, by its middle and half its lengths, as a place to reach.
     pub fn target(name: impl Into<String>, centre: DVec3, half: DVec3) -> Self {
         Self::block(name, Look::TARGET, centre, half)
     }
 }
 
 impl View {
-    /// Looks from a direction; what moves is to be seen.
+    /// Looks from a direction; everything that moves should be visible.
     #[must_use]
     pub fn from(x: f64, y: f64, z: f64) -> Self {
         Self { from: DVec3::new(x, y, z), frame: None, alone: false }
     }
 
-    /// The same, where a box between two corners is to be seen as well.
+    /// The same; a box between two corners should be visible as well.
     #[must_use]
     pub fn showing(self, low: DVec3, high: DVec3) -> Self {
         Self { frame: Some([low, high]), ..self }
     }
 
-    /// The same, where a box between two corners is all that must be seen.
+    /// The same; only a box between two corners must be visible.
     #[must_use]
     pub fn only(self, low: DVec3, high: DVec3) -> Self {
         Self { frame: Some([low, high]), alone: true, ..self }

@@ -12,10 +12,10 @@ pub enum Shape {
     Sphere {
         /// Radius.
         radius: f64,
-        /// Whether it has finger holes about its third axis, so that one sees it turn.
+        /// Whether it has finger holes about its third axis, which make its rotation visible.
         holes: bool,
     },
-    /// A coin whose faces look along the third axis: a ball of a world with two dimensions.
+    /// A coin whose faces look along the third axis: a ball in a world of two dimensions.
     Disc {
         /// Radius.
         radius: f64,
@@ -26,7 +26,7 @@ pub enum Shape {
     Cuboid {
         /// Half its lengths along the body's axes.
         half: DVec3,
-        /// Pips of the faces +x, −x, +y, −y, +z, −z, where it is a die.
+        /// Pips on the faces +x, −x, +y, −y, +z, −z, if it is a die.
         pips: Option<[u8; 6]>,
     },
     /// A body of revolution about its third axis: a bowling pin.
@@ -37,7 +37,7 @@ pub enum Shape {
         /// Painted rings.
         stripes: Vec<Stripe>,
     },
-    /// A polyhedron, or several that are one body: what is simulated is convex, or made of convex pieces.
+    /// A polyhedron, or several joined into one body: the simulated body is convex, or made of convex pieces.
     Solid {
         /// Corners.
         vertices: Vec<DVec3>,

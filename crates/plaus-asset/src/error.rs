@@ -2,28 +2,28 @@
 
 use super::{MOST_BYTES, MOST_TRIANGLES};
 
-/// A file that is not read.
+/// Why a file was not read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AssetError {
-    /// An ending that says no format.
+    /// The extension is not that of a known format.
     #[error("its name must end in .glb, .obj or .stl")]
     UnknownFormat,
-    /// More bytes than are read.
-    #[error("it has {bytes} bytes: at most {MOST_BYTES} are read")]
+    /// More bytes than allowed.
+    #[error("it has {bytes} bytes: at most {MOST_BYTES} are allowed")]
     TooLong {
         /// How many it has.
         bytes: u64,
     },
-    /// More triangles than the simulator takes.
-    #[error("it has {triangles} triangles: at most {MOST_TRIANGLES} are served; decimate it")]
+    /// More triangles than the simulator accepts.
+    #[error("it has {triangles} triangles: at most {MOST_TRIANGLES} are allowed; decimate it")]
     TooMany {
         /// How many it has.
         triangles: usize,
     },
     /// No triangles at all.
-    #[error("there are no triangles in it")]
+    #[error("it has no triangles")]
     Empty,
-    /// It is not what its name says, or damaged.
+    /// It is not what its name says, or it is damaged.
     #[error("{0}")]
     Broken(String),
     /// A corner that is NaN or infinite.

@@ -1,4 +1,4 @@
-//! Files of shapes, GLB, OBJ and STL, as named objects made of triangles; and times of CSV and MIDI files.
+//! Files of shapes (GLB, OBJ and STL) as named objects made of triangles; and times from CSV and MIDI files.
 //!
 //! ```
 //! let obj = b"o wedge\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -8,8 +8,8 @@
 //! # Ok::<(), plaus_asset::AssetError>(())
 //! ```
 //!
-//! Lengths are in the file's own unit, and axes the file's own, until [`Triangles::upright`] makes z point up. Nothing
-//! here reads a disk, and nothing that a file says is believed before it is checked.
+//! Lengths are in the file's own unit and along its own axes, until [`Triangles::upright`] makes z point up. Nothing
+//! here reads a disk, and nothing in a file is trusted before it is checked.
 
 mod error;
 pub mod glb;
@@ -23,13 +23,13 @@ pub use triangles::{Triangles, Up, upright, upright_turn};
 
 use glam::{DQuat, DVec3};
 
-/// Longest file that is read, in bytes: an STL of as many triangles as are served, written as text, has about that.
+/// Longest file that is read, in bytes: about that of an STL written as text with the most triangles allowed.
 pub const MOST_BYTES: usize = 256 << 20;
 
-/// Most triangles of a file: what the simulator takes of one mesh.
+/// Most triangles in a file: as many as the simulator accepts in one mesh.
 pub const MOST_TRIANGLES: usize = 1 << 20;
 
-/// The formats there are.
+/// The known formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Binary glTF 2.0: nodes with names, keyframes, materials. Metres, y up.
@@ -41,7 +41,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format of a file by the ending of its name, whatever its case.
+    /// The format of a file, from its extension in upper or lower case.
     ///
     /// # Errors
     /// [`AssetError::UnknownFormat`] for any other ending.
@@ -55,7 +55,7 @@ impl Format {
         }
     }
 
-    /// How many millimetres its unit of length is, as far as that is usual.
+    /// The usual length of its unit, in millimetres.
     #[must_use]
     pub fn unit_mm(self) -> f64 {
         match self {
@@ -79,22 +79,22 @@ impl Format {
 pub struct Content {
     /// Its format.
     pub format: Format,
-    /// What has triangles, in the order of the file.
+    /// The objects with triangles, in the order of the file.
     pub objects: Vec<Object>,
 }
 
 /// Something in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
-    /// Its name; `object_1` and so on, by its place, where the file gives none.
+    /// Its name; `object_1` and so on, by its index, if the file gives none.
     pub name: String,
     /// Where its origin is in the file. Only a GLB places its objects.
     pub at: DVec3,
     /// Turns its axes into those of the file.
     pub turn: DQuat,
-    /// Its triangles about its own origin, along its own axes. What its node is scaled by is in them.
+    /// Its triangles about its own origin, along its own axes, including its node's scale.
     pub triangles: Triangles,
-    /// Its colour, red, green and blue, where the file gives one.
+    /// Its colour, red, green and blue, if the file gives one.
     pub colour: Option<[u8; 3]>,
 }
 
@@ -105,7 +105,7 @@ impl Content {
         self.objects.iter().find(|object| object.name == name)
     }
 
-    /// All of it, as it lies in the file.
+    /// All objects as placed in the file.
     #[must_use]
     pub fn whole(&self) -> Triangles {
         let placed = |object: &Object| object.triangles.moved(|corner| object.at + object.turn * corner);
@@ -113,11 +113,12 @@ impl Content {
     }
 }
 
-/// Reads a file called `file`, whose ending says its format.
+/// Reads a file called `file`, whose extension tells its format.
 ///
 /// # Errors
-/// [`AssetError`]: an ending that is none of those, too many bytes or triangles, what is no such file, a corner that is
-/// not finite, and a file without triangles.
+///
+/// [`AssetError`] for an unknown extension, too many bytes or triangles, an invalid file, a corner that is not finite,
+/// and a file without triangles.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Content, AssetError> {
     let format = Format::of(file)?;
     if bytes.len() > MOST_BYTES {

@@ -9,7 +9,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Object>, AssetError> {
     let options = LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
     // Files of materials are not looked for: nothing but the file itself is read.
     let read = tobj::load_obj_buf(&mut &bytes[..], &options, |_| Err(LoadError::OpenFileFailed));
-    let (models, _) = read.map_err(|error| AssetError::Broken(format!("it is no OBJ: {error}")))?;
+    let (models, _) = read.map_err(|error| AssetError::Broken(format!("it is not a valid OBJ: {error}")))?;
     let mut objects: Vec<(String, Vec<DVec3>, Vec<[u32; 3]>)> = Vec::new();
     for (index, model) in models.into_iter().enumerate() {
         let name = match model.name.as_str() {

@@ -1,16 +1,16 @@
-//! Times at which something begins: of a column of a table, or of the notes of a piece of music.
+//! Times at which something begins: from a column of a table, or from the notes of a piece of music.
 
 use super::AssetError;
 use midly::{MetaMessage, MidiMessage, Smf, Timing, TrackEventKind};
 
-/// Which times of a file.
+/// Which times of a file to use.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Which<'a> {
-    /// Of a table: the column with this name in its first row; `None`: the first column.
+    /// For a table: the column with this name in its first row; `None`: the first column.
     pub column: Option<&'a str>,
-    /// Of MIDI: only notes of this key, from 0 to 127: 36 is a bass drum; `None`: all.
+    /// For MIDI: only notes of this key, from 0 to 127: 36 is a bass drum; `None`: all.
     pub note: Option<u8>,
-    /// Of MIDI: only notes of this channel, from 1 to 16; `None`: all.
+    /// For MIDI: only notes of this channel, from 1 to 16; `None`: all.
     pub channel: Option<u8>,
 }
 
@@ -24,23 +24,24 @@ pub struct Which<'a> {
 /// ```
 ///
 /// # Errors
-/// [`AssetError`] where the name does not end in `.csv`, `.mid` or `.midi`, the file is not what that says, or there
-/// are no such times in it.
+///
+/// [`AssetError`] if the name does not end in `.csv`, `.mid` or `.midi`, the file does not match its name, or it has no
+/// such times.
 pub fn onsets(file: &str, bytes: &[u8], which: &Which<'_>) -> Result<Vec<f64>, AssetError> {
     let ending = file.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
     let mut times = match ending.as_deref() {
         Some("csv") if which.note.or(which.channel).is_some() => {
-            return Err(broken("a table has no notes and channels: say which `column`"));
+            return Err(broken("a table has no notes or channels: give a `column`"));
         }
         Some("csv") => of_table(bytes, which.column)?,
         Some("mid" | "midi") if which.column.is_some() => {
-            return Err(broken("MIDI has no columns: say which `note` or `channel`"));
+            return Err(broken("MIDI has no columns: give a `note` or `channel`"));
         }
         Some("mid" | "midi") => of_midi(bytes, which)?,
         _ => return Err(broken("its name must end in .csv, .mid or .midi")),
     };
     if times.is_empty() {
-        return Err(broken("there are no such times in it"));
+        return Err(broken("it has no such times"));
     }
     times.sort_unstable_by(f64::total_cmp);
     times.dedup();
@@ -69,7 +70,7 @@ fn of_table(bytes: &[u8], column: Option<&str>) -> Result<Vec<f64>, AssetError> 
             Ok(time) if time.is_finite() && time >= 0.0 => times.push(time),
             // Names of columns.
             Err(_) if index == 0 => {}
-            _ => return Err(broken(format!("line {line}: {cell:?} is no time in seconds"))),
+            _ => return Err(broken(format!("line {line}: {cell:?} is not a time in seconds"))),
         }
     }
     Ok(times)
@@ -78,15 +79,16 @@ fn of_table(bytes: &[u8], column: Option<&str>) -> Result<Vec<f64>, AssetError> 
 /// Microseconds of a quarter note until the file says something else: 120 beats a minute.
 const QUARTER: f64 = 500_000.0;
 
-/// Where a file says how time is counted; this byte there says minus 128 frames a second, which the reader trips over.
+/// Where a file says how time is counted. This byte there means minus 128 frames per second, which makes the reader
+/// fail.
 const COUNTING: (usize, u8) = (12, 0x80);
 
 fn of_midi(bytes: &[u8], which: &Which<'_>) -> Result<Vec<f64>, AssetError> {
     if bytes.get(COUNTING.0) == Some(&COUNTING.1) {
-        return Err(broken("it counts time in no way that MIDI has"));
+        return Err(broken("its division of time is not one that MIDI knows"));
     }
     let file = Smf::parse(bytes).map_err(|error| broken(error.to_string()))?;
-    // Tempi hold for all tracks, in whichever they stand; they come before the notes of the same time.
+    // Tempi apply to all tracks, whichever track they are in; they come before the notes of the same time.
     let (mut tempi, mut notes) = (Vec::new(), Vec::new());
     for track in &file.tracks {
         let mut at = 0_u64;
@@ -127,7 +129,7 @@ fn of_midi(bytes: &[u8], which: &Which<'_>) -> Result<Vec<f64>, AssetError> {
 mod tests {
     use super::*;
 
-    /// A piece of one track: a header with so many ticks a quarter, then events as they stand in a file.
+    /// A piece of one track: a header with the ticks per quarter note, then events as in a file.
     fn midi(ticks: u16, events: &[&[u8]]) -> Vec<u8> {
         let track: Vec<u8> = events.iter().copied().chain([&[0, 0xff, 0x2f, 0][..]]).flatten().copied().collect();
         let mut file = b"MThd\0\0\0\x06\0\0\0\x01".to_vec();
@@ -157,7 +159,7 @@ mod tests {
         assert_eq!(times(Which { note: Some(36), ..Which::default() }), [0.0, 2.0]);
         assert_eq!(times(Which { channel: Some(1), ..Which::default() }), [0.25]);
         let none = onsets("song.midi", &piece, &Which { note: Some(1), ..Which::default() });
-        assert_eq!(none.unwrap_err().to_string(), "there are no such times in it");
+        assert_eq!(none.unwrap_err().to_string(), "it has no such times");
     }
 
     #[test]
@@ -174,15 +176,15 @@ mod tests {
     fn what_is_no_time_is_named() {
         let of = |file: &str, bytes: &[u8], which: Which<'_>| onsets(file, bytes, &which).unwrap_err().to_string();
         let any = Which::default;
-        assert_eq!(of("a.csv", b"0.5\nsoon\n", any()), "line 2: \"soon\" is no time in seconds");
-        assert_eq!(of("a.csv", b"0.5\n-1\n", any()), "line 2: \"-1\" is no time in seconds");
-        assert_eq!(of("a.csv", b"0.5\nNaN\n", any()), "line 2: \"NaN\" is no time in seconds");
-        assert_eq!(of("a.csv", b"", any()), "there are no such times in it");
+        assert_eq!(of("a.csv", b"0.5\nsoon\n", any()), "line 2: \"soon\" is not a time in seconds");
+        assert_eq!(of("a.csv", b"0.5\n-1\n", any()), "line 2: \"-1\" is not a time in seconds");
+        assert_eq!(of("a.csv", b"0.5\nNaN\n", any()), "line 2: \"NaN\" is not a time in seconds");
+        assert_eq!(of("a.csv", b"", any()), "it has no such times");
         assert_eq!(of("a.wav", b"", any()), "its name must end in .csv, .mid or .midi");
         assert!(of("a.mid", b"RIFF", any()).contains("MIDI") || !of("a.mid", b"RIFF", any()).is_empty());
         let noted = Which { note: Some(36), ..any() };
-        assert!(of("a.csv", b"0.5\n", noted).contains("say which `column`"));
-        assert!(of("a.mid", b"", Which { column: Some("x"), ..any() }).contains("say which `note`"));
+        assert!(of("a.csv", b"0.5\n", noted).contains("give a `column`"));
+        assert!(of("a.mid", b"", Which { column: Some("x"), ..any() }).contains("give a `note`"));
     }
 
     /// Files that end anywhere, or hold anything, are errors or times, and never more.

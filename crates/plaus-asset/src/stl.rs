@@ -11,8 +11,8 @@ const TRIANGLE: usize = 50;
 
 /// The one object of a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<Object>, AssetError> {
-    let broken = |error: std::io::Error| AssetError::Broken(format!("it is no STL: {error}"));
-    // Some programs begin binary files with the word that text ones begin with: what counts is the length.
+    let broken = |error: std::io::Error| AssetError::Broken(format!("it is not a valid STL: {error}"));
+    // Some programs begin binary files with the word that text files begin with, so the length decides.
     let read = if is_binary(bytes) {
         let mut copy = bytes.to_vec();
         copy[..5].fill(0);

@@ -4,7 +4,7 @@ use super::AssetError;
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 
-/// Triangles over shared corners: no two corners are in one place.
+/// Triangles over shared corners: no two corners have the same place.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Triangles {
     /// Places, in the file's unit.
@@ -23,8 +23,8 @@ pub enum Up {
 }
 
 impl Triangles {
-    /// Triangles over corners of which several may be in one place, as where surfaces of different materials meet:
-    /// these become one.
+    /// Triangles over corners several of which may have the same place, for example where surfaces of different
+    /// materials meet: these become one.
     ///
     /// # Errors
     /// [`AssetError::NotFinite`] for a corner of the object `name` that is not finite, [`AssetError::Broken`] for an
@@ -39,7 +39,7 @@ impl Triangles {
             for (place, corner) in renamed.iter_mut().zip(face) {
                 let found = corners.get(*corner as usize).ok_or_else(|| {
                     AssetError::Broken(format!(
-                        "triangle {index} of {name:?} names corner {corner}, which is not there"
+                        "triangle {index} of {name:?} names corner {corner}, which does not exist"
                     ))
                 })?;
                 *place = joined.corner(*found);
@@ -49,7 +49,7 @@ impl Triangles {
         Ok(joined.triangles)
     }
 
-    /// Several as one.
+    /// Several combined into one.
     pub(super) fn joined(all: impl Iterator<Item = Self>) -> Self {
         let mut joined = Joined::default();
         for one in all {
@@ -59,20 +59,20 @@ impl Triangles {
         joined.triangles
     }
 
-    /// The same with corners elsewhere.
+    /// The same triangles with moved corners.
     #[must_use]
     pub fn moved(&self, to: impl Fn(DVec3) -> DVec3) -> Self {
         Self { corners: self.corners.iter().map(|&corner| to(corner)).collect(), faces: self.faces.clone() }
     }
 
-    /// The same along axes of which z points up.
+    /// The same along axes in which z points up.
     #[must_use]
     pub fn upright(&self, up: Up) -> Self {
         self.moved(|corner| upright(corner, up))
     }
 }
 
-/// A place along axes of which z points up.
+/// A place along axes in which z points up.
 #[must_use]
 pub fn upright(place: DVec3, up: Up) -> DVec3 {
     match up {
@@ -81,14 +81,14 @@ pub fn upright(place: DVec3, up: Up) -> DVec3 {
     }
 }
 
-/// A rotation as it is along axes of which z points up.
+/// A rotation, expressed along axes in which z points up.
 #[must_use]
 pub fn upright_turn(turn: DQuat, up: Up) -> DQuat {
     let axis = upright(DVec3::new(turn.x, turn.y, turn.z), up);
     DQuat::from_xyzw(axis.x, axis.y, axis.z, turn.w)
 }
 
-/// Triangles whose corners are told apart by their places.
+/// Triangles whose corners are distinguished by their places.
 #[derive(Debug, Default)]
 struct Joined {
     triangles: Triangles,

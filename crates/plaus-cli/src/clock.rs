@@ -1,4 +1,4 @@
-//! The clock: read here and nowhere else. It decides when something is shown or made durable, never what.
+//! The clock, read nowhere else. It decides when something is shown or saved, never what the result is.
 
 use std::time::{Duration, Instant};
 
@@ -24,8 +24,8 @@ impl Stopwatch {
     }
 }
 
-/// Measures the processor time of the whole process since it was started: what its threads had of all cores together.
-/// Where the system does not tell, it is the time of the clock.
+/// Measures the processor time of the whole process since it was started: the time of all threads on all cores
+/// together. Where the system does not report it, this is wall-clock time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ProcessorClock(f64, Stopwatch);
 
@@ -52,7 +52,7 @@ fn processor_seconds() -> Option<f64> {
     None
 }
 
-/// Seconds since 1970, to be compared with what another machine's clock says.
+/// Seconds since 1970, for comparison with another machine's clock.
 #[allow(clippy::disallowed_methods)]
 pub(crate) fn unix_seconds() -> u64 {
     std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |time| time.as_secs())
@@ -78,7 +78,7 @@ pub(crate) fn parse_duration(text: &str) -> Result<Duration, String> {
     Duration::try_from_secs_f64(number * factor).map_err(|_| "too long".to_owned())
 }
 
-/// Seconds as people read them.
+/// Seconds in a form that people read.
 pub(crate) fn in_words(seconds: f64) -> String {
     match seconds {
         s if !s.is_finite() => "?".to_owned(),

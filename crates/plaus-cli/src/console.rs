@@ -1,9 +1,9 @@
-//! What is said on standard error, and how.
+//! Output to standard error.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-/// Writes to stderr. Nobody is told where that fails: there is nowhere left to tell it.
+/// Writes to stderr. A failure is ignored: there is nowhere left to report it.
 pub(crate) fn note(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
@@ -13,7 +13,7 @@ pub(crate) fn note_line(text: &str) {
     note(&format!("{text}\n"));
 }
 
-/// Whether stderr is a terminal on which lines can be drawn again.
+/// Whether stderr is a terminal on which lines can be redrawn.
 pub(crate) fn is_live() -> bool {
     io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
@@ -23,7 +23,7 @@ pub(crate) fn is_coloured() -> bool {
     is_live() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
 
-/// A path as a shell takes it.
+/// A path, quoted for a shell.
 pub(crate) fn quoted(path: &Path) -> String {
     let text = path.display().to_string();
     let plain = !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || "/._-+=:@,%".contains(c));

@@ -1,4 +1,4 @@
-//! Times that requirements ask for, beside those that solutions found: a picture.
+//! A plot of the times that requirements ask for, against the times in the solutions found.
 
 use crate::svg::{Frame, PANEL, Svg};
 use plaus_run::replay::replay_each;
@@ -6,10 +6,10 @@ use plaus_run::{Error, RunReader, SampleId, solutions};
 use plaus_scenes::Scene;
 use plaus_scenes::require::Timed;
 
-/// Solutions that are looked at: each is simulated again.
+/// Largest number of solutions in the plot: each is simulated again.
 const MOST: usize = 64;
 
-/// What one requirement asked for, over all solutions looked at.
+/// What one requirement asked for, over all solutions in the plot.
 #[derive(Default)]
 struct Asked {
     key: String,
@@ -19,10 +19,10 @@ struct Asked {
     found: Vec<[f64; 2]>,
 }
 
-/// The picture; `None` where nothing asks for a time, or there are no solutions.
+/// The plot; `None` if nothing asks for a time, or there are no solutions.
 ///
 /// # Errors
-/// [`Error`] where the run cannot be read, or a solution not be simulated.
+/// [`Error`] if the run cannot be read, or a solution not be simulated.
 pub(crate) fn plot(run: &RunReader<'_>) -> Result<Option<String>, Error> {
     let samples: Vec<SampleId> = solutions::distinct(run)?.iter().take(MOST).map(|one| one.sample).collect();
     let times = |some| replay_each(run, some, |replay| run.scene().times(&replay.animation));
@@ -48,12 +48,12 @@ pub(crate) fn plot(run: &RunReader<'_>) -> Result<Option<String>, Error> {
     Ok((!asked.is_empty()).then(|| picture(&asked)))
 }
 
-/// The time that is meant; a window with an open end has none.
+/// The time asked for: the middle of the window. A window with an open end has none.
 fn middle(timed: &Timed) -> Option<f64> {
     Some(0.5 * (timed.wanted.from + timed.wanted.to)).filter(|middle| middle.is_finite())
 }
 
-/// Left: times found over times asked for. Right: how far off, with the windows.
+/// Left: times found against times asked for. Right: the difference, with the windows.
 fn picture(asked: &[Asked]) -> String {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));

@@ -1,17 +1,17 @@
-//! How the program ends, and how it says what went wrong.
+//! How the program ends, and how it reports what went wrong.
 
 use crate::console;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use plaus_scenes::scenario::{Problem, ScenarioError, Source};
 use std::io;
 
-/// Problems of one scenario that are shown; the others are counted.
+/// Largest number of problems of one scenario that are shown; the others are counted.
 const SHOWN_PROBLEMS: usize = 20;
 
-/// How a command ended that did what it could.
+/// The result of a command that did its work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// As wished.
+    /// Successful.
     Done,
     /// No satisfying sample, or failed diagnostics.
     Unsatisfied,
@@ -24,9 +24,9 @@ pub(crate) enum Outcome {
 pub(crate) enum Failure {
     /// The scenario is wrong.
     Scenario(ScenarioError),
-    /// Anything else that is said in one message.
+    /// Anything else that one message can say.
     Message(String),
-    /// Whoever read our output has gone.
+    /// The reader of our output has gone.
     ReaderGone,
 }
 
@@ -60,7 +60,7 @@ impl Failure {
         }
     }
 
-    /// The same, saying which file it is about.
+    /// The same failure, with the file that it is about.
     pub(crate) fn about(self, what: &str) -> Self {
         match self {
             Self::Message(message) if !message.contains(what) => Self::Message(format!("{what}: {message}")),
@@ -68,8 +68,8 @@ impl Failure {
         }
     }
 
-    /// The same, where keys set by flags of their own are named as such: pairs of an override and the flag as it was
-    /// given.
+    /// The same failure, with the flag instead of the key for keys that have flags of their own. `flags` holds pairs of
+    /// an override and the flag as given.
     pub(crate) fn naming(mut self, flags: &[(String, String)]) -> Self {
         if let Self::Scenario(error) = &mut self {
             for problem in &mut error.problems {
@@ -82,7 +82,7 @@ impl Failure {
         self
     }
 
-    /// What is wrong in one line, for those who are told of it elsewhere.
+    /// The problem in one line, for reports made elsewhere.
     pub(crate) fn message(&self) -> Option<String> {
         match self {
             Self::Scenario(error) => error.problems.first().map(|problem| problem.message.clone()),
@@ -91,7 +91,7 @@ impl Failure {
         }
     }
 
-    /// Tells the user; gives the exit code.
+    /// Reports it to the user; gives the exit code.
     pub(crate) fn report(&self) -> u8 {
         match self {
             Self::Scenario(error) => console::note_line(&render(error, console::is_coloured())),

@@ -1,5 +1,5 @@
-//! Ctrl-C, and what schedulers send before they kill: the first asks for a checkpoint and an end, the second ends at
-//! once.
+//! Ctrl-C, and the signals that schedulers send before they kill. The first asks for a checkpoint and an end; the
+//! second ends the process at once.
 
 use crate::failure::Failure;
 use signal_hook::consts::signal;
@@ -13,7 +13,7 @@ pub(crate) const EXIT: u8 = 130;
 
 static ASKED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
-/// From now on an interrupt is noted instead of ending the process.
+/// From now on, an interrupt is noted and does not end the process.
 pub(crate) fn listen() -> Result<(), Failure> {
     let asked = ASKED.get_or_init(Arc::default);
     let register = |signal| -> io::Result<()> {
@@ -30,17 +30,17 @@ pub(crate) fn asked() -> bool {
     ASKED.get().is_some_and(|asked| asked.load(Ordering::SeqCst))
 }
 
-/// Asks a process that was started here for a checkpoint and an end. Where there are no signals, it has got Ctrl-C as
-/// we did.
+/// Asks a process that was started here to write a checkpoint and end. On systems without signals, Ctrl-C reached it as
+/// well.
 #[cfg(unix)]
 pub(crate) fn pass_on(process: u32) {
     let process = i32::try_from(process).ok().and_then(rustix::process::Pid::from_raw);
-    // It may have ended meanwhile.
+    // It may have ended in the meantime.
     let _ = process.map(|process| rustix::process::kill_process(process, rustix::process::Signal::TERM));
 }
 
-/// Asks a process that was started here for a checkpoint and an end. Where there are no signals, it has got Ctrl-C as
-/// we did.
+/// Asks a process that was started here to write a checkpoint and end. On systems without signals, Ctrl-C reached it as
+/// well.
 #[cfg(not(unix))]
 pub(crate) fn pass_on(_: u32) {}
 
@@ -58,8 +58,8 @@ fn signals() -> Vec<i32> {
     vec![signal::SIGINT, signal::SIGTERM]
 }
 
-/// Whether whoever started the process had it ignore a signal, as `nohup` does with the end of the terminal; `false`
-/// where that cannot be told.
+/// Whether the process was started with this signal ignored, as `nohup` does for the end of the terminal; `false` if
+/// that is unknown.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The command `plaus`, as a library: what other programs that bring it along call.
+//! The command `plaus`, as a library for programs that include it.
 //!
 //! ```
 //! // As at a terminal, with what it prints.
@@ -8,8 +8,8 @@
 //! assert!(wrong.contains("there is no such run"), "{wrong}");
 //! ```
 //!
-//! Data goes to stdout, progress and errors to stderr. Exit codes: 0 done, 1 no satisfying sample or failed
-//! diagnostics, 2 a wrong scenario, command line or run, 130 interrupted with a checkpoint.
+//! Data goes to stdout, progress and errors to stderr. Exit codes: 0 done; 1 no satisfying sample, or failed
+//! diagnostics; 2 a wrong scenario, command line or run; 130 interrupted with a checkpoint.
 
 mod clock;
 mod commands;
@@ -50,12 +50,12 @@ struct Cli {
     command: commands::Command,
 }
 
-/// Does what a command line says, its first word being the program's name, and gives the exit code.
+/// Runs a command line, whose first word is the program's name, and gives the exit code.
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
     let command = match Cli::try_parse_from(arguments).map_err(with_hint) {
         Ok(Cli { command }) => command,
         Err(error) => {
-            let _ = error.print(); // nobody is left to be told that it cannot be said
+            let _ = error.print(); // there is nowhere left to report a failure
             return error.exit_code() as u8;
         }
     };
@@ -67,7 +67,8 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
     }
 }
 
-/// The error with the valid value nearest to a misspelt one, where clap found none (it does not know swapped letters).
+/// The error, with the valid value nearest to a misspelt one. clap misses some of these: it does not know swapped
+/// letters.
 fn with_hint(mut error: clap::Error) -> clap::Error {
     use clap::error::{ContextKind, ContextValue};
     let hint = match (error.get(ContextKind::InvalidValue), error.get(ContextKind::ValidValue)) {
@@ -82,10 +83,11 @@ fn with_hint(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// Does what a command line without the program's name says, and gives what is wrong as text instead of printing it.
+/// Runs a command line that begins without the program's name. Errors are returned as text instead of being printed.
 ///
 /// # Errors
-/// What the command would print on stderr before it ends with exit code 2.
+///
+/// The text that the command would print on stderr before it ends with exit code 2.
 pub fn call<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> Result<(), String> {
     let words = arguments.into_iter().map(Into::into);
     let all = std::iter::once(OsString::from("plaus")).chain(words);

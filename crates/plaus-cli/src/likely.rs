@@ -1,4 +1,4 @@
-//! How likely what is demanded is, in words and as JSON.
+//! The chance that a scenario's requirements are met, in words and as JSON.
 
 use crate::table::{grouped, lay_out, percent, short};
 use plaus_mcmc::chance::{Estimate, Method};
@@ -30,13 +30,12 @@ fn name(method: Method) -> &'static str {
     }
 }
 
-/// As `plaus chance` prints it.
+/// What `plaus chance` prints.
 #[must_use]
 pub fn in_words(chance: &Chance) -> String {
     let answers = answers(chance);
     let Some((all, parts)) = answers.split_first() else { return String::new() };
-    let mut text =
-        format!("{} ({}): how likely is what is demanded, before anything is?\n", chance.scene, chance.scenario.file);
+    let mut text = format!("{} ({}): how likely is what is asked for?\n", chance.scene, chance.scenario.file);
     text += &format!("{}\n\n", chance.why);
     let mut rows = vec![["method", "probability", "error", "from", "to", "simulations"].map(str::to_owned).to_vec()];
     rows.extend(all.estimates.iter().map(|one| row(format!("  {}", name(one.method)), one)));
@@ -67,8 +66,8 @@ fn row(name: String, one: &Estimate) -> Vec<String> {
 fn verdict(all: &Answer) -> String {
     let Some(best) = all.best.filter(|best| best.probability > 0.0) else {
         let most = all.estimates.first().map(|one| one.interval[1]);
-        let most = most.map(|most| format!(": less often than {}, if by counting", short(most))).unwrap_or_default();
-        return format!("\nnothing reached it{most}\n");
+        let most = most.map(|most| format!(": less often than {}, by counting", short(most))).unwrap_or_default();
+        return format!("\nnothing met it{most}\n");
     };
     let once =
         if best.probability < 0.5 { format!(", once in {}", often(1.0 / best.probability)) } else { String::new() };
@@ -78,25 +77,24 @@ fn verdict(all: &Answer) -> String {
         let agreed = if all.estimates.len() > 1 { "; the methods agree" } else { "" };
         format!("\n{}{once}, give or take {error}{agreed}\n", short(best.probability))
     } else {
-        format!("\nat least about {}{once}: the methods do not agree\n", short(best.interval[0]))
+        format!("\nat least about {}{once}; the methods disagree\n", short(best.interval[0]))
     };
     for one in &all.disagreements {
-        let factor = one.factor.map_or("something where the other finds nothing".to_owned(), |factor| {
-            format!("{} times as much", short(factor))
-        });
         let (more, less) = (name(one.more), name(one.less));
+        let factor = one.factor.map_or(format!("something where {less} finds nothing"), |factor| {
+            format!("{} times as much as {less}", short(factor))
+        });
         text += &format!(
-            "  {more} finds {factor} as {less}: a way to the goal was missed, or it was not looked long enough; more \
-             --batches tell\n"
+            "  {more} finds {factor}: a way to the goal was missed, or the search was too short; more --batches tell\n"
         );
     }
     for &method in &all.lopsided {
-        text += &format!("  more than half of what {} says rests on one batch: take more --batches\n", name(method));
+        text += &format!("  more than half of what {} found comes from one batch: use more --batches\n", name(method));
     }
     text
 }
 
-/// A large number that is only known roughly.
+/// A large number that is known only roughly.
 fn often(times: f64) -> String {
     if times < 1e6 { grouped(times.round() as u64) } else { format!("{times:.1e}") }
 }

@@ -1,4 +1,4 @@
-//! `plaus`: samples plausible animations of a scenario, and hands them on.
+//! `plaus`: samples plausible animations of a scenario, and exports them.
 
 use std::process::ExitCode;
 

@@ -1,9 +1,10 @@
-//! Standard output, written such that a reader who goes away is no accident.
+//! Standard output. A reader who goes away early is not an error.
 
 use crate::failure::Failure;
 use std::io::{self, Write};
 
-/// Writes to stdout and flushes. A reader who has gone has seen enough: how the command ends does not depend on it.
+/// Writes to stdout and flushes. If the reader has gone, nothing is printed, and the command still ends as it would
+/// have.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

@@ -1,5 +1,5 @@
-//! Pictures of a run's mixing as SVG: of each scalar the trace, the autocorrelation and the ranks of every chain; of
-//! each move how often it was accepted; and the times that are asked for beside those found.
+//! Plots of how well a run mixes, as SVG: for each scalar the trace, the autocorrelation and the ranks of every chain;
+//! for each move how often it was accepted; and the times asked for against those found.
 
 use crate::demanded;
 use crate::svg::{Frame, PANEL, Svg};
@@ -12,9 +12,9 @@ use plaus_scenes::{Role, Scalar, Scene};
 use std::fs;
 use std::path::Path;
 
-/// What a folder of plots has; only such folders are replaced.
+/// The file that marks a folder of plots. Only folders that have it are replaced.
 const MARK: &str = "plaus-plots.json";
-/// Scalars that are drawn: the results, then the first random variables.
+/// Largest number of scalars drawn: the outcomes first, then random variables.
 const MOST: usize = 24;
 /// Points of a trace, per chain.
 const POINTS: u64 = 1000;
@@ -23,10 +23,10 @@ const LAGS: usize = 100;
 /// Bins of a histogram of ranks.
 const BINS: usize = 20;
 
-/// Draws into the folder `out`, which is made; gives the number of pictures.
+/// Draws into the folder `out`, which is made; gives the number of plots.
 ///
 /// # Errors
-/// [`Error`] where the run cannot be read or the folder not be made.
+/// [`Error`] if the run cannot be read or the folder not be made.
 pub(crate) fn write(run: &RunReader<'_>, out: &Path, force: bool) -> Result<usize, Error> {
     let mut count = 0;
     output::folder(
@@ -97,7 +97,8 @@ fn of_scalar(scalar: &Scalar, chains: &[Vec<f64>]) -> String {
     svg.finish()
 }
 
-/// Per chain, the share of its draws in each bin of the ranks among all chains' draws: even where the chains agree.
+/// For each chain, the share of its draws in each bin of the ranks among all chains' draws. The shares are even where
+/// the chains agree.
 fn rank_shares(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut all: Vec<(f64, usize)> = Vec::new();
     for (number, chain) in chains.iter().enumerate() {
@@ -111,7 +112,7 @@ fn rank_shares(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
     shares
 }
 
-/// A bar a move: the share of its proposals that was accepted.
+/// One bar for each move: the share of its proposals that was accepted.
 fn of_moves(names: &[String], counts: &[MoveCounts]) -> String {
     let mut svg = Svg::new(900, 48 + 44 * names.len().max(1));
     for (row, (name, count)) in names.iter().zip(counts).enumerate() {

@@ -1,4 +1,4 @@
-//! What is said about a run once it is there.
+//! What is reported about a finished run.
 
 use crate::progress::acceptance;
 use crate::table::{amount, grouped, lay_out, percent, short};
@@ -6,7 +6,7 @@ use plaus_run::{Beside, Diagnosis, Manifest};
 use plaus_scenes::Role;
 use serde_json::{Value, json};
 
-/// The line that says what a run is; the seed is always in it.
+/// The line that says what a run is. It always names the seed.
 pub(crate) fn headline(manifest: &Manifest) -> String {
     let plan = &manifest.plan;
     let thin = if plan.thin > 1 { format!(", one in {} recorded", plan.thin) } else { String::new() };
@@ -30,26 +30,27 @@ pub(crate) fn headline(manifest: &Manifest) -> String {
     )
 }
 
-/// How draws are made, where that was left open or asked for.
+/// How draws are made, if the scenario left that open or asked for it.
 pub(crate) fn way(manifest: &Manifest) -> Option<String> {
     let way = manifest.way.as_ref()?;
-    let how = if way.independent { "independent draws of the prior" } else { "chains" };
+    let how = if way.independent { "independent draws from the prior" } else { "chains" };
     Some(format!("sampling by {how}: {}", way.why))
 }
 
-/// What to tell of an acceptance rule without a guarantee.
+/// The warning about an acceptance rule without a guarantee.
 pub(crate) fn warning(manifest: &Manifest) -> Option<String> {
     let on: Vec<&str> = manifest.acceptance_rule.iter().filter(|(_, on)| **on).map(|(flag, _)| flag.as_str()).collect();
     let flags = on.join(", ");
     (!manifest.exact).then(|| {
         format!(
-            "warning: the acceptance rule is the paper's as printed ({flags}): such a chain has no guaranteed stationary law, \
-             and what it converges to, if it does, is unknown. Set sampler.rules.preset = \"exact\" for samples of the stated law"
+        "warning: the acceptance rule is the paper's as printed ({flags}). Such a chain has no guaranteed stationary \
+         law, and it is unknown what it converges to, if it does. Set sampler.rules.preset = \"exact\" to sample the \
+         stated law"
         )
     })
 }
 
-/// The table of `most` scalars: results come before random variables where not all are shown, and are shown after them.
+/// The table of at most `most` scalars. Outcomes are chosen before random variables, and are shown after them.
 pub(crate) fn scalar_table(diagnosis: &Diagnosis, most: usize) -> String {
     let head = ["", "mean", "sd", "MCSE", "ESS bulk", "ESS tail", "ESS/1000 it", "R-hat"];
     let mut rows: Vec<Vec<String>> = Vec::new();
@@ -103,13 +104,13 @@ pub(crate) fn move_table(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
     lay_out(&rows)
 }
 
-/// What scales were adapted to, with the share accepted at each, per chain where there are few; nothing for chains that
-/// adapt none.
+/// The adapted scales, with the share accepted at each, and for each chain where there are few. Empty for chains that
+/// adapt nothing.
 pub(crate) fn scale_table(diagnosis: &Diagnosis) -> String {
     let chains = &diagnosis.tally.chains;
     let Some(first) = chains.first().filter(|chain| !chain.scales.is_empty()) else { return String::new() };
     let shown = if chains.len() <= 8 { chains.as_slice() } else { &[] };
-    let title = if first.scales[0].frozen { "scales, kept since the warm-up" } else { "scales, being adapted" };
+    let title = if first.scales[0].frozen { "scales, kept since the warm-up" } else { "scales, still being adapted" };
     let mut rows = vec![vec![title.to_owned(), "goal".to_owned(), "accepted".to_owned()]];
     rows[0].extend(shown.iter().map(|one| format!("chain {}", one.chain)));
     for (index, scale) in first.scales.iter().enumerate() {
@@ -126,7 +127,7 @@ pub(crate) fn scale_table(diagnosis: &Diagnosis) -> String {
     lay_out(&rows) + "\n"
 }
 
-/// First hit, share of satisfying draws, distinct solutions.
+/// First hit, share of satisfying draws, number of distinct solutions.
 pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let tally = &diagnosis.tally;
     let firsts: Vec<u64> = tally.chains.iter().filter_map(|chain| chain.hits.first).collect();
@@ -144,14 +145,15 @@ pub(crate) fn solutions(diagnosis: &Diagnosis) -> String {
     let (first, distinct) = (grouped(*first), grouped(tally.distinct));
     let early = match tally.while_adapting {
         0 => String::new(),
-        early => format!("; {} of them found while moves were adapted, and left out of statistics", grouped(early)),
+        early => format!("; {} of them found while moves were adapted; statistics leave these out", grouped(early)),
     };
     format!(
-        "first hit at iteration {first}, {all}\n{note}{distinct} distinct solutions (that differ in kind: `plaus explain distinct`){early}\n"
+        "first hit at iteration {first}, {all}\n{note}{distinct} distinct solutions (different in kind: `plaus explain \
+         distinct`){early}\n"
     )
 }
 
-/// How many independent solutions there are, and how many come in a minute, over `seconds` where that is known.
+/// How many independent solutions there are, and how many come in a minute, over `seconds` if given.
 pub(crate) fn independent(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
     let Some(found) = &diagnosis.independent else { return String::new() };
     let minute = seconds.filter(|&seconds| seconds > 0.0).map(|seconds| 60.0 * found.ess / seconds);
@@ -165,17 +167,19 @@ pub(crate) fn independent(diagnosis: &Diagnosis, seconds: Option<f64>) -> String
     }
 }
 
-/// What exact draws say of the chains: a finding, if there is one, and what is known or not known otherwise.
+/// How the exact draws compare with the chains: a finding, if there is one, and otherwise a note.
 pub(crate) fn beside(beside: &Beside) -> (String, String) {
     let (kept, draws) = (grouped(beside.kept), grouped(beside.draws));
     let Some(missed) = &beside.missed else {
         return (
             String::new(),
             match beside.says_something() {
-                true => format!("{kept} exact draws, kept of {draws} of the prior, lie where the chains are too\n"),
+                true => {
+                    format!("{kept} exact draws, kept out of {draws} from the prior, lie where the chains are too\n")
+                }
                 false => format!(
-                    "{kept} of {draws} draws of the prior would be kept: too few to tell whether there is something that \
-                 all chains missed\n"
+                    "{kept} of {draws} draws from the prior would be kept: too few to tell whether all chains missed \
+                     something\n"
                 ),
             },
         );
@@ -187,8 +191,8 @@ pub(crate) fn beside(beside: &Beside) -> (String, String) {
         [None, None] => "anywhere".to_owned(),
     };
     let finding = format!(
-        "  {}: {} of {kept} exact draws, kept of {draws} of the prior, lie {range}, where the chains were {} of the \
-         time: they missed something\n",
+        "  {}: {} of {kept} exact draws, kept out of {draws} from the prior, lie {range}; the chains spent {} of the time \
+         there: they missed something\n",
         missed.scalar,
         percent(missed.kept),
         percent(missed.chains),
@@ -196,8 +200,8 @@ pub(crate) fn beside(beside: &Beside) -> (String, String) {
     (finding, String::new())
 }
 
-/// Restarts of tempered chains and what they rest on, over `seconds` where that is known; nothing for chains that are
-/// not tempered.
+/// Restarts of tempered chains and the quality of their ladder, over `seconds` if given. Empty for chains that are not
+/// tempered.
 pub(crate) fn tempering(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
     let all: Vec<_> = diagnosis.tally.chains.iter().filter_map(|chain| chain.tempering.as_ref()).collect();
     if all.is_empty() {
@@ -215,7 +219,8 @@ pub(crate) fn tempering(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
     let best = (2.0 * barrier).round() as usize + 1;
     let advice = if rungs < best { format!("; about {best} rungs would serve better") } else { String::new() };
     format!(
-        "tempering: {} restarts from fresh draws{pace}, {} round trips; barrier {} over {rungs} rungs, {} to {} of the swaps rejected{advice}\n",
+        "tempering: {} restarts from fresh draws{pace}, {} round trips; barrier {} over {rungs} rungs, {} to {} of the \
+         swaps rejected{advice}\n",
         grouped(restarts),
         grouped(trips),
         short(barrier),

@@ -12,8 +12,8 @@ use std::path::Path;
 /// Longest scenario file that is read, in bytes.
 const LONGEST: u64 = 16 << 20;
 
-/// Reads a scenario, with overrides in force. The name of the file in the recipe is without its folder, so that a run
-/// does not depend on where it was started.
+/// Reads a scenario, with overrides applied. The recipe holds the file's name without its folder, so that a run does
+/// not depend on the folder it was started in.
 pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) -> Result<Recipe, Failure> {
     let shown = path.display().to_string();
     let refuse = |what: String| Failure::Message(format!("{shown}: {what}"));
@@ -25,7 +25,7 @@ pub(crate) fn read(path: &Path, overrides: Vec<String>, solutions: Option<u64>) 
         refuse(format!("cannot read the scenario: {error}{advice}"))
     })?;
     if bytes.len() as u64 > LONGEST {
-        return Err(refuse(format!("longer than {LONGEST} bytes, which no scenario is")));
+        return Err(refuse(format!("longer than {LONGEST} bytes, the most that a scenario may have")));
     }
     let text = ScenarioError::decode(&shown, bytes)?;
     let scenario = Scenario::read_with(&shown, &text, &overrides, &ScenarioFolder::of(path))?;

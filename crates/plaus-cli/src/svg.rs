@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 /// Width and height of a panel with its labels, and margins: left, right, top, bottom.
 pub(crate) const PANEL: [f64; 2] = [560.0, 440.0];
 const MARGIN: [f64; 4] = [84.0, 20.0, 42.0, 58.0];
-/// Colours that are told apart also by people who do not see all of them (Okabe & Ito).
+/// Colours that remain distinct for people with colour blindness (Okabe & Ito).
 const COLOURS: [&str; 6] = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9"];
 
-/// A picture in the making. Writing to a string cannot fail.
+/// An unfinished picture. Writing to a string cannot fail.
 pub(crate) struct Svg(String);
 
 /// A panel with the ranges of its axes.
@@ -21,7 +21,7 @@ pub(crate) struct Frame {
 impl Frame {
     /// The n-th panel from the left.
     pub(crate) fn new(number: u32, x: [f64; 2], y: [f64; 2]) -> Self {
-        // A range that is empty, or none, gets some room.
+        // A range that is empty or undefined gets some room.
         let room = |[low, high]: [f64; 2]| match (low.is_finite() && high.is_finite(), high > low) {
             (true, true) => [low, high],
             (true, false) => [low - 0.5, low + 0.5],
@@ -66,7 +66,7 @@ impl Svg {
             writeln!(self.0, "<path d=\"M{left:.1} {at:.1}H{right:.1}\" stroke=\"#999\" stroke-dasharray=\"4 4\"/>");
     }
 
-    /// A line of the n-th colour; broken where there is no number.
+    /// A line of the n-th colour, broken where a value is not a number.
     pub(crate) fn line(&mut self, frame: &Frame, number: usize, points: impl IntoIterator<Item = (f64, f64)>) {
         let (mut path, mut pen) = (String::new(), 'M');
         for (x, y) in points {
@@ -95,7 +95,7 @@ impl Svg {
         let _ = writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{colour}\" fill-opacity=\".6\"/>");
     }
 
-    /// An upright bar of the n-th colour about `x`, for what is allowed there.
+    /// An upright bar of the n-th colour at `x`, for the allowed range there.
     pub(crate) fn band(&mut self, frame: &Frame, number: usize, x: f64, [low, high]: [f64; 2]) {
         let ((x, top), (_, bottom)) = (frame.place(x, high), frame.place(x, low));
         let (colour, height) = (COLOURS[number % COLOURS.len()], (bottom - top).max(1.0));
@@ -106,14 +106,14 @@ impl Svg {
         );
     }
 
-    /// A line of a legend at a height, in pixels: what the n-th colour stands for.
+    /// A line of a legend at height `y`, in pixels: what the n-th colour stands for.
     pub(crate) fn legend(&mut self, number: usize, y: f64, words: &str) {
         let (x, colour) = (MARGIN[0], COLOURS[number % COLOURS.len()]);
         let _ = writeln!(self.0, "<circle cx=\"{x:.1}\" cy=\"{:.1}\" r=\"6\" fill=\"{colour}\"/>", y + 8.0);
         self.text(x + 14.0, y + 14.0, "start", words);
     }
 
-    /// A horizontal bar with a name before and words behind it.
+    /// A horizontal bar with a name before it and words after it.
     pub(crate) fn bar(&mut self, row: usize, name: &str, share: f64, words: &str) {
         let (y, width) = (28.0 + 44.0 * row as f64, 320.0 * share);
         self.text(220.0, y + 20.0, "end", name);

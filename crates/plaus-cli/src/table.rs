@@ -30,7 +30,7 @@ pub(crate) fn grouped(number: u64) -> String {
     text
 }
 
-/// How much there is of something, with commas between thousands where it is much.
+/// An amount, with commas between thousands if it is large.
 pub(crate) fn amount(number: f64) -> String {
     if (1e3..1e15).contains(&number) { grouped(number.round() as u64) } else { short(number) }
 }

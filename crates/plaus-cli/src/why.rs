@@ -1,4 +1,4 @@
-//! Why not: how often each thing that is asked was met, by draws from the prior or by the states of a run.
+//! Why nothing was found: how often each requirement was met, by draws from the prior or by the states of a run.
 
 use crate::console;
 use crate::table::{grouped, lay_out, percent, short};
@@ -18,7 +18,7 @@ pub(crate) fn of_prior(scene: &Stage, seed: u64, draws: u64, tells: bool) -> Res
     })
 }
 
-/// All recorded states of a run, those of the warm-up too.
+/// All recorded states of a run, including those of the warm-up.
 pub(crate) fn of_run(run: &RunReader<'_>) -> Result<Tally, RunFileError> {
     let mut tally = Tally::new(run.scene().asked());
     for chain in run.chains() {
@@ -32,16 +32,16 @@ pub(crate) fn of_run(run: &RunReader<'_>) -> Result<Tally, RunFileError> {
     Ok(tally)
 }
 
-/// What was met and what not, as a table with the pairs that were never met together.
+/// A table of how often each requirement was met, with the pairs that were never met together.
 pub(crate) fn in_words(tally: &Tally, states: &str) -> String {
-    let head = ["asked".to_owned(), format!("met by {states}"), String::new(), "best margin (nat)".to_owned()];
+    let head = ["requirement".to_owned(), format!("met by {states}"), String::new(), "best margin (nat)".to_owned()];
     let row = |clause: &Clause| {
         let share = percent(clause.met as f64 / tally.states as f64);
         vec![clause.name.clone(), grouped(clause.met), share, short(clause.best)]
     };
     let all = (tally.clauses.len() > 1).then(|| {
         let share = percent(tally.all as f64 / tally.states as f64);
-        vec!["all of it".to_owned(), grouped(tally.all), share]
+        vec!["all of them".to_owned(), grouped(tally.all), share]
     });
     let rows: Vec<Vec<String>> =
         std::iter::once(head.to_vec()).chain(tally.clauses.iter().map(row)).chain(all).collect();

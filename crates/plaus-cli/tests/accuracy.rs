@@ -75,7 +75,7 @@ fn a_sample_is_replayed_at_another_accuracy_beside_what_was_recorded() {
 #[test]
 fn what_makes_no_sense_is_refused_before_anything_is_sampled() {
     let place = place();
-    let closed = "ball2d moves in closed form, which is exact at any accuracy: there is none to choose";
+    let closed = "ball2d moves in closed form, which is always exact: there is no accuracy to choose";
     place.ends("sample ball.toml --out run --confirm", 2).says(&[closed]);
     assert!(!place.path("run").exists());
     place.ok("sample ball.toml --out run -q");

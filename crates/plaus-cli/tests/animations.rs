@@ -177,7 +177,7 @@ fn wrong_requests_are_refused() {
         ("export run --format csv --sample 0:0 --out a.csv", "csv and zarr hold all draws"),
         ("export run --format glb --sample 0:900 --out a.glb", "there is no draw 0:900"),
         ("export run --format usda --sample 9:0 --out a.usda", "there is no chain 9"),
-        ("export run --format glb --sample 0:0 --out -", "animations are files"),
+        ("export run --format glb --sample 0:0 --out -", "animations are written to files"),
         ("export run --format glb --sample 0:0 --out a.glb --fps 0", "--fps 0"),
         ("export run --format glb --sample 0:0 --out a.glb --time-range 90:91", "--time-range 90:91"),
         ("export run --format glb --sample 0:0 --out a.glb --time-range x", "FROM:TO"),
@@ -195,7 +195,7 @@ fn wrong_requests_are_refused() {
         place.ends(arguments, 2).says(&[says]);
     }
     let many = format!("export run --format glb --into a.glb{}", " --sample 0:0".repeat(2001));
-    place.ends(&many, 2).says(&["2001 samples: one glb holds 2000 at most"]);
+    place.ends(&many, 2).says(&["2001 samples: one glb holds at most 2000"]);
     assert_eq!(place.names(), ["ball.toml", "run"], "nothing is left behind");
     place.ends("sample ball.toml --out hopeless -q --set target=1e5 --set sigma_d=1e6", 1);
     for arguments in ["gallery hopeless --out g.html", "export hopeless --format glb --all-distinct --out all"] {

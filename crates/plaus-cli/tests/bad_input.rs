@@ -47,7 +47,7 @@ fn what_is_no_scenario_is_refused() {
         (b"[world.ball2d", &["no.toml:1:14", "unclosed table"]),
         (b"[world.ball2d]\nsigma_d = 1\nsigma_d = 1", &["no.toml:3:1", "duplicate key"]),
         (b"world.ball2d = 3", &["no.toml:1:16", "expected a table"]),
-        (b"a\xff", &["no.toml:1:2", "byte 1 (0xff) is no UTF-8 text"]),
+        (b"a\xff", &["no.toml:1:2", "byte 1 (0xff) is not UTF-8 text"]),
     ] {
         place.write("no.toml", text);
         place.ends("check no.toml", 2).says(says);
@@ -65,7 +65,7 @@ fn wrong_flags_are_named_as_they_were_given() {
     for (flags, says) in [
         ("--set sigma_d=-1", &["error: --set sigma_d=-1: -1 is out of range: it must be from 1e-9 to 1e6 D"][..]),
         ("--set sigmad=1", &["error: --set sigmad=1: unknown key", "did you mean `world.ball2d.sigma_d`?"]),
-        ("--set sigma_d", &["an override is `key=value`"]),
+        ("--set sigma_d", &["an override has the form `key=value`"]),
         ("--chains 0", &["error: --chains 0: 0 is out of range: it must be from 1 to 100_000"]),
         ("--seed 18446744073709551615", &["error: --seed 18446744073709551615: ", "9_223_372_036_854_775_807"]),
         ("--iterations -5", &["invalid value '-5' for '--iterations <N>'"]),
@@ -84,10 +84,10 @@ fn nothing_is_overwritten() {
     let place = Place::new();
     place.ok("sample ball.toml --out run -q");
     let before = place.bytes("run");
-    place.ends("sample ball.toml --out run --seed 3", 2).says(&["error: run: exists already", "`plaus resume`"]);
-    place.ends("sample ball.toml --out ball.toml", 2).says(&["error: ball.toml: exists already"]);
-    place.ends("new ball2d ball.toml", 2).says(&["ball.toml: exists already"]);
-    place.ends("export run --format csv --out ball.toml", 2).says(&["exists already", "--force"]);
+    place.ends("sample ball.toml --out run --seed 3", 2).says(&["error: run: already exists", "`plaus resume`"]);
+    place.ends("sample ball.toml --out ball.toml", 2).says(&["error: ball.toml: already exists"]);
+    place.ends("new ball2d ball.toml", 2).says(&["ball.toml: already exists"]);
+    place.ends("export run --format csv --out ball.toml", 2).says(&["already exists", "--force"]);
     place.ends("export run --format csv --out ball.toml --force", 2).says(&["not made by such an export"]);
     place.ends("export run --format zarr --out run --force", 2).says(&["not made by such an export"]);
     assert_eq!(place.bytes("run"), before);
@@ -109,7 +109,7 @@ fn what_is_no_run_is_refused() {
         let export = format!("export {run} --format csv --out d.csv");
         [format!("resume {run}"), format!("diagnose {run}"), export, format!("replay {run} --sample 0:0")]
     };
-    for (run, says) in [("nope", "no such run"), ("empty", "is no run"), ("ball.toml", "is no run")] {
+    for (run, says) in [("nope", "no such run"), ("empty", "is not a run"), ("ball.toml", "is not a run")] {
         for command in commands(run) {
             place.ends(&command, 2).says(&[&format!("error: {run}: "), says]);
         }
@@ -140,7 +140,12 @@ fn a_damaged_run_says_what_can_be_recovered() {
     let last = bytes.len() - 40;
     bytes[last] ^= 1;
     std::fs::write(&path, &bytes).unwrap();
-    let says = ["run/chain-00001.records: at byte ", "checksum", "The 960 recorded draws", "plaus export --salvage"];
+    let says = [
+        "run/chain-00001.records: at byte ",
+        "checksum",
+        "The 960 draws that the chain recorded",
+        "plaus export --salvage",
+    ];
     for command in ["diagnose run", "export run --format csv --out d.csv", "resume run"] {
         place.ends(command, 2).says(&says);
     }

@@ -92,22 +92,24 @@ fn however_it_is_asked_the_file_is_the_same() {
     place.ends("merge pieces/1 pieces/3 --out no.json", 2).says(&["piece 2/3 is missing: batch 1 is in none"]);
     place
         .ends("merge pieces/1 pieces/2 pieces/3 pieces/3 --out no.json", 2)
-        .says(&["pieces/3: is piece 3/3: batch 2 is there twice"]);
+        .says(&["pieces/3: is piece 3/3: batch 2 is in two pieces"]);
     place.ok("merge pieces/1 pieces/2 pieces/3 --out whole.json");
     assert!(read("one.json") == read("whole.json"));
-    place.ends("merge pieces/1 pieces/2 pieces/3 --out whole.json", 2).says(&["exists already"]);
+    place.ends("merge pieces/1 pieces/2 pieces/3 --out whole.json", 2).says(&["already exists"]);
     // What is kept can be looked at, and is not taken for something else.
     let shown = place.run("chance whole.json").out;
     assert!(shown.contains("splitting") && shown.contains("stones"), "{shown}");
     place
         .ends(&format!("{ask} --out one.json --seed 8"), 2)
-        .says(&["one.json: holds another run: it is of another scenario"]);
+        .says(&["one.json: holds another run: it is for another scenario"]);
     place.ends(&format!("{ask} --out one.json --method counting"), 2).says(&["it uses other methods"]);
     let mut torn = read("one.json");
     let at = torn.windows(9).position(|bytes| bytes == b"\"hits\": [").unwrap();
     torn[at + 30] ^= 1;
     place.write("torn.json", torn);
-    place.ends("chance torn.json", 2).says(&["torn.json: is no file that `plaus chance --out` wrote, or was changed"]);
+    place
+        .ends("chance torn.json", 2)
+        .says(&["torn.json: not a file that `plaus chance --out` wrote, or changed since"]);
 }
 
 #[test]
@@ -116,16 +118,16 @@ fn what_cannot_be_asked_is_refused() {
     place.ends("chance nowhere.toml", 2).says(&["cannot read the scenario"]);
     place.ends("chance nowhere.json", 2).says(&["there is no such file"]);
     place.ends("chance ball.toml --batches 1", 2).says(&["1"]);
-    place.ends("chance ball.toml --batches 4 --shard 5/9 --out a.json", 2).says(&["9 pieces cannot be cut from 4"]);
+    place.ends("chance ball.toml --batches 4 --shard 5/9 --out a.json", 2).says(&["cannot be cut into 9 pieces"]);
     place.ends("chance ball.toml --method luck", 2).says(&["luck"]);
     place
         .ends("chance ball.toml --set preset=as-printed --method splitting", 2)
         .says(&["sampler.rules.preset = \"exact\""]);
     // Where moves are not exact, draws of the prior still are.
     let counted = place.ok("chance ball.toml --set preset=as-printed --batches 2 --draws 200").out;
-    assert!(counted.contains("only draws of the prior count"), "{counted}");
+    assert!(counted.contains("only counting is possible"), "{counted}");
     // What never happens is said to be rare, not impossible.
     let never =
         place.ends("chance ball.toml --set target=90 --set tolerance=0.01 --draws 20 --batches 2 --method counting", 1);
-    assert!(never.out.contains("nothing reached it: less often than"), "{}", never.out);
+    assert!(never.out.contains("nothing met it: less often than"), "{}", never.out);
 }

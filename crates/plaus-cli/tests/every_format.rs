@@ -58,7 +58,7 @@ fn what_is_there_is_replaced_only_when_asked_to_and_only_what_is_ours() {
         place.ok(&command);
         let made = bytes(&place, out);
         assert!(!made.is_empty(), "{command}");
-        place.ends(&command, 2).says(&[&format!("error: {out}: exists already"), "--force"]);
+        place.ends(&command, 2).says(&[&format!("error: {out}: already exists"), "--force"]);
         assert_eq!(bytes(&place, out), made, "{command}");
         place.ok(&format!("{command} --force"));
         assert_eq!(bytes(&place, out), made, "{command}: the same bytes again");
@@ -70,7 +70,7 @@ fn what_is_there_is_replaced_only_when_asked_to_and_only_what_is_ours() {
                 std::fs::write(place.path(theirs).join("note"), "somebody else's").unwrap();
             }
             let before = bytes(&place, theirs);
-            place.ends(&format!("{way} --out {theirs}"), 2).says(&[&format!("error: {theirs}: exists already")]);
+            place.ends(&format!("{way} --out {theirs}"), 2).says(&[&format!("error: {theirs}: already exists")]);
             place.ends(&format!("{way} --out {theirs} --force"), 2).says(&["was not made by such an export"]);
             assert_eq!(bytes(&place, theirs), before, "{command}");
         }
@@ -82,10 +82,10 @@ fn what_is_no_run_is_refused() {
     let place = Place::new();
     all_are_refused(&place, &["error: run: ", "no such run"]);
     std::fs::create_dir(place.path("run")).unwrap();
-    all_are_refused(&place, &["error: run: ", "is no run"]);
+    all_are_refused(&place, &["error: run: ", "is not a run"]);
     std::fs::remove_dir(place.path("run")).unwrap();
     place.write("run", "a file");
-    all_are_refused(&place, &["error: run: ", "is no run"]);
+    all_are_refused(&place, &["error: run: ", "is not a run"]);
 }
 
 #[test]
@@ -93,7 +93,9 @@ fn a_run_without_draws_is_refused() {
     let place = Place::new();
     // Stopped in the warm-up, whose draws have no numbers.
     let stopped = place.ends("sample ball.toml --out run --warmup 1000000 --max-time 0s", 1);
-    stopped.says(&["still in the warm-up, and no iteration has satisfied the constraint yet; go on: plaus resume run"]);
+    stopped.says(&[
+        "still in the warm-up, and no iteration has satisfied the constraint yet; continue with: plaus resume run",
+    ]);
     assert!(stopped.out.starts_with("out of time after 1 of 1,000,900 iterations"), "{}", stopped.out);
     all_are_refused(&place, &["error: run: ", "holds no draws yet", "warm-up", "`plaus resume`"]);
 }
@@ -158,7 +160,7 @@ fn a_run_that_is_being_written_is_read_as_of_its_last_checkpoint() {
     });
     assert!(enough, "no checkpoint within a minute");
     for (way, out) in WAYS {
-        place.ok(&format!("{way} --out {out}")).says(&["the run is being written", "as of its last checkpoint"]);
+        place.ok(&format!("{way} --out {out}")).says(&["the run is still being written", "its last checkpoint"]);
         assert!(!bytes(&place, out).is_empty(), "{way}");
     }
     drop(going);

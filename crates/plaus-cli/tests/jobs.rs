@@ -24,7 +24,7 @@ fn job(place: &Place, engine: &str, shards: &str) -> PathBuf {
     let written =
         plaus(place, &[&["submit", FILE, "--to", engine, "--shards", shards, "--out", JOB], &run[..]].concat());
     assert_eq!(written.code, Some(0), "{}", written.err);
-    written.says(&["nothing is submitted yet"]);
+    written.says(&["nothing has been submitted yet"]);
     place.path(JOB)
 }
 
@@ -166,7 +166,7 @@ fn a_killed_piece_goes_on() {
     assert!(Command::new("kill").args(["-KILL", &process]).status().unwrap().success());
     let ended = Ended::of(running.wait_with_output().unwrap(), "submit");
     assert_eq!(ended.code, Some(0), "{}", ended.err);
-    ended.says(&["piece 2 was killed", "it goes on from its checkpoint"]);
+    ended.says(&["piece 2 was killed", "it continues from its checkpoint"]);
     assert!(place.bytes("job/run") == place.bytes("whole"));
 }
 
@@ -176,19 +176,19 @@ fn what_makes_no_job_is_refused() {
     let submit = "submit ball.toml --to slurm";
     place
         .ends(&format!("{submit} --shards 5 --out job"), 2)
-        .says(&["--shards 5: 5 pieces cannot be cut from 4 chains"]);
+        .says(&["--shards 5: 4 chains cannot be cut into 5 pieces"]);
     place.ends(&format!("{submit} --shards 0 --out job"), 2).says(&["--shards"]);
     place.ends(&format!("{submit} --shards 2"), 2).says(&["--out <JOB>"]);
     place.ends("submit ball.toml --to pbs --shards 2 --out job", 2).says(&["slurm, hyperqueue, openjd, local"]);
-    place.ends("submit --again nowhere", 2).says(&["nowhere: there is no job here"]);
+    place.ends("submit --again nowhere", 2).says(&["nowhere: this is not a job"]);
     place.ends("submit nothing.toml --to slurm --shards 2 --out job", 2).says(&["nothing.toml: cannot read"]);
-    place.ends(&format!("{submit} --shards 2 --out ball.toml"), 2).says(&["ball.toml: exists already"]);
+    place.ends(&format!("{submit} --shards 2 --out ball.toml"), 2).says(&["ball.toml: already exists"]);
     assert_eq!(place.names(), ["ball.toml"]);
     let replaced = place.ends("submit ball.toml --to hyperqueue --shards 2 --out %{TASK_ID}", 2);
     replaced.says(&["HyperQueue replaces `%{…}` in names"]);
     assert_eq!(place.names(), ["ball.toml"]);
     place.ok(&format!("{submit} --shards 2 --out job"));
-    place.ends(&format!("{submit} --shards 2 --out job"), 2).says(&["job: exists already"]);
+    place.ends(&format!("{submit} --shards 2 --out job"), 2).says(&["job: already exists"]);
     let json = std::fs::read_to_string(place.path("job/job.json")).unwrap();
     place.write("job/job.json", json.replace("\"plaus\": \"0.1.0\"", "\"plaus\": \"0.0.9\""));
     place.ends("submit --again job", 2).says(&["job: made by plaus 0.0.9"]);

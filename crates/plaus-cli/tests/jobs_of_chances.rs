@@ -127,9 +127,9 @@ fn one_file_has_one_writer() {
 fn what_makes_no_job_of_a_chance_is_refused() {
     let place = Place::new();
     let submit = "submit ball.toml --to slurm --out job";
-    place.ends(&format!("{submit} --shards 2 --batches 4"), 2).says(&["--batches=4 goes with --chance"]);
-    place.ends(&format!("{submit} --shards 2 --chance --chains 4"), 2).says(&["--chains goes with a run"]);
-    place.ends(&format!("{submit} --shards 5 --chance --batches 4"), 2).says(&["5 pieces cannot be cut from 4"]);
+    place.ends(&format!("{submit} --shards 2 --batches 4"), 2).says(&["--batches=4 can only be used with --chance"]);
+    place.ends(&format!("{submit} --shards 2 --chance --chains 4"), 2).says(&["--chains is for a run"]);
+    place.ends(&format!("{submit} --shards 5 --chance --batches 4"), 2).says(&["cannot be cut into 5 pieces"]);
     place.ends(&format!("{submit} --shards 2 --chance --method luck"), 2).says(&["counting, splitting, stones"]);
     assert_eq!(place.names(), ["ball.toml"]);
 }

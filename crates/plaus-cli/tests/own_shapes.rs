@@ -21,7 +21,7 @@ fn a_run_keeps_the_files_of_its_scenario() {
     let copy = place.bytes("run").into_keys().find(|name| name.starts_with("asset-")).unwrap();
     // What lies beside the scenario may change, or go: the run has its own.
     std::fs::remove_dir_all(place.path("shapes")).unwrap();
-    place.ends("check world.toml", 2).says(&["world.toml:9:30", "hull_of.file", "it cannot be read"]);
+    place.ends("check world.toml", 2).says(&["world.toml:9:30", "hull_of.file", "cannot read it"]);
     place.ok("resume run --iterations 9 --quiet");
     place.ok("export run --format csv --out draws.csv");
     place.write(&format!("run/{copy}"), WEDGE.replace("25", "26"));
@@ -37,9 +37,9 @@ fn a_file_makes_a_world() {
     place.write("wedge.obj", WEDGE);
     place.ok("new --from wedge.obj").says(&["wrote wedge.toml"]);
     place.ok("check wedge.toml").says(&["wedge is simulated as a convex hull"]);
-    place.ends("new --from wedge.obj", 2).says(&["exists already"]);
+    place.ends("new --from wedge.obj", 2).says(&["already exists"]);
     place.write("two.obj", format!("{WEDGE}{}", WEDGE.replace("o wedge", "o other")));
-    place.ok("new --from two.obj my.toml").says(&["not taken over: which of the objects move"]);
-    place.ends("new --from none.obj", 2).says(&["none.obj: it cannot be read"]);
+    place.ok("new --from two.obj my.toml").says(&["not taken over: which objects move"]);
+    place.ends("new --from none.obj", 2).says(&["none.obj: cannot read it"]);
     place.ends("new --from ball.toml", 2).says(&["must end in .glb, .obj or .stl"]);
 }

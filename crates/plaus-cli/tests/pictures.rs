@@ -58,7 +58,7 @@ fn an_encoder_that_fails_or_is_missing_leaves_nothing() {
     let export = "export run --format mp4 --size 32x18 --fps 10 --sample 1:7 --out v.mp4";
     let made = encoder(&place, "echo 'no such codec' >&2; exit 1");
     for (program, says) in
-        [(made, "no such codec"), ("no/such/ffmpeg".into(), "install it, or name it by PLAUS_FFMPEG")]
+        [(made, "no such codec"), ("no/such/ffmpeg".into(), "install it, or name it in PLAUS_FFMPEG")]
     {
         let output = place.command(export).env("PLAUS_FFMPEG", program).output().unwrap();
         assert_eq!(output.status.code(), Some(2));

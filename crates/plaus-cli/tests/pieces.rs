@@ -80,9 +80,11 @@ fn a_piece_goes_on_and_gets_longer() {
     place.ok("sample ball.toml --out whole -q");
     place.ok("resume whole --iterations 2000 -q");
     let piece = |more: &str| format!("sample ball.toml -q --shard 1/2 --out cut/1 --continue{more}");
-    place.ends(&piece(" --max-time 0s"), 1).says(&["this piece is not finished; go on: plaus resume cut/1"]);
+    place.ends(&piece(" --max-time 0s"), 1).says(&["this piece is not finished; continue with: plaus resume cut/1"]);
     place.ok("sample ball.toml -q --shard 2/2 --out cut/2 --continue");
-    place.ends("merge cut --out all", 2).says(&["cut/1: piece 1/2 has done 1 of 1000 iterations: `plaus resume`"]);
+    place
+        .ends("merge cut --out all", 2)
+        .says(&["cut/1: piece 1/2 has done 1 of 1000 iterations: continue it with `plaus resume`"]);
     place.ok(&piece(""));
     place.ok(&piece("")); // nothing is left to do
     for piece in [1, 2] {
@@ -140,7 +142,7 @@ fn solutions_are_counted_over_all_pieces() {
     // One that was stopped before has to go on first.
     place.ends(&format!("{run} --shard 1/2 --out early/1 --max-time 0s"), 1);
     place.ok(&format!("{run} --shard 2/2 --out early/2"));
-    place.ends("merge early --out no", 2).says(&["early/1: by iteration 1, as far as this piece is", "`plaus resume`"]);
+    place.ends("merge early --out no", 2).says(&["early/1: by iteration 1, where this piece ends", "`plaus resume`"]);
     // What was begun without looking for them cannot begin to.
     cut(&place, "sample ball.toml -q", 2, "blind");
     place.ends("resume blind/1 --solutions 10", 2).says(&["begun without `--solutions`"]);
@@ -155,25 +157,28 @@ fn what_makes_no_whole_is_refused_by_name() {
     place.ok("sample ball.toml -q --shard 1/2 --out half/1");
     let before = place.bytes("cut/3");
     for (pieces, says) in [
-        ("cut/1 cut/2 cut/4", &["piece 3/4 is missing", "holds chain 2"][..]),
+        ("cut/1 cut/2 cut/4", &["piece 3/4 is missing", "has chain 2"][..]),
         ("cut/2 cut/3", &["piece 1/4 is missing"]),
-        ("cut/1 cut/2", &["pieces 3/4, 4/4 are missing", "holds chains 2 to 3"]),
-        ("cut cut/3", &["cut/3: is piece 3/4, whose chain 2 cut/3 holds as well"]),
-        ("half/1 cut", &["is piece 1/2, whose chain 0 cut/1 holds as well"]),
+        ("cut/1 cut/2", &["pieces 3/4, 4/4 are missing", "has chains 2 to 3"]),
+        ("cut cut/3", &["cut/3: is piece 3/4: its chain 2 is also in cut/3"]),
+        ("half/1 cut", &["is piece 1/2: its chain 0 is also in cut/1"]),
         (
             "cut/1 cut/2 seed/3 cut/4",
-            &["seed/3: is no piece of the run that cut/1", "`seed = 8` in [sampler], not `seed = 7`"],
+            &["seed/3: does not belong to the same run as cut/1", "`seed = 8` in [sampler], not `seed = 7`"],
         ),
-        ("cut/1 cut/2 scenario/3 cut/4", &["scenario/3: is no piece", "`sigma_d = 0.2`", "not `sigma_d = 0.1`"]),
+        (
+            "cut/1 cut/2 scenario/3 cut/4",
+            &["scenario/3: does not belong to the same run", "`sigma_d = 0.2`", "not `sigma_d = 0.1`"],
+        ),
         ("cut/1 nowhere", &["nowhere: there is no such run"]),
-        ("ball.toml", &["ball.toml: is no file that `plaus chance --out` wrote"]),
+        ("ball.toml", &["ball.toml: not a file that `plaus chance --out` wrote"]),
     ] {
         place.ends(&format!("merge {pieces} --out all"), 2).says(says);
     }
     std::fs::create_dir(place.path("empty")).unwrap();
-    place.ends("merge empty --out all", 2).says(&["empty: is no piece of a run, and holds none"]);
-    place.ends("merge cut --out cut/3", 2).says(&["cut/3: exists already"]);
-    place.ends("merge cut --out ball.toml", 2).says(&["ball.toml: exists already"]);
+    place.ends("merge empty --out all", 2).says(&["empty: is not a piece of a run and holds none"]);
+    place.ends("merge cut --out cut/3", 2).says(&["cut/3: already exists"]);
+    place.ends("merge cut --out ball.toml", 2).says(&["ball.toml: already exists"]);
     place.ends("merge --out all", 2).says(&["<PIECES>"]);
     assert_eq!(place.bytes("cut/3"), before);
     assert_eq!(place.names(), ["ball.toml", "cut", "empty", "half", "scenario", "seed"]);
@@ -188,7 +193,9 @@ fn a_version_that_differs_is_named() {
     let mut manifest = plaus_run::Manifest::read(&folder).unwrap();
     manifest.plaus = "0.0.9".to_owned();
     std::fs::write(folder.manifest(), manifest.to_json().unwrap()).unwrap();
-    place.ends("merge cut --out all", 2).says(&["cut/2: is no piece", "it was made by plaus 0.0.9, not 0.1.0"]);
+    place
+        .ends("merge cut --out all", 2)
+        .says(&["cut/2: does not belong to the same run", "it was made by plaus 0.0.9, not 0.1.0"]);
 }
 
 #[test]
@@ -202,10 +209,13 @@ fn damaged_pieces_are_named() {
     flipped[last] ^= 1;
     let foreign = std::fs::read(place.path("cut/2/chain-00002.records")).unwrap();
     let changes: [(&[u8], &[&str]); 4] = [
-        (&flipped, &["cut/2/chain-00003.records: at byte ", "checksum", "the chain before that are intact"]),
-        (&whole[..whole.len() - 10], &["cut/2/chain-00003.records: at byte ", "the chain before that are intact"]),
+        (&flipped, &["cut/2/chain-00003.records: at byte ", "checksum", "that the chain recorded before are intact"]),
+        (
+            &whole[..whole.len() - 10],
+            &["cut/2/chain-00003.records: at byte ", "that the chain recorded before are intact"],
+        ),
         (&whole[..0], &["cut/2/chain-00003.records: at byte 0"]),
-        (&foreign, &["cut/2/chain-00003.records: the frame at byte 0 does not follow on"]),
+        (&foreign, &["cut/2/chain-00003.records: the frame at byte 0 does not follow the previous one"]),
     ];
     for (bytes, says) in changes {
         std::fs::write(&path, bytes).unwrap();
@@ -230,7 +240,7 @@ fn numbers_that_name_no_piece_are_refused() {
         ("0/4", "--shard 0/4: there is no piece 0 of 4"),
         ("3", "--shard 3: `3` names no piece: write PIECE/PIECES, e.g. 3/16"),
         ("-1/4", "--shard -1/4: `-1/4` names no piece"),
-        ("2/5", "5 pieces cannot be cut from 4 chains"),
+        ("2/5", "4 chains cannot be cut into 5 pieces"),
         ("task/4", "--shard task/4: neither HQ_TASK_ID nor SLURM_ARRAY_TASK_ID is set"),
     ] {
         let mut command = place.command(&format!("sample ball.toml -q --out cut/1 --shard {shard}"));
@@ -241,7 +251,7 @@ fn numbers_that_name_no_piece_are_refused() {
     }
     assert_eq!(place.names(), ["ball.toml"]);
     place.ok("sample ball.toml -q --shard 1/2 --out cut");
-    place.ends("sample ball.toml -q --shard 2/2 --out cut", 2).says(&["cut: exists already"]);
+    place.ends("sample ball.toml -q --shard 2/2 --out cut", 2).says(&["cut: already exists"]);
 }
 
 #[test]

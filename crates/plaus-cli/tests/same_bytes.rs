@@ -47,7 +47,7 @@ fn a_run_stops_at_the_wanted_solution_and_looks_for_more_when_asked() {
     };
     place.ok("sample ball.toml --out run --solutions 40 -q");
     assert_eq!(distinct("run"), 40);
-    place.ends("resume run --solutions 39", 2).says(&["40 distinct solutions are looked for already"]);
+    place.ends("resume run --solutions 39", 2).says(&["40 distinct solutions are already asked for"]);
     place.ok("resume run --solutions 60 -q");
     place.ok("sample ball.toml --out direct --solutions 60 -q");
     assert_eq!(distinct("run"), 60);
@@ -56,7 +56,7 @@ fn a_run_stops_at_the_wanted_solution_and_looks_for_more_when_asked() {
     }
     assert_eq!(std::fs::read(place.path("run.csv")).unwrap(), std::fs::read(place.path("direct.csv")).unwrap());
     let short = place.ends("sample ball.toml --out short --solutions 100000", 1);
-    short.says(&["of the 100000 distinct solutions were found; go on: plaus resume short --iterations 9000"]);
+    short.says(&["of the 100000 distinct solutions were found; continue with: plaus resume short --iterations 9000"]);
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn an_interrupted_run_says_how_to_go_on_and_does() {
     signal(&child, "-INT");
     let ended = Ended::of(child.wait_with_output().unwrap(), &long);
     assert_eq!(ended.code, Some(130), "{}", ended.err);
-    ended.says(&["seed 7", "interrupted after iteration ", "with a checkpoint; go on: plaus resume run"]);
+    ended.says(&["seed 7", "interrupted after iteration ", "with a checkpoint; continue with: plaus resume run"]);
     assert_ne!(place.bytes("run"), place.bytes("whole"));
     place.ok("resume run -q");
     assert!(place.bytes("run") == place.bytes("whole"));
@@ -143,7 +143,7 @@ fn a_run_out_of_time_can_be_resumed() {
     place.ok("sample ball.toml --out whole -q");
     assert_eq!(place.bytes("run"), place.bytes("whole"));
     let found = place.ends("sample ball.toml --out few --max-time 1ms --solutions 100000", 1);
-    found.says(&["of the 100000 distinct solutions were found; go on: plaus resume few\n"]);
+    found.says(&["of the 100000 distinct solutions were found; continue with: plaus resume few\n"]);
 }
 
 /// Blocks so long that none ends before the run is stopped, but the short ones that a run begins with.

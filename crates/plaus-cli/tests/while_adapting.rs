@@ -27,8 +27,8 @@ fn the_first_solutions_are_kept_and_can_be_looked_at() {
     place.ends("replay other --sample 0:w99999999", 2).says(&["there is no draw 0:w99999999", "are 0 to"]);
     place.ends("replay other --sample 0:x1", 2).says(&["0:w17"]);
     // No draw of it is a statistic.
-    place.ends("export run --format csv --out draws.csv", 2).says(&["whose draws are no statistics"]);
-    place.ends("diagnose run", 2).says(&["whose draws are no statistics"]);
+    place.ends("export run --format csv --out draws.csv", 2).says(&["which statistics leave out"]);
+    place.ends("diagnose run", 2).says(&["which statistics leave out"]);
 }
 
 /// However a run comes to its solutions: at once, on any number of threads, in two goes, in pieces.

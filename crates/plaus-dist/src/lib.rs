@@ -29,28 +29,29 @@
 //! | [`VonMises`] | an angle | headings, on a ring whose ends are joined |
 //! | [`Choice`] | one of some numbers | gears, slots |
 //! | [`Bernoulli`] | yes or no | balls that may be absent |
-//! | [`Gibbs`] | a count of wishes met | goals; unnormalised, has no sampler |
+//! | [`Gibbs`] | a count of things achieved | goals; unnormalised, has no sampler |
 //!
-//! Those of one number are a [`NumberLaw`] each, for whoever needs not know which.
+//! Laws of one number implement [`NumberLaw`], for code that need not know which law it is.
 //!
 //! Around them: [`log`] keeps normalised densities, unnormalised weights and ratios apart, [`stream`] gives every
-//! random number its key, [`math`] computes the same bits on every platform, [`param`] says what a constructor refuses.
+//! random number its key, [`math`] computes the same bits on every platform, [`param`] lists what a constructor
+//! refuses.
 //!
 //! # Features
 //!
-//! `laws`, on unless switched off: all of the above but [`math`], with `rand` and `blake3`. A simulator needs only
-//! [`math`], which depends on `libm` alone.
+//! `laws`, on by default: all of the above except [`math`], with `rand` and `blake3`. A simulator needs only [`math`],
+//! which depends on `libm` alone.
 //!
 //! # Invariants
 //!
-//! * A law that is built is sane: parameters are checked once, by the constructor or on deserialisation, and errors
-//!   name parameter, value and range.
-//! * A log density is finite or −∞; NaN in is [`NotANumber`] out, and so is an infinite density, which only
-//!   the centre of [`Radial`] has. This holds for scales from 1e-300 to 1e300 and every float x.
-//! * Every density is normalised, in the unit of its variable, so densities of states of different dimension may be
+//! * A law that exists is valid: parameters are checked once, by the constructor or on deserialisation, and errors name
+//!   parameter, value and range.
+//! * A log density is finite or −∞. NaN as input gives [`NotANumber`], and so does an infinite density, which only the
+//!   centre of [`Radial`] has. This holds for scales from 1e-300 to 1e300 and every float x.
+//! * Every density is normalised in the unit of its variable, so densities of states of different dimension may be
 //!   compared.
-//! * What a sampler draws depends on its stream alone, bit for bit; a change of it is value-breaking, and
-//!   pinned by tests.
+//! * The draws of a sampler depend on its stream alone, bit for bit. A change of them is value-breaking, and tests pin
+//!   them.
 
 #[cfg(feature = "laws")]
 mod laws;

@@ -1,4 +1,4 @@
-//! Portable float functions: the only door to transcendental functions in the whole project.
+//! Portable float functions: the only access to transcendental functions in the whole project.
 //!
 //! `f64::sin` and its kin call the platform's C library or a compiler intrinsic, whose last bits differ between
 //! systems. Everything here is the pure-Rust `libm` at one pinned version, or a fixed sequence of `+ − × ÷ √`, which

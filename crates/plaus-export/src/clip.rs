@@ -1,9 +1,9 @@
-//! What is exported: an animation, a part of its time, and what is to be said about it.
+//! What is exported: an animation, the part of its time, and facts about it.
 
 use plaus_animation::Animation;
 use serde_json::{Map, Value};
 
-/// Most poses of all bodies together in one file.
+/// The most poses, over all bodies, in one file.
 pub const MOST_POSES: f64 = 1e7;
 
 /// What is exported.
@@ -11,52 +11,52 @@ pub const MOST_POSES: f64 = 1e7;
 pub struct Clip<'a> {
     /// The motion.
     pub animation: &'a Animation,
-    /// What to say about it.
+    /// Facts about it.
     pub label: &'a Label,
     /// Which part of it.
     pub cut: Cut,
     /// How it is written.
     pub style: Style,
-    /// Is told of frames that are done, and of how many, by formats whose frames take long.
+    /// Called with the number of frames done and their total, by formats whose frames take long.
     pub progress: fn(u64, u64),
 }
 
 impl<'a> Clip<'a> {
-    /// A part of an animation, in the usual style.
+    /// A part of an animation, in the default style.
     #[must_use]
     pub fn new(animation: &'a Animation, label: &'a Label, cut: Cut) -> Self {
         Self { animation, label, cut, style: Style::default(), progress: |_, _| () }
     }
 
-    /// The same in another style.
+    /// The same clip in another style.
     #[must_use]
     pub fn styled(self, style: Style) -> Self {
         Self { style, ..self }
     }
 
-    /// The same, where somebody is told how far it is.
+    /// The same clip, with progress reported to `progress`.
     #[must_use]
     pub fn watched(self, progress: fn(u64, u64)) -> Self {
         Self { progress, ..self }
     }
 }
 
-/// How animations are written, where a format leaves a choice.
+/// How animations are written, if a format leaves a choice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
-    /// What is between keys.
+    /// How keys are joined.
     pub keys: Between,
-    /// Time codes a second of USD: the frame rate of the scene that a program without a clock of its own opens it in.
-    /// Default 24, which Blender's scenes have.
+    /// Time codes per second in USD: the frame rate of the scene, in programs without a clock of their own. Default 24,
+    /// the rate of Blender's scenes.
     pub time_codes: f64,
     /// Which axis points up.
     pub up: Up,
-    /// Units a metre: 100 for programs that count in centimetres.
+    /// Units per metre: 100 for programs that use centimetres.
     pub scale: f64,
-    /// Whether the clip's one body is the node above all others and carries the motion itself, as game engines want it
-    /// that move an actor by its animation. [`Style::up`] and [`Style::scale`] then go into the keys.
+    /// Whether the clip's one body is the root node and carries the motion itself, for game engines that move an actor
+    /// by its animation. [`Style::up`] and [`Style::scale`] are then applied to the keys.
     pub root_motion: bool,
-    /// Pixels across and down, of pictures and videos; `None` is what the format has usually.
+    /// Pixels across and down, for pictures and videos; `None` means the format's default.
     pub size: Option<(u32, u32)>,
 }
 
@@ -66,15 +66,15 @@ impl Default for Style {
     }
 }
 
-/// What programs that read a file are to do between two keys.
+/// How programs that read a file should join two keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Between {
-    /// Straight lines, with keys as dense as the motion asks for: right in every program, to the tolerances of
+    /// Straight lines, with keys as dense as the motion requires: right in every program, to the tolerances of
     /// [`crate::keys`].
     #[default]
     Linear,
-    /// Cubic splines with exact tangents, where the format has them: exact in programs that evaluate them as glTF
-    /// says. Blender does not.
+    /// Cubic splines with exact tangents, if the format has them: exact in programs that evaluate them as glTF
+    /// specifies. Blender does not.
     Exact,
 }
 
@@ -113,11 +113,11 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// `fps` frames a second from one time to another (in s), or of all of it. A range that ends after the animation
-    /// ends with it.
+    /// `fps` frames per second from one time to another (in s), or over the whole animation. A range that ends after
+    /// the animation ends with it.
     ///
     /// # Errors
-    /// [`ExportError`] where that makes no frames, or more than [`MOST_POSES`] poses.
+    /// [`ExportError`] if that makes no frames, or more than [`MOST_POSES`] poses.
     pub fn new(fps: f64, range: Option<(f64, f64)>, animation: &Animation) -> Result<Self, ExportError> {
         let duration = animation.duration;
         let (from, end) = range.unwrap_or((0.0, duration));
@@ -132,7 +132,7 @@ impl Cut {
         Ok(Self { fps, from, to })
     }
 
-    /// Frames a second.
+    /// Frames per second.
     #[must_use]
     pub fn fps(&self) -> f64 {
         self.fps
@@ -156,7 +156,7 @@ impl Cut {
         self.to - self.from
     }
 
-    /// Whether a time of the animation is in it.
+    /// Whether it contains a time of the animation.
     #[must_use]
     pub fn holds(&self, time: f64) -> bool {
         (self.from..=self.to).contains(&time)
@@ -169,9 +169,9 @@ pub enum ExportError {
     /// Too few or too many frames.
     #[error("--fps {0}: must be above 0 and make at most {MOST_POSES} poses")]
     Fps(f64),
-    /// A range that holds nothing.
+    /// An empty range.
     #[error(
-        "--time-range {from}:{to}: must begin at 0 or later, and before it ends; the animation ends at {duration} s"
+        "--time-range {from}:{to}: must begin at 0 or later and end after it begins; the animation ends at {duration} s"
     )]
     Range {
         /// Where it begins, s.
@@ -183,17 +183,17 @@ pub enum ExportError {
     },
     /// More bytes than the format can hold.
     #[error(
-        "the file would be longer than 4 GiB, the most that it can hold: choose fewer --fps, fewer samples or a shorter \
-        --time-range"
+        "the file would be longer than 4 GiB, the most that it can hold: choose fewer --fps, fewer samples, or a \
+         shorter --time-range"
     )]
     TooLong,
-    /// A value that the format cannot hold.
+    /// A value that the format cannot store.
     #[error("cannot be written as JSON: {0}")]
     Json(String),
-    /// Something that a format needs and does not find, or more than it can show.
+    /// A format lacks something that it needs, or cannot show so much.
     #[error("{0}")]
     Impossible(String),
-    /// What the disk says.
+    /// An error of the disk.
     #[error("{0}")]
     Output(#[from] std::io::Error),
 }

@@ -1,4 +1,4 @@
-//! All formats of animations, one row each: help, completions and documentation are made of [`ALL`].
+//! All formats of animations, one row each: help, completions and documentation follow from [`ALL`].
 
 mod games;
 mod heard;
@@ -9,63 +9,64 @@ use crate::clip::{Clip, ExportError};
 use std::io::Write;
 use std::path::Path;
 
-/// What is to be known of a format before anything is written.
+/// What is known of a format before anything is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Row {
-    /// What `--format` calls it.
+    /// Its name for `--format`.
     pub name: &'static str,
-    /// How names of its files end, without the dot.
+    /// The extension of its files, without the dot.
     pub ending: &'static str,
     /// What it is, in one line.
     pub about: &'static str,
-    /// What a user must know, in a sentence or a few.
+    /// What a user must know, in one or a few sentences.
     pub help: &'static str,
 }
 
 /// A format that animations are written in.
 pub trait Exporter: Sync {
-    /// What is to be known of it.
+    /// Its row.
     fn row(&self) -> &'static Row;
 
-    /// Begins a file of that name.
+    /// Begins a file with this name.
     fn begin(&self, path: &Path) -> Box<dyn Collection>;
 
-    /// Whether that file was made here, and may be replaced when asked to.
+    /// Whether that file was made by this program, and so may be replaced when asked to.
     fn is_ours(&self, path: &Path) -> bool;
 
-    /// Whether several samples go into one file unasked, which may be the standard output.
+    /// Whether several samples go into one file by default; that file may be the standard output.
     fn is_table(&self) -> bool {
         false
     }
 
-    /// Frames a second unless said otherwise.
+    /// Frames per second by default.
     fn fps(&self) -> f64 {
         60.0
     }
 
-    /// The most clips of one file: that of a format which must hold them all in memory has an end.
+    /// The most clips in one file; limited for formats that must hold them all in memory.
     fn most(&self) -> usize {
         usize::MAX
     }
 
-    /// What goes beside a file: the end of its name, and its text.
+    /// A file that goes beside it: the end of its name, and its text.
     fn beside(&self, _file: &str) -> Option<(&'static str, String)> {
         None
     }
 }
 
-/// A file in the making.
+/// An unfinished file.
 pub trait Collection {
     /// Adds a clip; may write.
     ///
     /// # Errors
-    /// [`ExportError`] where the format cannot hold it or `out` refuses.
+    /// [`ExportError`] if the format cannot hold it or `out` refuses.
     fn add(&mut self, clip: &Clip<'_>, out: &mut dyn Write) -> Result<(), ExportError>;
 
-    /// Writes what is left.
+    /// Writes the rest.
     ///
     /// # Errors
-    /// As [`Collection::add`].
+    ///
+    /// Those of [`Collection::add`].
     fn finish(self: Box<Self>, out: &mut dyn Write) -> Result<(), ExportError>;
 }
 

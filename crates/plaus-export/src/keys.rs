@@ -1,13 +1,13 @@
-//! At which times a body has keys, and what its pose is there.
+//! The times at which a body has keys, and its pose there.
 
 use crate::clip::Cut;
 use glam::{DQuat, DVec3};
 use plaus_animation::{Animation, Piece, Track};
 
-/// Largest angle between two keys of an orientation, in rad: interpolation goes the short way, and is exact for
+/// Largest angle between two keys of an orientation, in rad: interpolation takes the short way, and is exact for
 /// constant angular velocity.
 const LARGEST_TURN: f64 = 1.0;
-/// The same for bodies that turn about two axes at once, where interpolation is an approximation.
+/// The same for bodies that turn about two axes at once, for which interpolation is an approximation.
 const LARGEST_TOP_TURN: f64 = 0.1;
 
 /// A moment of a body's motion.
@@ -27,8 +27,8 @@ pub struct Key {
     pub orientation: DQuat,
 }
 
-/// Keys of a body: at every frame, at the begin of every piece of its motion, at every impact it takes part in, and at
-/// the end of the cut.
+/// Keys of a body: at every frame, at the start of every piece of its motion, at every impact that it takes part in,
+/// and at the end of the cut.
 #[must_use]
 pub fn of_track(animation: &Animation, track: &Track, cut: &Cut) -> Vec<Key> {
     let hits: Vec<f64> = animation.impacts.iter().filter(|hit| hit.involves(&track.name)).map(|hit| hit.time).collect();
@@ -54,8 +54,8 @@ fn key(track: &Track, time: f64, impact: bool) -> Key {
     Key { time, impact, position: piece.position(time), arriving, leaving, orientation: piece.orientation(time) }
 }
 
-/// Times and orientations between which the shortest turn is the right one: at the keys, and between them where the
-/// body turns fast.
+/// Times and orientations between which the shortest turn is the right one: at the keys, and between them if the body
+/// turns fast.
 #[must_use]
 pub fn orientations(track: &Track, keys: &[Key]) -> Vec<(f64, DQuat)> {
     let mut turns = Vec::with_capacity(keys.len());

@@ -16,14 +16,13 @@
 //! | module | writes |
 //! | --- | --- |
 //! | [`glb`] | animated glTF 2.0 in one binary file, of one clip or of several; [`glb::godot_import`] goes beside it |
-//! | [`usda`] | USD as text: an animated `Xform` a body, with uniquely named geometry under it; several clips are variants |
-//! | [`table`] | poses and impacts, one a row |
-//! | [`mesh`] | the triangles that all of them draw |
+//! | [`usda`] | USD as text: an animated `Xform` for each body, with uniquely named geometry under it; several clips are variants |
+//! | [`table`] | poses and impacts, one in each row |
+//! | [`mesh`] | triangles of shapes, which all of them use |
 //!
-//! [`thin`] says which keys GLB and USDA have: straight lines between them are right to 0.2 mm and 0.03°, in every
-//! program. Tables have a key at every
-//! frame, at the beginning of every piece of the motion, and at every impact. Times count from the beginning of the
-//! [`Cut`].
+//! [`thin`] chooses the keys of GLB and USDA: straight lines between them are right to 0.2 mm and 0.03°, in every
+//! program. Tables have a key at every frame, at the start of every piece of the motion, and at every impact. Times
+//! count from the start of the [`Cut`].
 
 pub mod clip;
 pub mod format;

@@ -1,4 +1,4 @@
-//! Which files an export made, and may replace when asked to.
+//! Recognises files that an export made, and so may replace when asked to.
 
 use crate::glb::MADE_BY;
 use crate::usda::HEAD_OF_ANY_VERSION;
@@ -6,10 +6,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Longest description of a GLB that is looked at, in bytes.
+/// Longest description of a GLB that is read, in bytes.
 const LONGEST: u64 = 64 << 20;
 
-/// Whether the file is a GLB that says it was made here.
+/// Whether the file is a GLB made by this program, according to its contents.
 #[must_use]
 pub fn is_glb(path: &Path) -> bool {
     let mut head = [0; 20];
@@ -24,7 +24,7 @@ pub fn is_glb(path: &Path) -> bool {
     read && json.windows(needle.len()).any(|window| window == needle.as_bytes())
 }
 
-/// Whether the file is a USDA that says it was made here.
+/// Whether the file is a USDA made by this program, according to its contents.
 #[must_use]
 pub fn is_usda(path: &Path) -> bool {
     begins_with(path, HEAD_OF_ANY_VERSION.as_bytes())

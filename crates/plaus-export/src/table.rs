@@ -1,4 +1,4 @@
-//! Poses and impacts as tables: one a row, numbers as the shortest that read back as the same bits.
+//! Poses and impacts as tables, one in each row; numbers are the shortest that read back as the same bits.
 
 use crate::clip::Clip;
 use crate::keys::{Key, of_track};
@@ -9,9 +9,8 @@ use std::io::{self, Write};
 
 /// Columns of a table of poses: seconds, metres, and a unit quaternion from the body's frame to the world's.
 pub const POSES: &str = "t,body,x,y,z,qx,qy,qz,qw,impact";
-/// Columns of a table of impacts and contacts: seconds, names of nodes and what they are made of, metres, a unit
-/// vector,
-/// m/s, N·s and N. What a row's kind does not have is empty.
+/// Columns of a table of impacts and contacts: seconds, names of nodes and their materials, metres, a unit vector, m/s,
+/// N·s and N. Columns that do not apply to a row are empty.
 pub const EVENTS: &str =
     "kind,t,end,body,other,body_material,other_material,x,y,z,nx,ny,nz,speed,impulse,slip,roll,force";
 
@@ -118,14 +117,14 @@ fn times(clip: &Clip<'_>, contact: &Contact) -> [f64; 2] {
     [contact.start, contact.end].map(|time| time.clamp(clip.cut.from(), clip.cut.to()) - clip.cut.from())
 }
 
-/// What the two sides are made of; empty where nothing has that name.
+/// The materials of the two sides; empty if nothing has that name.
 fn materials(clip: &Clip<'_>, body: &str, other: &str) -> [String; 2] {
     [body, other].map(|name| clip.animation.look_of(name).map(Look::name).unwrap_or_default())
 }
 
-/// Impacts that matter: of those of one pair that follow the first within `merge` s one is left, at the time and
-/// place of the hardest, with all their impulses; then
-/// those with an impulse of less than `least` N·s go. An impact of unknown impulse stays.
+/// The impacts that matter. If impacts of one pair follow the first within `merge` s, one is left, at the time and
+/// place of the hardest, with the sum of their impulses. Then impacts with an impulse below `least` N·s are dropped. An
+/// impact of unknown impulse stays.
 #[must_use]
 pub fn fewer(impacts: &[Impact], least: f64, merge: f64) -> Vec<Impact> {
     let mut groups: Vec<(f64, Impact)> = Vec::new();

@@ -1,29 +1,29 @@
-//! As few keys as straight lines need to stay near a motion.
+//! The fewest keys with which straight lines stay near a motion.
 
 use crate::keys::Key;
 use glam::{DQuat, DVec3};
 use plaus_animation::{Piece, Track};
 
-/// Farthest that a body's middle may be from a straight line between two keys, in m. Default 2e-4, so that with what
-/// turning and single precision add every point of a body stays within 0.5 mm.
+/// Largest distance of a body's middle from a straight line between two keys, in m. Default 2e-4, so that, including
+/// turning and single precision, every point of a body stays within 0.5 mm.
 const OFF: f64 = 2e-4;
-/// The same as a share of the body's reach: small things are looked at from near. Default 0.01.
+/// The same as a share of the body's reach, because small things are looked at closely. Default 0.01.
 const OFF_SHARE: f64 = 0.01;
-/// Farthest that an orientation may be from the one between two keys, in rad, whether a program turns evenly or mixes
-/// the four numbers. Default 5e-4: 0.03°.
+/// Largest angle of an orientation from the interpolated one, in rad, whether a program turns evenly or mixes the four
+/// numbers. Default 5e-4: 0.03°.
 const TURNED: f64 = 5e-4;
-/// Largest turn between two keys, in rad: of that turn, mixing the four numbers is off by [`TURNED`] at most.
+/// Largest turn between two keys, in rad: for it, mixing the four numbers is off by at most [`TURNED`].
 const LARGEST_TURN: f64 = 0.5;
-/// Least time between two keys of a file that Blender may read, in s. It makes one of keys that are less than a
-/// hundredth of a frame apart, with the time of the first and the value of the last; its scenes have 24 frames a
-/// second.
+/// Least time between two keys of a file that Blender may read, in s. Blender merges keys that are less than a
+/// hundredth of a frame apart into one, with the time of the first and the value of the last; its scenes have 24 frames
+/// per second.
 pub const APART: f64 = 0.0102 / 24.0;
-/// Times that are no more than this apart are one.
+/// Times no farther apart than this are equal.
 const EQUAL: f64 = 1e-9;
 /// Most keys between two neighbouring candidates: a guard against numbers that make no sense.
 const MOST_PARTS: f64 = 1e4;
 
-/// How far a straight line may be off for a body of that reach, in m.
+/// How far a straight line may be off for a body with this reach, in m.
 #[must_use]
 pub fn tolerance(reach: f64) -> f64 {
     OFF.min(OFF_SHARE * reach)
@@ -35,13 +35,13 @@ pub type TurnKey = (f64, DQuat);
 pub type PlaceKey = (f64, DVec3);
 
 /// Positions between which straight lines stay within [`tolerance`] of the motion: at both ends, at every impact, and
-/// at as few others as that takes, at frames where possible. Of keys that are less than `apart` s from each other one
-/// is left.
+/// at as few others as necessary, at frames if possible. Of keys that are less than `apart` s from each other, one is
+/// left.
 #[must_use]
 pub fn places(track: &Track, keys: &[Key], apart: f64) -> Vec<PlaceKey> {
     let most = tolerance(track.shape.reach());
-    // A parabola leaves its chord by an eighth of its acceleration times the square of the time; half of what may be is
-    // left to keys that are left out.
+    // A parabola leaves its chord by an eighth of its acceleration times the square of the time. Half of the tolerance
+    // is reserved for keys that are left out.
     let parts = |piece: &Piece| (piece.acceleration.length() / (8.0 * 0.5 * most)).sqrt();
     let rough = candidates(track, keys, apart, parts, |time| track.position(time));
     let middles = middles(&rough, |time| track.position(time));
@@ -55,13 +55,13 @@ pub fn places(track: &Track, keys: &[Key], apart: f64) -> Vec<PlaceKey> {
 }
 
 /// Orientations between which both even turning and mixing of the four numbers stay within 0.03° of the motion.
-/// Neighbours have the sign with which the short way is the right one. Of keys that are less than `apart` s from each
-/// other one is left.
+/// Neighbours have the signs for which the short way is the right one. Of keys that are less than `apart` s from each
+/// other, one is left.
 #[must_use]
 pub fn turns(track: &Track, keys: &[Key], apart: f64) -> Vec<TurnKey> {
     let parts = |piece: &Piece| {
         let (spin, own) = (piece.turn.spin.length(), piece.turn.own.abs());
-        // Of a body that turns about two axes at once, the angular velocity itself turns with `spin`.
+        // If a body turns about two axes at once, the angular velocity itself turns with `spin`.
         let both = if spin > 0.0 && own > 0.0 { (spin * own / (8.0 * 0.5 * TURNED)).sqrt() } else { 0.0 };
         ((spin + own) / LARGEST_TURN).max(both)
     };
@@ -87,11 +87,11 @@ pub fn turns(track: &Track, keys: &[Key], apart: f64) -> Vec<TurnKey> {
     kept(rough.len(), |index| rough[index].1, fits).into_iter().map(|index| rough[index].0).collect()
 }
 
-/// A time with what is there, and whether a key must be there.
+/// A time with its value, and whether a key must be there.
 type Candidate<T> = ((f64, T), bool);
 
-/// Where keys may be: at the keys that are far enough from each other, near the others between them, and so dense that
-/// each of the `parts` a second that a piece of the motion asks for is a straight line.
+/// Where keys may be: at the keys that are far enough apart, near the others between them, and so dense that each of
+/// the `parts` per second that a piece of the motion requires is a straight line.
 fn candidates<T>(
     track: &Track,
     keys: &[Key],
@@ -109,7 +109,7 @@ fn candidates<T>(
         let first = track.pieces.partition_point(|piece| piece.start <= key.time + EQUAL);
         let end = track.pieces.partition_point(|piece| piece.start < next.time - EQUAL).max(first);
         let on_the_way = &track.pieces[first..end];
-        // As near to the first and to the last of them as may be.
+        // As near as possible to the first and to the last of them.
         let before = on_the_way.first().map(|piece| piece.start.min(next.time - apart));
         let before = before.filter(|time| time - key.time >= apart);
         let after = on_the_way.last().map(|piece| piece.start.max(before.unwrap_or(key.time) + apart));
@@ -126,8 +126,8 @@ fn candidates<T>(
     all
 }
 
-/// Keys of which none is nearer than `apart` s to the one before it. Those of higher `rank` stay where others may go,
-/// the first of several where one must; both ends stay.
+/// Keys none of which is nearer than `apart` s to the previous one. Keys of higher `rank` stay before others, and among
+/// equals the first; both ends stay.
 fn spaced(keys: &[Key], apart: f64, rank: impl Fn(&Key) -> u8) -> Vec<Key> {
     let mut left: Vec<Key> = Vec::with_capacity(keys.len());
     for (index, key) in keys.iter().enumerate() {
@@ -146,7 +146,7 @@ fn spaced(keys: &[Key], apart: f64, rank: impl Fn(&Key) -> u8) -> Vec<Key> {
     left
 }
 
-/// What is half way between neighbours.
+/// The values half way between neighbours.
 fn middles<T>(rough: &[Candidate<T>], at: impl Fn(f64) -> T) -> Vec<(f64, T)> {
     let middle = |pair: &[Candidate<T>]| {
         let time = 0.5 * (pair[0].0.0 + pair[1].0.0);
@@ -155,15 +155,16 @@ fn middles<T>(rough: &[Candidate<T>], at: impl Fn(f64) -> T) -> Vec<(f64, T)> {
     rough.windows(2).map(middle).collect()
 }
 
-/// Of `count` keys those to keep: both ends, what must be kept, and from each the farthest of which `fits` says so.
-/// Neighbours are kept where nothing fits.
+/// Which of `count` keys to keep: both ends, those that must be kept, and from each one the farthest for which `fits`
+/// is true. Neighbours are kept if nothing fits.
 fn kept(count: usize, must: impl Fn(usize) -> bool, fits: impl Fn(usize, usize) -> bool) -> Vec<usize> {
     let Some(last) = count.checked_sub(1) else { return Vec::new() };
     let mut kept = vec![0];
     let mut at = 0;
     while at < last {
         let limit = (at + 1..last).find(|&index| must(index)).unwrap_or(last);
-        // Twice as far as long as that fits, then between the last that did and the first that did not.
+        // Doubles the distance as long as that fits, then searches between the last that fitted and the first that did
+        // not.
         let (mut good, mut bad) = (at + 1, limit + 1);
         while good < limit && bad > limit {
             let next = (at + 2 * (good - at)).min(limit);

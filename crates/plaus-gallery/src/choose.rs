@@ -1,6 +1,6 @@
 //! Choosing solutions that differ.
 //!
-//! Farthest-first traversal (Gonzalez 1985): each next one is the one farthest from all that were chosen. Any solution
+//! Farthest-first traversal (Gonzalez 1985): the next one is always the farthest from all chosen so far. Any solution
 //! left out is then at most twice as far from a chosen one as in the best choice of that many.
 
 use crate::features::squared;

@@ -1,4 +1,4 @@
-//! What it is for animations to differ: numbers whose Euclidean distance says how far bodies are apart, in metres.
+//! How animations differ: numbers whose Euclidean distance says how far apart bodies are, in metres.
 
 use plaus_scenes::animation::{Animation, Track};
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,9 +9,9 @@ const MOMENTS: usize = 32;
 /// Where the bodies of one animation are.
 #[derive(Debug, Clone)]
 pub struct Paths {
-    /// Per body: three coordinates a moment.
+    /// For each body: three coordinates for each moment.
     paths: BTreeMap<String, Vec<f32>>,
-    /// Per body: position at the end, and orientation where it has one.
+    /// For each body: position at the end, and orientation if it has one.
     outcomes: BTreeMap<String, Vec<f32>>,
 }
 
@@ -25,7 +25,7 @@ impl Paths {
         };
         let outcome = |track: &Track| -> Vec<f32> {
             let mut place = track.position(animation.duration).as_vec3().to_array().to_vec();
-            // Of a body that is turned, points at its surface move.
+            // Turning a body moves points on its surface.
             let turned = glam::DMat3::from_quat(track.orientation(animation.duration)) * track.shape.reach();
             place.extend(turned.to_cols_array().map(|x| x as f32));
             place
@@ -37,7 +37,7 @@ impl Paths {
     }
 }
 
-/// One row of numbers an animation.
+/// One row of numbers for each animation.
 #[derive(Debug, Clone, Default)]
 pub struct Features {
     /// Where bodies go.
@@ -47,7 +47,7 @@ pub struct Features {
 }
 
 impl Features {
-    /// Rows of equal length: a body that some animations lack is, in those, where it is on average in the others.
+    /// Rows of equal length. If an animation lacks a body, the body's mean place in the others is used.
     #[must_use]
     pub fn of(animations: Vec<Paths>) -> Self {
         let (paths, outcomes) = animations.into_iter().map(|one| (one.paths, one.outcomes)).unzip();

@@ -10,7 +10,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`choose`] picks solutions that differ, [`map`] lays them out in the plane, [`features`] says what it is to differ,
+//! [`choose`] picks solutions that differ, [`map`] lays them out in the plane, [`features`] defines how they differ,
 //! `pack` makes bytes of closed-form pieces, `page` makes a page of the bytes. What the page does is in the package's
 //! folder `web`.
 
@@ -26,7 +26,7 @@ use features::Features;
 use plaus_run::replay::replay_each;
 use plaus_run::{Error, RunReader, SampleId, Solution, solutions};
 
-/// Most solutions among which is chosen: more take long to compare.
+/// Most solutions to choose from: comparing more takes long.
 const MOST_CANDIDATES: usize = 2000;
 
 /// What to show.
@@ -34,7 +34,7 @@ const MOST_CANDIDATES: usize = 2000;
 pub struct Options {
     /// Most solutions on the page.
     pub count: usize,
-    /// The run's folder, as it is to appear in commands to copy.
+    /// The run's folder, in the form that commands to copy show.
     pub run: String,
 }
 
@@ -47,21 +47,21 @@ impl Default for Options {
 /// A page.
 #[derive(Debug, Clone)]
 pub struct Gallery {
-    /// Its text: all there is to it.
+    /// Its complete text.
     pub html: String,
-    /// Solutions it shows.
+    /// Number of solutions on it.
     pub shown: usize,
-    /// Distinct solutions of the run.
+    /// Number of distinct solutions of the run.
     pub distinct: usize,
 }
 
-/// The begin of every gallery: exports replace only files that begin so.
+/// The beginning of every gallery: exports replace only files that begin so.
 pub const HEAD: &str = page::HEAD;
 
 /// Makes a page of a run's distinct satisfying solutions.
 ///
 /// # Errors
-/// [`Error`] where no sample satisfies the constraint, or the run cannot be read.
+/// [`Error`] if no sample satisfies the constraint, or the run cannot be read.
 pub fn gallery(run: &RunReader<'_>, options: &Options) -> Result<Gallery, Error> {
     let all = solutions::distinct(run)?;
     let candidates = thinned(&all);

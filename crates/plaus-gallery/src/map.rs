@@ -1,4 +1,4 @@
-//! Classical multidimensional scaling (Torgerson 1952): points in the plane whose distances come as close to given ones
+//! Classical multidimensional scaling (Torgerson 1952): points in the plane whose distances are as close to given ones
 //! as a projection can.
 
 use crate::features::squared;
@@ -10,9 +10,9 @@ const STEPS: usize = 300;
 /// Two maps of the same solutions, in their order.
 #[derive(Debug, Clone)]
 pub struct Maps {
-    /// Near where bodies end alike.
+    /// Solutions whose bodies end alike are near each other.
     pub outcomes: Vec<[f64; 2]>,
-    /// Near where bodies move alike.
+    /// Solutions whose bodies move alike are near each other.
     pub paths: Vec<[f64; 2]>,
 }
 
@@ -32,7 +32,7 @@ pub fn of(rows: &[Vec<f32>], chosen: &[usize]) -> Vec<[f64; 2]> {
 
 /// The eigenvector of the largest eigenvalue orthogonal to `without`, as long as the eigenvalue's root.
 fn principal(gram: &[f64], n: usize, without: &[f64]) -> Vec<f64> {
-    // Any start will do that has a part along it; this one is the same every time.
+    // Any start with a component along it will do; this one is the same every time.
     let mut vector: Vec<f64> = (0..n).map(|k| ((k * 7919 + 13) % 101) as f64 / 101.0 - 0.5).collect();
     let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let mut value = 0.0;

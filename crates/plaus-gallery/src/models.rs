@@ -4,7 +4,7 @@ use plaus_export::mesh::{self, Mesh, Part};
 use plaus_scenes::animation::{Form, Look, Prop, Shape, Track};
 use serde_json::{Value, json};
 
-/// Bytes so far; what is stored is found by its offset.
+/// Bytes so far; stored data is found by its offset.
 #[derive(Debug, Default)]
 pub(crate) struct Bytes(pub(crate) Vec<u8>);
 

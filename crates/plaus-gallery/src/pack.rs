@@ -124,12 +124,12 @@ fn of_replay(
     })
 }
 
-/// The times that are asked for, with what came of each; what has the same words is numbered.
+/// The times asked for, with the times found; those with the same words are numbered.
 fn asked(times: &[(String, Timed)]) -> Value {
     let one = |(k, (_, at)): (usize, &(String, Timed))| {
         let before = times[..k].iter().filter(|(_, other)| other.what == at.what).count();
         let what = if before == 0 { at.what.clone() } else { format!("{} ({})", at.what, before + 1) };
-        // What is infinite becomes `null`.
+        // Infinity becomes `null`.
         json!({"what": what, "from": at.wanted.from, "to": at.wanted.to, "found": at.found})
     };
     times.iter().enumerate().map(one).collect()
@@ -191,7 +191,7 @@ fn signed(value: f64, largest: f64) -> i16 {
     (value / largest * 32767.0).round() as i16
 }
 
-/// A view in which all is seen that either shows.
+/// A view that shows everything that either of the two shows.
 fn both(one: View, other: View) -> View {
     let frame = match (one.frame, other.frame) {
         (Some([a, b]), Some([c, d])) => Some([a.min(b).min(c).min(d), a.max(b).max(c).max(d)]),
@@ -200,7 +200,7 @@ fn both(one: View, other: View) -> View {
     View { frame, alone: one.alone && other.alone, ..one }
 }
 
-/// The box in which all bodies move, as far as they reach.
+/// The box in which all bodies move, including their extent.
 fn extent(animation: &Animation) -> [DVec3; 2] {
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for track in &animation.tracks {

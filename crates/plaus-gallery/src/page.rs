@@ -8,7 +8,7 @@ use plaus_run::Manifest;
 use serde_json::Value;
 use std::io::Write as _;
 
-/// The begin of every gallery.
+/// The beginning of every gallery.
 pub(crate) const HEAD: &str = "<!doctype html>\n<!-- a gallery made by plaus";
 
 const MARKUP: &str = include_str!("../web/page.html");
@@ -63,7 +63,7 @@ pub(crate) fn html(manifest: &Manifest, packed: &Packed) -> String {
     html
 }
 
-/// The first placeholder in `text`: what comes before, its name, what stands for it, and what comes after.
+/// The first placeholder in `text`: the text before it, its name, its value, and the text after it.
 fn next<'a>(text: &'a str, parts: &'a [(&str, String)]) -> Option<(&'a str, &'a str, &'a str, &'a str)> {
     let found = parts.iter().filter_map(|(name, value)| text.find(name).map(|at| (at, *name, value.as_str())));
     let (at, name, value) = found.min_by_key(|(at, ..)| *at)?;

@@ -1,4 +1,4 @@
-//! What is heard: how each thing sounds, once a page, and what presses it when, a solution at a time.
+//! Sounds: how each thing rings, once for each page, and what presses it when, for each solution.
 
 use crate::models::Bytes;
 use plaus_export::sound::{Score, Thing};
@@ -32,7 +32,7 @@ impl Sounds {
         score.rubs.len()
     }
 
-    /// Number of a thing that sounds like that.
+    /// The number of a thing with this sound.
     fn number(&mut self, thing: &Thing) -> u16 {
         let known = self.known.iter().position(|known| known == thing).unwrap_or_else(|| {
             let modes: Vec<[f64; 3]> = thing.modes.iter().map(|mode| [mode.omega, mode.fades, mode.loud]).collect();

@@ -1,4 +1,4 @@
-// Makes dist/three.iife.js from three.js as package-lock.json pins it. The same packages give the same bytes; `--check` compares.
+// Makes dist/three.iife.js from the three.js that package-lock.json pins. The same packages give the same bytes; `--check` compares.
 import { build } from 'esbuild';
 import { readFileSync, writeFileSync } from 'node:fs';
 

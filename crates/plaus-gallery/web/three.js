@@ -1,4 +1,4 @@
-// What the gallery uses of three.js; build.mjs makes one classic script of it, as modules cannot be loaded from file://.
+// What the gallery uses of three.js; build.mjs makes one classic script of it, because modules cannot be loaded from file://.
 export {
   ACESFilmicToneMapping, AmbientLight, BasicShadowMap, Box3, BufferAttribute, BufferGeometry, CanvasTexture, CircleGeometry, Color, DirectionalLight,
   DoubleSide, DynamicDrawUsage, Float32BufferAttribute, Group, HemisphereLight, InstancedMesh, Line, LineBasicMaterial, LineSegments,

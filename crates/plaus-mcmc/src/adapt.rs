@@ -1,21 +1,22 @@
-//! Scales of moves, adapted in a chain's warm-up and kept from then on.
+//! Scales of moves: adapted in a chain's warm-up, then kept.
 //!
-//! A move whose steps have a size can leave that size to the chain: it says which [`Scale`]s it has, and how it would
-//! be at others. In the iterations before the sampling phase each scale follows Robbins and Monro's stochastic
-//! approximation of the equation *acceptance = target rate*, in its logarithm:
+//! A move with a step size can leave that size to the chain. It names its [`Scale`]s, and can be rebuilt with other
+//! values. In the iterations before the sampling phase, each scale follows Robbins and Monro's stochastic approximation
+//! of the equation *acceptance = target rate*, in its logarithm:
 //!
-//! `ln s ← ln s + γ_n (accepted − target)`, `γ_n = min(1, 4 n^(−2/3))`, n counting the proposals made at that scale.
+//! `ln s ← ln s + γ_n (accepted − target)`, `γ_n = min(1, 4 n^(−2/3))`, where n counts the proposals made at that
+//! scale.
 //!
-//! The decision, 0 or 1, takes the place of the probability of acceptance, of which it is an unbiased estimate: a
-//! simulation that stops early because it is certain to be rejected leaves that probability unknown. Where the sampling
-//! phase begins the scale becomes the mean of `ln s` over the proposals of the warm-up's second half, which is as exact
-//! as any estimate from these decisions (Polyak and Juditsky 1992), and stays: what is recorded is a Markov chain whose
-//! kernel no longer changes, exact whatever the scales came out as. What adapts for ever is not, unless the gain
-//! vanishes, and then only in the limit (Andrieu and Thoms, "A tutorial on adaptive MCMC", Statistics and Computing 18,
-//! 2008).
+//! The decision, 0 or 1, stands for the probability of acceptance, of which it is an unbiased estimate. The probability
+//! itself may be unknown, because a simulation stops early once it is certain to be rejected. When the sampling phase
+//! begins, the scale becomes the mean of `ln s` over the proposals of the second half of the warm-up. This is as exact
+//! as any estimate from these decisions (Polyak and Juditsky 1992). From then on it stays: what is recorded is a Markov
+//! chain with a constant kernel, exact whatever the values of the scales. A chain that adapts for ever is not exact
+//! unless the gain vanishes, and then only in the limit (Andrieu and Thoms, "A tutorial on adaptive MCMC", Statistics
+//! and Computing 18, 2008).
 //!
-//! A move may also learn from where its chain was, in all but the first quarter of the warm-up: see [`crate::fit`].
-//! What it has learnt is kept in the same way.
+//! A move may also learn from the states that its chain visited, except in the first quarter of the warm-up: see
+//! [`crate::fit`]. What it has learnt is then kept in the same way.
 //!
 //! The scales are a function of target, moves, seed and chain; each chain has its own, and so has each rung of tempered
 //! replicas.
@@ -27,32 +28,32 @@ use crate::target::{StateRefOf, Target};
 use plaus_dist::math;
 use serde::{Deserialize, Serialize};
 
-/// A scale must have been tried so often in the warm-up's second half; else its move stays as it is configured. The
-/// error of `ln s` is then about 0.4 where the acceptance falls by 0.3 with each unit of `ln s`, as that of a Gaussian
-/// step on a Gaussian target does.
+/// A scale must have been tried this often in the second half of the warm-up; otherwise its move stays as configured.
+/// The error of `ln s` is then about 0.4 if the acceptance falls by 0.3 with each unit of `ln s`, as it does for a
+/// Gaussian step on a Gaussian target.
 pub const ENOUGH: u64 = 16;
 
-/// How far one scale has come.
+/// The progress of one scale.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Adapted {
     /// The logarithm of the scale.
     log: f64,
-    /// Proposals made at it and those accepted: in the warm-up, and then since.
+    /// Number of proposals made with it, and of those accepted: in the warm-up, and later since then.
     tried: u64,
     accepted: u64,
-    /// Sum of `log` over the proposals of the warm-up's second half, and how many these are.
+    /// Sum of `log` over the proposals of the second half of the warm-up, and their number.
     sum: f64,
     summed: u64,
 }
 
 impl Adapted {
-    /// Proposals made at this scale since the warm-up, or in it as long as it lasts.
+    /// Number of proposals made with this scale: since the warm-up, or during it while it lasts.
     #[must_use]
     pub fn tried(&self) -> u64 {
         self.tried
     }
 
-    /// Those of them that were accepted.
+    /// Number of those that were accepted.
     #[must_use]
     pub fn accepted(&self) -> u64 {
         self.accepted
@@ -81,20 +82,20 @@ impl Adapted {
     }
 }
 
-/// The scales of a chain's moves: all that its adaptation has led to.
+/// The scales of a chain's moves: the whole result of its adaptation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
-    /// The first iteration that is made by their last values.
+    /// The first iteration made with their final values.
     until: u64,
     frozen: bool,
-    /// By move, in order of its scales.
+    /// For each move, its scales in order.
     of: Vec<Vec<Adapted>>,
-    /// By move, what it learns.
+    /// For each move, what it learns.
     learned: Vec<Option<Learning>>,
 }
 
 impl Scales {
-    /// Where adaptation begins; `None` where no move has a scale, or learns.
+    /// The beginning of adaptation; `None` if no move has a scale, or learns.
     fn start<T: Target>(moves: &Mixture<T>, until: u64) -> Option<Self> {
         let begin = |scale: Scale| Adapted { log: scale.log(scale.start), tried: 0, accepted: 0, sum: 0.0, summed: 0 };
         let of: Vec<Vec<Adapted>> =
@@ -105,20 +106,20 @@ impl Scales {
         is_any.then_some(Self { until, frozen: false, of, learned })
     }
 
-    /// Whether the warm-up is over, so that they stay.
+    /// Whether the warm-up is over, so that they no longer change.
     #[must_use]
     pub fn are_frozen(&self) -> bool {
         self.frozen
     }
 
-    /// The scales of a move; `None` for one that is left as it is configured, as it was hardly ever tried.
+    /// The scales of a move; `None` for a scale that stays as configured, because it was hardly ever tried.
     #[must_use]
     pub fn values(&self, id: MoveId) -> Vec<Option<f64>> {
         let value = |one: &Adapted| (!self.frozen || one.is_known()).then(|| math::exp(one.log));
         self.adapted(id).iter().map(value).collect()
     }
 
-    /// How far the scales of a move have come.
+    /// The progress of a move's scales.
     #[must_use]
     pub fn adapted(&self, id: MoveId) -> &[Adapted] {
         self.of.get(usize::from(id.0)).map_or(&[], Vec::as_slice)
@@ -130,7 +131,7 @@ impl Scales {
         self.learned.get(usize::from(id.0)).and_then(Option::as_ref)
     }
 
-    /// Whether they are scales of these moves.
+    /// Whether these scales belong to these moves.
     #[must_use]
     pub fn fit<T: Target>(&self, moves: &Mixture<T>) -> bool {
         let numbers = |learned: &Option<Learning>| learned.as_ref().map_or(0, Learning::numbers);
@@ -147,15 +148,15 @@ pub(crate) struct Adaptation<T: Target> {
 }
 
 impl<T: Target> Adaptation<T> {
-    /// In the iterations before `until`, from the beginning; `None` where there is nothing to adapt, or no iteration to
-    /// do it in.
+    /// Adaptation in the iterations before `until`, from the start. `None` if there is nothing to adapt, or no
+    /// iteration in which to do it.
     pub(crate) fn start(moves: &Mixture<T>, until: u64) -> Option<Self> {
-        // Iteration 0 is the start, which no move makes.
+        // Iteration 0 is the start, which is not made by a move.
         let scales = (until > 1).then(|| Scales::start(moves, until)).flatten()?;
         Some(Self::resume(moves, scales))
     }
 
-    /// From scales that were adapted before; they fit the moves.
+    /// Adaptation with scales that were adapted before; they must fit the moves.
     pub(crate) fn resume(moves: &Mixture<T>, scales: Scales) -> Self {
         let declared = moves.iter().map(|(_, kernel)| kernel.scales()).collect();
         let remade = (0..).zip(moves.iter()).map(|(id, (_, kernel))| remade(kernel, &scales, MoveId(id))).collect();
@@ -166,12 +167,12 @@ impl<T: Target> Adaptation<T> {
         &self.scales
     }
 
-    /// A move at its present scales; `None` where it has none.
+    /// A move with its present scales; `None` if it has none.
     pub(crate) fn kernel(&self, id: MoveId) -> Option<&dyn Move<T>> {
         self.remade[usize::from(id.0)].as_deref()
     }
 
-    /// Notes the state that iteration `iteration` led to, for moves that learn.
+    /// Notes the state after iteration `iteration`, for moves that learn.
     pub(crate) fn look(&mut self, moves: &Mixture<T>, iteration: u64, target: &T, state: StateRefOf<'_, T>) {
         if self.scales.frozen || iteration < self.scales.until / 4 {
             return;
@@ -185,7 +186,7 @@ impl<T: Target> Adaptation<T> {
         }
     }
 
-    /// Notes what became of a proposal that iteration `iteration` made.
+    /// Notes the result of a proposal made in iteration `iteration`.
     pub(crate) fn learn(
         &mut self,
         moves: &Mixture<T>,

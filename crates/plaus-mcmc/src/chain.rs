@@ -10,11 +10,13 @@ use serde::{Deserialize, Serialize};
 /// Start draws tried before giving up on finding one of positive probability.
 const START_TRIES: u64 = 10_000;
 
-/// Why a chain could not go on.
+/// Why a chain could not continue.
 #[derive(Debug, thiserror::Error)]
 pub enum ChainError {
     /// No start draw had positive probability.
-    #[error("none of {START_TRIES} start draws has positive probability: the constraint forbids what the prior offers")]
+    #[error(
+        "none of {START_TRIES} start draws has positive probability: the constraint seems to forbid everything that the prior allows"
+    )]
     NoStart,
     /// The model failed.
     #[error("iteration {iteration}{}: {source}", .step.as_ref().map(|name| format!(", move `{name}`")).unwrap_or_default())]
@@ -23,7 +25,7 @@ pub enum ChainError {
         iteration: u64,
         /// The move being made, if any.
         step: Option<String>,
-        /// What the model said.
+        /// The model's error.
         source: ModelError,
     },
 }
@@ -39,7 +41,7 @@ impl ChainError {
     }
 }
 
-/// What became of an iteration.
+/// How an iteration ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Verdict {
     /// The move had nothing to change.
@@ -54,7 +56,7 @@ pub enum Verdict {
     Accepted,
 }
 
-/// How often a move ended how.
+/// How often a move ended in each way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct MoveCounts {
     /// Iterations that had nothing to change.
@@ -76,7 +78,7 @@ impl MoveCounts {
         self.stayed + self.rejected_by_prior + self.rejected_early + self.rejected + self.accepted
     }
 
-    /// Accepted share of the iterations in which the move was made, in [0, 1]; 0 where it never was.
+    /// Accepted share of the iterations in which the move was made, in [0, 1]; 0 if it never was.
     #[must_use]
     pub fn acceptance(&self) -> f64 {
         if self.made() == 0 { 0.0 } else { self.accepted as f64 / self.made() as f64 }
@@ -91,7 +93,7 @@ impl MoveCounts {
         self.accepted += other.accepted;
     }
 
-    /// What was counted since `earlier`, which was counted on the way.
+    /// The counts since `earlier`, an earlier state of these counts.
     #[must_use]
     pub fn since(&self, earlier: &Self) -> Self {
         Self {
@@ -114,22 +116,22 @@ impl MoveCounts {
     }
 }
 
-/// One iteration, as told to the caller.
+/// One iteration, as reported to the caller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Step {
     /// The move made.
     pub move_id: MoveId,
-    /// What became of it.
+    /// How it ended.
     pub verdict: Verdict,
 }
 
 /// A chain at one iteration. With the same streams, target, moves and inverse temperature, its future follows from
-/// `iteration` and `state` alone, and from its scales where it adapts any.
+/// `iteration` and `state` alone; if it adapts scales, also from these.
 pub struct Chain<'a, T: Target> {
     target: &'a T,
     moves: &'a Mixture<T>,
     streams: ChainStreams,
-    /// The chain samples `p_w · p_c^β`; its states are those of the target, whatever β.
+    /// The chain samples `p_w · p_c^β`; its states are those of the target for any β.
     beta: f64,
     iteration: u64,
     state: StateOf<T>,
@@ -143,7 +145,7 @@ impl<'a, T: Target> Chain<'a, T> {
     /// A chain at iteration 0, at the first start draw of positive probability.
     ///
     /// # Errors
-    /// [`ChainError::NoStart`] where there is none in 10,000 tries; [`ChainError::Model`] where the model fails.
+    /// [`ChainError::NoStart`] if there is none in 10,000 tries; [`ChainError::Model`] if the model fails.
     pub fn start(target: &'a T, moves: &'a Mixture<T>, streams: ChainStreams) -> Result<Self, ChainError> {
         let mut scratch = T::Scratch::default();
         let mut stream = streams.at(0, Purpose::START);
@@ -172,7 +174,8 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(Some(state).filter(|state| !state.log_p().is_zero()))
     }
 
-    /// A chain that goes on from a state it, or an equal chain, had at `iteration`. `counts` has one entry a move.
+    /// A chain that continues from a state that it, or an equal chain, had at `iteration`. `counts` has one entry for
+    /// each move.
     #[must_use]
     pub fn resume(
         target: &'a T,
@@ -187,33 +190,33 @@ impl<'a, T: Target> Chain<'a, T> {
         Self { target, moves, streams, beta: 1.0, iteration, state, counts, adaptation: None, candidate, scratch }
     }
 
-    /// The same chain, which adapts the scales of its moves in the iterations before `until`, and keeps them from then
-    /// on. With `until` below 2 there is no such iteration, and moves are as configured. To be said of a chain that has
-    /// just started.
+    /// The same chain, adapting the scales of its moves in the iterations before `until`, and keeping them from then
+    /// on. If `until` is below 2, there is no such iteration, and moves stay as configured. To be called on a chain
+    /// that has just started.
     #[must_use]
     pub fn adapting(self, until: u64) -> Self {
         Self { adaptation: Adaptation::start(self.moves, until), ..self }
     }
 
-    /// The same chain, which goes on from the scales it had; they [fit](Scales::fit) its moves.
+    /// The same chain, continuing with the scales that it had; they must [fit](Scales::fit) its moves.
     #[must_use]
     pub fn with_scales(self, scales: Scales) -> Self {
         Self { adaptation: Some(Adaptation::resume(self.moves, scales)), ..self }
     }
 
-    /// What its scales have come to; `None` where it adapts none.
+    /// Its present scales; `None` if it adapts none.
     #[must_use]
     pub fn scales(&self) -> Option<&Scales> {
         self.adaptation.as_ref().map(Adaptation::scales)
     }
 
-    /// The same chain at an inverse temperature from 0 on.
+    /// The same chain at another inverse temperature, at least 0.
     #[must_use]
     pub(crate) fn at(self, beta: f64) -> Self {
         Self { beta, ..self }
     }
 
-    /// Goes to another inverse temperature.
+    /// Changes the inverse temperature.
     pub(crate) fn set_beta(&mut self, beta: f64) {
         self.beta = beta;
     }
@@ -224,13 +227,13 @@ impl<'a, T: Target> Chain<'a, T> {
         &self.state
     }
 
-    /// How many iterations led to the current state.
+    /// Number of iterations that led to the current state.
     #[must_use]
     pub fn iteration(&self) -> u64 {
         self.iteration
     }
 
-    /// How often each move ended how, in order of [`MoveId`].
+    /// How often each move ended in each way, in order of [`MoveId`].
     #[must_use]
     pub fn counts(&self) -> &[MoveCounts] {
         &self.counts
@@ -239,7 +242,8 @@ impl<'a, T: Target> Chain<'a, T> {
     /// Makes one iteration: choose a move, propose, evaluate in order of cost, accept or reject.
     ///
     /// # Errors
-    /// [`ChainError::Model`] where the model fails; the state is then still the one before.
+    ///
+    /// [`ChainError::Model`] if the model fails; the state is then still the previous one.
     pub fn step(&mut self) -> Result<Step, ChainError> {
         let (next, moves) = (self.iteration + 1, self.moves);
         let mut stream = self.streams.at(next, Purpose::PROPOSE);
@@ -259,8 +263,8 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(Step { move_id, verdict })
     }
 
-    /// The accept step of Metropolis and Hastings, solved for the constraint: with u uniform and drawn first,
-    /// `ln u < log α` says that the candidate's log constraint exceeds a floor known before the simulation. Rounding is
+    /// The accept step of Metropolis and Hastings, solved for the constraint: with u uniform and drawn first, `ln u <
+    /// log α` means that the candidate's log constraint exceeds a floor known before the simulation. Rounding is
     /// monotone, so a bound on the constraint at or below the floor decides exactly as the whole simulation would.
     fn judge(&mut self, next: u64, move_id: MoveId, proposal: Proposal) -> Result<Verdict, ModelError> {
         let (log_ratio, path, later) = match proposal {
@@ -291,7 +295,7 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
     }
 
-    /// The candidate's outcome; `None`, and the target is told, where its constraint cannot exceed `floor`.
+    /// The candidate's outcome; `None` if its constraint cannot exceed `floor`. In that case the target is told.
     fn simulated(&mut self, floor: LogPotential) -> Result<Option<T::Outcome>, ModelError> {
         let simulated = self.target.simulate(&self.candidate, Some(self.state.by_ref()), floor, &mut self.scratch)?;
         let Simulated::Complete(outcome) = simulated else {
@@ -301,8 +305,8 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(Some(outcome))
     }
 
-    /// The accept step of rejection: a draw of the prior is kept with probability `(p_c / M)^β`, whatever the current
-    /// state. The flow from a to b, `p_w(a) p_c(a)^β · p_w(b) (p_c(b) / M)^β`, is that from b to a.
+    /// The accept step of rejection: a draw from the prior is kept with probability `(p_c / M)^β`, whatever the current
+    /// state. The flow from a to b, `p_w(a) p_c(a)^β · p_w(b) (p_c(b) / M)^β`, equals that from b to a.
     fn judge_anew(&mut self, next: u64) -> Result<Verdict, ModelError> {
         let log_prior = self.target.log_prior(&self.candidate)?;
         if log_prior.is_zero() {
@@ -319,7 +323,7 @@ impl<'a, T: Target> Chain<'a, T> {
         Ok(if accepted { Verdict::Accepted } else { Verdict::Rejected })
     }
 
-    /// Exchanges what two chains aim at, that is inverse temperatures, moves, their scales and counts, while each keeps
+    /// Exchanges the goals of two chains, which are their inverse temperatures, moves, scales and counts. Each keeps
     /// its state, memory and streams.
     pub(crate) fn exchange_rungs(a: &mut Self, b: &mut Self) {
         std::mem::swap(&mut a.beta, &mut b.beta);
@@ -346,13 +350,13 @@ impl<'a, T: Target> Chain<'a, T> {
     }
 }
 
-/// A move, at its scale where that is adapted.
+/// A move, with its scale if that is adapted.
 fn kernel<'k, T: Target>(moves: &'k Mixture<T>, adaptation: Option<&'k Adaptation<T>>, id: MoveId) -> &'k dyn Move<T> {
     adaptation.and_then(|adaptation| adaptation.kernel(id)).unwrap_or_else(|| moves.get(id).1)
 }
 
-/// What the candidate's log constraint must exceed: `ln u − log ratio + log p(current) − log p_w(candidate)`. `None`:
-/// no constraint is enough, the candidate is impossible or could not be undone.
+/// What the candidate's log constraint must exceed: `ln u − log ratio + log p(current) − log p_w(candidate)`. `None` if
+/// no constraint is enough, because the candidate is impossible or could not be undone.
 fn floor(
     ln_u: f64,
     log_ratio: LogRatio,

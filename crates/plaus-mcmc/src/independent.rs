@@ -7,14 +7,15 @@ use crate::target::{Goal, ModelError, Simulated, State, StateOf, StateRefOf, Tar
 use plaus_dist::{LogPotential, LogRatio, Purpose, Seed, Stream, math, open_unit};
 use std::ops::Range;
 
-/// What a draw of a trial is made from.
+/// Purpose of the random numbers for a draw of a trial.
 const TRIAL: Purpose = Purpose(6);
 
-/// Proposes [`Target::start`]'s draw, to be kept with probability `p_c / M` whatever the current state, `M` being
-/// [`Target::most`]. Right for a target whose start has the law of its prior. A chain that makes no other move holds
-/// each draw that was kept until the next is: what it keeps are independent draws of the target.
+/// Proposes [`Target::start`]'s draw, to be kept with probability `p_c / M` whatever the current state, where `M` is
+/// [`Target::most`]. This is correct for a target whose start has the law of its prior. A chain with no other move
+/// holds each kept draw until the next one: the kept draws are independent draws of the target.
 ///
-/// Beside it, [`Redraw`](crate::Redraw) with its Metropolis ratio keeps more, but each the longer the better it is.
+/// In comparison, [`Redraw`](crate::Redraw) with its Metropolis ratio keeps more draws, but keeps each one longer the
+/// better it is.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Independent;
 
@@ -22,7 +23,7 @@ impl Independent {
     /// Its name as a move.
     pub const NAME: &'static str = "draw_prior";
 
-    /// The moves of a chain that makes no other.
+    /// The moves of a chain with no other move.
     #[must_use]
     pub fn mixture<T: Target>() -> Mixture<T> {
         Mixture::of(Box::new(Self))
@@ -45,7 +46,7 @@ impl<T: Target> Move<T> for Independent {
         Ok(Proposal::Anew)
     }
 
-    /// Of the proposal alone. It is not what the accept step goes by.
+    /// The ratio of the proposal alone. The accept step does not use it.
     fn log_ratio(
         &self,
         _: &T,
@@ -57,33 +58,33 @@ impl<T: Target> Move<T> for Independent {
     }
 }
 
-/// What draws of the prior come to.
+/// The result of draws from the prior.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Tried {
-    /// How many were made, and simulated to their end.
+    /// Number of draws made, and simulated to their end.
     pub draws: u64,
-    /// Solutions among them.
+    /// Number of solutions among them.
     pub hits: u64,
-    /// How many solutions a chain of [`Independent`] would keep of them on average: the sum of their `p_c / M`.
+    /// Mean number of solutions that a chain of [`Independent`] would keep of them: the sum of their `p_c / M`.
     pub kept: f64,
 }
 
 impl Tried {
-    /// These, and others besides.
+    /// These and others together.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self { draws: self.draws + other.draws, hits: self.hits + other.hits, kept: self.kept + other.kept }
     }
 }
 
-/// Draws that are made one after the other with the same scratch. Default 8.
+/// Draws made one after the other with the same scratch. Default 8.
 const IN_A_ROW: u64 = 8;
 
-/// Makes the draws of the prior with these numbers, on the current pool of threads. They are functions of target, seed
-/// and number, and none of them is a chain's of a run.
+/// Makes the draws from the prior with these numbers, on the current pool of threads. They are functions of target,
+/// seed and number, and differ from those of all chains of a run.
 ///
 /// # Errors
-/// [`ModelError`] where the model fails, or its constraint has no bound that is known.
+/// [`ModelError`] if the model fails, or its constraint has no bound that is known.
 pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result<Tried, ModelError> {
     let most = most_of(target)?;
     let streams = seed.chain(1 << 62);
@@ -93,12 +94,12 @@ pub fn try_draws<T: Goal>(target: &T, seed: Seed, numbers: Range<u64>) -> Result
         let kept = if is_hit { math::exp(state.log_constraint.value() - most.value()) } else { 0.0 };
         Ok(Tried { draws: 1, hits: u64::from(is_hit), kept })
     };
-    // Summed in order, so that the sum does not depend on who made which.
+    // Summed in order, so that the sum does not depend on which thread made which.
     let made = each::<T, Tried>(numbers, one)?;
     Ok(made.into_iter().fold(Tried::default(), Tried::and))
 }
 
-/// Makes the draws of the prior with these numbers, as [`try_draws`] does, and gives those that are kept: independent
+/// Makes the draws from the prior with these numbers, like [`try_draws`], and gives those that are kept: independent
 /// draws of the target.
 ///
 /// # Errors
@@ -121,7 +122,8 @@ pub fn keep_draws<T: Target>(target: &T, seed: Seed, numbers: Range<u64>) -> Res
     Ok(each::<T, _>(numbers, one)?.into_iter().flatten().collect())
 }
 
-/// What `one` makes of each number, in their order, on the current pool of threads; some in a row share their scratch.
+/// The results of `one` for each number, in order, on the current pool of threads; several in a row share their
+/// scratch.
 fn each<T: Target, R: Send>(
     numbers: Range<u64>,
     one: impl Fn(&mut T::Scratch, u64) -> Result<R, ModelError> + Sync,

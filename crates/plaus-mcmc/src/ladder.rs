@@ -21,8 +21,8 @@ impl From<Ladder> for Vec<f64> {
     }
 }
 
-/// Part of the barrier that lies between the two ends whatever was seen, so that rungs that never rejected a swap stay
-/// apart.
+/// This part of the barrier lies between any two neighbours, whatever was seen, so that rungs that never rejected a
+/// swap stay apart.
 const LEAST: f64 = 1e-3;
 
 impl Ladder {
@@ -48,7 +48,7 @@ impl Ladder {
         Self((0..=steps).map(|k| k as f64 / steps as f64).collect())
     }
 
-    /// The target alone: no ladder to climb.
+    /// The target alone, without a ladder.
     #[must_use]
     pub fn single() -> Self {
         Self(vec![1.0])
@@ -60,18 +60,18 @@ impl Ladder {
         &self.0
     }
 
-    /// The barrier Λ: the sum of the shares of swaps rejected between neighbours. It hardly depends on the rungs once
-    /// there are some. States come down and up again about once in `2 + 2 Λ` rounds at best, for which about `2 Λ + 1`
-    /// rungs are needed (Syed, Bouchard-Côté, Deligiannidis & Doucet, "Non-reversible parallel tempering", JRSS B 84,
-    /// 2022).
+    /// The barrier Λ: the sum of the shares of swaps rejected between neighbours. With enough rungs it hardly depends
+    /// on their number. At best, states come down and up again about once in `2 + 2 Λ` rounds, for which about `2 Λ +
+    /// 1` rungs are needed (Syed, Bouchard-Côté, Deligiannidis & Doucet, "Non-reversible parallel tempering", JRSS B
+    /// 84, 2022).
     #[must_use]
     pub fn barrier(rejected: &[f64]) -> f64 {
         rejected.iter().sum()
     }
 
-    /// A ladder of `rungs` that would share the barrier equally, given the share of swaps rejected between each rung
-    /// and the next: each between 0 and 1, one less than there are rungs. The barrier is taken to grow evenly from rung
-    /// to rung.
+    /// A ladder of `rungs` that would divide the barrier equally, given the share of swaps rejected between each rung
+    /// and the next: each share is between 0 and 1, and there is one less than there are rungs. The barrier is assumed
+    /// to grow evenly from rung to rung.
     #[must_use]
     pub fn adapted(&self, rejected: &[f64], rungs: usize) -> Self {
         let steps = rungs.max(2) - 1;
@@ -88,7 +88,7 @@ impl Ladder {
         };
         let betas: Vec<f64> =
             (0..=steps).map(|k| if k == steps { 1.0 } else { at(whole * k as f64 / steps as f64) }).collect();
-        // Rounding can make two rungs equal only where they were hardly apart.
+        // Rounding can make two rungs equal only if they were hardly apart.
         Self::new(betas).unwrap_or_else(|_| Self::even(rungs))
     }
 }

@@ -6,7 +6,7 @@ use plaus_dist::{
 };
 use std::sync::Arc;
 
-/// The law of a variable: of one number, or of an offset's or a place's coordinates together.
+/// The law of a variable: of one number, or of all coordinates of an offset or a place together.
 #[derive(Debug, Clone)]
 pub enum Law {
     /// Always this value: no move changes it.
@@ -18,7 +18,7 @@ pub enum Law {
     /// A Gaussian number of this mean and standard deviation, but not below the value of another variable, given by its
     /// index, which comes before this one.
     Above(f64, f64, usize),
-    /// A number uniform on an interval whose ends are joined: what leaves on one side enters on the other.
+    /// A number uniform on an interval whose ends are joined: a value that leaves on one side enters on the other.
     Uniform(WrappedUniform),
     /// A number of any other law.
     Number(Arc<dyn NumberLaw>),
@@ -28,24 +28,24 @@ pub enum Law {
     Plane(Offset<2>),
     /// An offset in space.
     Space(Offset<3>),
-    /// The target's own, of a variable that no numbers hold: an orientation, a table. Its density is 1 everywhere, as
-    /// densities are taken with respect to its law.
+    /// The target's own law, for a variable that is not made of numbers: an orientation, a table. Its density is 1
+    /// everywhere, because densities are taken with respect to its law.
     Own,
 }
 
-/// Recipes for fresh values.
+/// How new values are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Recipe {
     /// The law itself.
     #[default]
     Exact,
-    /// Offsets in a random direction with a Gaussian length, as Chenney & Forsyth print it: another law than the
-    /// Gaussian that their density has (erratum).
+    /// Offsets in a random direction with a Gaussian length, as Chenney & Forsyth print it: not the Gaussian that their
+    /// density has (erratum).
     Radial,
 }
 
 impl Law {
-    /// Whether there is anything uncertain.
+    /// Whether anything is uncertain.
     #[must_use]
     pub fn is_uncertain(&self) -> bool {
         !matches!(self, Self::Fixed(_))
@@ -60,7 +60,7 @@ impl Law {
         }
     }
 
-    /// Fresh values, into as many places; `other` is the value of the variable that the law depends on, if it does.
+    /// Draws new values into `values`; `other` is the value of the variable that the law depends on, if it does.
     pub fn sample(&self, other: f64, recipe: Recipe, stream: &mut Stream, values: &mut [f64]) {
         match self {
             Self::Fixed(value) => values.fill(*value),
@@ -81,7 +81,7 @@ impl Law {
     /// Log density at `values`.
     ///
     /// # Errors
-    /// [`NotANumber`] where a value is NaN.
+    /// [`NotANumber`] if a value is NaN.
     pub fn log_density(&self, other: f64, values: &[f64]) -> Result<LogDensity, NotANumber> {
         let x = values.first().copied().unwrap_or(f64::NAN);
         match self {
@@ -101,7 +101,7 @@ impl Law {
         }
     }
 
-    /// Adds a step to values: where ends are joined, around them. As likely as its opposite if the step is.
+    /// Adds a step to values, around the ring if ends are joined. It is as likely as its opposite if the step is.
     #[inline]
     pub fn add(&self, step: &[f64], values: &mut [f64]) {
         if let (Self::Gaussian(_), [x], [by]) = (self, &mut *values, step) {
@@ -124,8 +124,7 @@ impl Law {
         }
     }
 
-    /// What a step of usual size is measured by: a standard deviation, or the width of an interval; 0 where there is
-    /// none.
+    /// The unit for a step of usual size: a standard deviation, or the width of an interval; 0 if there is none.
     #[must_use]
     pub fn width(&self) -> f64 {
         match self {
@@ -138,7 +137,7 @@ impl Law {
         }
     }
 
-    /// Whether it is the law of one number that has a normalised density and hangs on no other variable.
+    /// Whether it is the law of one number, has a normalised density, and depends on no other variable.
     #[must_use]
     pub fn is_density(&self) -> bool {
         match self {
@@ -148,7 +147,7 @@ impl Law {
         }
     }
 
-    /// The Gaussian of each coordinate, before anything is cut off; `None` for laws that are made of none.
+    /// The Gaussian of each coordinate, before anything is cut off; `None` for other laws.
     #[must_use]
     pub fn gaussian(&self) -> Option<Gaussian> {
         match self {
@@ -162,12 +161,12 @@ impl Law {
     }
 }
 
-/// A Gaussian above another variable's value; `None` for values above which there is no such law.
+/// A Gaussian above another variable's value; `None` if there is no such law for that value.
 fn above(mean: f64, sd: f64, least: f64) -> Option<TruncatedGaussian> {
     TruncatedGaussian::new(mean, sd, least, f64::INFINITY).ok()
 }
 
-/// The first coordinates; what is missing is NaN, which densities refuse.
+/// The first coordinates; missing ones are NaN, which densities refuse.
 fn array<const D: usize>(values: &[f64]) -> [f64; D] {
     std::array::from_fn(|k| values.get(k).copied().unwrap_or(f64::NAN))
 }
@@ -183,7 +182,8 @@ impl Rectangle {
     /// Lower and upper ends along each axis.
     ///
     /// # Errors
-    /// [`ParamError`] where a side is no interval.
+    ///
+    /// [`ParamError`] if a side is not an interval.
     pub fn new([x, y]: [[f64; 2]; 2]) -> Result<Self, ParamError> {
         Ok(Self {
             inside: UniformBox::new([Uniform::new(x[0], x[1])?, Uniform::new(y[0], y[1])?]),
@@ -212,14 +212,14 @@ impl Rectangle {
     /// Log density at a place.
     ///
     /// # Errors
-    /// [`NotANumber`] where a coordinate is NaN.
+    /// [`NotANumber`] if a coordinate is NaN.
     pub fn log_density(&self, place: &[f64; 2]) -> Result<LogDensity, NotANumber> {
         self.inside.log_density(place)
     }
 }
 
-/// The law of an offset from a spot: Gaussian, the same along each axis, and cut off far out. The factor that the cut
-/// puts on the density is the same for all, and left out.
+/// The law of an offset from a spot: Gaussian, the same along each axis, and cut off far out. The cut multiplies the
+/// density by a constant, which is left out.
 #[derive(Debug, Clone)]
 pub struct Offset<const D: usize> {
     exact: IsotropicGaussian<D>,
@@ -228,10 +228,11 @@ pub struct Offset<const D: usize> {
 }
 
 impl<const D: usize> Offset<D> {
-    /// Of standard deviation `sd` along each axis, and not longer than `longest`, which may be infinite.
+    /// An offset with standard deviation `sd` along each axis, not longer than `longest`, which may be infinite.
     ///
     /// # Errors
-    /// [`ParamError`] where `sd` is no scale.
+    ///
+    /// [`ParamError`] if `sd` is not a scale.
     pub fn new(sd: f64, longest: f64) -> Result<Self, ParamError> {
         Ok(Self { exact: IsotropicGaussian::new(sd)?, radial: Radial::new(sd)?, longest })
     }
@@ -242,13 +243,13 @@ impl<const D: usize> Offset<D> {
         self.exact.sd()
     }
 
-    /// The longest offset there is.
+    /// The longest possible offset.
     #[must_use]
     pub fn longest(&self) -> f64 {
         self.longest
     }
 
-    /// The first of fresh offsets that is not too long.
+    /// The first of several new offsets that is not too long.
     pub fn sample(&self, recipe: Recipe, stream: &mut Stream) -> [f64; D] {
         loop {
             let offset = match recipe {
@@ -264,7 +265,7 @@ impl<const D: usize> Offset<D> {
     /// Log density of an offset.
     ///
     /// # Errors
-    /// [`NotANumber`] where a coordinate is NaN.
+    /// [`NotANumber`] if a coordinate is NaN.
     pub fn log_density(&self, offset: &[f64; D]) -> Result<LogDensity, NotANumber> {
         let density = self.exact.log_density(offset)?;
         Ok(if self.holds(offset) { density } else { LogDensity::ZERO })

@@ -1,7 +1,7 @@
 //! Markov chain Monte Carlo over an opaque draw.
 //!
-//! A [`Target`] says how likely a draw is, simulates it, and judges the outcome; [`Move`]s propose; a [`Chain`] accepts
-//! so that the target stays invariant; [`run()`] advances many chains at once.
+//! A [`Target`] says how likely a draw is, simulates it, and judges the outcome. [`Move`]s propose; a [`Chain`] accepts
+//! in a way that leaves the target invariant; [`run()`] advances many chains at once.
 //!
 //! ```
 //! use plaus_dist::{Density, Gaussian, LogDensity, LogPotential, LogRatio, Sample, Seed, Stream};

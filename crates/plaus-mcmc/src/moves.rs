@@ -1,4 +1,4 @@
-//! Moves propose candidates and answer for their own Hastings ratio; a mixture chooses among them.
+//! Moves, which propose candidates and answer for their own Hastings ratios; and mixtures, which choose among moves.
 
 use crate::fit::Fit;
 use crate::scale::Scale;
@@ -7,7 +7,7 @@ use plaus_dist::{LogRatio, Stream, open_unit};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Which of a move's ways led to a candidate (which coordinate, which pair, …), where that matters for the ratio.
+/// Which of a move's ways led to a candidate (which coordinate, which pair, …), if that matters for the ratio.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Path(pub u64);
 
@@ -27,9 +27,9 @@ pub enum Proposal {
         /// nothing is missing.
         later: Option<LogRatio>,
     },
-    /// The candidate buffer holds a draw of the prior, which shares nothing with the current one. It is kept with
-    /// probability `p_c / M`, `M` being [`Target::most`], whatever the current state: so what is kept is an independent
-    /// draw of the target, exact by rejection.
+    /// The candidate buffer holds a draw from the prior, which shares nothing with the current one. It is kept with
+    /// probability `p_c / M`, where `M` is [`Target::most`], whatever the current state: so what is kept is an
+    /// independent draw of the target, exact by rejection.
     Anew,
 }
 
@@ -37,13 +37,14 @@ impl Proposal {
     /// A proposal as likely as its reverse.
     pub const SYMMETRIC: Self = Self::Candidate { log_ratio: LogRatio::ONE, path: Path(0), later: None };
 
-    /// A proposal with a ratio, made the only way there is.
+    /// A proposal with a ratio, for a move with only one way.
     #[must_use]
     pub fn with_ratio(log_ratio: LogRatio) -> Self {
         Self::Candidate { log_ratio, path: Path(0), later: None }
     }
 
-    /// The way a candidate was made; `None` where there is no candidate, or none that came from the current state.
+    /// The way in which a candidate was made; `None` if there is no candidate, or none that came from the current
+    /// state.
     #[must_use]
     pub fn path(self) -> Option<Path> {
         match self {
@@ -62,7 +63,7 @@ pub trait Move<T: Target>: Send + Sync {
     /// Changes `candidate`, which comes in as a copy of the current draw, into a proposal.
     ///
     /// # Errors
-    /// [`ModelError`] where a density is no number.
+    /// [`ModelError`] if a density is no number.
     fn propose(
         &self,
         target: &T,
@@ -72,10 +73,10 @@ pub trait Move<T: Target>: Send + Sync {
     ) -> Result<Proposal, ModelError>;
 
     /// The whole `log q(from | to) − log q(to | from)` along `path`. The chain does not call it; the checks of
-    /// [`crate::check`] hold it against what `propose` returned and against the reverse direction.
+    /// [`crate::check`] compare it with what `propose` returned and with the reverse direction.
     ///
     /// # Errors
-    /// [`ModelError`] where a density is no number.
+    /// [`ModelError`] if a density is no number.
     fn log_ratio(
         &self,
         target: &T,
@@ -84,15 +85,15 @@ pub trait Move<T: Target>: Send + Sync {
         path: Path,
     ) -> Result<LogRatio, ModelError>;
 
-    /// The path that leads back; most moves go back the way they came.
+    /// The path that leads back; for most moves, the same path.
     fn reverse(&self, path: Path) -> Path {
         path
     }
 
-    /// The part of the ratio that needs the candidate's outcome; called only where `propose` announced it.
+    /// The part of the ratio that needs the candidate's outcome; called only if `propose` announced it.
     ///
     /// # Errors
-    /// [`ModelError`] where a density is no number.
+    /// [`ModelError`] if a density is no number.
     fn log_ratio_after(
         &self,
         _target: &T,
@@ -108,13 +109,13 @@ pub trait Move<T: Target>: Send + Sync {
         Vec::new()
     }
 
-    /// The same move at other values of its [`Move::scales`], one each; `None` leaves one as it is configured. A move
-    /// that has scales gives one.
+    /// The same move with other values of its [`Move::scales`], one for each; `None` leaves a scale as configured. A
+    /// move with scales must return one.
     fn at_scales(&self, _values: &[Option<f64>]) -> Option<Box<dyn Move<T>>> {
         None
     }
 
-    /// Of how many numbers the points are that it learns from in a chain's warm-up, see [`crate::fit`]; 0 for a move
+    /// The number of numbers in the points that it learns from in a chain's warm-up, see [`crate::fit`]; 0 for a move
     /// that learns nothing.
     fn learns(&self) -> usize {
         0
@@ -125,13 +126,12 @@ pub trait Move<T: Target>: Send + Sync {
         Vec::new()
     }
 
-    /// The same move with what was fitted to such points. A move that learns gives one.
+    /// The same move with a density fitted to such points. A move that learns must return one.
     fn at_fit(&self, _fit: &Fit) -> Option<Box<dyn Move<T>>> {
         None
     }
 
-    /// Which of its scales the size of a proposal came from; `None` where from none, so that nothing is learned from
-    /// it.
+    /// Which of its scales the size of a proposal came from; `None` if none, so that nothing is learnt from it.
     fn scale_of(&self, _path: Path) -> Option<usize> {
         Some(0)
     }
@@ -149,10 +149,10 @@ pub struct Mixture<T: Target> {
     cumulative: Vec<f64>,
 }
 
-/// Weights that make no mixture.
+/// Weights that do not make a mixture.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MixtureError {
-    /// A weight is negative or no number.
+    /// A weight is negative or not a number.
     #[error("the weight of move `{name}` is {weight}; weights are finite and at least 0")]
     Weight {
         /// The move.
@@ -163,7 +163,7 @@ pub enum MixtureError {
     /// No move has a positive weight.
     #[error("no move has a positive weight")]
     Empty,
-    /// More moves than [`MoveId`] can tell apart.
+    /// More moves than [`MoveId`] can number.
     #[error("{0} moves are more than the 65,535 a mixture can hold")]
     TooMany(usize),
 }
@@ -172,7 +172,7 @@ impl<T: Target> Mixture<T> {
     /// A mixture of `moves` with relative weights; moves of weight 0 are left out.
     ///
     /// # Errors
-    /// [`MixtureError`] where a weight is negative or not finite, none is positive, or there are more than 65,535
+    /// [`MixtureError`] if a weight is negative or not finite, none is positive, or there are more than 65,535
     /// moves.
     pub fn new(moves: Vec<(f64, Box<dyn Move<T>>)>) -> Result<Self, MixtureError> {
         if let Some((weight, bad)) = moves.iter().find(|(weight, _)| !weight.is_finite() || *weight < 0.0) {
@@ -186,7 +186,7 @@ impl<T: Target> Mixture<T> {
             return Err(MixtureError::TooMany(moves.len()));
         }
         let sum_in_units_of = |unit: f64| moves.iter().map(|(weight, _)| weight / unit).sum::<f64>();
-        // Weights whose sum overflows are taken in a unit of 2⁶⁴, which is exact.
+        // Weights whose sum overflows are converted to a unit of 2⁶⁴, which is exact.
         let unit = if sum_in_units_of(1.0).is_finite() { 1.0 } else { 18_446_744_073_709_551_616.0 };
         let total = sum_in_units_of(unit);
         let mut sum = 0.0;
@@ -209,7 +209,7 @@ impl<T: Target> Mixture<T> {
         Self { moves: vec![Arc::from(only)], cumulative: vec![1.0] }
     }
 
-    /// Chooses a move. A mixture of one spends no random number.
+    /// Chooses a move. A mixture of one move uses no random number.
     pub fn choose(&self, stream: &mut Stream) -> (MoveId, &dyn Move<T>) {
         let index = if self.moves.len() == 1 {
             0
@@ -223,7 +223,8 @@ impl<T: Target> Mixture<T> {
     /// The move of an id this mixture gave, with its probability.
     ///
     /// # Panics
-    /// Where the id is another mixture's and out of range.
+    ///
+    /// If the id belongs to another mixture and is out of range.
     #[must_use]
     pub fn get(&self, id: MoveId) -> (f64, &dyn Move<T>) {
         let index = usize::from(id.0);
@@ -236,7 +237,7 @@ impl<T: Target> Mixture<T> {
         (0..self.moves.len()).map(|index| self.get(MoveId(index as u16)))
     }
 
-    /// The same probabilities for moves of which some are replaced.
+    /// The same probabilities, with some moves replaced.
     pub(crate) fn map(&self, replace: impl Fn(MoveId, &dyn Move<T>) -> Option<Box<dyn Move<T>>>) -> Self {
         let kernel = |(id, kernel): (u16, &Arc<dyn Move<T>>)| {
             replace(MoveId(id), kernel.as_ref()).map_or_else(|| Arc::clone(kernel), Arc::from)

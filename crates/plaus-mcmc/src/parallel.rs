@@ -1,7 +1,7 @@
 //! Jobs on all threads of the current pool.
 //!
-//! Iterators of rayon are compiled anew for each closure, and all closures here anew for each scene: that was half of
-//! the machine code, and of the time to build it. Here only what a job makes is generic; who does it when is not.
+//! Rayon's iterators are compiled again for each closure, and all closures here for each scene: that was half of the
+//! machine code, and of the build time. Here only the result of a job is generic, not the scheduling.
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -37,12 +37,12 @@ fn each(count: usize, job: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().with_max_len(1).for_each(job);
 }
 
-/// What a job that panicked leaves is as good as any: the panic goes on.
+/// After a panic any content will do: the panic is passed on.
 pub(crate) fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
     of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What `job` makes of each number below `count`, in their order.
+/// The results of `job` for each number below `count`, in order.
 ///
 /// ```
 /// assert_eq!(plaus_mcmc::parallel::map(4, |k| k * k), [0, 1, 4, 9]);
@@ -56,10 +56,11 @@ pub fn map<T: Send>(count: usize, job: impl Fn(usize) -> T + Sync) -> Vec<T> {
     made.into_iter().filter_map(|one| one.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
 }
 
-/// The same where jobs may fail. Jobs that have not begun when one of a smaller number fails are left.
+/// The same for jobs that may fail. When one fails, jobs of larger numbers that have not begun are skipped.
 ///
 /// # Errors
-/// That of the job of the smallest number that fails, whoever was faster.
+///
+/// The error of the job with the smallest number that fails, even if another one failed earlier.
 pub fn try_map<T: Send, E: Send>(count: usize, job: impl Fn(usize) -> Result<T, E> + Sync) -> Result<Vec<T>, E> {
     let failed = AtomicUsize::new(usize::MAX);
     let made = map(count, |k| {
@@ -75,7 +76,7 @@ pub fn try_map<T: Send, E: Send>(count: usize, job: impl Fn(usize) -> Result<T, 
     made.into_iter().flatten().collect()
 }
 
-/// What `job` makes of each of `items`, which it may change, in their order.
+/// The results of `job` for each of `items`, which it may change, in order.
 pub fn map_mut<T: Send, R: Send>(items: &mut [T], job: impl Fn(usize, &mut T) -> R + Sync) -> Vec<R> {
     let items: Vec<Mutex<&mut T>> = items.iter_mut().map(Mutex::new).collect();
     map(items.len(), |k| job(k, &mut lock(&items[k])))

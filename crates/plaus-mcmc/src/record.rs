@@ -12,9 +12,9 @@ pub struct Entry<D, O> {
     /// Proposals accepted since the recorded draw before the first of these; 0 in an entry that continues the last
     /// block's state.
     pub accepted: u32,
-    /// The move accepted last; `None` where none was, or where the state came from another rung after it.
+    /// The move accepted last; `None` if none was, or if the state came from another rung after it.
     pub by: Option<MoveId>,
-    /// Which class of solutions the state belongs to; `None` where it does not satisfy the constraint.
+    /// Which class of solutions the state belongs to; `None` if it does not satisfy the constraint.
     pub class: Option<SolutionClass>,
     /// The state.
     pub state: State<D, O>,

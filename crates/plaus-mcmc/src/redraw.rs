@@ -1,12 +1,12 @@
-//! The independence move: a whole new draw, whatever the current one.
+//! The independence move: a whole new draw, whatever the current one is.
 
 use crate::moves::{Move, Path, Proposal};
 use crate::target::{ModelError, StateRefOf, Target};
 use plaus_dist::{LogRatio, Stream};
 
-/// Proposes [`Target::start`]'s draw. Right for a target whose start has the law of its prior, density and all: then
-/// the prior cancels, and what is left of the acceptance is the ratio of constraints. It is the move of tempering's
-/// first rung, where everything is accepted.
+/// Proposes [`Target::start`]'s draw. This is correct for a target whose start has the law of its prior: then the prior
+/// cancels, and the acceptance is the ratio of constraints. It is the move of tempering's first rung, where everything
+/// is accepted.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Redraw;
 
@@ -25,7 +25,7 @@ impl<T: Target> Move<T> for Redraw {
         *candidate = target.start(stream);
         let there = target.log_prior(candidate)?;
         if there.is_zero() {
-            // The chain rejects it for its prior; no ratio is needed.
+            // The chain rejects it because of its prior; no ratio is needed.
             return Ok(Proposal::SYMMETRIC);
         }
         Ok(Proposal::with_ratio(LogRatio::new(current.log_prior.value() - there.value())?))

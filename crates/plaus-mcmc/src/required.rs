@@ -1,9 +1,9 @@
-//! A target that something more is asked of: `p_w · p_c · p_r`, where a [`Requirement`] judges the state that the
-//! target made.
+//! A target with an additional requirement: `p_w · p_c · p_r`, where a [`Requirement`] judges the state that the target
+//! made.
 //!
 //! The target's own moves propose for it ([`Required::moves`]), its simulation still stops early, and the requirement
-//! is asked last, only where its answer can change the decision. So what costs much to judge, a function of a script
-//! for one, is judged seldom, and the chain stays exact.
+//! is evaluated last, only if its answer can change the decision. So an expensive requirement, such as a function in a
+//! script, is evaluated rarely, and the chain remains exact.
 
 use crate::chain::ChainError;
 use crate::moves::Mixture;
@@ -14,29 +14,29 @@ use crate::view::{Sees, lent};
 use plaus_dist::{LogDensity, LogPotential, Stream};
 use std::ops::Range;
 
-/// What a requirement says of a state.
+/// A requirement's judgement of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
-    /// Log of the factor it brings to the target, up to a constant.
+    /// Log of its factor in the target, up to a constant.
     pub log: LogPotential,
-    /// Whether it is met: a state that satisfies its target's constraint is a solution only where it is.
+    /// Whether it is met: a state that satisfies its target's constraint is a solution only if it is.
     pub met: bool,
 }
 
-/// Something more that is asked of a target's states. It must be a function of the state alone: the same state, the
+/// A further requirement on a target's states. It must be a function of the state alone: the same state always gets the
 /// same mark.
 pub trait Requirement<T: Target>: Sync {
-    /// The largest log potential there is, or anything above; `None` where there is no such bound, and then no
+    /// The largest possible log potential, or any larger number; `None` if there is no such bound, and then no
     /// simulation stops early.
     fn most(&self) -> Option<LogPotential>;
 
-    /// Called before a simulation whose state may be judged: what the target's memory is to keep for that.
+    /// Called before a simulation whose state may be judged. It can tell the target's memory what to keep for that.
     fn prepare(&self, _target: &T, _scratch: &mut T::Scratch) {}
 
-    /// Judges a state; `scratch` is the memory that it was simulated with, where it was just now.
+    /// Judges a state; `scratch` is the memory of its simulation, if that has just run.
     ///
     /// # Errors
-    /// [`ModelError`] where it cannot.
+    /// [`ModelError`] if it cannot.
     fn judge(&self, target: &T, state: StateRefOf<'_, T>, scratch: &T::Scratch) -> Result<Mark, ModelError>;
 }
 
@@ -47,14 +47,14 @@ pub struct Judged<O> {
     pub outcome: O,
     /// The target's own log constraint.
     pub own: LogPotential,
-    /// What the requirement says of it.
+    /// The requirement's judgement.
     pub mark: Mark,
 }
 
 /// The judged outcome of a target.
 type JudgedOf<T> = Judged<<T as Target>::Outcome>;
 
-/// Where the chains of a target go on from.
+/// Where the chains of a target continue from.
 type StartsOf<T> = Vec<Start<<T as Target>::Draw, <T as Target>::Outcome>>;
 
 /// A target under a requirement.
@@ -83,19 +83,21 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
     /// new one.
     ///
     /// # Errors
-    /// [`ModelError`] where the requirement fails, or its log potential exceeds what it said is the most.
+    ///
+    /// [`ModelError`] if the requirement fails, or its log potential exceeds its stated bound.
     pub fn judge(&self, state: StateRefOf<'_, T>, scratch: &T::Scratch) -> Result<Mark, ModelError> {
         let mark = self.requirement.judge(self.target, state, scratch)?;
         if let Some(most) = self.requirement.most().filter(|most| mark.log > *most) {
             let (found, most) = (mark.log.value(), most.value());
             return Err(ModelError::new(format!(
-                "a requirement's log potential {found} exceeds the most it said, {most}"
+                "a requirement's log potential of {found} exceeds its stated bound, {most}"
             )));
         }
         Ok(mark)
     }
 
-    /// A start of the target's chain, as [`Plain`] left it, as a start of this one's: every state is judged again.
+    /// Converts a start of the target's chain, as [`Plain`] left it, into a start of this one's: judges every state
+    /// again.
     fn restore(&self, start: Start<T::Draw, T::Outcome>) -> Result<Start<T::Draw, JudgedOf<T>>, ModelError> {
         let Start { snapshot, distinct } = start;
         let snapshot = snapshot.try_map(|recorded| {
@@ -108,7 +110,7 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
             }
             let (was, is) = (log_constraint.value(), (own + mark.log).value());
             Err(ModelError::new(format!(
-                "the requirement is another one: a stored state has log potential {was}, judged again it has {is}"
+                "the requirement is another one: a stored state has log potential {was}, but judged again it has {is}"
             )))
         })?;
         Ok(Start { snapshot, distinct })
@@ -195,13 +197,13 @@ impl<T: Target, R: Requirement<T>> Sees<T> for Required<'_, T, R> {
     }
 }
 
-/// As [`run_some`](crate::run_some()), of the target that `required` is about, with its `moves`, to a sink of
-/// that target: what is recorded are its states, with
-/// the log constraint of both. The plan comes with which of its chains to run, and where they go on from, as such a run
-/// left them.
+/// Like [`run_some`](crate::run_some()), for the target of `required` with its `moves`, to a sink of that target: its
+/// states are recorded, with the log constraint of both. The plan comes with which of its chains to run, and where they
+/// continue from, as such a run left them.
 ///
 /// # Errors
-/// As [`run()`](crate::run()); also where a stored state is judged otherwise than when it was made.
+///
+/// Those of [`run()`](crate::run()); also if a stored state is judged differently than before.
 pub fn run<T: Goal + 'static, R: Requirement<T>, K: Sink<T::Draw, T::Outcome>>(
     required: &Required<'_, T, R>,
     moves: &Mixture<T>,
@@ -220,8 +222,8 @@ pub fn run<T: Goal + 'static, R: Requirement<T>, K: Sink<T::Draw, T::Outcome>>(
     run_some(required, &moves, plan, some, restored, threads, &mut Plain(sink), pulse)
 }
 
-/// Hands what a chain under a requirement leaves behind to a sink of the target: states without their marks, but with
-/// the log constraint of both.
+/// Passes what a chain under a requirement records to a sink of the target: states without their marks, but with the
+/// log constraint of both.
 struct Plain<'s, K>(&'s mut K);
 
 /// A state without its mark, but with the log constraint of both.

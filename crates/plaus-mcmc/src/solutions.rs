@@ -13,7 +13,7 @@ type ClassSet = std::collections::HashSet<SolutionClass, FxBuildHasher>;
 pub struct Hits {
     /// The first iteration whose state satisfies the constraint.
     pub first: Option<u64>,
-    /// How many iterations' states do, the start included.
+    /// Number of iterations with such a state, including the start.
     pub count: u64,
 }
 
@@ -39,7 +39,7 @@ pub struct FirstOfClass {
     pub class: SolutionClass,
 }
 
-/// Distinct classes of solutions seen so far, with where each was seen first.
+/// Distinct classes of solutions seen so far, with the first sighting of each.
 #[derive(Debug, Clone, Default)]
 pub struct Distinct {
     seen: ClassSet,
@@ -47,7 +47,7 @@ pub struct Distinct {
 }
 
 impl Distinct {
-    /// Notes a recorded solution; true where its class is new.
+    /// Notes a recorded solution; true if its class is new.
     #[inline]
     pub fn note(&mut self, first: FirstOfClass) -> bool {
         let new = self.seen.insert(first.class);

@@ -3,7 +3,7 @@
 use plaus_dist::{LogDensity, LogPotential, NotANumber, Stream};
 use serde::{Deserialize, Serialize};
 
-/// A model failed in a way that no rejection may hide: a NaN, a non-finite simulator state, a broken invariant.
+/// A failure of a model that no rejection may hide: a NaN, a non-finite simulator state, a broken invariant.
 #[derive(Debug, thiserror::Error)]
 #[error(transparent)]
 pub struct ModelError(Box<dyn std::error::Error + Send + Sync>);
@@ -14,7 +14,7 @@ impl ModelError {
         Self(source.into())
     }
 
-    /// What it wraps, where that is an `E`.
+    /// The wrapped error, if it is an `E`.
     #[must_use]
     pub fn downcast_ref<E: std::error::Error + 'static>(&self) -> Option<&E> {
         self.0.downcast_ref()
@@ -29,12 +29,13 @@ impl From<NotANumber> for ModelError {
 
 /// The distribution `p(A) ∝ p_w(draw) · p_c(outcome)` over animations `A = (draw, outcome)`.
 ///
-/// A draw holds the value of every random variable of a world; the outcome is what a deterministic simulation makes of
-/// it. The chain never looks into either. Evaluation goes in order of cost: prior, then simulation, then constraint.
+/// A draw holds the value of every random variable of a world; the outcome is the result of a deterministic simulation
+/// of it. The chain looks into neither. Evaluation goes in order of cost: prior, then simulation, then constraint.
 pub trait Target: Sync {
-    /// Values of all random variables. `clone_from` should reuse its allocation: the chain calls it once an iteration.
+    /// Values of all random variables. `clone_from` should reuse its allocation: the chain calls it once in each
+    /// iteration.
     type Draw: Clone + PartialEq + Send + Sync;
-    /// What of a simulation's result the constraint, the record and the moves need.
+    /// The part of a simulation's result that the constraint, the record and the moves need.
     type Outcome: Clone + Send + Sync;
     /// Working memory of one chain, reused from simulation to simulation. It may speed results up, never change them.
     type Scratch: Default + Send;
@@ -45,17 +46,18 @@ pub trait Target: Sync {
     /// Log prior density `log p_w(draw)`, up to one constant for all draws, including draws of different dimension.
     ///
     /// # Errors
-    /// [`ModelError`] where the density is no number.
+    ///
+    /// [`ModelError`] if the density is not a number.
     fn log_prior(&self, draw: &Self::Draw) -> Result<LogDensity, ModelError>;
 
     /// Simulates `draw`.
     ///
-    /// `floor` is what [`Target::log_constraint`] must exceed for the draw to be accepted; where it is certain that it
-    /// cannot, the simulation may stop and answer [`Simulated::CannotExceedFloor`]. `current` is the chain's state,
-    /// from which unchanged parts may be reused as long as the outcome has the same bits as without it.
+    /// `floor` is what [`Target::log_constraint`] must exceed for the draw to be accepted. If it certainly cannot, the
+    /// simulation may stop and return [`Simulated::CannotExceedFloor`]. `current` is the chain's state; unchanged parts
+    /// of it may be reused as long as the outcome has the same bits as without that.
     ///
     /// # Errors
-    /// [`ModelError`] where the simulation broke down.
+    /// [`ModelError`] if the simulation broke down.
     fn simulate(
         &self,
         draw: &Self::Draw,
@@ -67,28 +69,29 @@ pub trait Target: Sync {
     /// Log constraint `log p_c(outcome)`, up to a constant.
     ///
     /// # Errors
-    /// [`ModelError`] where it is no number.
+    ///
+    /// [`ModelError`] if it is not a number.
     fn log_constraint(&self, outcome: &Self::Outcome) -> Result<LogPotential, ModelError>;
 
-    /// The largest log constraint there is, or anything above; `None` where no bound is known, and then no independent
-    /// draws can be made by rejection (see [`crate::Proposal::Anew`]). A bound that is too high costs time alone.
+    /// The largest possible log constraint, or any larger number; `None` if no bound is known, and then no independent
+    /// draws can be made by rejection (see [`crate::Proposal::Anew`]). A bound that is too high only costs time.
     fn most(&self) -> Option<LogPotential> {
         None
     }
 
-    /// Told after every accept step that followed a simulation whether the simulated candidate became the current
-    /// state, so that memory kept in `scratch` about the current state can follow.
+    /// Called after every accept step that followed a simulation, with whether the simulated candidate became the
+    /// current state, so that memory kept in `scratch` about the current state can follow.
     fn settle(&self, _accepted: bool, _scratch: &mut Self::Scratch) {}
 }
 
-/// A target whose states may satisfy its constraint, in ways that can be told apart.
+/// A target whose states may satisfy its constraint, in ways that can be distinguished.
 pub trait Goal: Target {
-    /// The class of solutions `state` belongs to, or `None` where it does not satisfy the constraint. Two satisfying
+    /// The class of solutions `state` belongs to, or `None` if it does not satisfy the constraint. Two satisfying
     /// states of the same class count as one distinct solution.
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass>;
 }
 
-/// A label of a class of solutions: equal for solutions a user would call the same. See [`SolutionClass::of`].
+/// A label for a class of solutions: equal for solutions that a user would call the same. See [`SolutionClass::of`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct SolutionClass(pub u64);
@@ -125,7 +128,7 @@ fn mix(mut z: u64) -> u64 {
 pub enum Simulated<O> {
     /// It ran to its end.
     Complete(O),
-    /// It stopped: whatever came, the constraint could not exceed the floor.
+    /// It stopped early: in no case could the constraint exceed the floor.
     CannotExceedFloor,
 }
 
@@ -134,7 +137,7 @@ pub enum Simulated<O> {
 pub struct State<D, O> {
     /// Values of all random variables.
     pub draw: D,
-    /// What the simulation made of them.
+    /// The simulation's result.
     pub outcome: O,
     /// `log p_w(draw)`.
     pub log_prior: LogDensity,
@@ -184,10 +187,10 @@ impl<D, O> State<D, O> {
         self.log_prior + self.log_constraint
     }
 
-    /// Evaluates `draw` wholly, reusing nothing and never stopping early.
+    /// Evaluates `draw` completely, reusing nothing and never stopping early.
     ///
     /// # Errors
-    /// [`ModelError`] where the target fails.
+    /// [`ModelError`] if the target fails.
     pub fn evaluate<T>(target: &T, draw: D, scratch: &mut T::Scratch) -> Result<Self, ModelError>
     where
         T: Target<Draw = D, Outcome = O> + ?Sized,
@@ -218,17 +221,17 @@ impl<D, O> State<D, O> {
     }
 }
 
-/// The largest log constraint that the target says there is.
+/// The largest possible log constraint, according to the target.
 pub(crate) fn most_of<T: Target>(target: &T) -> Result<LogPotential, ModelError> {
-    let message = "its constraint has no bound that is known: no draw of the prior can be kept";
+    let message = "its constraint has no known bound, so draws from the prior cannot be kept by rejection";
     target.most().ok_or_else(|| ModelError::new(message))
 }
 
-/// A log constraint, held against that.
+/// A log constraint, checked against that.
 pub(crate) fn at_most(log_constraint: LogPotential, most: LogPotential) -> Result<LogPotential, ModelError> {
     if log_constraint > most {
         let (found, most) = (log_constraint.value(), most.value());
-        return Err(ModelError::new(format!("a log constraint of {found} exceeds the most it said, {most}: a bug")));
+        return Err(ModelError::new(format!("a log constraint of {found} exceeds its stated bound, {most}: a bug")));
     }
     Ok(log_constraint)
 }

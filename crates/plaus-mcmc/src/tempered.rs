@@ -1,4 +1,4 @@
-//! A target whose constraint counts less: `p_w · p_c^β`.
+//! A target with a weaker constraint: `p_w · p_c^β`.
 
 use crate::target::{ModelError, Target};
 use crate::view::Reweighed;
@@ -6,8 +6,8 @@ use plaus_dist::{LogPotential, ParamError};
 
 /// The target `p_w(draw) · p_c(outcome)^β`: for `p_c = λ^k`, the same target at `λ^β`.
 ///
-/// β = 1 is the target itself; β = 0 is the prior restricted to outcomes the constraint does not forbid (−∞ stays −∞).
-/// For the whole prior see [`crate::check::PriorOnly`]. The moves of the target serve it through [`crate::view::lend`].
+/// β = 1 is the target itself; β = 0 is the prior restricted to outcomes that the constraint allows (−∞ stays −∞). For
+/// the whole prior see [`crate::check::PriorOnly`]. The target's moves can be used through [`crate::view::lend`].
 #[derive(Debug)]
 pub struct Tempered<'a, T> {
     target: &'a T,
@@ -35,8 +35,8 @@ impl<'a, T: Target> Tempered<'a, T> {
     }
 }
 
-/// A floor for the constraint itself: what does not exceed it does not exceed `floor` when raised to the power of
-/// `beta`, in floating point. `None` where no constraint can exceed `floor`.
+/// A floor for the constraint itself: a constraint that does not exceed it does not exceed `floor` when raised to the
+/// power of `beta`, in floating point. `None` if no constraint can exceed `floor`.
 pub(crate) fn floor_seen(floor: LogPotential, beta: f64) -> Option<LogPotential> {
     if beta == 1.0 {
         return Some(floor);
@@ -45,8 +45,8 @@ pub(crate) fn floor_seen(floor: LogPotential, beta: f64) -> Option<LogPotential>
         return (floor < LogPotential::ONE).then_some(LogPotential::ZERO);
     }
     let mut seen = (floor.value() / beta).min(f64::MAX);
-    // Multiplication by β rounds monotonically, so the inequality at the floor holds for all below. One or two steps
-    // are enough.
+    // Multiplication by β rounds monotonically, so if the inequality holds at the floor, it holds for everything below.
+    // One or two steps are enough.
     while seen * beta > floor.value() {
         seen = seen.next_down();
     }

@@ -1,8 +1,8 @@
 //! What a draw is made of: named variables, each with its unit, its law, and the body or part it belongs to.
 //!
-//! A target that declares its variables gets the moves of [`crate::library`], a prior density and draws of the prior
-//! for nothing, and its readers get names, units and dimensions. The draw itself may be held in any way: the target
-//! says where a variable's numbers are.
+//! A target that declares its variables gets the moves of [`crate::library`], a prior density and draws from the prior
+//! for free, and its readers get names, units and dimensions. The draw itself may have any form: the target says where
+//! a variable's numbers are.
 
 use crate::law::{Law, Recipe};
 use crate::target::Target;
@@ -10,10 +10,10 @@ use plaus_dist::{Density, LogDensity, NotANumber, Stream, open_unit};
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// Which of several bodies or parts something belongs to: ball 3, pin 7.
+/// The body or part, of several, that something belongs to: ball 3, pin 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Member {
-    /// What they are, as a dimension's name: `ball`.
+    /// Their kind, as the name of a dimension: `ball`.
     pub kind: &'static str,
     /// Its number.
     pub number: u32,
@@ -28,34 +28,34 @@ pub struct Var {
     pub unit: &'static str,
     /// Its law, in the draw's own unit.
     pub law: Law,
-    /// Whose it is; `None` where there is one only.
+    /// The member it belongs to; `None` if there is only one.
     pub member: Option<Member>,
-    /// Whether a draw may lack it, which it does with probability ½.
+    /// Whether a draw may lack it, with probability ½.
     pub optional: bool,
-    /// Of one that is a column of tables and is diagnosed: the factor from the draw's unit to that of the column.
+    /// The factor from the draw's unit to the column's, for a variable that is a column of tables and is diagnosed.
     pub column: Option<f64>,
 }
 
 impl Var {
-    /// One that is not shown as a column.
+    /// A variable that is not shown as a column.
     #[must_use]
     pub fn new(name: impl Into<Cow<'static, str>>, unit: &'static str, law: Law) -> Self {
         Self { name: name.into(), unit, law, member: None, optional: false, column: None }
     }
 
-    /// The same, of a body or part.
+    /// The same variable, belonging to a body or part.
     #[must_use]
     pub fn of(self, kind: &'static str, number: u32) -> Self {
         Self { member: Some(Member { kind, number }), ..self }
     }
 
-    /// The same, which a draw may lack.
+    /// The same variable, as one that a draw may lack.
     #[must_use]
     pub fn optional(self) -> Self {
         Self { optional: true, ..self }
     }
 
-    /// The same, shown as a column, in a unit that is the draw's over `factor`.
+    /// The same variable, shown as a column, in a unit that is the draw's divided by `factor`.
     #[must_use]
     pub fn column(self, factor: f64) -> Self {
         Self { column: Some(factor), ..self }
@@ -67,7 +67,7 @@ impl Var {
 pub struct Vars {
     all: Vec<Var>,
     groups: Vec<Vec<usize>>,
-    /// Log probability that the optional variables are there, or not, as they are.
+    /// Log probability of which optional variables are present and which are absent.
     presence: f64,
 }
 
@@ -84,7 +84,7 @@ impl Vars {
         Self { groups: members.into_iter().map(of).collect(), presence, all }
     }
 
-    /// The same in other groups than the members': lists of indices, each of variables that belong together.
+    /// The same variables in other groups than the members': lists of indices of variables that belong together.
     #[must_use]
     pub fn in_groups(self, groups: Vec<Vec<usize>>) -> Self {
         Self { groups, ..self }
@@ -114,18 +114,18 @@ impl Vars {
         self.all.iter()
     }
 
-    /// The indices of those that `choose` chooses and that are uncertain.
+    /// The indices of the uncertain variables that `choose` accepts.
     pub fn which(&self, choose: impl Fn(&Var) -> bool) -> Vec<usize> {
         (0..self.all.len()).filter(|&k| self.all[k].law.is_uncertain() && choose(&self.all[k])).collect()
     }
 
-    /// The indices of those of these names that are uncertain, in order.
+    /// The indices of the uncertain variables with these names, in order.
     #[must_use]
     pub fn named(&self, names: &[&str]) -> Vec<usize> {
         self.which(|var| names.contains(&var.name.as_ref()))
     }
 
-    /// The indices of each member's variables, members in order of kind and number; or the groups that were given.
+    /// The indices of each member's variables, in order of kind and number; or the groups that were given.
     #[must_use]
     pub fn groups(&self) -> &[Vec<usize>] {
         &self.groups
@@ -137,16 +137,16 @@ pub trait Variables: Target {
     /// The variables.
     fn vars(&self) -> &Vars;
 
-    /// The numbers of a variable; `None` where the draw lacks it, or it is held in no numbers.
+    /// The numbers of a variable; `None` if the draw lacks it, or if it is not made of numbers.
     fn get<'a>(&self, draw: &'a Self::Draw, var: usize) -> Option<&'a [f64]>;
 
     /// The same, to change.
     fn get_mut<'a>(&self, draw: &'a mut Self::Draw, var: usize) -> Option<&'a mut [f64]>;
 
-    /// Gives a draw an optional variable, with any numbers, or takes it away.
+    /// Adds an optional variable to a draw, with any numbers, or removes it.
     fn set_present(&self, _draw: &mut Self::Draw, _var: usize, _present: bool) {}
 
-    /// What a variable's value is above its number: a common shift that a draw holds apart.
+    /// The difference between a variable's value and its number: a common shift that a draw holds separately.
     #[inline]
     fn shift(&self, _draw: &Self::Draw, _var: usize) -> f64 {
         0.0
@@ -155,11 +155,11 @@ pub trait Variables: Target {
     /// A fresh value of a variable whose law is [`Law::Own`].
     fn renew_own(&self, _draw: &mut Self::Draw, _var: usize, _stream: &mut Stream) {}
 
-    /// A step of such a variable, `size` times the largest, that leaves its law as it is: from one value to another as
-    /// likely as back, weighed by that law.
+    /// A step of such a variable, `size` times the largest one, that preserves its law: weighted by that law, it is as
+    /// likely as the way back.
     fn step_own(&self, _draw: &mut Self::Draw, _var: usize, _size: f64, _stream: &mut Stream) {}
 
-    /// A fresh draw of all variables, in order. Every variable that is not optional is there already.
+    /// A new draw of all variables, in order. Every variable that is not optional is already there.
     fn renew_all(&self, draw: &mut Self::Draw, recipe: Recipe, stream: &mut Stream) {
         for var in 0..self.vars().len() {
             if self.vars().get(var).optional {
@@ -173,7 +173,8 @@ pub trait Variables: Target {
         }
     }
 
-    /// A fresh draw of one group's variables, by its place in [`Vars::groups`]. One that the draw lacks stays away.
+    /// A new draw of one group's variables, by its index in [`Vars::groups`]. A variable that the draw lacks stays
+    /// absent.
     fn renew_group(&self, draw: &mut Self::Draw, group: usize, stream: &mut Stream) {
         for &var in &self.vars().groups()[group] {
             renew(self, draw, var, Recipe::Exact, stream);
@@ -187,7 +188,7 @@ fn other<T: Variables + ?Sized>(target: &T, draw: &T::Draw, law: &Law) -> f64 {
     other.and_then(|values| values.first().copied()).unwrap_or(f64::NAN)
 }
 
-/// Draws a variable anew that the draw has.
+/// Draws a variable anew, which the draw must have.
 pub fn renew<T: Variables + ?Sized>(target: &T, draw: &mut T::Draw, var: usize, recipe: Recipe, stream: &mut Stream) {
     let law = &target.vars().get(var).law;
     if let Law::Own = law {
@@ -202,16 +203,16 @@ pub fn renew<T: Variables + ?Sized>(target: &T, draw: &mut T::Draw, var: usize, 
     }
 }
 
-/// Log density of a variable's value, given the others; 1 where the draw lacks it.
+/// Log density of a variable's value, given the others; the density is 1 if the draw lacks it.
 ///
 /// # Errors
-/// [`NotANumber`] where a value is NaN.
+/// [`NotANumber`] if a value is NaN.
 #[inline]
 pub fn log_density<T: Variables + ?Sized>(target: &T, draw: &T::Draw, var: usize) -> Result<LogDensity, NotANumber> {
     let law = &target.vars().get(var).law;
     let Some(values) = target.get(draw, var) else { return Ok(LogDensity::ONE) };
     let shift = target.shift(draw, var);
-    // The usual law, of which a draw of a scene without a simulator has nothing that costs more than the density.
+    // The usual case: for scenes without a simulator, nothing in a draw costs more than the density.
     if let (Law::Gaussian(gaussian), [value]) = (law, values) {
         return gaussian.log_density(&(value + shift));
     }
@@ -222,10 +223,10 @@ pub fn log_density<T: Variables + ?Sized>(target: &T, draw: &T::Draw, var: usize
     }
 }
 
-/// Log density of some variables: the sum of their own.
+/// Log density of some variables: the sum over each of them.
 ///
 /// # Errors
-/// [`NotANumber`] where a value is NaN.
+/// [`NotANumber`] if a value is NaN.
 pub fn log_density_of<T: Variables + ?Sized>(
     target: &T,
     draw: &T::Draw,
@@ -234,10 +235,10 @@ pub fn log_density_of<T: Variables + ?Sized>(
     vars.into_iter().try_fold(LogDensity::ONE, |sum, var| Ok(sum + log_density(target, draw, var)?))
 }
 
-/// Log density of a whole draw: each variable's, and ½ for whether an optional one is there.
+/// Log density of a whole draw: that of each variable, and ½ for the presence or absence of an optional one.
 ///
 /// # Errors
-/// [`NotANumber`] where a value is NaN.
+/// [`NotANumber`] if a value is NaN.
 #[inline]
 pub fn log_prior<T: Variables + ?Sized>(target: &T, draw: &T::Draw) -> Result<LogDensity, NotANumber> {
     let mut sum = LogDensity::new(target.vars().presence)?;

@@ -1,4 +1,4 @@
-//! Targets seen differently: same draws, same outcomes, another weight or another way to simulate.
+//! Other views of a target: the same draws and outcomes, with another weight or another way to simulate.
 
 use crate::fit::Fit;
 use crate::moves::{Mixture, MixtureError, Move, Path, Proposal};
@@ -8,10 +8,10 @@ use plaus_dist::{LogDensity, LogPotential, LogRatio, Stream};
 use std::sync::Arc;
 
 /// A target that shows another one under a different constraint, or simulates it in a different way, over the same
-/// draws and outcomes. The other one's moves propose for the view as they are: see [`lend`].
+/// draws and outcomes. The other one's moves can propose for the view unchanged: see [`lend`].
 ///
-/// The `log_constraint` in a view's states is the view's own, also where such a state is handed to the target seen or
-/// to its moves.
+/// The `log_constraint` in a view's states is the view's own, even when such a state is passed to the target seen or to
+/// its moves.
 pub trait View: Target {
     /// The target seen.
     type Seen: Target<Draw = Self::Draw, Outcome = Self::Outcome> + 'static;
@@ -28,13 +28,13 @@ pub trait Reweighed: Sync {
     /// The target seen.
     fn seen(&self) -> &Self::Seen;
 
-    /// What the constraint of the target seen must exceed where this one must exceed `floor`; `None` where none can.
+    /// What the constraint of the target seen must exceed so that this one can exceed `floor`; `None` if none can.
     fn floor_seen(&self, floor: LogPotential) -> Option<LogPotential>;
 
     /// The constraint of an outcome.
     ///
     /// # Errors
-    /// [`ModelError`] where the target seen fails, or the constraint is no number.
+    /// [`ModelError`] if the target seen fails, or the constraint is no number.
     fn weigh(&self, outcome: &<Self::Seen as Target>::Outcome) -> Result<LogPotential, ModelError>;
 }
 

@@ -92,5 +92,5 @@ fn more_than_the_most_is_an_error() {
         (0..5000).try_for_each(|_| chain.step().map(drop))
     };
     let error = walk().unwrap_err().to_string();
-    assert!(error.contains("log potential 1 exceeds the most it said, 0.5"), "{error}");
+    assert!(error.contains("log potential of 1 exceeds its stated bound, 0.5"), "{error}");
 }

@@ -3,12 +3,12 @@
 use glam::DVec3;
 use plaus_animation::Look;
 
-/// Things in a leaf at most.
+/// Most things in a leaf.
 const LEAF: usize = 4;
 /// Depth that no tree reaches: it halves what it holds at each level.
 const DEEPEST: usize = 64;
 
-/// A half-line, and what of it counts.
+/// A half-line, with limits.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ray {
     pub(crate) from: DVec3,
@@ -18,7 +18,7 @@ pub(crate) struct Ray {
     pub(crate) least: f64,
     /// Nothing farther than this is hit.
     pub(crate) most: f64,
-    /// Whether it passes through what is translucent.
+    /// Whether it passes through translucent things.
     pub(crate) solid_only: bool,
 }
 
@@ -49,11 +49,11 @@ pub(crate) struct Bvh<T> {
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// Things `from..to` of a leaf; else the second child, the first being the next node.
+    /// Things `from..to` of a leaf; otherwise the second child, while the first is the next node.
     from: u32,
     to: u32,
     second: u32,
-    /// Along which the second child lies beyond the first.
+    /// The axis along which the second child lies beyond the first.
     axis: usize,
 }
 
@@ -67,7 +67,7 @@ impl<T: Target> Bvh<T> {
         Self { things, nodes }
     }
 
-    /// Lowest and highest coordinates of all; `None` where there is nothing.
+    /// Lowest and highest coordinates of all; `None` if there is nothing.
     pub(crate) fn bounds(&self) -> Option<[DVec3; 2]> {
         self.nodes.first().map(|root| [root.low, root.high])
     }
@@ -86,7 +86,7 @@ impl<T: Target> Bvh<T> {
                 continue;
             }
             if node.from == node.to {
-                // The nearer one first: what it holds may hide the other.
+                // The nearer one first, because its contents may hide the other.
                 let (near, far) = (index + 1, node.second);
                 let turned = ray.along[node.axis] < 0.0;
                 (open[count], open[count + 1]) = if turned { (near, far) } else { (far, near) };
@@ -130,14 +130,14 @@ fn build<T: Target>(things: &mut [T], from: usize, to: usize, nodes: &mut Vec<No
     build(things, from + first, to, nodes);
 }
 
-/// How things are shared out between two children: the first so many to the first.
+/// How things are divided between two children: how many go to the first.
 struct Split {
     axis: usize,
     first: usize,
 }
 
-/// Sorts things along an axis and cuts where rays are expected to have the least to do: where the boxes' surfaces,
-/// times the things in them, are smallest (MacDonald & Booth 1990). Of few things the middle is as good.
+/// Sorts things along an axis and cuts where rays probably have the least to do: where the boxes' surfaces, times the
+/// number of things in them, are smallest (MacDonald & Booth 1990). For few things the middle is as good.
 fn split<T: Target>(things: &mut [T]) -> Split {
     /// Places tried for a cut.
     const CUTS: usize = 12;

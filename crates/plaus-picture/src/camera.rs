@@ -4,7 +4,7 @@ use glam::DVec3;
 use plaus_animation::{Animation, View};
 use plaus_dist::math;
 
-/// An eye with a direction to look along.
+/// An eye and its direction of view.
 #[derive(Debug, Clone, Copy)]
 pub struct Camera {
     eye: DVec3,
@@ -15,16 +15,16 @@ pub struct Camera {
     half: f64,
 }
 
-/// What is left free around what is to be seen.
+/// Margin around what should be visible.
 const MARGIN: f64 = 1.04;
-/// How often a second it is looked where bodies are.
+/// How often per second bodies' places are sampled.
 const LOOKS: f64 = 60.0;
 /// Usual vertical field of view in degrees.
 const FIELD: f64 = 24.0;
 
 impl Camera {
-    /// Looks at an animation from where it is best looked at, such that all that is to be seen of it between two times,
-    /// in s, fits a picture `aspect` times as wide as high.
+    /// Looks at an animation from its best place, so that everything that should be visible between two times, in s,
+    /// fits a picture `aspect` times as wide as high.
     #[must_use]
     pub fn of(animation: &Animation, [from, to]: [f64; 2], aspect: f64) -> Self {
         let view = animation.view.unwrap_or(View::from(0.3, 0.5, 1.0));
@@ -45,8 +45,8 @@ impl Camera {
         Self::fitting(frame.unwrap_or([DVec3::NEG_ONE, DVec3::ONE]), view.from, up, FIELD, aspect)
     }
 
-    /// Looks from the direction `from` such that a box between two corners just fits a picture `aspect` times as wide
-    /// as high; `field` is the vertical field of view in degrees, `up` points upwards in the picture.
+    /// Looks from the direction `from`, so that a box between two corners just fits a picture `aspect` times as wide as
+    /// high; `field` is the vertical field of view in degrees, `up` points upwards in the picture.
     #[must_use]
     pub fn fitting(frame: [DVec3; 2], from: DVec3, up: DVec3, field: f64, aspect: f64) -> Self {
         let back = from.normalize();

@@ -12,7 +12,8 @@ impl Image {
     /// A picture, row by row from the upper left.
     ///
     /// # Panics
-    /// Where there are not `width` times `height` pixels.
+    ///
+    /// If the number of pixels is not `width` times `height`.
     #[must_use]
     pub fn new(width: u32, height: u32, pixels: Vec<[u8; 3]>) -> Self {
         assert_eq!(pixels.len(), width as usize * height as usize);
@@ -37,13 +38,13 @@ impl Image {
         &self.pixels
     }
 
-    /// Three bytes a pixel.
+    /// The pixels as three bytes each.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         self.pixels.as_flattened()
     }
 
-    /// Puts another picture on this one, with its upper left corner at a pixel; what is outside is left out.
+    /// Puts another picture on this one, with its upper left corner at a pixel; anything outside is cut off.
     pub fn put(&mut self, other: &Self, (x, y): (u32, u32)) {
         let across = other.width.min(self.width.saturating_sub(x)) as usize;
         for (row, line) in (y..self.height).zip(other.pixels.chunks(other.width as usize)) {
@@ -52,7 +53,7 @@ impl Image {
         }
     }
 
-    /// Where among all pixels those near one are: from two to the left and above to two to the right and below.
+    /// Indices of the pixels near one: from two to the left and above, to two to the right and below.
     pub(crate) fn near(&self, (x, y): (u32, u32)) -> impl Iterator<Item = usize> + use<> {
         let span = |at: u32, size: u32| at.saturating_sub(2) as usize..(at + 3).min(size) as usize;
         let (across, width) = (span(x, self.width), self.width as usize);

@@ -1,8 +1,8 @@
-//! What jitters rays: a hash of their pixel, not chance.
+//! The jitter of rays: a hash of their pixel, not chance.
 
 /// Numbers in [0, 1) for one ray of a pixel, spread evenly over the rays of the pixel.
 pub(crate) struct Noise {
-    /// Where in the pixel's sequence, and by how much the pixel's sequence is shifted.
+    /// The index in the pixel's sequence, and the shift of that sequence.
     index: u32,
     shift: u64,
 }

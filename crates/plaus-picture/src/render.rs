@@ -11,9 +11,9 @@ use glam::DVec3;
 use plaus_animation::Animation;
 use rayon::prelude::*;
 
-/// How far below the bottom of what is to be seen the table lies, in metres: bowls touch the bottom.
+/// How far the table lies below everything that should be visible, in metres: bowls touch the bottom.
 const SUNK: f64 = 2e-4;
-/// A pixel that differs from a neighbour by so much in any colour, of 255, is looked at more closely.
+/// A pixel that differs from a neighbour by this much in any colour, out of 255, gets more rays.
 const EDGE: u8 = 8;
 
 /// A picture's size, and how many rays are averaged in a pixel.
@@ -23,7 +23,7 @@ pub struct Quality {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Rays of a pixel in which something changes; elsewhere one is enough.
+    /// Rays in a pixel in which something changes; elsewhere one is enough.
     pub rays: u32,
 }
 
@@ -33,7 +33,7 @@ struct Frame {
     image: Image,
 }
 
-/// Frames one after the other: what stands still is drawn closely once only.
+/// Frames in succession: scenery is drawn in detail only once.
 pub struct Film<'a> {
     renderer: Renderer<'a>,
     last: Option<Frame>,
@@ -58,17 +58,18 @@ pub struct Renderer<'a> {
     stage: Stage<'a>,
     camera: Camera,
     quality: Quality,
-    /// Height of the table on which everything stands: the bottom of the scenery and of what is to be seen.
+    /// Height of the table on which everything stands: the bottom of the scenery and of everything that should be
+    /// visible.
     ground: Option<f64>,
 }
 
 impl<'a> Renderer<'a> {
-    /// Prepares what does not change from one time to the next.
+    /// Prepares everything that is the same at all times.
     #[must_use]
     pub fn new(animation: &'a Animation, camera: Camera, quality: Quality) -> Self {
         let stage = Stage::new(animation);
         let framed = animation.view.and_then(|view| view.frame).map(|[a, b]| a.y.min(b.y) - SUNK);
-        // What falls below it on the way does not push it down.
+        // Things that fall below it do not push it down.
         let ground = stage.scenery_bounds().map(|[low, _]| low.y - SUNK).into_iter().chain(framed).reduce(f64::min);
         Self { stage, camera, quality, ground }
     }
@@ -79,7 +80,7 @@ impl<'a> Renderer<'a> {
         self.draw(time, None).image
     }
 
-    /// A picture, of which pixels are taken from another one where nothing near has changed.
+    /// A picture; pixels are taken from another one if nothing near them has changed.
     fn draw(&self, time: f64, before: Option<&Frame>) -> Frame {
         let Quality { width, height, rays } = self.quality;
         let moment = self.stage.at(time);
@@ -104,7 +105,7 @@ impl<'a> Renderer<'a> {
         Frame { first, image: Image::new(width, height, finer) }
     }
 
-    /// Something for every pixel, row by row.
+    /// A value for every pixel, row by row.
     fn pixels<T: Send>(&self, make: impl Fn((u32, u32)) -> T + Sync) -> Vec<T> {
         let Quality { width, height, .. } = self.quality;
         (0..height * width).into_par_iter().with_min_len(256).map(|k| make((k % width, k / width))).collect()

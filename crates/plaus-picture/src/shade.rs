@@ -1,5 +1,5 @@
-//! How light comes back along a ray: a sun with a soft edge, a bright sky that crevices see less of, and highlights on
-//! what is glossy.
+//! The light that comes back along a ray: a sun with a soft edge, a bright sky that crevices see less of, and
+//! highlights on glossy things.
 
 use crate::bvh::{Hit, Ray};
 use crate::noise::Noise;

@@ -1,4 +1,4 @@
-//! An animation as balls and triangles: those of each body in its own frame, made once, and where bodies are at a time.
+//! An animation as balls and triangles: those of each body in its own frame, made once; and where bodies are at a time.
 
 use crate::bvh::{Bvh, Hit, Ray, Target};
 use glam::{DMat3, DVec3};
@@ -46,7 +46,7 @@ enum Solid {
     Triangle { corner: DVec3, edges: [DVec3; 2], normals: [DVec3; 3] },
 }
 
-/// Share of what lies behind that is seen through a thing; `None` where it is solid.
+/// Share of what lies behind that is seen through a thing; `None` if it is solid.
 pub(crate) fn clear(look: Look) -> Option<f64> {
     match look.material {
         Material::Glass => Some(0.9),

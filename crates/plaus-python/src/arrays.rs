@@ -1,11 +1,11 @@
-//! Numbers as numpy arrays: handed over without a copy, and not to be written to.
+//! Numbers as numpy arrays: handed over without a copy, and read-only.
 
 use crate::errors::RunError;
 use numpy::ndarray::{Array, Dimension, IntoDimension};
 use numpy::{Element, PyArray, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// An array of these numbers, whose memory it takes over.
+/// An array of these numbers, which takes over their memory.
 pub(crate) fn frozen<'py, T: Element, D: Dimension>(
     py: Python<'py>,
     shape: impl IntoDimension<Dim = D>,
@@ -18,7 +18,7 @@ pub(crate) fn frozen<'py, T: Element, D: Dimension>(
     Ok(array.into_any())
 }
 
-/// A float array of `N` dimensions as it was given: converted where it is a list, or of other numbers.
+/// A float array of `N` dimensions from an argument: lists and other kinds of numbers are converted.
 pub(crate) fn given<'py, const N: usize>(
     py: Python<'py>,
     name: &str,
@@ -33,7 +33,7 @@ pub(crate) fn given<'py, const N: usize>(
     let array = array.cast_into::<numpy::PyArrayDyn<f64>>()?;
     let shape: [usize; N] = array.shape().try_into().map_err(|_| {
         pyo3::exceptions::PyValueError::new_err(format!(
-            "{name}: an array of {N} dimensions is expected, this one has shape {:?}",
+            "{name}: an array of {N} dimensions is expected, but this one has shape {:?}",
             array.shape()
         ))
     })?;

@@ -1,4 +1,4 @@
-//! How likely what is demanded is: asked beside Python, as runs are sampled.
+//! Estimates of chances, made while Python waits, like runs.
 
 use crate::errors::of_run;
 use crate::scenario::Scenario;
@@ -12,11 +12,11 @@ use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What is known of an inquiry while it goes on.
+/// What is known of an estimate while it is being made.
 #[derive(Default)]
 struct Board {
     pulse: ChancePulse,
-    /// Batches that are made, and that are to be.
+    /// Batches made, and batches planned.
     batches: Mutex<(usize, usize)>,
 }
 
@@ -34,7 +34,7 @@ impl Watched for Board {
     }
 }
 
-/// What is known of a chance: what the command prints as JSON and in words, and its scenario: name and text in force.
+/// What is known of a chance: the command's output as JSON and in words, and its scenario's name and effective text.
 type Known = (String, String, String, String);
 
 fn known(chance: &Chance) -> Known {
@@ -43,7 +43,7 @@ fn known(chance: &Chance) -> Known {
     (json, plaus_cli::chance_in_words(chance), stored.file.clone(), stored.effective.clone())
 }
 
-/// Numbers of an inquiry: those that are not given are as the command has them.
+/// Numbers of an estimate; those not given are the command's defaults.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Numbers {
@@ -56,7 +56,7 @@ pub(crate) struct Numbers {
 }
 
 impl Numbers {
-    /// What is asked, in the ranges that the command has.
+    /// What is asked, checked against the command's ranges.
     fn asking(&self, mut asking: Asking) -> PyResult<Asking> {
         let Asking { batches, draws, splitting, stones, .. } = &mut asking;
         *batches = within("batches", self.batches, 2, 100_000)?.map_or(*batches, |number| number as u32);
@@ -89,7 +89,8 @@ fn method(name: &str) -> PyResult<Method> {
     }
 }
 
-/// Asks how likely what a scenario demands is; gives what is known, why it was stopped, and seconds.
+/// Estimates how likely it is that a scenario does what it asks for. Returns what is known, why it was stopped, and
+/// seconds.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, overrides, numbers, methods, out, threads, max_time, poll, interval))]
 #[allow(clippy::too_many_arguments, reason = "named in Python, which is the only caller")]
@@ -122,7 +123,7 @@ pub(crate) fn chance<'py>(
     Ok((known(&made), why, seconds))
 }
 
-/// Reads a file that an inquiry was kept in.
+/// Reads the file of an estimate.
 #[pyfunction]
 pub(crate) fn read_chance(py: Python<'_>, path: PathBuf) -> PyResult<Known> {
     match py.detach(|| read(&path)).map_err(|error| of_run(py, &error))? {

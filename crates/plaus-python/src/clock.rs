@@ -1,4 +1,4 @@
-//! The clock: for what is shown, and for when to stop; no result depends on it.
+//! The clock: it decides when to show progress, and when to stop; no result depends on it.
 
 use std::sync::LazyLock;
 use std::time::Instant;

@@ -11,13 +11,13 @@ create_exception!(
     plaus,
     ScenarioError,
     PyValueError,
-    "A scenario that cannot be sampled.\n\n`problems` lists all that is wrong; `message`, `key`, `line`, `column` and `hint` are those of the first."
+    "A scenario that cannot be sampled.\n\n`problems` lists everything that is wrong; `message`, `key`, `line`, `column` and `hint` are those of the first."
 );
 create_exception!(
     plaus,
     RunError,
     PyRuntimeError,
-    "A run that cannot be made, read or gone on with: what is wrong, and what can be done."
+    "A run that cannot be made, read or continued: what is wrong, and what can be done."
 );
 create_exception!(
     plaus,
@@ -30,17 +30,17 @@ create_exception!(
 #[pyclass(frozen, get_all, module = "plaus")]
 #[derive(Debug, Clone)]
 pub(crate) struct Problem {
-    /// The key to blame, dotted from the root; empty where the text is no TOML.
+    /// The key at fault, dotted from the root; empty if the text is not TOML.
     key: String,
-    /// What is wrong, with the allowed range where there is one.
+    /// What is wrong, with the allowed range if there is one.
     message: String,
-    /// What would mend it, if that is known.
+    /// How to mend it, if that is known.
     hint: Option<String>,
     /// Line in the text, from 1; None for overrides and for tables that the text lacks.
     line: Option<usize>,
     /// Column in characters, from 1.
     column: Option<usize>,
-    /// The override that said so, as `key=value`; None for the text itself.
+    /// The override at fault, as `key=value`; None for the text itself.
     said: Option<String>,
 }
 
@@ -67,7 +67,7 @@ impl From<&scenario::Problem> for Problem {
     }
 }
 
-/// The exception of a wrong scenario.
+/// The exception for a wrong scenario.
 pub(crate) fn of_scenario(py: Python<'_>, error: &scenario::ScenarioError) -> PyErr {
     let raised = ScenarioError::new_err(error.to_string());
     let problems: Vec<Problem> = error.problems.iter().map(Problem::from).collect();
@@ -88,7 +88,7 @@ pub(crate) fn of_scenario(py: Python<'_>, error: &scenario::ScenarioError) -> Py
     }
 }
 
-/// The exception of what went wrong with a run. What a callback raised is raised again, with a note that says where the
+/// The exception for an error of a run. An exception of a callback is raised again, with a note that says where the
 /// chain was.
 pub(crate) fn of_run(py: Python<'_>, error: &plaus_run::Error) -> PyErr {
     match error {
@@ -105,7 +105,7 @@ pub(crate) fn of_run(py: Python<'_>, error: &plaus_run::Error) -> PyErr {
     }
 }
 
-/// The exception of a chain that failed.
+/// The exception for a chain that failed.
 pub(crate) fn of_chain(py: Python<'_>, error: &ChainError, chain: Option<u32>, kept: &str) -> PyErr {
     let of = chain.map(|chain| format!("chain {chain}, ")).unwrap_or_default();
     if let ChainError::Model { iteration, step, source } = error {
@@ -113,7 +113,7 @@ pub(crate) fn of_chain(py: Python<'_>, error: &ChainError, chain: Option<u32>, k
         if let Some(raised) = source.downcast_ref::<Raised>() {
             let error = raised.error(py, &format!("raised in {of}iteration {iteration}{step}. {kept}"));
             let value = error.value(py);
-            // An exception that takes no attributes is raised without them.
+            // An exception that accepts no attributes is raised without them.
             let _ = value.setattr("plaus_chain", chain);
             let _ = value.setattr("plaus_iteration", *iteration);
             return error;
@@ -122,7 +122,7 @@ pub(crate) fn of_chain(py: Python<'_>, error: &ChainError, chain: Option<u32>, k
     RunError::new_err(format!("{of}{error}. {kept}"))
 }
 
-/// The exception of a model that failed outside of a chain.
+/// The exception for a model that failed outside a chain.
 pub(crate) fn of_model(py: Python<'_>, error: &ModelError, place: &str) -> PyErr {
     match error.downcast_ref::<Raised>() {
         Some(raised) => raised.error(py, place),
@@ -130,7 +130,7 @@ pub(crate) fn of_model(py: Python<'_>, error: &ModelError, place: &str) -> PyErr
     }
 }
 
-/// What a callback raised, on its way through the chain.
+/// An exception of a callback, on its way through the chain.
 #[derive(Debug)]
 pub(crate) struct Raised {
     error: PyErr,
@@ -140,7 +140,7 @@ pub(crate) struct Raised {
 }
 
 impl Raised {
-    /// Wraps what a callback raised when it was called with `given`.
+    /// Wraps the exception that a callback raised when called with `given`.
     pub(crate) fn wrap(py: Python<'_>, error: PyErr, given: Option<Py<PyAny>>) -> ModelError {
         let text = error.value(py).to_string();
         ModelError::new(Self { error, text, given })
@@ -155,7 +155,7 @@ impl Raised {
         {
             note += "; the exception's `plaus_given` is what the function was called with: call it again to see";
         }
-        // An exception that takes no notes is raised without one.
+        // An exception that accepts no notes is raised without one.
         let _ = value.call_method1("add_note", (note,));
         error
     }
@@ -169,7 +169,7 @@ impl fmt::Display for Raised {
 
 impl std::error::Error for Raised {}
 
-/// Room for `count` values, or MemoryError where there is none.
+/// Room for `count` values, or MemoryError if there is none.
 pub(crate) fn room<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
     let mut room = Vec::new();
     match room.try_reserve_exact(count) {
@@ -181,7 +181,7 @@ pub(crate) fn room<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
     }
 }
 
-/// The product of the sides of an array; MemoryError where no memory could hold it.
+/// The product of the sides of an array; MemoryError if no memory could hold it.
 pub(crate) fn volume(sides: &[usize]) -> PyResult<usize> {
     let product = sides.iter().try_fold(1_usize, |product, &side| product.checked_mul(side));
     product.ok_or_else(|| PyMemoryError::new_err(format!("an array of {sides:?} numbers is larger than any memory")))

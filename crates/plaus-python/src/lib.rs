@@ -1,4 +1,4 @@
-//! The extension module behind the Python package `plaus`: what Python calls, and nothing that Python can say as well.
+//! The extension module behind the Python package `plaus`: only what cannot be written in Python.
 //!
 //! The package itself, with its documentation, is in `python/plaus`.
 
@@ -54,13 +54,13 @@ mod _plaus {
     #[allow(non_upper_case_globals, reason = "the name in Python")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
 
-    /// Does what a command line says, its first word being the program's name, and gives the exit code.
+    /// Runs a command line, whose first word is the program's name, and returns the exit code.
     #[pyfunction]
     fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
         py.detach(|| plaus_cli::run(arguments))
     }
 
-    /// Does what a command line without the program's name says; what is wrong is raised.
+    /// Runs a command line that begins without the program's name; raises errors.
     #[pyfunction]
     fn call(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<()> {
         py.detach(|| plaus_cli::call(arguments)).map_err(PyValueError::new_err)

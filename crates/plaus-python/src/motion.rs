@@ -1,4 +1,4 @@
-//! Motions as arrays: poses at any time, exact between keys too, and impacts.
+//! Motions as arrays: poses, which are exact at any time, and impacts.
 
 use crate::arrays::frozen;
 use crate::errors::{RunError, room, volume};
@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Most poses of all bodies together in one answer: 1.1 GB.
+/// The most poses, over all bodies, in one answer: 1.1 GB.
 const MOST_POSES: usize = 20_000_000;
 
 /// The motion of all bodies of one sample.
@@ -25,7 +25,7 @@ fn frames(duration: f64, fps: f64) -> PyResult<Vec<f64>> {
     let last = (duration * fps).floor();
     if last >= MOST_POSES as f64 {
         return Err(PyValueError::new_err(format!(
-            "fps is {fps}: {last} frames are more than the {MOST_POSES} there may be"
+            "fps is {fps}: {last} frames are more than the limit of {MOST_POSES}"
         )));
     }
     Ok((0..=last as u64).map(|frame| frame as f64 / fps).collect())
@@ -37,7 +37,7 @@ impl Motion {
         let tracks = &self.0.tracks;
         let poses = volume(&[times.len(), tracks.len()])?;
         if poses > MOST_POSES {
-            return Err(PyValueError::new_err(format!("{poses} poses are more than the {MOST_POSES} there may be")));
+            return Err(PyValueError::new_err(format!("{poses} poses are more than the limit of {MOST_POSES}")));
         }
         let (mut positions, mut orientations) = (room(0.0, 3 * poses)?, room(0.0, 4 * poses)?);
         let of_body = times.iter().flat_map(|&time| tracks.iter().map(move |track| (track, time)));
@@ -73,7 +73,7 @@ impl Motion {
             None => frames(self.0.duration, fps)?,
         };
         if let Some(wrong) = times.iter().find(|time| !time.is_finite()) {
-            return Err(PyValueError::new_err(format!("{wrong} is no time: times are finite numbers of seconds")));
+            return Err(PyValueError::new_err(format!("{wrong} is not a time: times are finite numbers of seconds")));
         }
         let (positions, orientations) = py.detach(|| self.at(&times))?;
         let (frames, bodies) = (times.len(), self.0.tracks.len());
@@ -103,7 +103,7 @@ impl Motion {
         Ok(events)
     }
 
-    /// The motion whole, in closed-form pieces, as JSON.
+    /// The whole motion, in closed-form pieces, as JSON.
     fn to_json(&self) -> PyResult<String> {
         serde_json::to_string(&*self.0).map_err(|error| RunError::new_err(error.to_string()))
     }

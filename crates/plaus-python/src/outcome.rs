@@ -1,4 +1,4 @@
-//! What came of a candidate, as a function in Python sees it.
+//! The outcome of a candidate, as a function in Python sees it.
 
 use crate::errors::RunError;
 use crate::motion::Motion;
@@ -12,10 +12,10 @@ use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 
-/// Read by the process that is of the same program, and kept nowhere.
+/// Read only by a process of the same program, and never stored.
 pub(crate) const KIND: Kind = Kind::new(*b"outc", 1, "an outcome");
 
-/// What is known of a state without simulating it again.
+/// What is known of a state without another simulation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Numbers {
     pub(crate) values: Vec<f64>,
@@ -24,10 +24,10 @@ pub(crate) struct Numbers {
     pub(crate) satisfied: bool,
 }
 
-/// What came of a candidate: what a requirement judges.
+/// The outcome of a candidate, which a requirement judges.
 ///
-/// Numbers are at hand; motion and impacts are made when they are first asked for. A function that asked for them once
-/// gets them from the simulation that was run anyway, where the scene keeps it; else by simulating once more.
+/// Scalars are available at once; motion and impacts are made when they are first used. Once a function has used them,
+/// they come from the simulation that runs anyway, if the scene keeps it, and otherwise from a further simulation.
 #[pyclass(frozen, module = "plaus")]
 pub(crate) struct Outcome {
     scene: Arc<Stage>,
@@ -35,7 +35,7 @@ pub(crate) struct Outcome {
     names: Arc<[String]>,
     numbers: Numbers,
     motion: OnceLock<Motion>,
-    /// Told when the motion is asked for.
+    /// Set when the motion is asked for.
     looks: Option<Arc<AtomicBool>>,
 }
 
@@ -59,7 +59,7 @@ impl Outcome {
     /// What another process needs to make it again.
     ///
     /// # Errors
-    /// [`ModelError`] where the draw is too long.
+    /// [`ModelError`] if the draw is too long.
     pub(crate) fn pack(&self) -> Result<Vec<u8>, ModelError> {
         codec::encode(KIND, &(&self.numbers, &self.draw)).map_err(ModelError::new)
     }
@@ -72,7 +72,7 @@ impl Outcome {
 
 #[pymethods]
 impl Outcome {
-    /// The scene's numbers by name, as in the table of draws.
+    /// The scene's scalars by name, as in the table of draws.
     #[getter]
     fn scalars<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let scalars = PyDict::new(py);
@@ -80,12 +80,12 @@ impl Outcome {
         Ok(scalars)
     }
 
-    /// One of the scene's numbers: `outcome["rest_x"]`.
+    /// One of the scene's scalars: `outcome["rest_x"]`.
     fn __getitem__(&self, name: &str) -> PyResult<f64> {
         let found = self.names.iter().position(|known| known == name);
         found.map(|index| self.numbers.values[index]).ok_or_else(|| {
             let known = self.names.join(", ");
-            pyo3::exceptions::PyKeyError::new_err(format!("there is no number `{name}`: there are {known}"))
+            pyo3::exceptions::PyKeyError::new_err(format!("there is no scalar `{name}`: there are {known}"))
         })
     }
 
@@ -107,7 +107,7 @@ impl Outcome {
         self.numbers.satisfied
     }
 
-    /// The motion of all bodies, without what stands still around them.
+    /// The motion of all bodies, without the scenery.
     #[getter]
     fn motion(&self, py: Python<'_>) -> PyResult<Motion> {
         if let Some(looks) = &self.looks {
@@ -116,7 +116,7 @@ impl Outcome {
         if let Some(motion) = self.motion.get() {
             return Ok(motion.clone());
         }
-        // Other chains go on meanwhile.
+        // Other chains continue in the meantime.
         let made = py.detach(|| self.scene.motion(&self.draw)).map_err(|error| RunError::new_err(error.to_string()))?;
         Ok(self.motion.get_or_init(|| Motion(Arc::new(made))).clone())
     }
@@ -127,7 +127,7 @@ impl Outcome {
         Ok(self.motion(py)?.0.tracks.iter().map(|track| track.name.clone()).collect())
     }
 
-    /// Where each body is at the end, by name: (x, y, z) in m, y up.
+    /// Position of each body at the end, by name: (x, y, z) in m, y up.
     #[getter]
     fn rest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let motion = self.motion(py)?;
@@ -138,7 +138,7 @@ impl Outcome {
         Ok(rest)
     }
 
-    /// How each body is turned at the end, by name: a unit quaternion (x, y, z, w) from its axes to the world's.
+    /// Orientation of each body at the end, by name: a unit quaternion (x, y, z, w) from its axes to the world's.
     #[getter]
     fn rest_orientation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let motion = self.motion(py)?;

@@ -1,5 +1,5 @@
-//! Outcomes on their way to another process, which asks a requirement about them: numbers and draw, from which all else
-//! follows.
+//! Outcomes on their way to another process, which evaluates a requirement for them: scalars and draw, from which
+//! everything else follows.
 
 use crate::errors::RunError;
 use crate::outcome::{KIND, Numbers, Outcome};

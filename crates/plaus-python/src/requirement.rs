@@ -23,7 +23,7 @@ pub(crate) struct Asked {
     calls: AtomicU64,
     nanoseconds: AtomicU64,
     waited: AtomicU64,
-    /// Whether the function has ever asked for a motion: then motions are kept for it.
+    /// Whether the function has ever used a motion: if so, motions are kept for it.
     looks: Arc<AtomicBool>,
 }
 
@@ -31,7 +31,7 @@ pub(crate) struct Asked {
 impl Asked {
     #[new]
     fn new(function: Py<PyAny>, name: String, most: Option<f64>) -> PyResult<Self> {
-        let wrong = |_| PyValueError::new_err("most: a number that no log potential exceeds, or None");
+        let wrong = |_| PyValueError::new_err("most: expected a number that the log potential never exceeds, or None");
         let most = most.map(LogPotential::new).transpose().map_err(wrong)?;
         let zero = || AtomicU64::new(0);
         Ok(Self { function, name, most, calls: zero(), nanoseconds: zero(), waited: zero(), looks: Arc::default() })
@@ -46,7 +46,7 @@ impl Asked {
 }
 
 impl Asked {
-    /// The mark in what the function answered: `(log potential, met)`, or a truth value that stands for (0, true) and
+    /// The mark in the function's answer: `(log potential, met)`, or a truth value that stands for (0, true) and
     /// (−∞, false).
     fn mark(&self, answer: &Bound<'_, PyAny>) -> PyResult<Mark> {
         let name = &self.name;
@@ -67,13 +67,13 @@ impl Asked {
         let met = pair.get_item(1)?.is_truthy()?;
         let log = LogPotential::new(log).map_err(|_| {
             PyValueError::new_err(format!(
-                "{name} answered a log potential of {log}: a number below ∞ is expected, or -inf"
+                "{name} answered a log potential of {log}: a finite number is expected, or -inf"
             ))
         })?;
         Ok(Mark { log, met })
     }
 
-    /// Asks the function, here or in another process.
+    /// Calls the function, here or in another process.
     fn ask(&self, outcome: Outcome, others: Option<&Py<PyAny>>) -> Result<Mark, ModelError> {
         let asked = now();
         let spent = |seconds: f64| (seconds * 1e9) as u64;
@@ -107,7 +107,7 @@ struct OfScene {
 }
 
 impl OfScene {
-    /// Whether the function looks at motions, here: another process simulates for itself.
+    /// Whether to keep motions for the function: not if it runs in another process, which simulates for itself.
     fn keeps(&self) -> bool {
         self.by.others.is_none() && self.by.asked.get().looks.load(Relaxed)
     }

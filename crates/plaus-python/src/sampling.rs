@@ -1,4 +1,4 @@
-//! Sampling: what is known of a run while it goes on, and where it is kept.
+//! Sampling: the progress of a run, and where the run is kept.
 
 use crate::clock::now;
 use crate::requirement::{Asked, ByPython};
@@ -13,15 +13,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What is known of a run while it goes on.
+/// The progress of a run.
 #[derive(Default)]
 struct Board {
     pulse: Arc<Pulse>,
-    /// The plan, and iterations of each chain that were done before.
+    /// The plan, and the iterations that each chain had done before.
     plan: Mutex<Option<(Plan, u64)>>,
 }
 
-/// Makes a run durable about once a second.
+/// Saves a run about once a second.
 struct Watching {
     board: Arc<Board>,
     checkpoint: f64,
@@ -140,7 +140,7 @@ impl Watched for Board {
     }
 }
 
-/// Samples into `folder`, or goes on with the run there where `scenario` is None; gives how it ended, and seconds.
+/// Samples into `folder`, or continues the run there if `scenario` is None; returns how it ended, and seconds.
 #[pyfunction]
 #[pyo3(signature = (
     scenario, folder, *, overrides, solutions, iterations, threads, fleeting, max_time, asked, others, poll, interval

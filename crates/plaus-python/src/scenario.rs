@@ -20,16 +20,15 @@ const LONGEST: usize = 16 << 20;
 
 /// A scenario: a world, what must happen in it, and how it is sampled.
 ///
-/// Made by `from_file`, `from_text`, `from_dict` or `default`, which read and check it: what is wrong is raised as
-/// `ScenarioError`, all of it at once.
-/// A scenario never changes; `set` gives another one.
+/// `from_file`, `from_text`, `from_dict` and `default` read and check it. They raise one `ScenarioError` with
+/// everything that is wrong. A scenario never changes; `set` returns another one.
 #[pyclass(frozen, module = "plaus")]
 #[derive(Debug, Clone)]
 pub(crate) struct Scenario {
     pub(crate) recipe: Recipe,
-    /// What it is called in messages.
+    /// Its name in messages.
     shown: String,
-    /// All files that were read with it: what is set is read anew with them.
+    /// All files that were read with it. Changed keys are checked with them again.
     files: Assets,
 }
 
@@ -53,7 +52,7 @@ impl Scenario {
         Ok(Self { recipe, shown, files: seen.into_inner() })
     }
 
-    /// The same with more overrides, in their order.
+    /// The same scenario with more overrides, in order.
     pub(crate) fn with(&self, py: Python<'_>, more: Vec<String>) -> PyResult<Self> {
         let Recipe { file, text, overrides, .. } = &self.recipe;
         let all = overrides.iter().cloned().chain(more).collect();
@@ -62,7 +61,7 @@ impl Scenario {
 }
 
 impl Scenario {
-    /// What so many draws from the prior meet; Ctrl-C ends it.
+    /// Tallies what this many draws from the prior meet; Ctrl-C ends it.
     fn drawn(&self, py: Python<'_>, draws: u64) -> PyResult<Tally> {
         let stopped = Arc::new(AtomicBool::new(false));
         let (seed, scenario) = (self.recipe.scenario.sampler.seed, self.recipe.scenario.clone());
@@ -89,7 +88,7 @@ impl Watched for Stopped {
     }
 }
 
-/// What a scenario is pickled as: its text, its name, what was set since.
+/// The pickled form of a scenario: its text, its name, the keys set since, and its files.
 type Parts = (String, String, Vec<String>, Vec<(String, Vec<u8>)>);
 
 #[pymethods]
@@ -100,21 +99,23 @@ impl Scenario {
         let shown = path.display().to_string();
         let bytes = std::fs::read(&path)?;
         if bytes.len() > LONGEST {
-            return Err(PyValueError::new_err(format!("{shown}: longer than {LONGEST} bytes, which no scenario is")));
+            return Err(PyValueError::new_err(format!(
+                "{shown}: longer than {LONGEST} bytes, the most that a scenario may have"
+            )));
         }
         let text = Wrong::decode(&shown, bytes).map_err(|error| of_scenario(py, &error))?;
         let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         Self::read(py, (shown, file), text, Vec::new(), &ScenarioFolder::of(&path))
     }
 
-    /// Reads the text of a scenario file; `name` is what it is called in messages and in runs.
+    /// Reads the text of a scenario file; `name` is its name in messages and in runs.
     #[staticmethod]
     #[pyo3(signature = (text, name = "scenario.toml"))]
     fn from_text(py: Python<'_>, text: String, name: &str) -> PyResult<Self> {
         Self::read(py, (name.to_owned(), name.to_owned()), text, Vec::new(), &NoFiles)
     }
 
-    /// A scenario from nested dictionaries, as the tables of a file are: `{"world": {"ball2d": {"target": 2}}}`.
+    /// A scenario from nested dictionaries, like the tables of a file: `{"world": {"ball2d": {"target": 2}}}`.
     #[staticmethod]
     #[pyo3(signature = (tables, name = "scenario.toml"))]
     fn from_dict(py: Python<'_>, tables: &Bound<'_, PyDict>, name: &str) -> PyResult<Self> {
@@ -133,9 +134,8 @@ impl Scenario {
         Self::read(py, (name.clone(), name), scenario.to_toml(), Vec::new(), &NoFiles)
     }
 
-    /// The same with some keys changed: `set("sigma_d=0.05")` as on the command line, or `set(sigma_d=0.05)`, or
-    /// `set(**{"weights.aim": 2})`.
-    /// A key is a full dotted name or an end of it that no other key has.
+    /// The same scenario with some keys changed: `set("sigma_d=0.05")` as on the command line, or
+    /// `set(sigma_d=0.05)`, or `set(**{"weights.aim": 2})`. A key is a full dotted name, or a unique ending of it.
     #[pyo3(signature = (*overrides, **keys))]
     fn set(&self, py: Python<'_>, overrides: Vec<String>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let mut more = overrides;
@@ -146,12 +146,11 @@ impl Scenario {
         self.with(py, more)
     }
 
-    /// Every key with the value in force, defaults too, as nested dictionaries. What is wrong was raised when the
-    /// scenario was made.
+    /// Every key with its value, including defaults, as nested dictionaries. Errors were raised when the scenario was
+    /// made.
     ///
-    /// With `draws`: so many animations are drawn from the prior, and what comes back is how many of them met each
-    /// thing that is asked, the best margin of each, and pairs that were never met together: what `plaus check
-    /// --draws N --json` prints.
+    /// With `draws`: draws this many animations from the prior. Returns how many of them met each requirement, the
+    /// best margin of each, and pairs that were never met together: what `plaus check --draws N --json` prints.
     #[pyo3(signature = (*, draws = None))]
     fn check<'py>(&self, py: Python<'py>, draws: Option<u64>) -> PyResult<Bound<'py, PyAny>> {
         let Some(draws) = draws else {
@@ -165,7 +164,7 @@ impl Scenario {
         py.import("json")?.call_method1("loads", (plaus_cli::tally_to_json(&tally).to_string(),))
     }
 
-    /// Every key with the value in force, as the text of a scenario file.
+    /// Every key with its value, as the text of a scenario file.
     #[getter]
     fn toml(&self) -> String {
         self.recipe.scenario.to_toml()
@@ -177,13 +176,13 @@ impl Scenario {
         self.recipe.scenario.world.name()
     }
 
-    /// The text that it was read from, without what was set since.
+    /// The text that it was read from, without the keys set since.
     #[getter]
     fn text(&self) -> &str {
         &self.recipe.text
     }
 
-    /// What the text is called.
+    /// The name of the text.
     #[getter]
     fn name(&self) -> &str {
         &self.recipe.file
@@ -200,7 +199,7 @@ impl Scenario {
     }
 
     fn __hash__(&self) -> u64 {
-        // FNV-1a over the whole text: equal scenarios have equal texts.
+        // FNV-1a of the whole text: equal scenarios have equal texts.
         self.toml()
             .bytes()
             .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
@@ -219,7 +218,7 @@ impl Scenario {
     }
 }
 
-/// A scenario as it was pickled, with the files that it names.
+/// Restores a pickled scenario, with the files that it names.
 #[pyfunction]
 #[pyo3(signature = (text, name, overrides, files = Vec::new()))]
 pub(crate) fn _scenario(
@@ -244,7 +243,7 @@ fn table(tables: &Bound<'_, PyDict>, within: &str) -> PyResult<Table> {
     Ok(made)
 }
 
-/// A TOML value of a Python one; `path` is where it stands.
+/// The TOML value for a Python one; `path` is its place.
 fn value(item: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
     if item.is_instance_of::<PyBool>() {
         Ok(Value::Boolean(item.extract()?))
@@ -267,12 +266,12 @@ fn value(item: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
     } else {
         let kind = item.get_type().name()?.to_string();
         Err(PyTypeError::new_err(format!(
-            "{path}: a {kind} is no value of a scenario: numbers, strings, booleans, lists, dictionaries are"
+            "{path}: a scenario cannot hold a {kind}: use numbers, strings, booleans, lists and dictionaries"
         )))
     }
 }
 
-/// A Python value of a TOML one.
+/// The Python value for a TOML one.
 fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
     Ok(match value {
         Value::String(text) => PyString::new(py, text).into_any(),

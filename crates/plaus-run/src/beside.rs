@@ -1,14 +1,14 @@
-//! A run's chains beside exact draws of its target, made from the prior by rejection: what chains that all missed the
-//! same thing cannot see in each other.
+//! Compares a run's chains with exact draws of its target, made from the prior by rejection. These show what all chains
+//! missed, which chains cannot see in each other.
 //!
-//! Chains that agree may all be at the same part of what they should sample. Draws of the prior know nothing of the
-//! chains. Each that is kept is an independent draw of the target, so the share of them between two values of a
-//! variable is that of the chains there, but for chance. Cells between such values, each with an equal share of the
-//! kept draws, are held against the chains by Fisher's exact test, the chains taken for as many draws as their
-//! effective sample size. A cell in which chains hardly ever were, though draws were kept there, is something that they
-//! missed.
+//! Chains that agree may all be in the same part of what they should sample. Draws from the prior are independent of
+//! the chains. Each one that is kept is an independent draw of the target, so, but for chance, the kept draws and the
+//! chains have the same share between any two values of a variable. Cells between such values, each with an equal share
+//! of the kept draws, are compared with the chains by Fisher's exact test, in which the chains count as many draws as
+//! their effective sample size. If chains were hardly ever in a cell although draws were kept there, they missed
+//! something.
 //!
-//! It sees what shows in one variable or outcome by itself and holds more than a few of the kept draws. Where the prior
+//! This finds what shows in a single variable or outcome, and holds more than a few of the kept draws. If the prior
 //! hardly ever gets there, nothing is kept, and nothing is known.
 
 use crate::diagnosis::{Diagnosis, columns};
@@ -21,43 +21,43 @@ use serde::Serialize;
 
 /// Most draws; there are no more than the run has iterations.
 const MOST: u64 = 40_000;
-/// Numbers of a state times draws: bounds the time where states are large.
+/// Most numbers in total, of a state times draws: bounds the time for large states.
 const NUMBERS: u64 = 80_000;
-/// Draws between two looks at how many were kept.
+/// Draws between two checks of how many were kept.
 const AT_A_TIME: u64 = 64;
-/// As many kept draws are enough: a cell then holds a dozen.
+/// This many kept draws are enough: a cell then holds a dozen.
 const ENOUGH: usize = 200;
-/// Fewer say nothing: even if all of them lay where no chain ever was, it might be one cell of one variable.
+/// Fewer kept draws say nothing: even if all of them lay where no chain ever was, it might be one cell of one variable.
 const FEWEST: usize = 8;
 /// Most cells, and fewest kept draws in each.
 const CELLS: usize = 16;
 const IN_CELL: usize = 4;
-/// One in so many right runs is blamed.
+/// Share of correct runs that are blamed by chance.
 const ALARM: f64 = 1e-3;
 
-/// What exact draws say of a run.
+/// What exact draws show about a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Beside {
-    /// Draws of the prior that were made.
+    /// Number of draws made from the prior.
     pub draws: u64,
-    /// Those that were kept: independent draws of the target.
+    /// Number of those that were kept: independent draws of the target.
     pub kept: u64,
-    /// Where the chains hardly ever were, though more draws were kept there than chance explains: the worst such place.
+    /// The worst place where chains hardly ever were, although more draws were kept there than chance explains.
     pub missed: Option<Missed>,
 }
 
-/// A part of what should be sampled that chains hardly know.
+/// A part of what should be sampled that chains hardly visited.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Missed {
-    /// The variable or outcome it shows in.
+    /// The variable or outcome that shows it.
     pub scalar: String,
-    /// Its values there: above the first, and up to the second; `None` where there is no such end.
+    /// Its values there: above the first, up to the second; `None` if there is no such end.
     pub between: [Option<f64>; 2],
     /// Share of the kept draws there.
     pub kept: f64,
     /// Share of the chains' draws there.
     pub chains: f64,
-    /// How likely so large a difference is by chance, over all that was looked at.
+    /// The probability of so large a difference by chance, over everything tested.
     pub p: f64,
 }
 
@@ -68,12 +68,12 @@ impl Beside {
         self.kept >= FEWEST as u64
     }
 
-    /// Makes draws of the prior and holds the run's chains against them. `None` where there is nothing to be held
-    /// against them: the draws are independent ones already, moves are not exact, or a program required something that
-    /// the folder does not hold.
+    /// Draws from the prior and compares the run's chains with the kept draws. `None` if a comparison is impossible:
+    /// the run's draws are already independent, its moves are not exact, or it has a requirement in a program that the
+    /// folder does not hold.
     ///
     /// # Errors
-    /// [`Error`] where a draw fails, or the records are damaged.
+    /// [`Error`] if a draw fails, or the records are damaged.
     pub fn of(run: &RunReader<'_>, diagnosis: &Diagnosis) -> Result<Option<Self>, Error> {
         let manifest = run.run().manifest();
         if manifest.is_independent() || !manifest.exact || manifest.requirement.is_some() || diagnosis.draws == 0 {
@@ -118,14 +118,14 @@ impl Beside {
     }
 }
 
-/// The cell in which kept draws exceed those of chains by most, with the chance of that cell alone.
+/// The cell in which kept draws exceed those of chains by most, with the probability for that cell alone.
 fn worst(name: &str, exact: &mut [f64], mut chains: Vec<f64>, ess: f64, cells: usize) -> Option<Missed> {
     if exact.iter().chain(&chains).any(|value| !value.is_finite()) {
         return None;
     }
     exact.sort_unstable_by(f64::total_cmp);
     chains.sort_unstable_by(f64::total_cmp);
-    // Ends of cells are values between kept draws that differ; the outermost are open.
+    // Cells end at values between kept draws that differ; the outermost ends are open.
     let mut ends: Vec<f64> = (1..cells).map(|cell| exact[cell * exact.len() / cells - 1]).collect();
     ends.dedup();
     ends.retain(|end| end < &exact[exact.len() - 1]);
@@ -145,7 +145,7 @@ fn worst(name: &str, exact: &mut [f64], mut chains: Vec<f64>, ess: f64, cells: u
     ends.windows(2).map(cell).reduce(|a, b| if b.p < a.p { b } else { a })
 }
 
-/// Fisher's exact test, one-sided: how likely it is that of `here + there` hits at least `here` are among the first
+/// Fisher's exact test, one-sided: the probability that, of `here + there` hits, at least `here` are among the first
 /// `n` of `n + m` draws.
 fn fisher(here: usize, n: usize, there: usize, m: usize) -> f64 {
     let hits = here + there;

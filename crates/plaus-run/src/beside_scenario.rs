@@ -1,4 +1,4 @@
-//! Files that lie beside a scenario.
+//! Files beside a scenario.
 
 use plaus_scenes::Files;
 use std::fs::File;
@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The folder of a scenario, as [`Scenario::read_with`](plaus_scenes::Scenario::read_with) asks for it.
+/// The folder of a scenario, from which [`Scenario::read_with`](plaus_scenes::Scenario::read_with) reads files.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScenarioFolder(PathBuf);
 
@@ -20,24 +20,24 @@ impl ScenarioFolder {
 
 impl Files for ScenarioFolder {
     fn bytes(&self, path: &str, anywhere: bool) -> Result<Arc<[u8]>, String> {
-        let cannot = |error: std::io::Error| format!("it cannot be read: {error}");
+        let cannot = |error: std::io::Error| format!("cannot read it: {error}");
         let path = self.0.join(path);
-        // Where links lead counts, not what they are called.
+        // The target of a link counts, not its name.
         let whole = path.canonicalize().map_err(cannot)?;
         if !anywhere && !whole.starts_with(self.0.canonicalize().map_err(cannot)?) {
             let outside = whole.display();
             return Err(format!(
-                "it leads out of the scenario's folder, to {outside}: allow that by `anywhere = true`"
+                "it leads out of the scenario's folder, to {outside}: to allow that, set `anywhere = true`"
             ));
         }
         let file = File::open(&whole).map_err(cannot)?;
         let about = file.metadata().map_err(cannot)?;
         let most = plaus_scenes::files::MOST_BYTES as u64;
         if !about.is_file() {
-            return Err("it is no file".into());
+            return Err("it is not a file".into());
         }
         if about.len() > most {
-            return Err(format!("it has {} bytes: at most {most} are read", about.len()));
+            return Err(format!("it has {} bytes: at most {most} are allowed", about.len()));
         }
         let mut bytes = Vec::with_capacity(about.len() as usize);
         file.take(most).read_to_end(&mut bytes).map_err(cannot)?;
@@ -59,8 +59,8 @@ mod tests {
         fs::write(folder.join("shapes/cup.obj"), "cup").unwrap();
         let files = ScenarioFolder::of(&folder.join("world.toml"));
         assert_eq!(&*files.bytes("shapes/cup.obj", false).unwrap(), b"cup");
-        assert!(files.bytes("shapes", false).unwrap_err().contains("no file"));
-        assert!(files.bytes("cup.obj", false).unwrap_err().contains("cannot be read"));
+        assert!(files.bytes("shapes", false).unwrap_err().contains("not a file"));
+        assert!(files.bytes("cup.obj", false).unwrap_err().contains("cannot read"));
         assert!(files.bytes("../secret.obj", false).unwrap_err().contains("leads out"));
         assert_eq!(&*files.bytes("../secret.obj", true).unwrap(), b"secret");
         #[cfg(unix)]

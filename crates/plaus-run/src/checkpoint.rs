@@ -1,9 +1,9 @@
-//! Checkpoints: one a chain, replaced all together.
+//! Checkpoints: one for each chain, all replaced together.
 //!
-//! A run is resumed with all chains at one iteration, but files can only be replaced one by one. So all next
-//! checkpoints are written beside the valid ones first; only when they are on the disk does each take its place. A run
-//! that dies while they do has some chains' new checkpoints in place and all others' beside them: [`settle`] finishes
-//! the replacement.
+//! A run is resumed with all chains at one iteration, but files can only be replaced one by one. So all new checkpoints
+//! are first written beside the valid ones. Only when all are on the disk does each take its place. If the process dies
+//! during that, some new checkpoints are in place, and the others are beside the old ones: [`settle`] finishes the
+//! replacement.
 
 use crate::codec::{self, FrameError, FrameProblem, Frames, Kind};
 use crate::disk::{Disk, for_each};
@@ -19,24 +19,24 @@ use std::path::Path;
 
 const KIND: Kind = Kind::new(*b"chkp", 4, "a checkpoint of a chain");
 
-/// Where a chain can go on from.
+/// The state from which a chain can continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint<D, O> {
-    /// The run, see the records.
+    /// The run: see the records.
     pub run: u64,
     /// The chain.
     pub chain: u32,
-    /// Length of the chain's records, in bytes, as of this checkpoint: what follows is not valid.
+    /// Length of the chain's records, in bytes, at this checkpoint: anything after it is not valid.
     pub records: u64,
-    /// All that the chain's future follows from.
+    /// Everything that determines the chain's future.
     pub snapshot: Snapshot<D, O>,
 }
 
 impl<D: Serialize + DeserializeOwned, O: Serialize + DeserializeOwned> Checkpoint<D, O> {
-    /// Reads a chain's checkpoint; `None` where it has none yet.
+    /// Reads a chain's checkpoint; `None` if it has none yet.
     ///
     /// # Errors
-    /// [`RunFileError`] where it is damaged or belongs elsewhere.
+    /// [`RunFileError`] if it is damaged or belongs elsewhere.
     pub fn read(path: &Path, run: u64, chain: u32) -> Result<Option<Self>, RunFileError> {
         let file = match File::open(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -58,10 +58,10 @@ impl<D: Serialize + DeserializeOwned, O: Serialize + DeserializeOwned> Checkpoin
     }
 }
 
-/// What a stored checkpoint begins with: run, chain, bytes of records, and one past the last iteration.
+/// The beginning of a stored checkpoint: run, chain, bytes of records, and one past the last iteration.
 type Head = (u64, u32, u64, u64);
 
-/// A chain's checkpoint as it is stored, of which only what it begins with is looked at.
+/// A chain's checkpoint in stored form; only its beginning is read.
 pub(crate) struct Stored {
     /// Length of the chain's records, in bytes.
     pub(crate) records: u64,
@@ -72,10 +72,10 @@ pub(crate) struct Stored {
 }
 
 impl Stored {
-    /// Reads a chain's checkpoint; `None` where it has none yet.
+    /// Reads a chain's checkpoint; `None` if it has none yet.
     ///
     /// # Errors
-    /// [`RunFileError`] where it is damaged or belongs elsewhere.
+    /// [`RunFileError`] if it is damaged or belongs elsewhere.
     pub(crate) fn read(path: &Path, run: u64, chain: u32) -> Result<Option<Self>, RunFileError> {
         let bytes = match std::fs::read(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -91,17 +91,17 @@ impl Stored {
         let (of, its_chain, records, end_iteration) =
             head.map_err(|problem| damage(FrameError { offset: 0, problem }))?;
         if (of, its_chain, whole) != (run, chain, true) {
-            let message = format!("this is no checkpoint of chain {chain} of this run");
+            let message = format!("this is not a checkpoint of chain {chain} of this run");
             return Err(RunFileError::new(path, RunFileProblem::Mixed(message)));
         }
         Ok(Some(Self { records, end_iteration, bytes }))
     }
 }
 
-/// A checkpoint as it is stored.
+/// A checkpoint in stored form.
 ///
 /// # Errors
-/// [`RunFileError`] where it is too long.
+/// [`RunFileError`] if it is too long.
 pub(crate) fn encode<D: Serialize, O: Serialize>(
     path: &Path,
     checkpoint: &Checkpoint<D, O>,
@@ -109,11 +109,10 @@ pub(crate) fn encode<D: Serialize, O: Serialize>(
     codec::encode(KIND, checkpoint).map_err(|error| RunFileError::new(path, error.into()))
 }
 
-/// Puts checkpoints of all chains in place of the ones before, such that at any moment either all old or all new ones
-/// can be had.
+/// Replaces the checkpoints of all chains, so that at any moment either all old or all new ones can be read.
 ///
 /// # Errors
-/// [`RunFileError`] where the disk refuses; what was valid before then still is.
+/// [`RunFileError`] if the disk refuses; what was valid before then still is.
 pub fn replace<D: Serialize + Sync, O: Serialize + Sync>(
     folder: &Folder,
     disk: &dyn Disk,
@@ -127,7 +126,7 @@ pub fn replace<D: Serialize + Sync, O: Serialize + Sync>(
     let sync = |()| disk.sync(folder.path()).map_err(RunFileError::io(folder.path(), "write"));
     if let Err(error) = written.and_then(sync) {
         for checkpoint in checkpoints {
-            let _ = disk.remove(&folder.next_checkpoint(checkpoint.chain)); // gives a full disk back what it can
+            let _ = disk.remove(&folder.next_checkpoint(checkpoint.chain)); // frees what it can on a full disk
         }
         return Err(error);
     }
@@ -138,7 +137,7 @@ pub fn replace<D: Serialize + Sync, O: Serialize + Sync>(
 /// where there is none yet.
 ///
 /// # Errors
-/// [`RunFileError`] where a checkpoint is damaged, or they do not fit each other.
+/// [`RunFileError`] if a checkpoint is damaged, or they do not fit each other.
 pub fn settle<D, O>(
     folder: &Folder,
     disk: &dyn Disk,

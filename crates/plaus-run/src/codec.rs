@@ -11,8 +11,8 @@
 //! | … | payload: bincode 2, standard configuration (little-endian, variable-length whole numbers) |
 //! | 32 | BLAKE3 of everything before |
 //!
-//! A file is one frame, or frames one after the other. No other module of the project names bincode: its bytes are
-//! frozen and specified, but nobody maintains it any more, so that replacing it must touch one file.
+//! A file is one frame, or frames one after the other. No other module of the project uses bincode. Its bytes are
+//! frozen and specified, but it is no longer maintained, so only one file should have to change to replace it.
 //!
 //! ```
 //! use plaus_run::codec::{Kind, decode, encode};
@@ -40,7 +40,7 @@ use std::marker::PhantomData;
 const MAGIC: [u8; 8] = *b"\x89plaus\r\n";
 const HEADER: usize = 24;
 const TRAILER: usize = 32;
-/// Longest payload, in bytes. Hostile lengths end here instead of in an allocation.
+/// Longest payload, in bytes. Hostile lengths fail here instead of in an allocation.
 pub const LONGEST_PAYLOAD: usize = 1 << 30;
 
 const CONFIG: Configuration<LittleEndian, Varint, Limit<LONGEST_PAYLOAD>> =
@@ -65,7 +65,7 @@ impl Kind {
 /// Appends a frame that holds `value` to `out`. On an error `out` is as before.
 ///
 /// # Errors
-/// [`EncodeError`] where the value is too long or cannot be serialised.
+/// [`EncodeError`] if the value is too long or cannot be serialised.
 pub fn append<T: Serialize + ?Sized>(kind: Kind, value: &T, out: &mut Vec<u8>) -> Result<(), EncodeError> {
     let start = out.len();
     out.extend_from_slice(&MAGIC);
@@ -105,15 +105,15 @@ pub fn encode<T: Serialize + ?Sized>(kind: Kind, value: &T) -> Result<Vec<u8>, E
 /// The value of a file of one frame.
 ///
 /// # Errors
-/// [`FrameError`] where `bytes` are anything but one whole frame of `kind`.
+/// [`FrameError`] if `bytes` are anything but one whole frame of `kind`.
 pub fn decode<T: DeserializeOwned>(kind: Kind, bytes: &[u8]) -> Result<T, FrameError> {
     decode_from(kind, bytes, bytes.len() as u64)
 }
 
-/// The value of a file of one frame, of which no more is read than the frame claims.
+/// The value of a file of one frame; reads no more than the frame's stated length.
 ///
 /// # Errors
-/// As [`decode`], and where the operating system refuses.
+/// As [`decode`], and if the operating system refuses.
 pub fn decode_file<T: DeserializeOwned>(kind: Kind, file: File) -> Result<T, FrameError> {
     let length = file.metadata().map_err(|error| FrameError { offset: 0, problem: error.into() })?.len();
     decode_from(kind, file, length)
@@ -129,7 +129,7 @@ fn decode_from<T: DeserializeOwned>(kind: Kind, input: impl Read, length: u64) -
     }
 }
 
-/// Bytes that are asked of a file at a time, unless a frame is longer.
+/// Bytes read from a file at a time, unless a frame is longer.
 const AT_A_TIME: u64 = 1 << 18;
 
 /// The values of a file of frames of one kind, in order. After an error it ends.
@@ -137,11 +137,11 @@ const AT_A_TIME: u64 = 1 << 18;
 pub struct Frames<T, R> {
     kind: Kind,
     input: R,
-    /// Where the next frame begins in the file, and in the window.
+    /// Offset of the next frame in the file, and in the window.
     offset: u64,
     next: usize,
     end: u64,
-    /// What was read of the file and is not yet forgotten.
+    /// Bytes read from the file and still needed.
     window: Vec<u8>,
     value: PhantomData<T>,
 }
@@ -152,13 +152,12 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
         Self { kind, input, offset: 0, next: 0, end: length, window: Vec::new(), value: PhantomData }
     }
 
-    /// Where the next frame begins; after a damaged one, where that begins.
+    /// Offset of the next frame; after a damaged frame, the offset of that frame.
     pub fn offset(&self) -> u64 {
         self.offset
     }
 
-    /// The next frame's bytes, with its checksum found right but its value not looked at; `None` at the end. After an
-    /// error it ends.
+    /// The next frame's bytes, with a verified checksum but an unread value; `None` at the end. After an error it ends.
     pub fn next_raw(&mut self) -> Option<Result<&[u8], FrameError>> {
         if self.offset == self.end {
             return None;
@@ -173,8 +172,8 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
         }
     }
 
-    /// The bytes of the frames that were given last, one behind the other; `None` while the next is at hand as well, so
-    /// that they are handed on in large parts: asked after every frame, all frames are in one part.
+    /// The bytes of the frames given last, one after the other; `None` while the next frame is also in memory, so that
+    /// frames are passed on in large parts. If it is called after every frame, the parts contain all frames.
     pub fn passed(&self) -> Option<&[u8]> {
         let present = &self.window[self.next..];
         let at_hand = self.check_header(present).is_ok_and(|length| frame_of(length) <= present.len() as u64);
@@ -191,7 +190,7 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
         value
     }
 
-    /// Brings the next frame into the window, checks it, and goes past it: its length.
+    /// Brings the next frame into the window, verifies it, and moves past it; gives its length.
     fn read_raw(&mut self) -> Result<usize, FrameProblem> {
         let present = self.end - self.offset;
         let truncated = |needed| Err(FrameProblem::Truncated { needed, present });
@@ -204,7 +203,7 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
         if present < length {
             return truncated(length);
         }
-        let length = length as usize; // no longer than LONGEST_PAYLOAD and a little
+        let length = length as usize; // at most LONGEST_PAYLOAD and a little
         self.fill(length)?;
         let (content, trailer) = self.window[self.next..self.next + length].split_at(length - TRAILER);
         if blake3::hash(content).as_bytes() != trailer {
@@ -215,8 +214,8 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
         Ok(length)
     }
 
-    /// Sees to it that so many bytes are in the window behind where the next frame begins. It grows only by what is
-    /// really there.
+    /// Makes sure that `bytes` bytes after the start of the next frame are in the window, which grows only by bytes
+    /// that exist.
     fn fill(&mut self, bytes: usize) -> Result<(), FrameProblem> {
         if self.window.len() - self.next >= bytes {
             return Ok(());
@@ -259,7 +258,7 @@ impl<T: DeserializeOwned, R: Read> Frames<T, R> {
     }
 }
 
-/// The length of a frame whose payload is so long.
+/// The length of a frame with this length of payload.
 fn frame_of(payload: u64) -> u64 {
     (HEADER + TRAILER) as u64 + payload
 }
@@ -279,11 +278,11 @@ impl<T: DeserializeOwned, R: Read> Iterator for Frames<T, R> {
     }
 }
 
-/// What a frame's value begins with, where its first fields are those of `T`. The frame is one that
-/// [`Frames::next_raw`] gave.
+/// The beginning of a frame's value, if its first fields are those of `T`. The frame must come from
+/// [`Frames::next_raw`].
 ///
 /// # Errors
-/// [`FrameProblem`] where it does not begin so.
+/// [`FrameProblem`] if it does not begin so.
 pub fn head<T: DeserializeOwned>(kind: Kind, frame: &[u8]) -> Result<T, FrameProblem> {
     let payload = frame.get(HEADER..frame.len().saturating_sub(TRAILER)).unwrap_or_default();
     let decoded = bincode::serde::decode_from_slice::<T, _>(payload, CONFIG);

@@ -1,7 +1,7 @@
-//! Which of a run's distinct solutions hold when they are simulated more exactly.
+//! Which of a run's distinct solutions still hold in a more exact simulation.
 //!
-//! Records are left as they are: a list beside them says of each solution what became of it, so that nothing is lost,
-//! and exports can keep to those that hold.
+//! Records do not change. A list beside them says how each solution fared, so that nothing is lost, and exports can
+//! keep to those that hold.
 
 use crate::disk::Disk;
 use crate::error::{Error, RunFileError, RunFileProblem};
@@ -16,10 +16,10 @@ use plaus_scenes::{AccuracyPreset, AnyScratch, Scenario, Stage};
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 
-/// Solutions simulated between two questions whether to go on.
+/// Solutions simulated between two checks whether to go on.
 const AT_A_TIME: usize = 64;
 
-/// What became of one solution.
+/// How one solution fared.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checked {
@@ -32,13 +32,13 @@ pub struct Checked {
     pub draw: u64,
     /// The iteration that recorded it.
     pub iteration: u64,
-    /// Whether it satisfies the constraint there too.
+    /// Whether it satisfies the constraint in the new simulation too.
     pub holds: bool,
-    /// Whether it is there the same solution by the scene's classes.
+    /// Whether it is still the same solution, by the scene's classes.
     pub same: bool,
     /// Recorded log p.
     pub log_p: f64,
-    /// Log p there; `None` where it is −∞.
+    /// Log p in the new simulation; `None` if it is −∞.
     pub log_p_there: Option<f64>,
 }
 
@@ -54,7 +54,7 @@ pub struct Confirmation {
     pub accuracy: AccuracyPreset,
     /// Iterations of each chain that were looked at.
     pub iterations: u64,
-    /// How many hold.
+    /// Number of solutions that hold.
     pub held: u64,
     /// All of them, in order of iteration, then chain.
     pub solutions: Vec<Checked>,
@@ -63,17 +63,17 @@ pub struct Confirmation {
 /// Whether a scenario's scene can be simulated at another accuracy.
 ///
 /// # Errors
-/// [`Error::Request`] where it has none to choose.
+/// [`Error::Request`] if it has none to choose.
 pub fn possible(scenario: &Scenario, accuracy: AccuracyPreset) -> Result<(), Error> {
     at_accuracy(&scenario.stage()?, scenario.world.name(), accuracy).map(drop)
 }
 
 impl Confirmation {
-    /// Simulates every distinct solution at `accuracy`, on `threads` threads (0: one a core). Asks `go_on` now and
-    /// then, with how many are done and how many there are; where the answer is no, there is no result.
+    /// Simulates every distinct solution at `accuracy`, on `threads` threads (0: one per core). Now and then calls
+    /// `go_on` with the number done and the total; if it returns false, there is no result.
     ///
     /// # Errors
-    /// [`Error`] where the scene has no accuracy to choose, the records are damaged or a simulation fails.
+    /// [`Error`] if the scene has no accuracy to choose, the records are damaged or a simulation fails.
     pub fn of(
         run: &RunReader<'_>,
         accuracy: AccuracyPreset,
@@ -111,10 +111,10 @@ impl Confirmation {
         held.map(|one| SampleId { chain: one.chain, phase: one.phase, draw: one.draw }).collect()
     }
 
-    /// Puts the list beside the run's records, in place of an older one.
+    /// Writes the list beside the run's records, in place of an older one.
     ///
     /// # Errors
-    /// [`RunFileError`] where the disk refuses; an older list is then still there.
+    /// [`RunFileError`] if the disk refuses; an older list is then still there.
     pub fn write(&self, folder: &Folder, disk: &dyn Disk) -> Result<(), RunFileError> {
         let path = folder.confirmed();
         let broken = |error: serde_json::Error| RunFileError::new(&path, RunFileProblem::List(error.to_string()));
@@ -128,12 +128,12 @@ impl Confirmation {
     /// Reads the list of a run.
     ///
     /// # Errors
-    /// [`RunFileError`] where there is none, or it is damaged or another run's.
+    /// [`RunFileError`] if there is none, or it is damaged or another run's.
     pub fn read(run: &RunReader<'_>) -> Result<Self, RunFileError> {
         let path = run.run().folder().confirmed();
         let fail = |message: String| RunFileError::new(&path, RunFileProblem::List(message));
         let json = std::fs::read(&path).map_err(|error| match error.kind() {
-            ErrorKind::NotFound => fail("there is none yet: `plaus resume RUN --confirm` makes it".to_owned()),
+            ErrorKind::NotFound => fail("there is none yet: make it with `plaus resume RUN --confirm`".to_owned()),
             _ => RunFileError::io(&path, "read")(error),
         })?;
         let list: Self = serde_json::from_slice(&json).map_err(|error| fail(error.to_string()))?;

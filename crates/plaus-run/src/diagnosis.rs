@@ -11,8 +11,8 @@ use plaus_scenes::{Role, Scalar, Scene};
 use serde::Serialize;
 use std::fmt;
 
-/// Numbers held in memory at once while scalars are read; of longer runs, and of runs of very many chains, ranks are
-/// looked at in every n-th draw.
+/// Numbers held in memory at once while scalars are read. For longer runs, and runs of very many chains, ranks use only
+/// every n-th draw.
 const HELD: u64 = 1 << 25;
 /// Rank-normalised R̂ above this says that the chains disagree (Vehtari et al. 2021).
 pub const MAX_RHAT: f64 = 1.01;
@@ -30,34 +30,35 @@ pub struct Diagnosis {
     pub draws: u64,
     /// 1 where all draws are used.
     pub stride: u64,
-    /// Per scalar, those of the draw first.
+    /// For each scalar; those of the draw come first.
     pub scalars: Vec<ScalarDiagnosis>,
-    /// How many independent solutions there are; `None` where there are none, of a chain also where there are fewer
-    /// than two or nothing in them ever moved.
+    /// How many independent solutions there are. `None` if there are none; for chains also if there are fewer than two,
+    /// or nothing in them ever moved.
     pub independent: Option<Independent>,
-    /// What the records add up to.
+    /// Totals over the records.
     pub tally: Tally,
     /// What speaks against trusting the run.
     pub findings: Vec<Finding>,
 }
 
-/// Independent solutions: how many independent draws of the target, given that they satisfy the constraint, would place
-/// the centre of the variable of the draw that mixes worst as well as these do.
+/// The number of independent solutions: that many independent draws of the target, given that they satisfy the
+/// constraint, would place the centre of one variable as well as the run's solutions do. The variable is the one of the
+/// draw that mixes worst.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Independent {
     /// How many.
     pub ess: f64,
-    /// The variable; `None` where each was drawn by itself, so that they are as many as were kept.
+    /// The variable; `None` if each solution was drawn by itself, so that all that were kept count.
     pub scalar: Option<String>,
 }
 
 /// What was found about a scalar.
 #[derive(Debug, Clone, Serialize)]
 pub struct ScalarDiagnosis {
-    /// Which.
+    /// The scalar.
     #[serde(flatten)]
     pub scalar: Scalar,
-    /// Mean, standard deviation, errors, effective draws; `None` where `trouble` says why.
+    /// Mean, standard deviation, errors, effective draws; `None` if `trouble` says why.
     pub summary: Option<Summary>,
     /// Why there is no summary.
     pub trouble: Option<String>,
@@ -91,7 +92,7 @@ pub enum Finding {
     },
     /// A variable of the draw never moved.
     Stuck {
-        /// Which.
+        /// The scalar.
         scalar: String,
     },
     /// No diagnostics could be computed.
@@ -108,26 +109,26 @@ impl fmt::Display for Finding {
         match self {
             Self::NoSatisfyingSample => f.write_str("no sample satisfies the constraint"),
             Self::Rhat { scalar, rhat } => {
-                write!(f, "{scalar}: R-hat {rhat:.4} is above {MAX_RHAT}: the chains have not come to agree")
+                write!(f, "{scalar}: R-hat {rhat:.4} is above {MAX_RHAT}: the chains do not agree yet")
             }
             Self::Ess { scalar, kind, ess, needed } => {
                 write!(
                     f,
-                    "{scalar}: {ess:.0} effective draws ({kind}), at least {needed:.0} are needed: more iterations, or moves that mix better"
+                    "{scalar}: {ess:.0} effective draws ({kind}), but at least {needed:.0} are needed: more iterations, or moves that mix better"
                 )
             }
-            Self::Stuck { scalar } => write!(f, "{scalar}: never moved"),
+            Self::Stuck { scalar } => write!(f, "{scalar}: never changed"),
             Self::Undiagnosed { scalar, reason } => write!(f, "{scalar}: {reason}"),
         }
     }
 }
 
 impl Diagnosis {
-    /// Diagnoses the sampling phase of a run, from every draw, or, where that is more than `most` a chain or more than
-    /// memory is for, from every n-th. Means and standard deviations are always those of all draws.
+    /// Diagnoses the sampling phase of a run from every draw, or from every n-th if that would be more than `most` in
+    /// each chain, or more than memory allows. Means and standard deviations always use all draws.
     ///
     /// # Errors
-    /// [`RunFileError`] where the records are damaged.
+    /// [`RunFileError`] if the records are damaged.
     pub fn of(run: &RunReader<'_>, most: Option<u64>) -> Result<Self, RunFileError> {
         let recorded = run.draws(Phase::Sampling);
         let room = (HELD / run.chains().len().max(1) as u64).max(1);
@@ -174,13 +175,13 @@ fn variables_first(scalars: &mut [ScalarDiagnosis]) {
     scalars.sort_by_key(|scalar| scalar.scalar.role != Role::Draw);
 }
 
-/// How many independent solutions these values of one variable are worth, per chain, per draw; `None` where that cannot
-/// be told.
+/// How many independent solutions these values of one variable are worth, per chain, per draw; `None` if that is
+/// unknown.
 pub(crate) fn worth_of(chains: &[Vec<f64>], satisfied: &[Vec<bool>]) -> Option<f64> {
     ess_where(chains, satisfied).ok()?
 }
 
-/// Solutions that were drawn by themselves in the sampling phase, of all chains, as far as they were recorded.
+/// Solutions that were drawn by themselves in the sampling phase, over all chains, as far as they were recorded.
 fn kept(run: &RunReader<'_>) -> Result<u64, RunFileError> {
     let chain = |chain| -> Result<u64, RunFileError> {
         let mut kept = 0;
@@ -210,7 +211,7 @@ fn satisfied(run: &RunReader<'_>, stride: u64) -> Result<Vec<Vec<bool>>, RunFile
 /// The values of `count` scalars from number `from` on: per scalar, per chain, per draw.
 ///
 /// # Errors
-/// [`RunFileError`] where the records are damaged.
+/// [`RunFileError`] if the records are damaged.
 pub fn columns(
     run: &RunReader<'_>,
     from: usize,
@@ -223,7 +224,7 @@ pub fn columns(
 /// Per scalar, per chain, per draw.
 type Columns = Vec<Vec<Vec<f64>>>;
 
-/// As [`columns`], with the moments of all draws of each scalar where only some draws are asked for.
+/// Like [`columns`]; also gives the moments of all draws of each scalar if only some draws are asked for.
 fn streamed(
     run: &RunReader<'_>,
     from: usize,
@@ -283,7 +284,7 @@ fn against(row: &ScalarDiagnosis) -> Vec<Finding> {
         return vec![Finding::Undiagnosed { scalar: scalar(), reason: row.trouble.clone().unwrap_or_default() }];
     };
     if summary.sd == 0.0 {
-        // An outcome may well be the same in all samples; a variable of the draw may not.
+        // An outcome may be the same in all samples; a variable of the draw must not be.
         let stuck = row.scalar.role == Role::Draw;
         return stuck.then(|| Finding::Stuck { scalar: scalar() }).into_iter().collect();
     }

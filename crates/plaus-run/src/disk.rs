@@ -1,4 +1,5 @@
-//! The few file operations a run is written with, behind a trait, so that tests can fill the disk or stop at any byte.
+//! The few file operations with which a run is written, behind a trait, so that tests can fill the disk or stop at any
+//! byte.
 
 use crate::error::RunFileError;
 use std::fs::{self, File, OpenOptions};
@@ -8,9 +9,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::thread;
 
-/// What the writing of a run asks of a disk. Each operation may fail half done, as real ones do.
+/// The operations that writing a run needs from a disk. Each may fail half done, as real ones do.
 pub trait Disk: Sync {
-    /// Adds `bytes` at the end of a file, which is made where there is none.
+    /// Adds `bytes` at the end of a file, which is created if necessary.
     ///
     /// # Errors
     /// As the operating system says; part of the bytes may have been written.
@@ -62,18 +63,19 @@ pub trait Disk: Sync {
     fn create_folder(&self, path: &Path) -> io::Result<()>;
 }
 
-/// More files than this are waited for all at once, with whatever else is on its way to that disk: a file at a time
-/// takes milliseconds each.
+/// If more files than this are waited for, wait for everything written to that disk at once: one file at a time takes
+/// milliseconds each.
 #[cfg(target_os = "linux")]
 const MANY: usize = 64;
 
-/// Files that are waited for at a time: a disk takes hardly longer for so many than for one.
+/// Number of files waited for at a time: a disk takes hardly longer for this many than for one.
 const AT_A_TIME: usize = 16;
 
 /// Does `work` for each of `items`, several at a time where there are many.
 ///
 /// # Errors
-/// That of the first item, in order, whose `work` failed; what had not begun by then is left.
+///
+/// The error of the first item, in order, whose `work` failed. Items that had not begun by then are skipped.
 pub(crate) fn for_each<T: Sync>(
     items: &[T],
     work: impl Fn(&T) -> Result<(), RunFileError> + Sync,
@@ -123,7 +125,7 @@ impl Disk for RealDisk {
     fn sync(&self, path: &Path) -> io::Result<()> {
         match path.is_dir() {
             true if cfg!(unix) => File::open(path)?.sync_all(),
-            true => Ok(()), // a folder cannot be opened as a file there
+            true => Ok(()), // on such systems a folder cannot be opened as a file
             false => OpenOptions::new().append(true).open(path)?.sync_all(),
         }
     }

@@ -1,4 +1,4 @@
-//! How the chains of a run are driven: by the scene alone, or under something more that is asked of it.
+//! How the chains of a run are driven: by the scene alone, or with a further requirement.
 
 use crate::error::RunFileError;
 use crate::{Draw, Outcome};
@@ -7,34 +7,33 @@ use plaus_scenes::Stage;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Where the chains of a scene go on from.
+/// Where the chains of a scene continue from.
 pub(crate) type Starts = Vec<Start<Draw, Outcome>>;
 
-/// What of a run is not in its scene.
+/// Everything about a run that is not in its scene.
 pub struct Journey<'a> {
-    /// How long, how often, from which seed.
+    /// Length, recording interval and seed.
     pub plan: Plan,
     /// Which of the plan's chains: all, or those of a piece.
     pub chains: Range<u32>,
-    /// Where the chains go on from; empty for a new run.
+    /// Where the chains continue from; empty for a new run.
     pub starts: Starts,
-    /// Threads; 0 is one a core.
+    /// Threads; 0 means one per core.
     pub threads: usize,
-    /// What the chains report to, and are stopped by.
+    /// Where chains report progress, and what stops them.
     pub pulse: &'a Pulse,
 }
 
 /// How a drive ends.
 pub type Driven = Result<Ending, RunError<RunFileError>>;
 
-/// Drives the chains of a run. What it records are states of the scene; their log constraint may hold more than the
-/// scene's own, where the run has a requirement.
+/// Drives the chains of a run. It records states of the scene; if the run has a requirement, their log constraint
+/// includes its factor.
 pub trait Drive {
-    /// What is required beyond the scenario, in a word, for the manifest; `None` where nothing is, and states are the
-    /// scene's own.
+    /// A name for what is required beyond the scenario, for the manifest; `None` if nothing is.
     fn requirement(&self) -> Option<String>;
 
-    /// Drives the chains, and hands what they record to `sink`.
+    /// Drives the chains, and passes their records to `sink`.
     ///
     /// # Errors
     /// As [`plaus_mcmc::run_some()`].

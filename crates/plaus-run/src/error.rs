@@ -27,43 +27,43 @@ pub enum RunFileProblem {
         /// What came back.
         source: io::Error,
     },
-    /// Nothing is overwritten.
-    #[error("exists already; choose another name, or `plaus resume` it if it is a run to go on with")]
+    /// Something exists already; nothing is overwritten.
+    #[error("already exists; choose another name, or continue it with `plaus resume` if it is a run")]
     Exists,
-    /// Nothing is overwritten unasked.
-    #[error("exists already; choose another name, or replace it by `--force`")]
+    /// Something exists already; nothing is overwritten without `--force`.
+    #[error("already exists; choose another name, or replace it by `--force`")]
     OutputExists,
-    /// Something that no export makes.
-    #[error("exists already and was not made by such an export: it is not replaced, not even by `--force`")]
+    /// Something that no export made.
+    #[error("already exists and was not made by such an export: even `--force` does not replace it")]
     NotOurs,
     /// Nothing is there.
     #[error("there is no such run")]
     Missing,
-    /// A folder that is no run.
-    #[error("is no run: it has no manifest.json")]
+    /// A folder that is not a run.
+    #[error("is not a run: it has no manifest.json")]
     NoRun,
     /// Another process is writing.
-    #[error("another process is writing this run; wait for it, or stop it first")]
+    #[error("another process is writing this run; wait until it ends, or stop it")]
     Locked,
-    /// The manifest cannot be believed.
+    /// The manifest cannot be trusted.
     #[error(
-        "the manifest cannot be read: {0}. Without it the records of the chains cannot be read either; the same scenario, seed and version of plaus sample the same run again"
+        "the manifest cannot be read: {0}. Without it the records of the chains cannot be read either. To get the same run, sample again with the same scenario, seed and version of plaus"
     )]
     Manifest(String),
-    /// The run's copy of a file that its scenario names is another.
+    /// The run's copy of a file that its scenario names has changed.
     #[error(
-        "this copy of {0}, which the run's scenario names, was changed after the run was made: put it back as it was, \
+        "this copy of {0}, which the run's scenario names, was changed after the run was made: restore the file, \
          or sample a new run"
     )]
     Asset(String),
-    /// The folder holds something else than what is to be gone on with.
+    /// The folder holds something other than the run to continue.
     #[error("holds another run: {0}; choose another name")]
     OtherRun(String),
-    /// Pieces that make no whole.
+    /// Pieces that do not make a whole.
     #[error("{0}")]
     Pieces(String),
     /// Another version of plaus made the run.
-    #[error("made by plaus {made}, this is {present}, which may sample other values: resume it with plaus {made}")]
+    #[error("made by plaus {made}; this is {present}, which may sample other values: resume it with plaus {made}")]
     OtherVersion {
         /// The version that made it.
         made: String,
@@ -72,7 +72,7 @@ pub enum RunFileProblem {
     },
     /// A frame of the records is damaged.
     #[error(
-        "{source}. The {intact} recorded draws of the chain before that are intact: `plaus export --salvage` reads what all chains have; the same scenario and seed sample all of them again"
+        "{source}. The {intact} draws that the chain recorded before are intact: `plaus export --salvage` reads the part that all chains have. The same scenario and seed give all of them again"
     )]
     Records {
         /// What and where.
@@ -82,17 +82,17 @@ pub enum RunFileProblem {
     },
     /// A checkpoint is damaged.
     #[error(
-        "{source}. The run cannot go on from here, but the chain's records are not touched by this: `plaus export --salvage` reads them; the same scenario and seed sample the run again"
+        "{source}. The run cannot be continued, but the chain's records are not affected: `plaus export --salvage` reads them. The same scenario and seed give the run again"
     )]
     Checkpoint {
         /// What and where.
         source: FrameError,
     },
-    /// The checkpoint of a chain is not there, though those of others are.
+    /// The checkpoint of a chain is missing, although others exist.
     #[error(
-        "this checkpoint is gone, while other chains have theirs, of iteration {newest}: the run cannot go on. The records are \
-         not touched by this: `plaus export --salvage` and `plaus gallery --salvage` read them; the same scenario and \
-         seed sample the run again"
+        "this checkpoint is gone, while other chains have theirs, of iteration {newest}: the run cannot be continued. \
+         The records are not affected: `plaus export --salvage` and `plaus gallery --salvage` read them. The same \
+         scenario and seed give the run again"
     )]
     Gone {
         /// Iterations that the others' checkpoints cover.
@@ -100,11 +100,11 @@ pub enum RunFileProblem {
     },
     /// The parts of the run do not fit each other.
     #[error(
-        "{0}: files of different runs, or of different moments of one run, were mixed; the same scenario and seed sample the run again"
+        "{0}: files of different runs, or of different moments of one run, were mixed. The same scenario and seed give the run again"
     )]
     Mixed(String),
-    /// A stored state is not what this program makes of its draw.
-    #[error("{0}: this plaus does not compute what the one that made the run computed")]
+    /// This program computes something else from a draw than the stored state.
+    #[error("{0}: this plaus computes other values than the one that made the run")]
     Differs(String),
     /// A list of confirmed solutions that cannot be used.
     #[error("the list of confirmed solutions cannot be used: {0}")]
@@ -114,8 +114,8 @@ pub enum RunFileProblem {
     Encode(#[from] EncodeError),
     /// There is nothing to read yet.
     #[error(
-        "holds no draws yet: the run was stopped in its warm-up, whose draws are no statistics, or before its first checkpoint \
-         (`plaus resume` goes on with it), or it records so few of its iterations (`thin`) that none was due"
+        "holds no draws yet: the run was stopped in its warm-up, which statistics leave out, or before its first \
+         checkpoint (`plaus resume` continues it), or it records so few of its iterations (`thin`) that none was due"
     )]
     Empty,
     /// A sample that does not exist.
@@ -142,24 +142,22 @@ impl RunFileError {
     }
 }
 
-/// Why a run could not be made, read or gone on with.
+/// Why a run could not be made, read or continued.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A file of the run.
     #[error(transparent)]
     File(#[from] RunFileError),
     /// The disk is full. The run is as it was at its last checkpoint.
-    #[error(
-        "{source}. The run is safe up to iteration {safe}: free some space, then `plaus resume` goes on from there"
-    )]
+    #[error("{source}. The run is safe up to iteration {safe}: free some space, then continue with `plaus resume`")]
     DiskFull {
         /// What failed.
         source: RunFileError,
         /// Iterations 0 up to here, exclusive, are kept.
         safe: u64,
     },
-    /// The run could not be written on. It is as it was at its last checkpoint.
-    #[error("{source}. The run is safe up to iteration {safe}: once that is mended, `plaus resume` goes on from there")]
+    /// The run could not be written any further. It is as it was at its last checkpoint.
+    #[error("{source}. The run is safe up to iteration {safe}: once the cause is mended, continue with `plaus resume`")]
     BrokenOff {
         /// What failed.
         source: RunFileError,
@@ -185,10 +183,10 @@ pub enum Error {
         /// Iterations 0 up to here, exclusive, are kept.
         safe: u64,
     },
-    /// Sampling could not go on.
+    /// Sampling could not continue.
     #[error("{0}")]
     Sampling(String),
-    /// What was asked for cannot be written.
+    /// The output cannot be written.
     #[error("cannot write: {0}")]
     Output(io::Error),
     /// A request that makes no sense for this run.
@@ -197,7 +195,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// Sorts out why a run broke off; `safe` iterations are kept.
+    /// Determines why a run broke off; `safe` iterations are kept.
     pub(crate) fn of_run(error: RunError<RunFileError>, safe: u64) -> Self {
         match error {
             RunError::Sink(source) if source.is_disk_full() => Self::DiskFull { source, safe },

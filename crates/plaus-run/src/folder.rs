@@ -28,13 +28,13 @@ impl Folder {
         self.0.join("manifest.json")
     }
 
-    /// What a chain has recorded: one frame a block.
+    /// What a chain has recorded: one frame for each block.
     #[must_use]
     pub fn records(&self, chain: u32) -> PathBuf {
         self.0.join(format!("chain-{chain:05}.records"))
     }
 
-    /// Where a chain can go on from.
+    /// Where a chain can continue from.
     #[must_use]
     pub fn checkpoint(&self, chain: u32) -> PathBuf {
         self.0.join(format!("chain-{chain:05}.checkpoint"))
@@ -45,19 +45,19 @@ impl Folder {
         self.0.join(format!("chain-{chain:05}.checkpoint.next"))
     }
 
-    /// Which solutions hold at another accuracy, where that was asked.
+    /// Which solutions hold at another accuracy, if that was asked for.
     #[must_use]
     pub fn confirmed(&self) -> PathBuf {
         self.0.join("confirmed.json")
     }
 
-    /// How far a piece is, for those who look on: neither needed nor believed by whoever reads the run.
+    /// How far a piece is, for observers; nothing that reads the run needs or trusts it.
     #[must_use]
     pub fn progress(&self) -> PathBuf {
         self.0.join("progress.json")
     }
 
-    /// Where a piece that hunts for solutions could be cut: one frame a round.
+    /// Where a piece that looks for solutions could be cut: one frame for each round.
     pub(crate) fn trail(&self) -> PathBuf {
         self.0.join("trail")
     }
@@ -68,7 +68,7 @@ impl Folder {
         self.0.join(format!("asset-{}", hash.get(..16).unwrap_or(hash)))
     }
 
-    /// Always there and always empty; whoever writes the run holds a lock on it.
+    /// Always there and always empty; the process that writes the run holds a lock on it.
     #[must_use]
     pub fn lock(&self) -> PathBuf {
         self.0.join("lock")
@@ -78,7 +78,7 @@ impl Folder {
     /// at all.
     ///
     /// # Errors
-    /// [`RunFileError`] where something of that name exists, or the disk refuses.
+    /// [`RunFileError`] if something of that name exists, or the disk refuses.
     pub fn create(&self, disk: &dyn Disk, manifest: &[u8], assets: &Assets) -> Result<(), RunFileError> {
         let fill = |draft: &Self| draft.fill(disk, manifest, assets);
         self.make(disk, |draft| fill(draft).map_err(|error| RunFileError::new(&self.0, error.problem)))
@@ -98,7 +98,7 @@ impl Folder {
         fs::create_dir_all(&parent).map_err(RunFileError::io(&parent, "make the folder"))?;
         clear_drafts(&self.0);
         let draft = Self(draft_of(&self.0));
-        // A draft that is there already is another process's: not ours to fill, nor to remove.
+        // If a draft exists already, it belongs to another process: it must neither be filled nor removed.
         disk.create_folder(&draft.0).map_err(RunFileError::io(&draft.0, "make the folder"))?;
         let made = fill(&draft).and_then(|()| {
             let done = disk.rename(&draft.0, &self.0);
@@ -110,10 +110,10 @@ impl Folder {
         made
     }
 
-    /// Nothing is overwritten.
+    /// Refuses to overwrite anything.
     ///
     /// # Errors
-    /// [`RunFileProblem::Exists`] where something of that name exists.
+    /// [`RunFileProblem::Exists`] if something of that name exists.
     pub(crate) fn refuse_to_replace(&self) -> Result<(), RunFileError> {
         match fs::symlink_metadata(&self.0) {
             Ok(_) => Err(RunFileError::new(&self.0, RunFileProblem::Exists)),
@@ -121,7 +121,7 @@ impl Folder {
         }
     }
 
-    /// Writes what every run has.
+    /// Writes the files that every run has.
     pub(crate) fn fill(&self, disk: &dyn Disk, manifest: &[u8], assets: &Assets) -> Result<(), RunFileError> {
         let write = |path: PathBuf, bytes: &[u8]| disk.write(&path, bytes).map_err(RunFileError::io(&path, "write"));
         for (_, bytes) in assets.iter() {
@@ -135,12 +135,12 @@ impl Folder {
     /// Claims the run for writing, until the returned file is dropped or the process ends.
     ///
     /// # Errors
-    /// [`RunFileProblem::Locked`] where another process writes it.
+    /// [`RunFileProblem::Locked`] if another process writes it.
     pub fn claim(&self) -> Result<File, RunFileError> {
         claim(&self.lock(), &self.0)
     }
 
-    /// Whether another process is writing the run now, as far as can be told.
+    /// Whether another process is writing the run now, as far as is known.
     #[must_use]
     pub fn is_being_written(&self) -> bool {
         is_claimed(&self.lock())
@@ -157,7 +157,7 @@ pub(crate) fn claim(lock: &Path, what: &Path) -> Result<File, RunFileError> {
     }
 }
 
-/// Whether another process holds a lock on the file `lock`, as far as can be told.
+/// Whether another process holds a lock on the file `lock`, as far as is known.
 pub(crate) fn is_claimed(lock: &Path) -> bool {
     File::open(lock).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
@@ -170,8 +170,7 @@ pub(crate) fn parent_of(path: &Path) -> PathBuf {
     }
 }
 
-/// Removes the drafts of a run that processes left that were killed while they made it, where the system tells which
-/// processes there are.
+/// Removes drafts left by processes that were killed while making the run, if the system shows which processes exist.
 fn clear_drafts(path: &Path) {
     let processes = Path::new("/proc/self");
     let Some(name) = path.file_name().map(|name| name.to_string_lossy().into_owned()) else { return };
@@ -189,12 +188,12 @@ fn clear_drafts(path: &Path) {
         };
         let files = fs::read_dir(entry.path()).map(|files| files.flatten().all(|file| ours(&file.file_name())));
         if !Path::new("/proc").join(process.to_string()).exists() && files.unwrap_or(false) {
-            let _ = fs::remove_dir_all(entry.path()); // best effort: it is in nobody's way
+            let _ = fs::remove_dir_all(entry.path()); // best effort: it does no harm
         }
     }
 }
 
-/// A name beside `path` under which it is made before it gets its own.
+/// The name beside `path` under which something is made before it gets its own.
 pub(crate) fn draft_of(path: &Path) -> PathBuf {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     parent_of(path).join(format!(".{name}.{}.draft", std::process::id()))
@@ -213,7 +212,7 @@ mod tests {
             fs::create_dir(place.path().join(name)).unwrap();
             fs::write(place.path().join(name).join(file), "").unwrap();
         };
-        // Linux gives no process a number that large.
+        // Linux never gives a process so large a number.
         make(".run.4194305.draft", "lock");
         make(".run.4194306.draft", "mine.txt");
         make(".other.4194305.draft", "lock");

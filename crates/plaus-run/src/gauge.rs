@@ -1,4 +1,4 @@
-//! How well the outcomes mix, while a run is still sampled: from a thinned copy of their values, so that it stays cheap
+//! How well the outcomes mix while a run is still sampled, from a thinned copy of their values, so that it stays cheap
 //! however long the run gets.
 
 use crate::error::RunFileError;
@@ -10,21 +10,21 @@ use plaus_scenes::{Role, Scene, Stage};
 use std::ops::Range;
 use std::path::Path;
 
-/// Most values kept of a chain and outcome: where there are more, every other is dropped, and from then on only half as
-/// many come in.
+/// Most values kept for each chain and outcome. If there are more, every other one is dropped, and from then on only
+/// half as many are added.
 const MOST: usize = 1024;
-/// Fewest values of a chain and outcome that are worth a look.
+/// Fewest values of a chain and outcome that are worth evaluating.
 const LEAST: usize = 32;
-/// Outcomes that are looked at: scenes of many bodies have more, which would cost more than they tell at a glance.
+/// Number of outcomes evaluated: scenes of many bodies have more, which would cost too much for a quick look.
 const OUTCOMES: usize = 16;
 
-/// What is known of the outcomes at a moment of a run. It rests on fewer draws than [`Diagnosis`](crate::Diagnosis), at
-/// most 1,024 a chain, and on the first 16 outcomes only.
+/// What is known of the outcomes at one moment of a run. It uses fewer draws than [`Diagnosis`](crate::Diagnosis), at
+/// most 1,024 of each chain, and only the first 16 outcomes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mixing {
-    /// The largest R̂, and the outcome it is of; `None` for one chain.
+    /// The largest R̂, and its outcome; `None` for one chain.
     pub rhat: Option<(String, f64)>,
-    /// The least effective sample size, of bulk or tail, and the outcome it is of.
+    /// The least effective sample size, of bulk or tail, and its outcome.
     pub ess: (String, f64),
 }
 
@@ -33,7 +33,7 @@ pub(crate) struct Gauge<'a> {
     scene: &'a Stage,
     /// Names of the outcomes, and their numbers among the scalars.
     outcomes: Vec<(String, usize)>,
-    /// Per outcome, per chain: every 2^`shift`-th draw from the `first` on, the first after the warm-up.
+    /// Per outcome, per chain: every 2^`shift`-th draw from `first` on, where `first` is the first after the warm-up.
     values: Vec<Vec<Vec<f64>>>,
     shift: u32,
     first: u64,
@@ -44,7 +44,7 @@ pub(crate) struct Gauge<'a> {
 }
 
 impl<'a> Gauge<'a> {
-    /// Of no draws yet.
+    /// A gauge without draws.
     pub(crate) fn new(scene: &'a Stage, plan: &Plan, chains: Range<u32>) -> Self {
         let all = scene.scalars();
         let scalars = vec![0.0; all.len()];
@@ -55,7 +55,7 @@ impl<'a> Gauge<'a> {
         Self { scene, outcomes, values, shift: 0, first, thin: plan.thin, scalars, lowest }
     }
 
-    /// Takes in what a chain recorded before the run went on; all chains go equally far.
+    /// Reads what a chain recorded before the run was continued; all chains go equally far.
     pub(crate) fn read(&mut self, path: &Path, extent: Extent) -> Result<(), RunFileError> {
         let draws = extent.end_iteration.div_ceil(self.thin).saturating_sub(self.first);
         while draws >> self.shift >= MOST as u64 {
@@ -67,7 +67,7 @@ impl<'a> Gauge<'a> {
         Ok(())
     }
 
-    /// Takes in a block that a chain recorded.
+    /// Adds a block that a chain recorded.
     pub(crate) fn note(&mut self, chain: u32, block: &Block<Draw, Outcome>) {
         let (first, shift) = (self.first, self.shift);
         let kept_before = |draw: u64| (draw.saturating_sub(first) + (1 << shift) - 1) >> shift;
@@ -86,7 +86,7 @@ impl<'a> Gauge<'a> {
         }
     }
 
-    /// Drops every other value while there are too many; to be called where all chains are equally far.
+    /// Drops every other value while there are too many; to be called when all chains are equally far.
     pub(crate) fn thin_out(&mut self) {
         let length = |values: &Vec<Vec<Vec<f64>>>| values.first().and_then(|chains| chains.first()).map_or(0, Vec::len);
         while length(&self.values) > MOST {
@@ -101,7 +101,7 @@ impl<'a> Gauge<'a> {
         }
     }
 
-    /// R̂ and effective sample sizes of the outcomes that have moved; `None` where none has, or there are too few
+    /// R̂ and effective sample sizes of the outcomes that have moved; `None` if none has, or there are too few
     /// draws.
     pub(crate) fn mixing(&self) -> Option<Mixing> {
         let worth = |chains: &Vec<Vec<f64>>| {

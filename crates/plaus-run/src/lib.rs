@@ -29,15 +29,15 @@
 //! | file | what |
 //! | --- | --- |
 //! | `manifest.json` | what the run is: scenario text and hash, version, seed, plan, flags of the acceptance rule, moves, scalars; with a checksum |
-//! | `chain-00000.records` | what the chain recorded: one [frame](codec) a block of iterations, appended |
-//! | `chain-00000.checkpoint` | where the chain can go on from: one frame, replaced |
+//! | `chain-00000.records` | what the chain recorded: one [frame](codec) for each block of iterations, appended |
+//! | `chain-00000.checkpoint` | where the chain can continue from: one frame, replaced |
 //! | `confirmed.json` | made on demand: which distinct solutions hold at another accuracy |
 //! | `lock` | empty; locked by the process that writes |
-//! | `trail`, `progress.json` | of a [piece](shard) only: where it could be cut, if it looks for solutions; how far it is, for those who look on |
+//! | `trail`, `progress.json` | only in a [piece](shard): where it could be cut, if it looks for solutions; how far it is, for observers |
 //!
 //! The bytes of a folder follow from scenario, seed, plan and version: not from the clock, the number of threads, or
-//! how often the run was killed and resumed. Records are written first, checkpoints after; a checkpoint says how long
-//! the records were, and what lies beyond that is cut off when the run goes on. So a process that dies at any moment
+//! how often the run was killed and resumed. Records are written first, checkpoints after that. A checkpoint states the
+//! length of the records; anything beyond it is cut off when the run is continued. So a process that dies at any moment
 //! loses at most the iterations since the last checkpoint.
 
 pub mod beside;

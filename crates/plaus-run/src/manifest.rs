@@ -23,7 +23,7 @@ const LONGEST: u64 = 64 << 20;
 /// Most iterations of all chains together between two points at which a run can stop: bounds the memory of a round.
 const LONGEST_ROUND: u64 = 1 << 22;
 
-/// What a run is. Neither the clock nor the number of threads has any part in it.
+/// What a run is. It depends neither on the clock nor on the number of threads.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
@@ -31,7 +31,7 @@ pub struct Manifest {
     pub plaus: String,
     /// The scene's name.
     pub scene: String,
-    /// Which of the plan's chains the folder holds; not there where it holds all.
+    /// Which of the plan's chains the folder holds; absent if it holds all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<Shard>,
     /// The scenario.
@@ -50,17 +50,17 @@ pub struct Manifest {
     pub moves: Vec<String>,
     /// The scalars of the scene.
     pub scalars: Vec<StoredScalar>,
-    /// What was required beyond the scenario, in a word: the recorded log constraints hold its factor, and the run goes
-    /// on only with it.
+    /// A name for what was required beyond the scenario. The recorded log constraints include its factor, and the run
+    /// can be continued only with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub requirement: Option<String>,
-    /// How draws are made, and why so; not there where the scenario does not say and chains make them.
+    /// How draws are made, and why; absent if the scenario does not say and chains make them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub way: Option<Way>,
-    /// The files that the scenario names, by their paths, each with its BLAKE3. The run has copies of its own.
+    /// The files that the scenario names, by their paths, each with its BLAKE3 hash. The run has its own copies.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub assets: BTreeMap<String, String>,
-    /// What these files hold.
+    /// The contents of these files.
     #[serde(skip)]
     pub(crate) contents: Assets,
 }
@@ -73,7 +73,7 @@ pub struct StoredScenario {
     pub file: String,
     /// Text of that file.
     pub text: String,
-    /// Every key with the value in force, as TOML.
+    /// Every key with its effective value, as TOML.
     pub effective: String,
     /// BLAKE3 of `effective`.
     pub hash: String,
@@ -102,11 +102,11 @@ pub struct Recipe {
     pub text: String,
     /// Keys set on the command line, as `key=value`.
     pub overrides: Vec<String>,
-    /// Stop after that many distinct solutions.
+    /// Stop after this many distinct solutions.
     pub solutions: Option<u64>,
 }
 
-/// The file: the run between a version, which is looked at first, and a checksum.
+/// The file: the run, between a version, which is checked first, and a checksum.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Envelope {
@@ -130,7 +130,7 @@ impl Recipe {
     /// The manifest of a run of `scene`.
     ///
     /// # Errors
-    /// [`Error`] where the weights of its moves make no mixture.
+    /// [`Error`] if the weights of its moves make no mixture.
     pub fn manifest(&self, scene: &Stage) -> Result<Manifest, Error> {
         let rules = &self.scenario.sampler.rules;
         let way = Way::said(&self.scenario);
@@ -139,7 +139,7 @@ impl Recipe {
         let read = Scenario::read_with(&self.file, &effective, &[], &contents)
             .map_err(|error| Error::StoredScenario(error.to_string()))?;
         if read != self.scenario {
-            return Err(Error::StoredScenario("it changes when it is written and read again".to_owned()));
+            return Err(Error::StoredScenario("writing and reading it again changes it".to_owned()));
         }
         let hash = blake3::hash(effective.as_bytes()).to_hex().to_string();
         let scenario = StoredScenario { file: self.file.clone(), text: self.text.clone(), effective, hash };
@@ -180,8 +180,8 @@ fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
     }
 }
 
-/// The first key of two scenarios in force whose values differ, with both; one is a line of the other's form, as both
-/// were written by one program.
+/// The first key whose values differ in two effective scenarios, with both values. Each line of one corresponds to a
+/// line of the other, because one program wrote both.
 fn different_key(here: &str, there: &str) -> Option<String> {
     let mut table = String::new();
     let mut lines = (here.lines(), there.lines());
@@ -219,10 +219,10 @@ pub(crate) fn stored_scalars(scene: &Stage) -> Vec<StoredScalar> {
 }
 
 impl Manifest {
-    /// The manifest as it is stored.
+    /// The manifest in stored form.
     ///
     /// # Errors
-    /// [`RunFileProblem::Manifest`] where it cannot be written as JSON, which no manifest made here is known to do.
+    /// [`RunFileProblem::Manifest`] if it cannot be written as JSON, which no manifest made here is known to do.
     pub fn to_json(&self) -> Result<Vec<u8>, RunFileProblem> {
         let broken = |error: serde_json::Error| RunFileProblem::Manifest(error.to_string());
         let checksum = self.checksum().map_err(broken)?;
@@ -235,12 +235,12 @@ impl Manifest {
     /// Reads what [`Manifest::to_json`] made.
     ///
     /// # Errors
-    /// [`RunFileProblem::Manifest`] where `json` is anything else, or was changed.
+    /// [`RunFileProblem::Manifest`] if `json` is anything else, or was changed.
     pub fn from_json(json: &[u8]) -> Result<Self, RunFileProblem> {
         let broken = |error: serde_json::Error| RunFileProblem::Manifest(error.to_string());
         let Probe { format } = serde_json::from_slice(json).map_err(broken)?;
         if format != FORMAT {
-            let message = format!("it has format {format}, this plaus {VERSION} reads format {FORMAT}");
+            let message = format!("it has format {format}, but this plaus {VERSION} reads format {FORMAT}");
             return Err(RunFileProblem::Manifest(message));
         }
         let Envelope { run, checksum, .. } = serde_json::from_slice(json).map_err(broken)?;
@@ -252,7 +252,7 @@ impl Manifest {
         Ok(run)
     }
 
-    /// BLAKE3 of the compact JSON, in which every whitespace and order is fixed.
+    /// BLAKE3 of the compact JSON, whose whitespace and order are fixed.
     fn checksum(&self) -> Result<String, serde_json::Error> {
         Ok(blake3::hash(&serde_json::to_vec(self)?).to_hex().to_string())
     }
@@ -260,7 +260,7 @@ impl Manifest {
     /// Reads the manifest of a run.
     ///
     /// # Errors
-    /// [`RunFileError`] where there is none, or it is damaged.
+    /// [`RunFileError`] if there is none, or it is damaged.
     pub fn read(folder: &Folder) -> Result<Self, RunFileError> {
         let path = folder.manifest();
         let mut json = Vec::new();
@@ -300,13 +300,13 @@ impl Manifest {
 
     /// Removes a manifest that never took its place.
     pub(crate) fn clear(folder: &Folder, disk: &dyn Disk) {
-        let _ = disk.remove(&draft(folder)); // there seldom is one
+        let _ = disk.remove(&draft(folder)); // it rarely exists
     }
 
-    /// The scenario in force.
+    /// The effective scenario.
     ///
     /// # Errors
-    /// [`Error::StoredScenario`] where this version cannot read it, or the plan is not what follows from it.
+    /// [`Error::StoredScenario`] if this version cannot read it, or the plan is not what follows from it.
     pub fn scenario(&self) -> Result<Scenario, Error> {
         let scenario = Scenario::read_with(&self.scenario.file, &self.scenario.effective, &[], &self.contents)
             .map_err(|error| Error::StoredScenario(error.to_string()))?;
@@ -319,12 +319,12 @@ impl Manifest {
         planned.iterations = self.plan.iterations;
         let whole = self.shard.is_none_or(|shard| shard.range(self.plan.chains).is_ok());
         if planned != self.plan || self.scene != scenario.world.name() || !whole {
-            return Err(Error::StoredScenario("it is not the one of the run's plan".to_owned()));
+            return Err(Error::StoredScenario("it is not the one in the run's plan".to_owned()));
         }
         Ok(scenario)
     }
 
-    /// Whether its draws are independent ones of the prior.
+    /// Whether its draws are independent draws from the prior.
     #[must_use]
     pub fn is_independent(&self) -> bool {
         is_independent(self.way.as_ref())
@@ -333,15 +333,15 @@ impl Manifest {
     /// The moves that its chains make.
     ///
     /// # Errors
-    /// [`Error`] where the stored scenario cannot be read, or its weights make no mixture.
+    /// [`Error`] if the stored scenario cannot be read, or its weights make no mixture.
     pub fn mixture(&self, scene: &Stage) -> Result<Mixture<Stage>, Error> {
         Ok(moves_of(scene, &self.scenario()?.sampler.rules, self.way.as_ref())?)
     }
 
-    /// The same with draws made another way.
+    /// The same manifest with draws made in another way.
     ///
     /// # Errors
-    /// [`Error`] where the weights of its moves make no mixture.
+    /// [`Error`] if the weights of its moves make no mixture.
     pub(crate) fn made(self, way: Way, scene: &Stage, rules: &Rules) -> Result<Self, Error> {
         let way = Some(way);
         let moves = moves_of(scene, rules, way.as_ref())?.names();
@@ -349,7 +349,7 @@ impl Manifest {
         Ok(Self { way, moves, exact, ..self })
     }
 
-    /// How this run differs from `other`, where it does: version, seed, the first key of the scenario, which piece.
+    /// How this run differs from `other`, if it does: version, seed, the first key of the scenario, or which piece.
     #[must_use]
     pub fn differs_from(&self, other: &Self) -> Option<String> {
         let shown =
@@ -373,26 +373,26 @@ impl Manifest {
         part.or_else(|| (self.shard != other.shard).then(|| format!("it is {}, not {}", shown(self), shown(other))))
     }
 
-    /// Numbers of the chains that the folder holds; none where the manifest is of no run.
+    /// Numbers of the chains that the folder holds; empty if the manifest is not that of a run.
     #[must_use]
     pub fn chains(&self) -> Range<u32> {
         self.shard.map_or(0..self.plan.chains, |shard| shard.range(self.plan.chains).unwrap_or_default())
     }
 
-    /// That the scenario alone says whether an outcome satisfies.
+    /// Makes sure that the scenario alone decides whether an outcome satisfies.
     ///
     /// # Errors
-    /// [`Error::Request`] where the run has a requirement, which only the program that gave it can ask.
+    /// [`Error::Request`] if the run has a requirement, which only the program that gave it can ask.
     pub fn judges_alone(&self) -> Result<(), Error> {
         self.requirement.as_ref().map_or(Ok(()), |name| {
             Err(Error::Request(format!(
-                "this run has a requirement, {name}, that its folder does not hold: whether another simulation meets it cannot be told"
+                "this run has a requirement, {name}, that its folder does not hold: so it is unknown whether another simulation meets it"
             )))
         })
     }
 
-    /// A number that the chains' files bear, so that files of different runs cannot be mixed up. How many chains there
-    /// are plays no part: what one leaves does not depend on the others.
+    /// A number that the chains' files carry, so that files of different runs cannot be confused. The number of chains
+    /// is not part of it: what a chain leaves does not depend on the others.
     pub(crate) fn run_id(&self) -> u64 {
         let (mut hasher, mut of_sampler) = (blake3::Hasher::new(), false);
         for line in self.scenario.effective.split_inclusive('\n') {

@@ -1,10 +1,10 @@
-//! How fast a run's chains are on this machine: a folder knows no clock.
+//! How fast a run's chains are on this machine. A folder does not record any times.
 
 use crate::error::Error;
 use crate::read::RunReader;
 use plaus_mcmc::{Block, Control, Distinct, Plan, Progress, Pulse, Sink, Snapshot, Start, run_some};
 
-/// Forgets what it is given.
+/// A sink that drops everything.
 struct Nowhere;
 
 impl<D, O> Sink<D, O> for Nowhere {
@@ -17,11 +17,11 @@ impl<D, O> Sink<D, O> for Nowhere {
     }
 }
 
-/// Goes on with the first chain of a run, on one thread and to nowhere, until `pulse` is stopped; gives the iterations
-/// that it made. The run stays as it is. `None` where there is no chain to go on with.
+/// Continues the first chain of a run on one thread, without recording, until `pulse` is stopped; gives the number of
+/// iterations made. The run does not change. `None` if there is no chain to continue.
 ///
 /// # Errors
-/// [`Error`] where an iteration fails, or the run has a requirement that its folder does not hold.
+/// [`Error`] if an iteration fails, or the run has a requirement that its folder does not hold.
 pub fn pace(run: &RunReader<'_>, pulse: &Pulse) -> Result<Option<u64>, Error> {
     let manifest = run.run().manifest();
     manifest.judges_alone()?;

@@ -1,4 +1,4 @@
-//! Reading a run back: lazily, chain by chain, believing nothing that was not checked.
+//! Reading a run back: lazily, chain by chain, trusting nothing that was not checked.
 
 use crate::checkpoint::Checkpoint;
 use crate::error::{Error, RunFileError, RunFileProblem};
@@ -30,7 +30,7 @@ pub struct RunReader<'a> {
 /// What is known of a chain without reading its records.
 struct ChainOf {
     extent: Extent,
-    /// Bytes of its records behind what can be read.
+    /// Bytes of its records after the readable part.
     lost: u64,
     snapshot: Option<Snapshot<Draw, Outcome>>,
 }
@@ -55,32 +55,32 @@ impl Run {
     /// Opens a run.
     ///
     /// # Errors
-    /// [`Error`] where there is none, or its manifest is damaged.
+    /// [`Error`] if there is none, or its manifest is damaged.
     pub fn open(folder: &Folder) -> Result<Self, Error> {
         let manifest = Manifest::read(folder)?;
         let scenario = manifest.scenario()?;
         Ok(Self { folder: folder.clone(), manifest, scenario, salvage: false })
     }
 
-    /// The same run, of which everything before the first damage is to be read, whatever the checkpoints say.
+    /// The same run, read up to the first damage, whatever the checkpoints say.
     #[must_use]
     pub fn salvaged(self) -> Self {
         Self { salvage: true, ..self }
     }
 
-    /// Where it lies.
+    /// Its folder.
     #[must_use]
     pub fn folder(&self) -> &Folder {
         &self.folder
     }
 
-    /// What it is.
+    /// Its manifest.
     #[must_use]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
 
-    /// The scenario in force.
+    /// The effective scenario.
     #[must_use]
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
@@ -89,7 +89,7 @@ impl Run {
     /// The run with its scene, ready to be read.
     ///
     /// # Errors
-    /// [`Error`] where the scene cannot be built, or is not the one of the manifest, or a checkpoint is damaged.
+    /// [`Error`] if the scene cannot be built, or is not the one of the manifest, or a checkpoint is damaged.
     pub fn reader(&self) -> Result<RunReader<'_>, Error> {
         RunReader::new(self, self.scenario.stage()?)
     }
@@ -107,8 +107,7 @@ impl<'a> RunReader<'a> {
         let end = |chain: &ChainOf| chain.snapshot.as_ref().map(|snapshot| snapshot.end_iteration);
         if let Some(newest) = chains.iter().filter_map(end).max() {
             for (chain, _) in run.manifest.chains().zip(&chains).filter(|(_, chain)| chain.snapshot.is_none()) {
-                // One that is about to take its place is there in a run that was killed as its checkpoints were
-                // replaced.
+                // If a run was killed while its checkpoints were replaced, the missing one is about to take its place.
                 if !run.folder.next_checkpoint(chain).exists() {
                     let problem = RunFileProblem::Gone { newest };
                     return Err(RunFileError::new(run.folder.checkpoint(chain), problem).into());
@@ -118,8 +117,8 @@ impl<'a> RunReader<'a> {
         Ok(Self { run, scene, chains })
     }
 
-    /// Per chain that has any: bytes at the end of its records that cannot be read. None unless the run is read for
-    /// salvage.
+    /// For each chain that has any: the number of bytes at the end of its records that cannot be read. Empty unless the
+    /// run is read for salvage.
     #[must_use]
     pub fn lost(&self) -> Vec<(u32, u64)> {
         self.chains().zip(&self.chains).map(|(chain, of)| (chain, of.lost)).filter(|(_, lost)| *lost > 0).collect()
@@ -137,16 +136,17 @@ impl<'a> RunReader<'a> {
         &self.scene
     }
 
-    /// Numbers of the chains there are: from 0, unless the run is a piece of one.
+    /// Numbers of its chains: from 0, unless it is a piece of a run.
     #[must_use]
     pub fn chains(&self) -> Range<u32> {
         self.run.manifest.chains()
     }
 
-    /// What `job` makes of each chain, in their order, on all threads of the current pool.
+    /// The results of `job` for each chain, in order, run on all threads of the current pool.
     ///
     /// # Errors
-    /// That of the first chain for which `job` fails.
+    ///
+    /// The error of the first chain for which `job` fails.
     pub fn each_chain<T: Send, E: Send>(&self, job: impl Fn(u32) -> Result<T, E> + Sync) -> Result<Vec<T>, E> {
         let chains = self.chains();
         parallel::try_map(chains.len(), |k| job(chains.start + k as u32))
@@ -156,7 +156,7 @@ impl<'a> RunReader<'a> {
         self.chains.get(chain.checked_sub(self.chains().start)? as usize)
     }
 
-    /// A chain as of its checkpoint; `None` where there is none yet, or the run is read for salvage.
+    /// A chain as of its checkpoint; `None` if there is none yet, or the run is read for salvage.
     #[must_use]
     pub fn snapshot(&self, chain: u32) -> Option<&Snapshot<Draw, Outcome>> {
         self.chain(chain)?.snapshot.as_ref()
@@ -175,7 +175,7 @@ impl<'a> RunReader<'a> {
         range.end - range.start
     }
 
-    /// The phases in which solutions count: of a run that looks for solutions, the warm-up too.
+    /// The phases in which solutions count. For a run that looks for solutions, the warm-up is one of them.
     #[must_use]
     pub fn counted(&self) -> &'static [Phase] {
         let from_the_start = self.run.manifest.plan.counts_from() == 0;
@@ -202,7 +202,7 @@ impl<'a> RunReader<'a> {
     /// The recorded blocks of a chain.
     ///
     /// # Errors
-    /// [`RunFileError`] where the records cannot be opened.
+    /// [`RunFileError`] if the records cannot be opened.
     pub fn blocks(&self, chain: u32) -> Result<Blocks<Draw, Outcome>, RunFileError> {
         let extent = self.chain(chain).map(|chain| chain.extent);
         let missing = || {
@@ -213,10 +213,10 @@ impl<'a> RunReader<'a> {
         Blocks::open(&self.run.folder.records(chain), extent.ok_or_else(missing)?)
     }
 
-    /// Shows `look` the draws of a phase of one chain, in order.
+    /// Passes the draws of a phase of one chain to `look`, in order.
     ///
     /// # Errors
-    /// [`RunFileError`] where the records are damaged, or as `look` says.
+    /// [`RunFileError`] if the records are damaged, or as `look` says.
     pub fn walk<E: From<RunFileError>>(
         &self,
         chain: u32,
@@ -231,7 +231,7 @@ impl<'a> RunReader<'a> {
         failed.map_or(Ok(()), Err)
     }
 
-    /// The same until `look` says no; compiled once a scene, whoever looks.
+    /// The same until `look` returns false. It is compiled once for each scene, not for each caller.
     fn walk_until(
         &self,
         chain: u32,
@@ -265,7 +265,7 @@ impl<'a> RunReader<'a> {
     /// The entry that a draw belongs to.
     ///
     /// # Errors
-    /// [`RunFileProblem::NoSample`] where there is no such draw, or [`RunFileError`] where the records are damaged.
+    /// [`RunFileProblem::NoSample`] if there is no such draw, or [`RunFileError`] if the records are damaged.
     pub fn sample(&self, sample: SampleId) -> Result<Entry<Draw, Outcome>, RunFileError> {
         let SampleId { chain, phase, draw } = sample;
         let blocks = self.blocks(chain)?;
@@ -285,7 +285,7 @@ impl<'a> RunReader<'a> {
         let id = |draw| SampleId { draw, ..sample };
         let message = match (draws.checked_sub(1), phase) {
             (Some(last), _) => format!("there is no draw {}: the draws of each chain are 0 to {last}", id(draw)),
-            (None, Phase::Sampling) => "there are no draws yet: the run has not passed its warm-up".to_owned(),
+            (None, Phase::Sampling) => "there are no draws yet: the run is still in its warm-up".to_owned(),
             (None, Phase::Warmup) => "the run has no warm-up".to_owned(),
         };
         Err(RunFileError::new(self.run.folder.path(), RunFileProblem::NoSample(message)))

@@ -1,4 +1,4 @@
-//! What a chain has recorded: one frame a block of iterations, only ever appended to.
+//! What a chain has recorded: one frame for each block of iterations, only ever appended.
 
 use crate::codec::{self, EncodeError, FrameError, FrameProblem, Frames, Kind};
 use crate::error::{RunFileError, RunFileProblem};
@@ -22,7 +22,7 @@ struct Stored<B> {
 /// A block as it is stored.
 ///
 /// # Errors
-/// [`EncodeError`] where it is too long.
+/// [`EncodeError`] if it is too long.
 pub(crate) fn encode<D: Serialize, O: Serialize>(
     run: u64,
     chain: u32,
@@ -96,8 +96,9 @@ impl<D: DeserializeOwned, O: DeserializeOwned> Blocks<D, O> {
         let due = end.div_ceil(thin).checked_sub(first.div_ceil(thin));
         let whole = block.entries.iter().all(|entry| entry.draws > 0) && held.is_some() && held == due;
         if first != self.next_iteration || end <= first || end > self.extent.end_iteration || !whole {
-            let reason =
-                format!("it covers iterations {first} to {end}, which does not follow on, or does not fit its draws");
+            let reason = format!(
+                "it covers iterations {first} to {end}, which do not follow the previous ones, or do not match its draws"
+            );
             return Err(self.damage(offset, FrameProblem::Payload { name: "block", reason }));
         }
         Ok(due.unwrap_or(0))
@@ -129,14 +130,14 @@ impl<D: DeserializeOwned, O: DeserializeOwned> Iterator for Blocks<D, O> {
     }
 }
 
-/// What a stored block begins with: run, chain, first iteration and one past the last.
+/// The beginning of a stored block: run, chain, first iteration and one past the last.
 type Head = (u64, u32, u64, u64);
 
-/// Hands on the bytes of a chain's records in large parts, whole frames whose checksums, places and number of
-/// iterations were found right; what they hold is not looked at.
+/// Passes on the bytes of a chain's records in large parts: whole frames with verified checksums, places and numbers of
+/// iterations. Their contents are not read.
 ///
 /// # Errors
-/// [`RunFileError`] where they are damaged or belong elsewhere, or as `take`.
+/// [`RunFileError`] if they are damaged or belong elsewhere, or as `take`.
 pub(crate) fn copy<E: From<RunFileError>>(
     path: &Path,
     extent: Extent,
@@ -160,7 +161,7 @@ pub(crate) fn copy<E: From<RunFileError>>(
         let head = codec::head::<Head>(KIND, frame);
         let head = head.map_err(|problem| damage(next_iteration, FrameError { offset, problem }))?;
         if (head.0, head.1, head.2) != (run, chain, next_iteration) || head.3 <= next_iteration {
-            let message = format!("the frame at byte {offset} does not follow on");
+            let message = format!("the frame at byte {offset} does not follow the previous one");
             return Err(RunFileError::new(path, RunFileProblem::Mixed(message)).into());
         }
         next_iteration = head.3;
@@ -174,7 +175,7 @@ pub(crate) fn copy<E: From<RunFileError>>(
     Ok(())
 }
 
-/// Rebuilds which classes of solutions a chain has recorded first where, from iteration `from` on.
+/// Rebuilds when a chain first recorded each class of solutions, starting at iteration `from`.
 pub(crate) fn distinct<D: DeserializeOwned, O: DeserializeOwned>(
     path: &Path,
     extent: Extent,
@@ -196,7 +197,7 @@ pub(crate) fn distinct<D: DeserializeOwned, O: DeserializeOwned>(
     Ok(distinct)
 }
 
-/// Length of a file; 0 where there is none.
+/// Length of a file; 0 if there is none.
 pub(crate) fn length(path: &Path) -> Result<u64, RunFileError> {
     match std::fs::metadata(path) {
         Ok(meta) => Ok(meta.len()),

@@ -10,16 +10,16 @@ use serde::Serialize;
 /// A recorded draw, simulated again.
 #[derive(Debug, Clone, Serialize)]
 pub struct Replay {
-    /// Which.
+    /// The sample.
     #[serde(flatten)]
     pub sample: SampleId,
     /// The iteration that recorded it.
     pub iteration: u64,
     /// `log p(A)`, equal bit for bit to the recorded one.
     pub log_p: f64,
-    /// Its part from the prior.
+    /// The log prior.
     pub log_prior: f64,
-    /// Its part from the constraint.
+    /// The log constraint.
     pub log_constraint: f64,
     /// Whether it satisfies the constraint.
     pub satisfied: bool,
@@ -27,7 +27,7 @@ pub struct Replay {
     pub scalars: Vec<(String, f64)>,
     /// The motion.
     pub animation: Animation,
-    /// What was recorded, where this is another simulation of the same draw.
+    /// What was recorded, if this is another simulation of the same draw.
     pub recorded: Option<Recorded>,
 }
 
@@ -45,17 +45,17 @@ pub struct Recorded {
 /// Rebuilds the animation of a draw, and makes sure that it is the one that was sampled.
 ///
 /// # Errors
-/// [`Error`] where there is no such draw, or this program makes something else of it than the one that sampled it.
+/// [`Error`] if there is no such draw, or this program makes something else of it than the one that sampled it.
 pub fn replay(run: &RunReader<'_>, sample: SampleId) -> Result<Replay, Error> {
     let entry = run.sample(sample)?;
     rebuild(run, sample, &entry.state, entry.class.is_some(), Until::Rest)
 }
 
-/// What becomes of a recorded draw at another accuracy. That the recorded state is what this program makes of the draw
-/// at the run's own is made sure first.
+/// Simulates a recorded draw at another accuracy. First checks that this program reproduces the recorded state at the
+/// run's own accuracy.
 ///
 /// # Errors
-/// As [`replay`], and where the scene has no accuracy to choose.
+/// As [`replay`], and if the scene has no accuracy to choose.
 pub fn replay_at(run: &RunReader<'_>, sample: SampleId, accuracy: AccuracyPreset) -> Result<Replay, Error> {
     let entry = run.sample(sample)?;
     run.run().manifest().judges_alone()?;
@@ -70,12 +70,12 @@ pub fn replay_at(run: &RunReader<'_>, sample: SampleId, accuracy: AccuracyPreset
 /// A scene at another accuracy, or why there is none.
 pub(crate) fn at_accuracy(scene: &Stage, name: &str, accuracy: AccuracyPreset) -> Result<Stage, Error> {
     scene.at_accuracy(accuracy)?.ok_or_else(|| {
-        Error::Request(format!("{name} moves in closed form, which is exact at any accuracy: there is none to choose"))
+        Error::Request(format!("{name} moves in closed form, which is always exact: there is no accuracy to choose"))
     })
 }
 
-/// Rebuilds many draws, each chain's records being read once, and hands each to `make`, on all threads: what `make`
-/// gives, in the order of `samples`.
+/// Rebuilds many draws, reading each chain's records once, and passes each to `make`, on all threads. Gives the results
+/// in the order of `samples`.
 ///
 /// # Errors
 /// As [`replay`].
@@ -87,7 +87,7 @@ pub fn replay_each<T: Send>(
     replay_each_until(run, samples, Until::Rest, make)
 }
 
-/// The same, with animations that end as asked for.
+/// The same, with animations that end as asked.
 ///
 /// # Errors
 /// As [`replay`].
@@ -107,7 +107,7 @@ pub fn replay_each_until<T: Send>(
 /// A recorded state with its place in a list, and whether it satisfies the constraint.
 pub(crate) type Found = (usize, StateOf<Stage>, bool);
 
-/// The recorded states of many draws, in their order, each chain's records being read once.
+/// The recorded states of many draws, in order, reading each chain's records once.
 pub(crate) fn states(run: &RunReader<'_>, samples: &[SampleId]) -> Result<Vec<Found>, Error> {
     let order = in_order(samples);
     let mut states: Vec<Option<Found>> = samples.iter().map(|_| None).collect();
@@ -122,7 +122,7 @@ pub(crate) fn states(run: &RunReader<'_>, samples: &[SampleId]) -> Result<Vec<Fo
             Ok(())
         })?;
         if let Some(missing) = wanted.next() {
-            // Says which draws there are.
+            // This says which draws exist.
             run.sample(samples[missing])?;
         }
     }
@@ -155,7 +155,7 @@ fn same(run: &RunReader<'_>, sample: SampleId, stored: &StateOf<Stage>) -> Resul
     })
 }
 
-/// A state as `scene` shows it.
+/// A state in the form that `scene` shows.
 fn shown(
     run: &RunReader<'_>,
     scene: &Stage,
@@ -179,9 +179,8 @@ fn shown(
     })
 }
 
-/// Evaluates the draw of a stored state, which must give that state's bits: otherwise other code made it. Where the run
-/// has a requirement, the log constraint
-/// holds a factor that is not known here, and is taken as it was stored.
+/// Evaluates the draw of a stored state again, which must give the same bits: if not, other code made it. If the run
+/// has a requirement, the log constraint includes a factor that is not known here, and is taken as stored.
 pub(crate) fn evaluate_again(
     scene: &Stage,
     stored: &StateOf<Stage>,
@@ -197,5 +196,5 @@ pub(crate) fn evaluate_again(
         return Ok(again);
     }
     let (was, is) = (stored.log_p().value(), again.log_p().value());
-    Err(Ok(RunFileProblem::Differs(format!("a stored state has log p {was:?}, evaluated again it has {is:?}"))))
+    Err(Ok(RunFileProblem::Differs(format!("a stored state has log p {was:?}, but evaluated again it has {is:?}"))))
 }

@@ -1,4 +1,4 @@
-//! Sampling into a run folder, and going on with one.
+//! Sampling into a run folder, and continuing a run.
 
 use crate::checkpoint::{self, Checkpoint};
 use crate::disk::{Disk, RealDisk};
@@ -24,16 +24,16 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
 use std::sync::Arc;
 
-/// What is said of a requirement that is not given.
-const BY_ITS_MAKER: &str = "go on with it from the program that gave it";
+/// Message about a requirement that is missing.
+const BY_ITS_MAKER: &str = "continue it from the program that defined it";
 
-/// How to sample, beside what.
+/// How to sample.
 pub struct Sampling<'a> {
-    /// Threads; 0 is one a core. No more are started than there are replicas of chains. Never changes results.
+    /// Threads; 0 means one per core. No more are started than there are replicas of chains. Never changes results.
     pub threads: usize,
     /// Where to write.
     pub disk: &'a dyn Disk,
-    /// Who looks on.
+    /// Watches the run, and may stop it.
     pub watch: &'a mut dyn Watch,
 }
 
@@ -53,15 +53,15 @@ impl<'a> Sampling<'a> {
 /// Samples a new run into `folder`.
 ///
 /// # Errors
-/// [`Error`] where the folder exists, the scenario makes no scene, a chain fails or the disk refuses.
+/// [`Error`] if the folder exists, the scenario makes no scene, a chain fails or the disk refuses.
 pub fn sample(folder: &Folder, recipe: &Recipe, sampling: Sampling<'_>) -> Result<Ending, Error> {
     sample_shard(folder, recipe, None, sampling)
 }
 
-/// As [`sample()`], only the chains of one piece; all where there is none.
+/// Like [`sample()`], but for the chains of one piece only; `None` samples all.
 ///
 /// # Errors
-/// As [`sample()`], and where there are fewer chains than pieces.
+/// As [`sample()`], and if there are fewer chains than pieces.
 pub fn sample_shard(
     folder: &Folder,
     recipe: &Recipe,
@@ -71,7 +71,7 @@ pub fn sample_shard(
     begin(folder, recipe, shard, sampling, &Alone)
 }
 
-/// As [`sample()`], with the chains driven by `drive`: under a requirement, say.
+/// Like [`sample()`], with the chains driven by `drive`, for example under a requirement.
 ///
 /// # Errors
 /// As [`sample()`], and as `drive` says.
@@ -100,11 +100,11 @@ fn begin<D: Drive>(
     go_on(folder, &manifest, &Arc::new(scene), Vec::new(), sampling, drive)
 }
 
-/// Samples a new run, or a piece of one, into `folder`; where that holds this very run already, goes on with it. So a
-/// job that is started again and again comes to its end.
+/// Samples a new run, or a piece of one, into `folder`; if the folder already holds this same run, continues it. So a
+/// job that is started again and again reaches its end.
 ///
 /// # Errors
-/// As [`sample_shard`] and [`resume`], and where the folder holds another run.
+/// As [`sample_shard`] and [`resume`], and if the folder holds another run.
 pub fn sample_or_go_on(
     folder: &Folder,
     recipe: &Recipe,
@@ -114,7 +114,7 @@ pub fn sample_or_go_on(
     if !folder.manifest().exists() {
         let Sampling { threads, disk, ref mut watch } = sampling;
         let begun = sample_shard(folder, recipe, shard, Sampling { threads, disk, watch: &mut **watch });
-        // Of two processes that begin at once, one makes the run; the other goes on with it.
+        // If two processes begin at once, one makes the run, and the other continues it.
         let too_late = |problem: &RunFileProblem| {
             use RunFileProblem::{Exists, Io, Locked};
             matches!(problem, Exists | Locked | Io { action: "make the run", .. })
@@ -127,7 +127,7 @@ pub fn sample_or_go_on(
     let found = Manifest::read(folder)?;
     let mut expected = piece(recipe, &recipe.scenario.stage()?, shard)?;
     if recipe.scenario.method() == Method::Auto {
-        // A trial finds the same each time.
+        // A trial always has the same result.
         (expected.way, expected.moves, expected.exact) = (found.way.clone(), found.moves.clone(), found.exact);
     }
     match found.differs_from(&expected) {
@@ -136,14 +136,14 @@ pub fn sample_or_go_on(
     }
 }
 
-/// The manifest of a run of which it is settled how its draws are made.
+/// The manifest of a run, once it is decided how its draws are made.
 fn settled(manifest: Manifest, recipe: &Recipe, scene: &Stage, sampling: &Sampling<'_>) -> Result<Manifest, Error> {
     if manifest.way.is_some() || recipe.scenario.method() != Method::Auto {
         return Ok(manifest);
     }
     let pulse = sampling.watch.pulse();
     let way = match &manifest.requirement {
-        Some(_) => Way { independent: false, why: "no trial asks what a program requires".to_owned() },
+        Some(_) => Way { independent: false, why: "a trial cannot ask a requirement written in a program".to_owned() },
         None => parallel::install(&sampling.pool(&manifest)?, || trial::tried(recipe, scene, &pulse))?,
     };
     manifest.made(way, scene, &recipe.scenario.sampler.rules)
@@ -157,37 +157,38 @@ fn piece(recipe: &Recipe, scene: &Stage, shard: Option<Shard>) -> Result<Manifes
     Ok(manifest)
 }
 
-/// What a run is asked for beyond its plan.
+/// A request beyond a run's plan.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct More {
-    /// Iterations of the sampling phase, in all.
+    /// Total iterations of the sampling phase.
     pub iterations: Option<u64>,
-    /// Distinct solutions, in all, after which to stop.
+    /// Total number of distinct solutions after which to stop.
     pub solutions: Option<u64>,
 }
 
-/// Goes on with a run from its last checkpoint, to its planned end or as far as `more` says.
+/// Continues a run from its last checkpoint, to its planned end or as far as `more` says.
 ///
 /// # Errors
-/// [`Error`] where the run is damaged, made by another version or being written, `more` is less than planned, or as
-/// [`sample`].
+///
+/// [`Error`] if the run is damaged, made by another version or being written, if `more` is less than planned, or for
+/// the reasons of [`sample`].
 pub fn resume(folder: &Folder, more: More, sampling: Sampling<'_>) -> Result<Ending, Error> {
     resume_by(folder, more, sampling, &Alone)
 }
 
-/// As [`resume`], with the chains driven as they were by [`sample_by`].
+/// Like [`resume`], with the chains driven as by [`sample_by`].
 ///
 /// # Errors
-/// As [`resume`], and where `drive` is another one than the run's.
+/// As [`resume`], and if `drive` is another one than the run's.
 pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, drive: &D) -> Result<Ending, Error> {
-    Manifest::read(folder)?; // what is no run gets no lock file
+    Manifest::read(folder)?; // a folder that is not a run gets no lock file
     let _claim = loop {
         match folder.claim() {
             Err(error) if matches!(error.problem, RunFileProblem::Locked) && sampling.watch.locked(folder) => {}
             claim => break claim?,
         }
     };
-    let mut manifest = Manifest::read(folder)?; // nobody else changes it from here on
+    let mut manifest = Manifest::read(folder)?; // from here on nobody else changes it
     if manifest.plaus != VERSION {
         let problem = RunFileProblem::OtherVersion { made: manifest.plaus, present: VERSION };
         return Err(RunFileError::new(folder.path(), problem).into());
@@ -195,7 +196,7 @@ pub fn resume_by<D: Drive>(folder: &Folder, more: More, sampling: Sampling<'_>, 
     if manifest.requirement != drive.requirement() {
         return Err(Error::Request(match &manifest.requirement {
             Some(name) => format!("this run has a requirement, {name}, that its folder does not hold: {BY_ITS_MAKER}"),
-            None => "this run has no requirement: it goes on without one".to_owned(),
+            None => "this run has no requirement: continue it without one".to_owned(),
         }));
     }
     Manifest::clear(folder, sampling.disk);
@@ -214,9 +215,8 @@ fn extend(manifest: &mut Manifest, scenario: &Scenario, more: More) -> Result<bo
     if let Some(wanted) = more.iterations.filter(|&wanted| wanted != before.iterations) {
         let planned = before.iterations;
         if wanted < planned {
-            let message = format!(
-                "{planned} iterations are planned already: a run can be made longer, not shorter than {planned}"
-            );
+            let message =
+                format!("{planned} iterations are already planned: a run can be made longer, but not shorter");
             return Err(Error::Request(message));
         }
         let said = [format!("sampler.iterations={wanted}")];
@@ -231,12 +231,12 @@ fn extend(manifest: &mut Manifest, scenario: &Scenario, more: More) -> Result<bo
     }
     if let Some(wanted) = more.solutions {
         if manifest.shard.is_some() && before.solutions.is_none() {
-            let message = "a piece that was begun without `--solutions` cannot look for them: pieces have to note from their \
-                first iteration on where they could be cut; sample the pieces again";
+            let message = "a piece that was begun without `--solutions` cannot look for them, because pieces must note from \
+                       their first iteration where they could be cut; sample the pieces again";
             return Err(Error::Request(message.to_owned()));
         }
         if let Some(planned) = before.solutions.filter(|&planned| wanted < planned) {
-            let message = format!("{planned} distinct solutions are looked for already: ask for {planned} or more");
+            let message = format!("{planned} distinct solutions are already asked for: ask for {planned} or more");
             return Err(Error::Request(message));
         }
         manifest.plan.solutions = Some(wanted);
@@ -244,7 +244,7 @@ fn extend(manifest: &mut Manifest, scenario: &Scenario, more: More) -> Result<bo
     Ok(manifest.plan != before)
 }
 
-/// The states to go on from. Cuts off what was written after the last checkpoint.
+/// The states to continue from. Cuts off anything written after the last checkpoint.
 fn restore(folder: &Folder, manifest: &Manifest, scene: &Stage, sampling: &Sampling<'_>) -> Result<Starts, Error> {
     let disk = sampling.disk;
     if stored_scalars(scene) != manifest.scalars {
@@ -287,7 +287,8 @@ fn restore_chain(
     let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes: records, end_iteration };
     let distinct: Distinct = records::distinct::<Draw, Outcome>(&path, extent, manifest.plan.counts_from())?;
     if snapshot.counts.len() != manifest.moves.len() {
-        let message = format!("{} moves are counted, the scene has {}", snapshot.counts.len(), manifest.moves.len());
+        let message =
+            format!("{} moves are counted, but the scene has {}", snapshot.counts.len(), manifest.moves.len());
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
     }
     let kernels = manifest.mixture(scene)?;
@@ -298,7 +299,7 @@ fn restore_chain(
     }
     let (rungs, moves) = (manifest.plan.rungs, manifest.moves.len());
     if snapshot.replicas.as_ref().map_or(rungs != 1, |replicas| !replicas.fits(rungs, moves)) {
-        let message = format!("the checkpoint is not one of {rungs} rungs");
+        let message = format!("the checkpoint is not for {rungs} rungs");
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
     }
     cut(&path, disk, records)?;
@@ -348,7 +349,7 @@ fn go_on<D: Drive>(
     Ok(if sink.is_past_the_end() { Ending::EnoughSolutions } else { ending })
 }
 
-/// A gauge that has seen what is recorded already.
+/// A gauge with everything that is already recorded.
 fn gauge<'a>(
     folder: &Folder,
     scene: &'a Stage,

@@ -6,22 +6,22 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
-    /// Before sampling, while moves and ladders are adapted: kept out of tables and diagnostics.
+    /// Before sampling, while moves and ladders are adapted; tables and diagnostics leave it out.
     Warmup,
-    /// What is sampled. Its recorded draws are numbered from 0.
+    /// The sampling phase. Its recorded draws are numbered from 0.
     #[default]
     Sampling,
 }
 
 impl Phase {
-    /// Whether its draws are what statistics are made of.
+    /// Whether statistics use its draws.
     #[must_use]
     pub fn is_sampling(&self) -> bool {
         *self == Self::Sampling
     }
 }
 
-/// A recorded draw. As text, `0:17` is draw 17 of chain 0, and `0:w17` the one of its warm-up.
+/// A recorded draw. As text, `0:17` is draw 17 of chain 0, and `0:w17` is draw 17 of its warm-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct SampleId {
     /// Its chain.
@@ -48,7 +48,7 @@ impl std::str::FromStr for SampleId {
             Some(Self { chain: chain.parse().ok()?, phase, draw: draw.parse().ok()? })
         };
         let wrong =
-            || format!("`{text}` names no sample: write CHAIN:DRAW, e.g. 0:17, or 0:w17 for one of the warm-up");
+            || format!("`{text}` names no sample: write CHAIN:DRAW, e.g. 0:17, or 0:w17 for one from the warm-up");
         text.split_once(':').and_then(parse).ok_or_else(wrong)
     }
 }

@@ -1,7 +1,7 @@
-//! Pieces of a run: whole chains, cut as evenly as can be, that other machines can work at.
+//! Pieces of a run: whole chains, divided as evenly as possible, for other machines to work on.
 //!
-//! A piece is a run of its own: it can be killed, resumed, diagnosed, exported. Its chains keep their numbers among
-//! all, and its files have the bytes that they have where one machine runs all chains; [`merge`](mod@crate::merge) only
+//! A piece is a run of its own: it can be killed, resumed, diagnosed, exported. Its chains keep their numbers in the
+//! whole run, and its files have the same bytes as if one machine had run all chains; [`merge`](mod@crate::merge) only
 //! puts them side by side.
 
 use serde::{Deserialize, Serialize};
@@ -17,24 +17,22 @@ pub struct Shard {
     of: u32,
 }
 
-/// Numbers that name no piece.
+/// Why a text or numbers do not name a piece.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ShardError {
     /// Not two whole numbers.
     #[error("`{0}` names no piece: write PIECE/PIECES, e.g. 3/16")]
     Text(String),
     /// Pieces are numbered from 1.
-    #[error("there is no piece {piece} of {of}: pieces are numbered from 1 to how many there are")]
+    #[error("there is no piece {piece} of {of}: pieces are numbered from 1 to {of}")]
     Range {
         /// The piece.
         piece: u32,
         /// How many there are.
         of: u32,
     },
-    /// A piece is at least one chain.
-    #[error(
-        "{of} pieces cannot be cut from {chains} chains: a piece is at least one chain, so ask for at most {chains}"
-    )]
+    /// A piece needs at least one chain.
+    #[error("{chains} chains cannot be cut into {of} pieces: every piece needs a chain, so ask for at most {chains}")]
     TooMany {
         /// Pieces.
         of: u32,
@@ -47,7 +45,7 @@ impl Shard {
     /// Piece number `piece`, counted from 1, of `of`.
     ///
     /// # Errors
-    /// [`ShardError::Range`] where there is none.
+    /// [`ShardError::Range`] if there is none.
     pub fn new(piece: u32, of: u32) -> Result<Self, ShardError> {
         if (1..=of).contains(&piece) { Ok(Self { piece, of }) } else { Err(ShardError::Range { piece, of }) }
     }
@@ -69,11 +67,12 @@ impl Shard {
         self.of
     }
 
-    /// Its part of `total` things that are cut into pieces: chains here; batches of particles or of draws are cut the
-    /// same way.
+    /// Its part of `total` things that are cut into pieces. Here these are chains; batches of particles or of draws are
+    /// cut in the same way.
     ///
     /// # Errors
-    /// [`ShardError`] where it would have none, or its numbers name no piece.
+    ///
+    /// [`ShardError`] if its part would be empty, or its numbers do not name a piece.
     pub fn range(self, total: u32) -> Result<Range<u32>, ShardError> {
         let Self { piece, of } = Self::new(self.piece, self.of)?;
         if of > total {

@@ -1,9 +1,9 @@
-//! What the pieces beside this one have found so far: so that a piece that looks for solutions need not find all of
-//! them by itself.
+//! What the other pieces have found so far, so that a piece that looks for solutions need not find all of them by
+//! itself.
 //!
-//! What is known is never too early: another solution can only bring the end forward. So a piece that is past the end
-//! that it knows of is past the end of the run, and has made everything that a merge takes of it. How far it goes
-//! beyond depends on who was faster; what is merged does not.
+//! The end known here is never too early: another solution can only bring it forward. So a piece that is past that end
+//! is past the end of the run, and has made everything that a merge takes from it. How far it goes beyond depends on
+//! which piece was faster; the merged run does not.
 
 use crate::error::RunFileError;
 use crate::folder::{Folder, parent_of};
@@ -12,11 +12,11 @@ use plaus_mcmc::{FirstOfClass, SolutionClass};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// The other pieces in the folder that a piece lies in.
+/// The other pieces in the same folder.
 pub(crate) struct Siblings {
     own: Folder,
     run: u64,
-    /// How much of each one's trail was read.
+    /// How much of each trail has been read.
     read: BTreeMap<PathBuf, u64>,
     /// The first iteration, as far as is known, that recorded each class.
     found: BTreeMap<SolutionClass, u64>,
@@ -27,8 +27,8 @@ impl Siblings {
         Self { own: own.clone(), run, read: BTreeMap::new(), found: BTreeMap::new() }
     }
 
-    /// The iteration that completes `wanted` solutions, as far as is known here and to those beside; `None` where there
-    /// are not so many yet.
+    /// The iteration that completes `wanted` solutions, as far as this piece and the others know; `None` if there are
+    /// not enough yet.
     pub(crate) fn end(&mut self, ours: &[FirstOfClass], wanted: u64) -> Option<u64> {
         self.look();
         ours.iter().for_each(|first| self.note(first));
@@ -42,7 +42,7 @@ impl Siblings {
         *iteration = first.iteration.min(*iteration);
     }
 
-    /// Reads what is new. What cannot be read, or is of another run, is of no use, and no harm.
+    /// Reads anything new. A trail that cannot be read, or is of another run, is ignored.
     fn look(&mut self) {
         let Ok(beside) = std::fs::read_dir(parent_of(self.own.path())) else { return };
         for entry in beside.flatten() {

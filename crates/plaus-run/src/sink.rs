@@ -1,4 +1,4 @@
-//! Writes what the chains leave behind: records after every round, checkpoints when they are due.
+//! Writes what the chains produce: records after every round, checkpoints when they are due.
 
 use crate::checkpoint::{self, Checkpoint};
 use crate::disk::{Disk, for_each};
@@ -17,7 +17,7 @@ use rayon::ThreadPool;
 pub(crate) struct Place<'a> {
     pub(crate) folder: &'a Folder,
     pub(crate) disk: &'a dyn Disk,
-    /// The number that the run's files bear.
+    /// The number that the run's files carry.
     pub(crate) run: u64,
     /// Number of the first chain.
     pub(crate) first: u32,
@@ -26,7 +26,7 @@ pub(crate) struct Place<'a> {
 }
 
 impl Hunt {
-    /// Whether a piece that has done the iterations `0 .. done`, and found `ours` first, is past the end of the run.
+    /// Whether a piece is past the end of the run. It has done the iterations `0 .. done`, and found `ours` first.
     pub(crate) fn is_over(&mut self, ours: &[FirstOfClass], done: u64) -> bool {
         self.over = self.siblings.end(ours, self.wanted).is_some_and(|end| end < done);
         self.over
@@ -37,7 +37,7 @@ impl Hunt {
 pub(crate) struct FolderSink<'a> {
     place: Place<'a>,
     watch: &'a mut dyn Watch,
-    /// Where somebody looks at it.
+    /// Set if somebody watches the mixing.
     gauge: Option<Gauge<'a>>,
     /// Bytes in each chain's records.
     lengths: Vec<u64>,
@@ -45,14 +45,14 @@ pub(crate) struct FolderSink<'a> {
     blocks: Vec<(u32, Block<Draw, Outcome>)>,
     /// Each chain as of the last round.
     snapshots: Vec<Snapshot<Draw, Outcome>>,
-    /// Iterations the last checkpoint covers.
+    /// Iterations that the last checkpoint covers.
     safe: u64,
     /// Iterations that were done before this round.
     before: u64,
     hunt: Option<Hunt>,
 }
 
-/// A hunt for distinct solutions that other pieces take part in.
+/// A search for distinct solutions together with other pieces.
 pub(crate) struct Hunt {
     pub(crate) siblings: Siblings,
     pub(crate) wanted: u64,
@@ -61,7 +61,7 @@ pub(crate) struct Hunt {
 }
 
 impl<'a> FolderSink<'a> {
-    /// A sink for chains that have `lengths` bytes of records each, of `safe` iterations.
+    /// A sink for chains whose records have `lengths` bytes each and cover `safe` iterations.
     pub(crate) fn new(
         place: Place<'a>,
         watch: &'a mut dyn Watch,
@@ -74,7 +74,7 @@ impl<'a> FolderSink<'a> {
         Self { place, watch, gauge, lengths, blocks, snapshots, safe, before: safe, hunt }
     }
 
-    /// Whether other pieces have found so much that this one need not go on.
+    /// Whether other pieces have found so much that this one need not continue.
     pub(crate) fn is_past_the_end(&self) -> bool {
         self.hunt.as_ref().is_some_and(|hunt| hunt.over)
     }
@@ -84,7 +84,7 @@ impl<'a> FolderSink<'a> {
         self.safe
     }
 
-    /// Makes everything written so far the point to go on from.
+    /// Makes everything written so far the point to continue from.
     pub(crate) fn checkpoint(&mut self) -> Result<(), RunFileError> {
         let Some(end) = self.snapshots.first().map(|snapshot| snapshot.end_iteration).filter(|&end| end > self.safe)
         else {

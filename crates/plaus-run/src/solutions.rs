@@ -7,7 +7,7 @@ use plaus_mcmc::SolutionClass;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-/// The first satisfying draw of its class that the run recorded, in the phases in which solutions count.
+/// The first recorded satisfying draw of its class, in the phases in which solutions count.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solution {
     /// Which.
@@ -18,11 +18,11 @@ pub struct Solution {
     pub log_p: f64,
 }
 
-/// One solution a class, ordered by iteration, then chain: the first that was recorded. Where the run looks for
-/// solutions, those of the warm-up are among them; their samples say so.
+/// One solution of each class, ordered by iteration, then chain: the first that was recorded. If the run looks for
+/// solutions, those of the warm-up are included; their samples say so.
 ///
 /// # Errors
-/// [`RunFileError`] where the records are damaged.
+/// [`RunFileError`] if the records are damaged.
 pub fn distinct(run: &RunReader<'_>) -> Result<Vec<Solution>, RunFileError> {
     let parts: Vec<BTreeMap<SolutionClass, Solution>> = run.each_chain(|chain| of_chain(run, chain))?;
     Ok(firsts(parts.into_iter().flatten().collect()))

@@ -1,6 +1,6 @@
-//! Mean and standard deviation of more draws than are held in memory: each is looked at once.
+//! Mean and standard deviation of more draws than fit in memory: each draw is used once.
 
-/// Count, mean and sum of squared differences from it, of values that came one after the other (Welford 1962).
+/// Count, mean and sum of squared differences from the mean, of values that come one after the other (Welford 1962).
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Moments {
     count: f64,
@@ -9,12 +9,12 @@ pub(crate) struct Moments {
 }
 
 impl Moments {
-    /// Takes in a value that came `times` times.
+    /// Adds a value that came `times` times.
     pub(crate) fn note(&mut self, value: f64, times: u64) {
         self.join(&Self { count: times as f64, mean: value, squares: 0.0 });
     }
 
-    /// Takes in what others came to (Chan, Golub & LeVeque 1979).
+    /// Adds the values that another one has counted (Chan, Golub & LeVeque 1979).
     pub(crate) fn join(&mut self, other: &Self) {
         if other.count == 0.0 {
             return;
@@ -30,7 +30,7 @@ impl Moments {
         self.mean
     }
 
-    /// Standard deviation over n − 1; `None` of fewer than two values.
+    /// Standard deviation over n − 1; `None` for fewer than two values.
     pub(crate) fn sd(&self) -> Option<f64> {
         (self.count > 1.0).then(|| (self.squares / (self.count - 1.0)).sqrt())
     }

@@ -1,4 +1,4 @@
-//! What the records of a run add up to.
+//! Totals over the records of a run.
 
 use crate::error::RunFileError;
 use crate::read::RunReader;
@@ -6,18 +6,18 @@ use crate::sample_id::SampleId;
 use plaus_mcmc::{Climb, Distinct, FirstOfClass, Hits, Ladder, MoveCounts, MoveId, Scales};
 use serde::Serialize;
 
-/// What one chain's records add up to.
+/// Totals over one chain's records.
 #[derive(Debug, Clone, Serialize)]
 pub struct ChainTally {
     /// Its number.
     pub chain: u32,
-    /// Satisfying iterations, the first of them too.
+    /// Satisfying iterations, and the first of them.
     pub hits: Hits,
-    /// How often each move ended how.
+    /// How often each move ended in each way.
     pub counts: Vec<MoveCounts>,
     /// Draws of the sampling phase that satisfy the constraint.
     pub satisfying_draws: u64,
-    /// Distinct solutions recorded by this chain, where solutions count.
+    /// Number of distinct solutions recorded by this chain, where solutions count.
     pub distinct: u64,
     /// The likeliest satisfying draw, with its log p.
     pub best: Option<(SampleId, f64)>,
@@ -35,20 +35,20 @@ pub struct ScaleTally {
     pub kernel: String,
     /// Its scale.
     pub scale: &'static str,
-    /// Whether the warm-up is over, so that it stays.
+    /// Whether the warm-up is over, so that it no longer changes.
     pub frozen: bool,
-    /// Its value; `None` where it was tried too seldom in the warm-up, so that the move is as configured.
+    /// Its value; `None` if it was tried too rarely in the warm-up, so that the move stays as configured.
     pub value: Option<f64>,
     /// The share of proposals that should be accepted.
     pub target: f64,
-    /// Proposals made at it, since the warm-up or in it while it lasts.
+    /// Number of proposals made with it: since the warm-up, or during the warm-up while it lasts.
     pub tried: u64,
-    /// Those that were accepted.
+    /// Number of those that were accepted.
     pub accepted: u64,
 }
 
 fn scales(run: &RunReader<'_>, scales: &Scales) -> Vec<ScaleTally> {
-    // A run that was opened has a scenario that makes a scene, and moves.
+    // An open run has a scenario that makes a scene, and moves.
     let Ok(moves) = run.run().manifest().mixture(run.scene()) else { return Vec::new() };
     let mut all = Vec::new();
     for (id, (_, kernel)) in (0..).map(MoveId).zip(moves.iter()) {
@@ -75,9 +75,9 @@ pub struct TemperingTally {
     pub rejected: Vec<f64>,
     /// Their sum.
     pub barrier: f64,
-    /// States that came to the target's rung from the first one since the warm-up.
+    /// States that reached the target's rung from the first one since the warm-up.
     pub restarts: u64,
-    /// Replicas that came to the first rung from the target's since the warm-up.
+    /// Replicas that reached the first rung from the target's since the warm-up.
     pub round_trips: u64,
 }
 
@@ -94,14 +94,14 @@ impl TemperingTally {
     }
 }
 
-/// What the records of all chains add up to.
+/// Totals over the records of all chains.
 #[derive(Debug, Clone, Serialize)]
 pub struct Tally {
     /// Per chain.
     pub chains: Vec<ChainTally>,
-    /// Distinct solutions recorded by all chains together, where solutions count.
+    /// Number of distinct solutions recorded by all chains together, where solutions count.
     pub distinct: u64,
-    /// Those of them that were recorded first in the warm-up, while moves were adapted.
+    /// Number of those first recorded in the warm-up, while moves were adapted.
     pub while_adapting: u64,
     /// Counts of each move over all chains.
     pub counts: Vec<MoveCounts>,
@@ -111,7 +111,7 @@ impl Tally {
     /// Reads all records once.
     ///
     /// # Errors
-    /// [`RunFileError`] where they are damaged.
+    /// [`RunFileError`] if they are damaged.
     pub fn of(run: &RunReader<'_>) -> Result<Self, RunFileError> {
         let parts: Vec<(ChainTally, Distinct)> = run.each_chain(|chain| tally(run, chain))?;
         let mut firsts: Vec<FirstOfClass> =
@@ -143,7 +143,7 @@ impl Tally {
         self.first_hit().is_some() || self.distinct > 0
     }
 
-    /// The likeliest satisfying draw of the sampling phase; where that has none, of the warm-up, if solutions count
+    /// The likeliest satisfying draw of the sampling phase; if it has none, that of the warm-up, if solutions count
     /// there.
     #[must_use]
     pub fn best(&self) -> Option<SampleId> {
@@ -153,10 +153,10 @@ impl Tally {
     }
 }
 
-/// Which classes of solutions a chain has recorded first where.
+/// When a chain first recorded each class of solutions.
 ///
 /// # Errors
-/// [`RunFileError`] where its records are damaged.
+/// [`RunFileError`] if its records are damaged.
 pub(crate) fn firsts(run: &RunReader<'_>, chain: u32) -> Result<Distinct, RunFileError> {
     let mut distinct = Distinct::default();
     for &phase in run.counted() {
@@ -188,7 +188,7 @@ fn tally(run: &RunReader<'_>, chain: u32) -> Result<(ChainTally, Distinct), RunF
     };
     let mut distinct = Distinct::default();
     for &phase in run.counted() {
-        // Of a draw of the sampling phase more is known than of one that moves were adapted at.
+        // More is known about a draw of the sampling phase than about one at which moves were adapted.
         let before = tally.best.take();
         run.walk(chain, phase, |stretch| -> Result<(), RunFileError> {
             let Some(class) = stretch.entry.class else { return Ok(()) };

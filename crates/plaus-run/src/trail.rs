@@ -1,8 +1,8 @@
-//! Where a piece could be cut: checkpoints of all its chains after every round, one frame a round, appended.
+//! Where a piece could be cut: checkpoints of all its chains after every round, one appended frame for each round.
 //!
-//! Pieces that look for distinct solutions each go further than the run will: where it ends follows from all of them
-//! together. A merge cuts each piece at the last end of a block before that, which all have, and makes the rest anew.
-//! What was found first is noted too: for the pieces beside, see `siblings`.
+//! Pieces that look for distinct solutions each go further than the run will, because its end follows from all of them
+//! together. A merge cuts each piece at the last end of a block before that, which all pieces have, and samples the
+//! rest again. First solutions are noted as well, for the other pieces: see `siblings`.
 
 use crate::checkpoint::Checkpoint;
 use crate::codec::{self, Frames, Kind};
@@ -18,10 +18,10 @@ use std::path::Path;
 
 const KIND: Kind = Kind::new(*b"trai", 1, "a trail of checkpoints");
 
-/// What a frame begins with: the run, and one past the last iteration.
+/// The beginning of a frame: the run, and one past the last iteration.
 type Head = (u64, u64);
 
-/// What it goes on with: solutions that none of the piece's chains had recorded before this round.
+/// The next part of a frame: solutions that none of the piece's chains had recorded before this round.
 type News = (u64, u64, Vec<FirstOfClass>);
 
 #[derive(Serialize, Deserialize)]
@@ -47,11 +47,12 @@ pub(crate) fn append<D: Serialize, O: Serialize>(
     disk.append(&path, &frame).map_err(RunFileError::io(&path, "write"))
 }
 
-/// Iterations that the rounds end at, from the first on, with where each round's frame begins and ends in the file.
-/// None where there is no trail.
+/// The iterations at which rounds end, from the first on, with the start and end of each round's frame in the file.
+/// Empty if there is no trail.
 ///
 /// # Errors
-/// [`RunFileError`] where the file is another run's. What is damaged ends it: a trail may end in the middle of a frame.
+///
+/// [`RunFileError`] if the file is another run's. Damage ends the list: a trail may end in the middle of a frame.
 pub(crate) fn rounds(path: &Path, run: u64) -> Result<Vec<(u64, u64, u64)>, RunFileError> {
     let mut rounds = Vec::new();
     walk::<Head>(path, run, 0, |(of, end_iteration), begin, end| {
@@ -61,7 +62,7 @@ pub(crate) fn rounds(path: &Path, run: u64) -> Result<Vec<(u64, u64, u64)>, RunF
     Ok(rounds)
 }
 
-/// What rounds found whose frames begin at byte `from` or after it, and where they end.
+/// What was found in rounds whose frames begin at byte `from` or after it, and where they end.
 ///
 /// # Errors
 /// As [`rounds`].
@@ -75,7 +76,7 @@ pub(crate) fn firsts_from(path: &Path, run: u64, from: u64) -> Result<(Vec<First
     Ok((firsts, until))
 }
 
-/// Shows `look` what each frame from byte `from` on begins with, and where it lies; `look` gives the run it is of.
+/// Passes the beginning of each frame from byte `from` on, and its place, to `look`, which returns the frame's run.
 fn walk<T: DeserializeOwned>(
     path: &Path,
     run: u64,
@@ -99,7 +100,7 @@ fn walk<T: DeserializeOwned>(
     }
 }
 
-/// Bytes of the rounds that end at `iteration` or before.
+/// Number of bytes of the rounds that end at `iteration` or before.
 ///
 /// # Errors
 /// As [`rounds`].
@@ -111,7 +112,7 @@ pub(crate) fn length_until(path: &Path, run: u64, iteration: u64) -> Result<u64,
 /// The checkpoints of all chains after the round whose frame lies at the bytes from `begin` to `end`.
 ///
 /// # Errors
-/// [`RunFileError`] where the frame is damaged.
+/// [`RunFileError`] if the frame is damaged.
 pub(crate) fn read<D, O>(path: &Path, begin: u64, end: u64) -> Result<Vec<Checkpoint<D, O>>, RunFileError>
 where
     D: Serialize + DeserializeOwned,

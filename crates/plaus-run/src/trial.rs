@@ -1,7 +1,7 @@
-//! The trial that finds out whether chains or independent draws of the prior make independent solutions sooner.
+//! The trial that decides whether chains or independent draws from the prior give independent solutions faster.
 //!
-//! A trial is a function of scenario and seed alone: it counts simulations and looks at no clock. So every piece of a
-//! run, and the run that is begun anew, finds the same; what it found lies in the manifest.
+//! A trial is a function of scenario and seed alone: it counts simulations and uses no clock. So every piece of a run,
+//! and the same run begun again, comes to the same result, which is stored in the manifest.
 
 use crate::diagnosis::worth_of;
 use crate::error::Error;
@@ -11,32 +11,33 @@ use plaus_dist::Seed;
 use plaus_mcmc::{Chain, ChainError, Goal, Mixture, Plan, Pulse, Tried, Verdict, parallel, try_draws};
 use plaus_scenes::{Role, Scene, Stage};
 
-/// Draws of the prior between two looks at what they come to.
+/// Draws from the prior between two checks of their result.
 const AT_A_TIME: u64 = 32;
-/// Draws of the prior in a trial that finds too few solutions: one for so many of the run's iterations, within bounds.
+/// Divides the run's iterations: this gives the draws from the prior in a trial that finds too few solutions, within
+/// bounds.
 const ONE_FOR: u64 = 50;
 const DRAWS: [u64; 2] = [64, 2048];
-/// Most of them where only some solutions are looked for, which should come soon.
+/// Most of these draws if only some solutions are asked for, because these should come soon.
 const DRAWS_FOR_SOME: u64 = 128;
-/// Solutions that a trial looks for: their number is then known to a half.
+/// Number of solutions that a trial looks for: their rate is then known to about a half.
 const ENOUGH: f64 = 4.0;
-/// Where the prior needs fewer draws than this for a solution, no chain is tried. Of the scenes that come with plaus no
+/// If the prior needs fewer draws than this for a solution, no chain is tried. Of the scenes that come with plaus, no
 /// chain was measured to make an independent solution in fewer than 60 iterations.
 const FEW: f64 = 40.0;
-/// The same of who looks for some solutions only: they end before a chain would have been tried.
+/// The same if only some solutions are asked for: they are found before a chain would have been tried.
 const FEW_FOR_SOME: f64 = 100.0;
-/// Independent solutions that the prior would make in as many simulations as a trial gives to chains after their
-/// warm-up. Chains that never get anywhere seem to make one or two each.
+/// Number of independent solutions that the prior would give in as many simulations as a trial gives to chains after
+/// their warm-up. Chains that never get anywhere seem to make one or two each.
 const RIVAL: f64 = 12.0;
 /// Chains of a trial.
 const CHAINS: u32 = 4;
-/// The part of the run's iterations that the trial of chains may take.
+/// The part of the run's iterations that the trial of chains may use.
 const SHARE: f64 = 0.1;
 
-/// Finds out by a trial, on the current pool of threads.
+/// Decides by a trial, on the current pool of threads.
 ///
 /// # Errors
-/// [`Error`] where the model fails, or `pulse` was stopped.
+/// [`Error`] if the model fails, or `pulse` was stopped.
 pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way, Error> {
     let plan = recipe.plan();
     let total = plan.end().saturating_mul(u64::from(plan.chains));
@@ -50,18 +51,18 @@ pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way
     }
     let Tried { draws, hits, kept } = found;
     let one_in = draws as f64 / kept;
-    let seen = format!("{hits} of {draws} draws of the prior are solutions");
-    let kept_words = format!("{seen}, and one in {one_in:.0} draws makes one that counts");
+    let seen = format!("{hits} of {draws} draws from the prior are solutions");
+    let kept_words = format!("{seen}, and one in {one_in:.0} draws gives one that is kept");
     let because = |independent, why: String| Ok(Way { independent, why });
     if hits == 0 {
-        return because(false, format!("none of {draws} draws of the prior is a solution"));
+        return because(false, format!("none of {draws} draws from the prior is a solution"));
     }
     if one_in <= if plan.solutions.is_some() { FEW_FOR_SOME } else { FEW } {
         return because(true, format!("{kept_words}, fewer than the iterations that chains are known to need"));
     }
     let iterations = (RIVAL * one_in / f64::from(CHAINS)).ceil();
     if plan.solutions.is_some() || 2.0 * iterations * f64::from(CHAINS) > SHARE * total as f64 {
-        return because(false, format!("{kept_words}: too few to try whether chains need as many iterations"));
+        return because(false, format!("{kept_words}: too few for a trial of whether chains need as many iterations"));
     }
     let rival = Trial::of(scene, recipe, iterations as u64, pulse)?;
     let each = rival.simulations / rival.independent;
@@ -70,20 +71,20 @@ pub(crate) fn tried(recipe: &Recipe, scene: &Stage, pulse: &Pulse) -> Result<Way
 }
 
 fn go_on(pulse: &Pulse) -> Result<(), Error> {
-    let message = "stopped while it was tried how draws are best made, so nothing was written";
+    let message = "stopped during the trial of methods, so nothing was written";
     if pulse.is_stopped() { Err(Error::Request(message.to_owned())) } else { Ok(()) }
 }
 
-/// What chains came to in a trial.
+/// The result of chains in a trial.
 struct Trial {
     /// Independent solutions.
     independent: f64,
-    /// Simulations that they took.
+    /// The simulations that they took.
     simulations: f64,
 }
 
 impl Trial {
-    /// Walks chains through a warm-up of `iterations`, and as many that count.
+    /// Runs chains through a warm-up of `iterations`, and as many iterations that count.
     fn of(scene: &Stage, recipe: &Recipe, iterations: u64, pulse: &Pulse) -> Result<Self, Error> {
         let plan = recipe.plan();
         let moves = scene.moves(&recipe.scenario.sampler.rules)?;
@@ -109,7 +110,7 @@ struct Course<'a> {
     pulse: &'a Pulse,
 }
 
-/// What is looked at of a chain after its warm-up.
+/// What is kept of a chain after its warm-up.
 struct Walked {
     /// Per variable of the draw, per iteration.
     columns: Vec<Vec<f64>>,
@@ -119,7 +120,7 @@ struct Walked {
 
 impl Course<'_> {
     fn walk(&self, chain: u32) -> Result<Walked, ChainError> {
-        // No run has a seed of 2⁶³ or more, so none has these chains.
+        // Seeds of runs are below 2⁶³, so no run has these chains.
         let streams = Seed(!self.plan.seed.0).chain(u64::from(chain));
         let mut chain = Chain::start(self.scene, self.moves, streams)?;
         if self.plan.adapt {

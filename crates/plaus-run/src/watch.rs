@@ -1,4 +1,4 @@
-//! Who looks on while a run is sampled.
+//! Watching a run while it is sampled.
 
 use crate::folder::Folder;
 use crate::gauge::Mixing;
@@ -6,16 +6,16 @@ use crate::manifest::Manifest;
 use plaus_mcmc::{Control, Progress, Pulse};
 use std::sync::Arc;
 
-/// Looks on while a run is sampled, and may stop it.
+/// Watches a run while it is sampled, and may stop it.
 pub trait Watch {
-    /// Called before the first round; `done` iterations of each chain are done already.
+    /// Called before the first round, when each chain has already done `done` iterations.
     fn begin(&mut self, _manifest: &Manifest, _done: u64) {}
 
-    /// Called after each round; says whether to go on.
+    /// Called after each round; returns whether to continue.
     fn round(&mut self, progress: &Progress<'_>) -> Control;
 
-    /// Whether what was sampled since the last checkpoint is worth writing one. The final bytes do not depend on the
-    /// answers; what a killed process loses does.
+    /// Whether what was sampled since the last checkpoint is worth a new one. The final bytes do not depend on the
+    /// answers, but the loss of a killed process does.
     fn checkpoint_due(&mut self) -> bool {
         true
     }
@@ -39,7 +39,7 @@ pub trait Watch {
         false
     }
 
-    /// Called with what was found; `None` where there is too little to tell.
+    /// Called with what was found; `None` if there is too little to tell.
     fn mixing(&mut self, _mixing: Option<Mixing>) {}
 
     /// Called again and again while another process writes the run that is to be gone on with; says whether to wait.

@@ -16,7 +16,7 @@ pub struct Way {
 }
 
 impl Way {
-    /// What a scenario says itself; `None` where it says nothing, or leaves it to a trial.
+    /// What a scenario says itself; `None` if it says nothing, or leaves it to a trial.
     #[must_use]
     pub fn said(scenario: &Scenario) -> Option<Self> {
         let why = || "as the scenario says".to_owned();

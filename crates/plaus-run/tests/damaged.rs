@@ -125,7 +125,7 @@ fn damage_is_reported_with_place_and_what_is_intact() {
     let error = read(&folder).unwrap_err();
     // Every third iteration recorded, and 512 iterations before the last block.
     for part in
-        ["chain-00001.records", "at byte ", "checksum", "The 171 recorded draws of the chain before that are intact"]
+        ["chain-00001.records", "at byte ", "checksum", "The 171 draws that the chain recorded before are intact"]
     {
         assert!(error.contains(part), "{part} is not in: {error}");
     }

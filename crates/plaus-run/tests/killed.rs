@@ -148,7 +148,7 @@ fn a_full_disk_is_named_with_what_is_safe() {
     let error = sample_on(&disk, &folder, &recipe(None), &mut Unwatched).unwrap_err();
     let Error::DiskFull { safe, .. } = &error else { panic!("{error}") };
     assert!(*safe > 0 && Run::open(&folder).unwrap().reader().unwrap().iterations() == *safe, "{safe}");
-    assert!(error.to_string().contains("free some space, then `plaus resume`"), "{error}");
+    assert!(error.to_string().contains("free some space, then continue with `plaus resume`"), "{error}");
 }
 
 #[test]
@@ -181,7 +181,7 @@ fn a_longer_run_begins_like_the_shorter() {
     assert_eq!(draws(&short), draws(&long));
     let shorter =
         resume(&short, More { iterations: Some(5), solutions: None }, Sampling::new(1, &mut Unwatched)).unwrap_err();
-    assert!(shorter.to_string().contains("not shorter than 700"), "{shorter}");
+    assert!(shorter.to_string().contains("700 iterations are already planned"), "{shorter}");
 }
 
 #[test]
@@ -196,5 +196,5 @@ fn two_processes_cannot_write_one_run() {
     drop(claim);
     assert!(!folder.is_being_written());
     let again = sample(&folder, &recipe(None), Sampling::new(1, &mut Unwatched)).unwrap_err();
-    assert!(again.to_string().contains("exists already"), "{again}");
+    assert!(again.to_string().contains("already exists"), "{again}");
 }

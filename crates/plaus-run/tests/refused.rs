@@ -75,7 +75,7 @@ fn more_is_refused_before_anything_changes() {
     let before = bytes_of(&folder);
     let says = |more| resume(&folder, more, Sampling::new(1, &mut Unwatched)).unwrap_err().to_string();
     let iterations = |wanted| More { iterations: Some(wanted), solutions: None };
-    assert!(says(iterations(429)).contains("not shorter than 430"));
+    assert!(says(iterations(429)).contains("430 iterations are already planned"));
     for absurd in [1_000_000_000_001, 1 << 48, u64::MAX] {
         let message = says(iterations(absurd));
         assert!(message.contains("it must be from 1 to 1_000_000_000_000"), "{message}");
@@ -90,7 +90,7 @@ fn what_is_no_run_gets_no_lock() {
         let folder = Folder::new(place.path().join(name));
         resume(&folder, More::default(), Sampling::new(1, &mut Unwatched)).unwrap_err().to_string()
     };
-    assert!(says("").contains("is no run"));
+    assert!(says("").contains("is not a run"));
     assert!(says("nothing").contains("nothing: there is no such run"));
     assert_eq!(std::fs::read_dir(place.path()).unwrap().count(), 0);
 }

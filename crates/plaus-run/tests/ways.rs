@@ -145,7 +145,7 @@ fn tempered_chains_are_no_draws_of_the_prior() {
     for method in ["independent", "auto"] {
         let overrides = [format!("method={method}"), "rungs=3".to_owned()];
         let problems = Scenario::read("ball.toml", &recipe(None).text, &overrides).unwrap_err().problems;
-        assert!(problems[0].message.contains("tempering is for chains"), "{problems:?}");
+        assert!(problems[0].message.contains("tempering is only for chains"), "{problems:?}");
     }
     // A run whose way was changed is another run.
     let place = tempfile::tempdir().unwrap();

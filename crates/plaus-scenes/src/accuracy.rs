@@ -1,21 +1,21 @@
-//! How exact a scene's simulation is, as scenario files and commands name it.
+//! How exact a scene's simulation is, under the names used in scenario files and commands.
 
 use plaus_sim::{Accuracy, Preset};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A point of the simulator's scale between fast and exact.
+/// A setting between fast and exact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AccuracyPreset {
-    /// For looking for ideas: contact is coarse.
+    /// For trying out ideas: contact is coarse.
     Draft,
     /// Outcome distributions agree with the reference within sampling noise.
     #[default]
     Standard,
     /// Trajectories agree with the reference until chaos separates them.
     Fine,
-    /// What the others are measured against; slow.
+    /// The standard that the others are compared with; slow.
     Reference,
 }
 
@@ -52,7 +52,7 @@ impl std::str::FromStr for AccuracyPreset {
     fn from_str(text: &str) -> Result<Self, String> {
         Self::ALL.into_iter().find(|one| one.name() == text).ok_or_else(|| {
             let known: Vec<&str> = Self::ALL.map(Self::name).to_vec();
-            format!("`{text}` is no accuracy: write one of {}", known.join(", "))
+            format!("`{text}` is not an accuracy: write one of {}", known.join(", "))
         })
     }
 }

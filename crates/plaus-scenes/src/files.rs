@@ -1,4 +1,4 @@
-//! Files that a scenario names: shapes. Where they are read from, whoever reads the scenario says.
+//! Files that a scenario names, such as shapes. The reader of the scenario decides where they come from.
 
 pub use plaus_asset::MOST_BYTES;
 use plaus_asset::{AssetError, Content};
@@ -6,12 +6,13 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// Where the files are read from that a scenario names.
+/// Where the files that a scenario names are read from.
 pub trait Files {
-    /// The bytes of the file at `path`, as the scenario has it: from the folder of the scenario, with `/` between
-    /// folders. It does not leave that folder unless `anywhere` allows it.
+    /// The bytes of the file at `path`, as written in the scenario: relative to the scenario's folder, with `/` between
+    /// folders. It must not leave that folder unless `anywhere` allows it.
     ///
     /// # Errors
+    ///
     /// Why it cannot be read, in words that follow its name.
     fn bytes(&self, path: &str, anywhere: bool) -> Result<Arc<[u8]>, String>;
 }
@@ -22,17 +23,17 @@ impl<F: Fn(&str, bool) -> Result<Arc<[u8]>, String>> Files for F {
     }
 }
 
-/// No files at all: for scenarios that are text alone.
+/// No files at all, for scenarios that are only text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoFiles;
 
 impl Files for NoFiles {
     fn bytes(&self, _: &str, _: bool) -> Result<Arc<[u8]>, String> {
-        Err("a scenario that is read as text alone has no files beside it".into())
+        Err("a scenario that is read only as text cannot name files".into())
     }
 }
 
-/// Files in memory, by their paths: all that a scenario names, for whoever keeps it.
+/// Files in memory, by their paths: all that a scenario names.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Assets(BTreeMap<String, Arc<[u8]>>);
 
@@ -56,7 +57,7 @@ impl Assets {
 
 impl Files for Assets {
     fn bytes(&self, path: &str, _: bool) -> Result<Arc<[u8]>, String> {
-        self.0.get(path).cloned().ok_or_else(|| "it is not among the files that the scenario came with".into())
+        self.0.get(path).cloned().ok_or_else(|| "it is not among the files that came with the scenario".into())
     }
 }
 
@@ -81,13 +82,13 @@ impl fmt::Debug for Asset {
     }
 }
 
-/// BLAKE3 of a file's bytes, in hexadecimal digits: what a scenario's `hash` says.
+/// BLAKE3 of a file's bytes, in hexadecimal digits: the value of a scenario's `hash`.
 #[must_use]
 pub fn hash_of(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
-/// Why a path is none that stays in the scenario's folder; `None` where it does, as far as its text says.
+/// Why a path does not stay in the scenario's folder; `None` if it does, judging by its text.
 #[must_use]
 pub fn leaves_folder(path: &str) -> Option<String> {
     let is_absolute = path.starts_with(['/', '\\']) || path.as_bytes().get(1) == Some(&b':');

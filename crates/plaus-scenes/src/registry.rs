@@ -1,4 +1,4 @@
-//! All scenes there are. A new scene is one line here.
+//! All scenes. A new scene is one line here.
 
 use crate::files::{Assets, Files};
 use crate::scene::{ConfigError, Scene};
@@ -60,7 +60,7 @@ macro_rules! scenes {
             /// The scene.
             ///
             /// # Errors
-            /// [`ConfigError`] where the settings make no scene.
+            /// [`ConfigError`] if the settings make no scene.
             pub fn scene(&self) -> Result<AnyScene, ConfigError> {
                 match self { $(Self::$variant(config) => Ok(crate::$module::$variant::new(config)?.any())),+ }
             }
@@ -166,12 +166,11 @@ scenes! {
     /// A ball bounces on a table whose surface normal is uncertain at every bounce; it should come to rest in a given
     /// place.
     "ball2d" Ball2d => ball2d,
-    /// A ball is bowled at ten-pins; those pins should be left standing that are asked for.
+    /// A ball is bowled at ten-pins; the chosen pins should be left standing.
     "bowling" Bowling => bowling,
-    /// Balls are dropped one after the other into a box of bins and should come to rest so that they spell a word.
+    /// Balls are dropped one after the other into a box of bins, and should come to rest in bins that spell a word.
     "spelling" Spelling => spelling,
-    /// Dice are thrown onto a table of random height, restitution and friction, and should come to rest where and as
-    /// demanded.
+    /// Dice are thrown onto a table of random height, restitution and friction, and should come to rest as asked.
     "dice" Dice => dice,
     /// A world of your own: bodies and scenery, what they are made of, and what is uncertain about them.
     "custom" Custom => custom,

@@ -1,7 +1,7 @@
-//! Acceptance rules: exact, or as the paper prints them.
+//! Acceptance rules: exact, or as printed in the paper.
 //!
-//! Each erratum of the paper that changes which law the chain samples is a flag of its own. With any flag on, nobody
-//! knows what law the chain converges to, or whether it does; the flags exist to reproduce what the paper shows.
+//! Each erratum of the paper that changes the law the chain samples has a flag of its own. With any flag on, it is
+//! unknown what law the chain converges to, or whether it converges. The flags exist to reproduce what the paper shows.
 
 use plaus_mcmc::Recipe;
 use schemars::JsonSchema;
@@ -24,15 +24,15 @@ pub enum Preset {
 pub struct Rules {
     /// Which set of flags to start from: "exact" or "as-printed".
     pub preset: Preset,
-    /// Accept moves that draw values anew as if they were symmetric, as the paper does (its A.2 and 5.3). The true
-    /// ratio divides by the prior. Unset: what the preset says.
+    /// Accept moves that redraw values as if they were symmetric, as the paper does (its A.2 and 5.3). The true ratio
+    /// divides by the prior. Unset: decided by `preset`.
     pub symmetric_redraws: Option<bool>,
-    /// Draw fresh offsets of points in a random direction with a Gaussian length, as the paper does (its A.2, B.1 and
-    /// B.2), where its prior is Gaussian in each coordinate. Unset: what the preset says.
+    /// Draw new offsets of points in a random direction with a Gaussian length, as the paper does (its A.2, B.1 and
+    /// B.2), although its prior is Gaussian in each coordinate. Unset: decided by `preset`.
     pub radial_offsets: Option<bool>,
-    /// Accept moves that add or remove some of many balls by the area's factor alone, as the paper does (its B.2, with
-    /// that factor the right way up: as printed it would empty or fill the box by the choice of the unit of length).
-    /// The true ratio counts the balls left as they were, too. Unset: what the preset says.
+    /// Accept moves that add or remove some of many balls by the factor of the area alone, as the paper does (its B.2,
+    /// with that factor inverted: as printed, the choice of the unit of length would empty or fill the box). The true
+    /// ratio also counts the balls that the move left unchanged. Unset: decided by `preset`.
     pub incomplete_toggles: Option<bool>,
 }
 
@@ -43,25 +43,25 @@ impl Rules {
         Self::default()
     }
 
-    /// Whether moves that draw values anew count as symmetric.
+    /// Whether moves that redraw values count as symmetric.
     #[must_use]
     pub fn symmetric_redraws(&self) -> bool {
         self.symmetric_redraws.unwrap_or(self.preset == Preset::AsPrinted)
     }
 
-    /// Whether fresh offsets have a random direction and a Gaussian length.
+    /// Whether new offsets have a random direction and a Gaussian length.
     #[must_use]
     pub fn radial_offsets(&self) -> bool {
         self.radial_offsets.unwrap_or(self.preset == Preset::AsPrinted)
     }
 
-    /// How fresh offsets are drawn.
+    /// How new offsets are drawn.
     #[must_use]
     pub fn recipe(&self) -> Recipe {
         if self.radial_offsets() { Recipe::Radial } else { Recipe::Exact }
     }
 
-    /// Whether moves that add or remove balls forget those left as they were.
+    /// Whether moves that add or remove balls ignore the balls that they left unchanged.
     #[must_use]
     pub fn incomplete_toggles(&self) -> bool {
         self.incomplete_toggles.unwrap_or(self.preset == Preset::AsPrinted)

@@ -1,4 +1,4 @@
-//! What a scene is: a target with a goal, moves, and a way to be looked at.
+//! What a scene is: a target with a goal, moves, and animations.
 
 use crate::accuracy::AccuracyPreset;
 use crate::animation::Animation;
@@ -10,7 +10,7 @@ use plaus_mcmc::{Goal, Mixture, ModelError, StateRefOf, Variables};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// A world to sample animations of.
+/// A world whose animations are sampled.
 ///
 /// Adding a scene takes its own folder, one line in [`crate::registry`] and a scenario file.
 pub trait Scene:
@@ -20,13 +20,13 @@ pub trait Scene:
     + Send
     + 'static
 {
-    /// The moves this scene is sampled with, under `rules`.
+    /// The moves that this scene is sampled with, under `rules`.
     ///
     /// # Errors
-    /// [`ConfigError`] where the configured weights make no mixture.
+    /// [`ConfigError`] if the configured weights make no mixture.
     fn moves(&self, rules: &Rules) -> Result<Mixture<Self>, ConfigError>;
 
-    /// The scalars every state has, in the order of [`Scene::write_scalars`]; the same for all states of one
+    /// The scalars of every state, in the order of [`Scene::write_scalars`]; the same for all states of one
     /// configuration.
     fn scalars(&self) -> Vec<Scalar>;
 
@@ -36,14 +36,14 @@ pub trait Scene:
     /// The animation of a draw, rebuilt by simulation.
     ///
     /// # Errors
-    /// [`ModelError`] where the simulation fails.
+    /// [`ModelError`] if the simulation fails.
     fn animate(&self, draw: &Self::Draw) -> Result<Animation, ModelError>;
 
-    /// The same, ending as asked for. A scene whose simulations may end before all is at rest overrides this for
-    /// [`Until::Rest`], one that knows when a draw is decided for [`Until::Decided`].
+    /// The same, ending as asked. A scene whose simulations may end before everything is at rest overrides this for
+    /// [`Until::Rest`]; one that knows when a draw is decided overrides it for [`Until::Decided`].
     ///
     /// # Errors
-    /// [`ModelError`] where the simulation fails.
+    /// [`ModelError`] if the simulation fails.
     fn animate_until(&self, draw: &Self::Draw, until: Until) -> Result<Animation, ModelError> {
         match until {
             Until::Rest | Until::Decided => self.animate(draw),
@@ -51,7 +51,7 @@ pub trait Scene:
         }
     }
 
-    /// Bodies and impacts of [`Scene::animate`], for those who need not see what stands still. A scene in which that is
+    /// Bodies and impacts of [`Scene::animate`], for callers that do not need the scenery. A scene whose scenery is
     /// expensive to build overrides this.
     ///
     /// # Errors
@@ -60,12 +60,12 @@ pub trait Scene:
         self.animate(draw)
     }
 
-    /// From now on this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`]. A scene that
-    /// keeps them only then overrides this.
+    /// From now on, this memory keeps the motions of what it simulates, for [`Scene::motion_simulated`]. A scene that
+    /// keeps them only on request overrides this.
     fn record_motions(&self, _scratch: &mut Self::Scratch) {}
 
-    /// [`Scene::motion`] of a draw that was simulated last with this memory: a scene that keeps what it simulated need
-    /// not do so again, and overrides this.
+    /// [`Scene::motion`] of the draw that was last simulated with this memory. A scene that keeps its simulation need
+    /// not run it again, and overrides this.
     ///
     /// # Errors
     /// As [`Scene::animate`].
@@ -73,30 +73,29 @@ pub trait Scene:
         self.motion(draw)
     }
 
-    /// The same world simulated at another accuracy: draws mean the same, what becomes of them may differ. `None` where
-    /// motion has a closed form, exact at any accuracy, so that there is nothing to choose. A scene with a simulator
-    /// overrides this.
+    /// The same world simulated at another accuracy: draws mean the same, but their outcomes may differ. `None` if
+    /// motion has a closed form, which is exact, so that there is nothing to choose. A scene with a simulator overrides
+    /// this.
     ///
     /// # Errors
-    /// [`ConfigError`] where the configuration makes no world at that accuracy.
+    /// [`ConfigError`] if the configuration makes no world at that accuracy.
     fn at_accuracy(&self, _accuracy: AccuracyPreset) -> Result<Option<Self>, ConfigError> {
         Ok(None)
     }
 
-    /// Who is in it: bodies by their names in animations, what stands still, when it ends at the latest. Requirements
-    /// are about these.
+    /// The cast: bodies by their names in animations, scenery, and the latest end. Requirements refer to these.
     fn cast(&self) -> Cast {
         Cast { bodies: Vec::new(), fixed: Vec::new(), longest: f64::INFINITY, faces: false }
     }
 
-    /// What the scene demands itself, as far as requirements can say it, each with the key that says so: what
-    /// contradicts that is refused.
+    /// The scene's own demands, as far as requirements can express them, each with its key: contradictions to them are
+    /// refused.
     fn demands(&self) -> Vec<(String, Require)> {
         Vec::new()
     }
 
-    /// The times that its demands ask for, each with its demand's key, and what came of them in a motion that is known
-    /// to its end.
+    /// The times that its demands ask for, each with its demand's key, and the times found in a motion that is known to
+    /// its end.
     fn times(&self, motion: &Animation) -> Vec<(String, Timed)> {
         let cast = self.cast();
         let probe = Probe::whole(motion, &cast);
@@ -106,8 +105,8 @@ pub trait Scene:
         self.demands().into_iter().flat_map(of).collect()
     }
 
-    /// Bodies and impacts of [`Scene::motion`] before `time`, as far as a simulation that ends there tells; `None`
-    /// where it would be as expensive as the whole.
+    /// Bodies and impacts of [`Scene::motion`] before `time`, as far as a simulation up to there shows them; `None` if
+    /// that would be as expensive as the whole.
     ///
     /// # Errors
     /// As [`Scene::animate`].
@@ -115,31 +114,30 @@ pub trait Scene:
         Ok(None)
     }
 
-    /// What a user should know of the world that the scenario does not say: how far a hull departs from the file that
-    /// it is of. One sentence each, without an end.
+    /// What a user should know of the world that the scenario does not say, such as how far a hull departs from its
+    /// file. One sentence each, without a full stop.
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// What is asked of a state, each in some words, in the order of [`Scene::answers`].
+    /// The things asked of a state, each in a few words, in the order of [`Scene::answers`].
     fn asked(&self) -> Vec<String> {
-        vec!["what the scene demands".to_owned()]
+        vec!["what the scene itself asks for".to_owned()]
     }
 
-    /// How well a state meets each thing that is asked. Of what the scene demands itself the margin is its log
-    /// constraint where it is not met.
+    /// How well a state meets each thing that is asked. For the scene's own demands, the margin is its log constraint
+    /// if they are not met.
     fn answers(&self, state: StateRefOf<'_, Self>) -> Vec<Mark> {
         let met = self.class(state).is_some();
         let lacks = state.log_constraint.value().min(-f64::MIN_POSITIVE);
         vec![Mark::of(if met { 0.0 } else { lacks })]
     }
 
-    /// The world for the simulator alone, with all that is random left out: a level table of mean friction and
-    /// restitution, say. `None` where motion has a
-    /// closed form, so that there is no simulator. A scene with one overrides this.
+    /// The world for the simulator alone, without randomness: for example a level table with mean friction and
+    /// restitution. `None` if motion has a closed form, so that there is no simulator. A scene with one overrides this.
     ///
     /// # Errors
-    /// [`ModelError`] where the configuration makes no such world.
+    /// [`ModelError`] if the configuration makes no such world.
     fn world(&self) -> Result<Option<PlainWorld>, ModelError> {
         Ok(None)
     }
@@ -148,20 +146,20 @@ pub trait Scene:
 /// Where an animation ends.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Until {
-    /// When all is at rest, or after half a minute.
+    /// When everything is at rest, or after half a minute.
     #[default]
     Rest,
     /// As soon as it is certain whether the draw satisfies the constraint.
     Decided,
-    /// After so many seconds above 0, whatever moves; what rests before stays as it is.
+    /// After this many seconds, more than 0, whatever moves; anything at rest before stays as it is.
     Time(f64),
 }
 
-/// A configuration that no single key's range forbids, yet makes no scene.
+/// A configuration that makes no scene, although every single key is in range.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{key}: {message}")]
 pub struct ConfigError {
-    /// The key to blame, from the root of the scenario, e.g. `world.ball2d.weights`.
+    /// The key at fault, from the root of the scenario, e.g. `world.ball2d.weights`.
     pub key: String,
     /// What is wrong and what would be right.
     pub message: String,

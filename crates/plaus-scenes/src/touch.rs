@@ -3,9 +3,9 @@
 use crate::animation::{Contact, Piece, Shape};
 use glam::DVec3;
 
-/// Longest contact that is told as one, in s: a sound that fades within longer ones is to be heard to fade.
+/// Longest contact reported as one, in s, so that a sound that fades during longer ones is heard to fade.
 const LONGEST: f64 = 0.05;
-/// Slowest motion in m/s that is told of.
+/// Slowest reported motion, in m/s.
 const SLOWEST: f64 = 1e-3;
 /// Gravity in an animation's axes, m/s².
 const GRAVITY: DVec3 = DVec3::new(0.0, -9.81, 0.0);
@@ -22,7 +22,7 @@ pub(crate) struct Toucher<'a> {
 }
 
 impl Toucher<'_> {
-    /// Its contacts, where `touches` says what it touches during a piece, by the piece's index.
+    /// Its contacts, if `touches` gives what it touches during a piece, by the piece's index.
     pub(crate) fn contacts(&self, touches: impl Fn(usize) -> Option<String>) -> Vec<Contact> {
         let mut contacts = Vec::new();
         let mut first = 0;
@@ -50,7 +50,7 @@ impl Toucher<'_> {
         self.pieces.get(index + 1).map_or(self.end, |next| next.start).max(self.pieces[index].start)
     }
 
-    /// The contact over some pieces, of which the last is before `after`; cut into equal parts where one piece is long.
+    /// The contact over some pieces, the last of which is before `after`; cut into equal parts if one piece is long.
     fn one(&self, first: usize, after: usize, other: String) -> Vec<Contact> {
         let (start, end) = (self.pieces[first].start, self.until(after - 1));
         let parts = ((end - start) / LONGEST).ceil().clamp(1.0, 1e4) as u32;
@@ -68,7 +68,7 @@ impl Toucher<'_> {
             .collect()
     }
 
-    /// Mean acceleration: of several pieces that between the middles of the first and the last.
+    /// Mean acceleration; for several pieces, that between the middles of the first and the last.
     fn acceleration(&self, first: usize, after: usize) -> DVec3 {
         let middle = |index: usize| 0.5 * (self.pieces[index].start + self.until(index));
         let (a, b) = (middle(first), middle(after - 1));

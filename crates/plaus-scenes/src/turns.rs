@@ -3,14 +3,14 @@
 use glam::{DQuat, DVec3};
 use plaus_dist::{Stream, math, standard_normal};
 
-/// A uniform orientation: a direction in four dimensions, uniform as that of four standard normal numbers.
+/// A uniform orientation: a direction in four dimensions, like that of four standard normal numbers.
 pub(crate) fn any_orientation(stream: &mut Stream) -> DQuat {
     let [x, y, z, w] = std::array::from_fn(|_| standard_normal(stream));
     DQuat::from_xyzw(x, y, z, w).normalize()
 }
 
-/// An orientation turned about a random axis, by a Gaussian angle, `size` times half a turn a component: as likely as
-/// turning it back.
+/// An orientation turned about a random axis by a Gaussian angle, with `size` times half a turn for each component: as
+/// likely as the way back.
 pub(crate) fn turned_a_little(orientation: DQuat, size: f64, stream: &mut Stream) -> DQuat {
     let vector = DVec3::from_array(std::array::from_fn(|_| standard_normal(stream)));
     (turned(vector * (size * std::f64::consts::PI)) * orientation).normalize()

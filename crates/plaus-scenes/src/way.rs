@@ -1,10 +1,10 @@
-//! The ways of bodies that were simulated apart: which come near each other, and so which have to be simulated
+//! The paths of bodies that were simulated apart: which come near each other, and therefore have to be simulated
 //! together.
 
 use plaus_sim::motion::Parabola;
 use plaus_sim::scenery::Aabb;
 
-/// The way of one body's centre.
+/// The path of one body's centre.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Way {
     pub(crate) pieces: Vec<Piece>,
@@ -12,7 +12,7 @@ pub(crate) struct Way {
     around: Option<Aabb>,
 }
 
-/// A parabola of a way; it ends where the next begins.
+/// A parabola of a path; it ends where the next begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Piece {
     pub(crate) path: Parabola,
@@ -21,7 +21,7 @@ pub(crate) struct Piece {
     pub(crate) around: Aabb,
 }
 
-/// Adds a motion to those of a body; one that ended when it began is none.
+/// Adds a motion to those of a body; a motion that ended when it began is left out.
 #[inline]
 pub(crate) fn follow(paths: &mut Vec<Parabola>, path: Parabola) {
     if paths.last().is_some_and(|last| last.t >= path.t) {
@@ -31,7 +31,7 @@ pub(crate) fn follow(paths: &mut Vec<Parabola>, path: Parabola) {
 }
 
 impl Way {
-    /// Of motions that follow each other, the last until `end`.
+    /// A path of motions in succession; the last one lasts until `end`.
     pub(crate) fn new(paths: &[Parabola], end: f64) -> Self {
         let pieces: Vec<Piece> = paths
             .iter()
@@ -45,8 +45,8 @@ impl Way {
         Self { pieces, around }
     }
 
-    /// Whether the two centres come nearer than `reach`. Answers yes where it is close: then the bodies are simulated
-    /// together, which is right in any case.
+    /// Whether the two centres come nearer than `reach`. Answers yes if in doubt: then the bodies are simulated
+    /// together, which is always correct.
     pub(crate) fn meets(&self, other: &Self, reach: f64) -> bool {
         let (Some(a), Some(b)) = (&self.around, &other.around) else { return false };
         if !a.grown(reach).meets(b) {
@@ -72,8 +72,8 @@ impl Way {
 /// than needed.
 const SHORTEST: f64 = 1e-7;
 
-/// Whether two centres may come nearer than `reach` between two times: no where their distance in the middle, less what
-/// they can cover until the ends, is more.
+/// Whether two centres may come nearer than `reach` between two times. They cannot if their distance in the middle,
+/// minus what they can cover until the ends, is more.
 fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> bool {
     let velocity = |t: f64| a.path.velocity_after(t - a.path.t) - b.path.velocity_after(t - b.path.t);
     // A velocity that changes linearly is largest at an end.
@@ -90,7 +90,7 @@ fn come_near(a: &Piece, b: &Piece, from: f64, until: f64, reach: f64) -> bool {
 }
 
 /// Groups of `count` things that meet, directly or through others, as lists of indices in order of the first. `meets`
-/// is asked for indices that are not in one group yet, the larger first.
+/// is called with indices that are not in one group yet, the larger first.
 pub(crate) fn merge(count: usize, meets: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
     let mut leader: Vec<usize> = (0..count).collect();
     for a in 0..count {

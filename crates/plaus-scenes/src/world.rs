@@ -1,4 +1,4 @@
-//! A scene's world for the simulator alone, with nothing random in it.
+//! A scene's world for the simulator alone, without randomness.
 
 use glam::DVec3;
 use plaus_sim::marbles::Marbles;
@@ -18,7 +18,7 @@ pub enum Physical {
 pub struct PlainWorld {
     /// The world.
     pub world: Physical,
-    /// Where each body may start, upright and at rest, without touching another or the ground but by standing on it:
-    /// centres of gravity, in m.
+    /// Where each body can start, upright and at rest, without touching another body, or the ground other than by
+    /// standing on it: centres of gravity, in m.
     pub places: Vec<DVec3>,
 }

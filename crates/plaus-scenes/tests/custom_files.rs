@@ -127,7 +127,7 @@ fn what_is_in_force_knows_its_files() {
     let mut changed = Assets::default();
     changed.insert("wedge.obj", WEDGE.replace("25", "26").into_bytes());
     let error = read(&effective, &changed).unwrap_err();
-    assert!(error.contains("hull_of.hash: wedge.obj was changed: its hash is"), "{error}");
+    assert!(error.contains("hull_of.hash: wedge.obj has changed: its hash is"), "{error}");
     assert!(read(&text, &changed).is_ok(), "a scenario that pins nothing takes what is there");
 }
 
@@ -163,11 +163,11 @@ fn bad_files_are_refused_where_they_are_named() {
     named("../cup.obj", &["outside the scenario's folder", "anywhere = true"]);
     named("/etc/passwd", &["outside the scenario's folder"]);
     named("cup.fbx", &["must end in .glb, .obj or .stl"]);
-    named("broken.obj", &["no OBJ"]);
-    named("far.obj", &["no OBJ"]);
+    named("broken.obj", &["not a valid OBJ"]);
+    named("far.obj", &["not a valid OBJ"]);
     named("empty.obj", &["no triangles"]);
-    named("noise.glb", &["no GLB that can be read"]);
-    named("noise.stl", &["no STL"]);
+    named("noise.glb", &["not a valid GLB"]);
+    named("noise.stl", &["not a valid STL"]);
     named("nan.obj", &["corner 1 of \"roof\" is not finite"]);
     refused("{ mesh = { file = 'needle.obj' } }", "shape", &["triangle 4 is degenerate"]);
     refused("{ mesh = { file = 'inside_out.obj' } }", "shape", &["triangle 2", "disagree on which side is outside"]);
@@ -184,5 +184,5 @@ fn bad_files_are_refused_where_they_are_named() {
     let piece = "{ compound = { pieces = [{ shape = { plane = {} } }] } }";
     refused(piece, "plane", &["compound.pieces[0].shape", "ball"]);
     let error = Scenario::read("world.toml", &world("", "{ hull_of = { file = 'wedge.obj' } }", ""), &[]).unwrap_err();
-    assert!(error.to_string().contains("read as text alone"), "{error}");
+    assert!(error.to_string().contains("read only as text"), "{error}");
 }

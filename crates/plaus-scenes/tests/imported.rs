@@ -82,7 +82,7 @@ fn nodes_are_what_they_say() {
     let [gate] = &config.driven[..] else { panic!() };
     assert_eq!((gate.name.as_str(), gate.keys.len()), ("gate", 2));
     assert_eq!((gate.keys[1].at_s.clone(), gate.keys[1].at_mm[1].clone()), (1.5.into(), (-4000.0).into()));
-    for what in ["hill: its camera", "weight of its extras", "\"boddy\" means nothing"] {
+    for what in ["hill: its camera", "weight of its extras", "\"boddy\" is unknown"] {
         is_left_out(&made, what);
     }
 }
@@ -107,7 +107,7 @@ fn both_spellings_of_the_physics_extension_are_one_world() {
             &json!({ "extensionsUsed": ["KHR_physics_rigid_bodies", shapes], "extensions": named }),
         ));
         is_left_out(&made, "gravityFactor");
-        is_left_out(&made, "seen: it has a mesh and no collider");
+        is_left_out(&made, "seen: it has a mesh but no collider");
         made.text + &format!("{:?}", config.bodies.len())
     };
     let material = |mut collider: Value| {

@@ -11,7 +11,7 @@ const BALL: &str = "ball2d = {}";
 const CASES: &[Case] = &[
     (DICE, "impact = { body = 'dye_2' }", "'dye_2'", &["no \"dye_2\"", "did you mean \"die_2\"?"]),
     (DICE, "impact = { body = 'die_1', with = 'tabel' }", "'tabel'", &["no \"tabel\"", "did you mean \"table\"?"]),
-    (DICE, "rests = {}", "rests", &["which body?", "die_1, die_2, die_3"]),
+    (DICE, "rests = {}", "rests", &["name a body", "die_1, die_2, die_3"]),
     (DICE, "faces_up = { body = 'die_*' }", "'die_*'", &["not a pattern"]),
     (BALL, "faces_up = { face = 6 }", "6", &["no body here has faces"]),
     (BALL, "impact = { nth = 0 }", "0", &["there is no impact 0"]),
@@ -21,19 +21,19 @@ const CASES: &[Case] = &[
         "when",
         &["an empty window", "ends at 1 s", "begins at 2 s"],
     ),
-    (BALL, "impact = { when = { at_s = 2, frame = 1 } }", "when", &["say it in one way"]),
-    (DICE, "rests = { body = 'die_1', when = { from_s = 11 } }", "when", &["after the end", "beyond 10 s"]),
+    (BALL, "impact = { when = { at_s = 2, frame = 1 } }", "when", &["give the time in one way"]),
+    (DICE, "rests = { body = 'die_1', when = { from_s = 11 } }", "when", &["but every motion ends by 10 s"]),
     (DICE, "beats = { body = 'die_1', times_s = [0.5, 12] }", "[0.5", &["a beat at 12 s", "10 s at most"]),
     (BALL, "beats = {}", "beats", &["there are no beats"]),
     (BALL, "beats = { every_s = 1, times_s = [1] }", "beats", &["in one way"]),
-    (BALL, "beats = { every_s = 1, each = 'beat' }", "'beat'", &["no end"]),
+    (BALL, "beats = { every_s = 1, each = 'beat' }", "'beat'", &["never end"]),
     (BALL, "bounces = { at_least = 3, at_most = 2 }", "bounces", &["at least 3 and at most 2"]),
     (BALL, "bounces = {}", "bounces", &["asks for nothing"]),
     (BALL, "inside = {}", "inside", &["which region?"]),
-    (BALL, "inside = { x_mm = [3, 2] }", "[3", &["the first is the smaller"]),
-    (BALL, "relative = { body = 'ball_0', to = 'ball_0', x_mm = 1 }", "'ball_0', x_mm", &["from itself"]),
+    (BALL, "inside = { x_mm = [3, 2] }", "[3", &["the first number is the smaller"]),
+    (BALL, "relative = { body = 'ball_0', to = 'ball_0', x_mm = 1 }", "'ball_0', x_mm", &["the same body"]),
     (BALL, "before = {}", "before", &["before itself"]),
-    (DICE, "count = { at_least = 4, that = { rests = {} } }", "4", &["4 of 3"]),
+    (DICE, "count = { at_least = 4, that = { rests = {} } }", "4", &["only 3 bodies"]),
     (
         BALL,
         "at_least = { count = 5, of = [{ rests = {} }, { rests = {} }, { rests = {} }] }",
@@ -71,7 +71,7 @@ fn what_is_nested_too_deep_is_refused_where_that_begins() {
         assert_eq!(error.problems.len(), 1, "{error}");
         assert_eq!(error.problems[0].line, Some(1));
         assert_eq!(error.problems[0].column, Some(12 + 8 * 8), "{error}");
-        assert!(error.to_string().contains("nested too deep: at most 8"), "{error}");
+        assert!(error.to_string().contains("nested too deeply: at most 8"), "{error}");
     }
 }
 

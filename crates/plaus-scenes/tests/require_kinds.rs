@@ -198,7 +198,7 @@ fn beats_are_read_from_files() {
             "it has no column \"beat\"; there are time, drum",
         ),
         ("times_from = { file = 'drums/hits.csv', note = 36 }", "a table has no notes"),
-        ("times_from = { file = 'drums/hits.csv' }, every_s = 0.5", "say the beats in one way"),
+        ("times_from = { file = 'drums/hits.csv' }, every_s = 0.5", "give the beats in one way"),
         ("times_from = { file = 'drums/hits.csv', colum = 'time' }", "did you mean"),
     ] {
         let error = read(beats).unwrap_err();

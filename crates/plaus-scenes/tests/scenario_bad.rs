@@ -261,7 +261,7 @@ fn binary_garbage_and_deep_nesting_are_refused() {
 #[test]
 fn text_that_is_none_is_refused_where_it_breaks_off() {
     let error = ScenarioError::decode("run.bin", b"[world.ball2d]\n\xff\xfe = 1".to_vec()).unwrap_err();
-    assert_eq!(error.to_string(), "run.bin:2:1: byte 15 (0xff) is no UTF-8 text; a scenario is a TOML file");
+    assert_eq!(error.to_string(), "run.bin:2:1: byte 15 (0xff) is not UTF-8 text; a scenario is a TOML file");
     assert_eq!(ScenarioError::decode("good.toml", b"a = 1".to_vec()).as_deref(), Ok("a = 1"));
 }
 
@@ -302,7 +302,7 @@ fn overrides_are_blamed_by_their_own_words() {
         ("sampler.sede=1", "--set sampler.sede=1: sampler.sede: unknown key; did you mean `sampler.seed`?"),
         ("world.billiards.x=1", &known),
         ("gravity=1", "--set gravity=1: gravity: unknown key"),
-        ("seed", "--set seed: seed: an override is `key=value`, and this has no `=`"),
+        ("seed", "--set seed: seed: an override has the form `key=value`, but this has no `=`"),
         ("=1", "--set =1: unknown key"),
         ("aim=nan", "--set aim=nan: world.ball2d.weights.aim: nan is out of range: it must be from 0 to 1e6"),
         (

@@ -232,7 +232,9 @@ fn keys_are_explained_by_full_name_or_unique_end() {
     assert_eq!((doc.kind.as_str(), doc.default.as_str(), doc.range.as_str()), ("a number", "10.0", "from 1e-9 to 90"));
     assert_eq!(doc.unit.as_deref(), Some("degree"));
     assert_eq!(explain("downward").unwrap().default, "\"back\"");
-    assert!(explain("downward").unwrap().description.contains("\n\"level\": The ball bounces as from a level table."));
+    assert!(
+        explain("downward").unwrap().description.contains("\n\"level\": The ball bounces as if the table were level.")
+    );
     assert_eq!(explain("symmetric_redraws").unwrap().default, "unset");
     assert_eq!(explain("ball2d.weights").unwrap().kind, "a table");
     assert_eq!(explain("weights.perturb").unwrap().key, "world.ball2d.weights.perturb");

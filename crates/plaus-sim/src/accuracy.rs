@@ -1,4 +1,4 @@
-//! How exact a simulation is: one knob over all tolerances, and the one place where each is named.
+//! How exact a simulation is: one setting for all tolerances, and the one place that names each of them.
 //!
 //! | tolerance | unit | draft | standard | fine | reference | usual range | danger | source |
 //! | --- | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -13,17 +13,17 @@
 //! | `gap` | body size | 1e-4 | 1e-5 | 1e-6 | 1e-8 | 1e-9–1e-3 | large: bodies float; small: more steps of conservative advancement | first contact of turning bodies; spheres need none |
 //! | `events` | count per body | 2e4 | 2e4 | 5e4 | 5e5 | 1e2–1e7 | small: long runs end as `OutOfEvents` | a guard; ten marbles need about 40 each |
 //!
-//! **Which preset to take.** `Standard` for sampling, `Draft` while looking for a scenario that works (a quarter less
-//! time), `Fine` for a trajectory that is shown (two to three times the time), `Reference` only to judge the others
-//! (six times, and far more where bodies lie in heaps). Free flight, bounces, sliding and rolling on planes are exact
-//! at every preset: a slide that turns into a roll, and a bounce from 1 m, agree with the exact answer to 2e-15. Where
-//! chaos parts the ways, the law of the outcomes stays: none of the presets could be told from the reference by what
-//! came of up to 2,000 draws, save a hundredth of the marbles' and the dice's. Medians of one thread in ms on a
-//! two-core machine, and in brackets the total variation from the reference's outcomes and what chance alone gives on
+//! **Which preset to take.** `Standard` for sampling; `Draft` while looking for a scenario that works (a quarter less
+//! time); `Fine` for a trajectory to be shown (two to three times the time); `Reference` only to judge the others (six
+//! times, and far more for heaps). Free flight, bounces, sliding and rolling on planes are exact at every preset: a
+//! slide that turns into a roll, and a bounce from 1 m, agree with the exact answer to 2e-15. When chaos separates
+//! trajectories, the law of the outcomes stays. In up to 2,000 draws, no preset's outcomes could be distinguished from
+//! the reference's, except for a hundredth of the marbles' and the dice's. The table has medians of one thread in ms on
+//! a two-core machine; in brackets, the total variation from the reference's outcomes, and what chance alone gives on
 //! average (`cargo xtask tradeoff`; the report has the errors over time, all readings and plots):
 //!
-//! These figures were taken before contact of turning bodies was mended, and are to be measured again for dice and
-//! pins; marbles take a fifth longer since.
+//! These figures were taken before contact of turning bodies was corrected, and have to be measured again for dice and
+//! pins; marbles take a fifth longer since then.
 //!
 //! | world, outcome | draft | standard | fine | reference | rapier3d-f64, 1/240 |
 //! | --- | --- | --- | --- | --- | --- |
@@ -34,14 +34,14 @@
 //! | a die on a bumpy table, likewise | 0.21 (0.079, 0.076) | 0.26 (0.082, 0.077) | 0.52 (0.081, 0.077) | 1.6 | 7.3 (0.14, 0.13) |
 //! | a ball at ten pins, 5 s: which pins stand | 3.8 (0.022, 0.020) | 4.4 (0.024, 0.020) | 11 (0.021, 0.020) | 50 | 98 (0.076, 0.017) |
 //!
-//! ACM and pins had only 307 and 67 draws of the reference in that time: their distances say little. Marbles keep
+//! ACM and pins had only 307 and 67 draws of the reference in that time, so their distances say little. Marbles stay
 //! within a tenth of a radius of the reference for 0.6, 0.95 and 1.5 s in the median (`Draft`, `Standard`, `Fine`), and
-//! 7, 5 and 2 in a hundred draws fill another number of bins than they would there; a die keeps within a twentieth of
-//! its edge for 0.3, 0.3 and 0.4 s, and one throw in two to four ends on another face or elsewhere.
+//! in 7, 5 and 2 of a hundred draws they fill another number of bins than in the reference. A die stays within a
+//! twentieth of its edge for 0.3, 0.3 and 0.4 s, and one throw in two to four ends on another face or elsewhere.
 //!
-//! **Against truths that the simulator has no part in** (`cargo xtask accuracy`, `docs/accuracy.md` says what each is
-//! and what is measured): closed forms, laws, and another make of integrator in small steps. The order is that in
-//! `step`, from standard to reference.
+//! **Against truths independent of the simulator** (`cargo xtask accuracy`; `docs/accuracy.md` says what each is and
+//! what is measured): closed forms, laws, and another kind of integrator in small steps. The order is that in `step`,
+//! from standard to reference.
 //!
 //! | case | draft | standard | fine | reference | order |
 //! | --- | --- | --- | --- | --- | --- |
@@ -80,12 +80,12 @@
 //! | die, e 0.5, µ 0.35, after 0.16 s | 4.9e-2 | 1.2e-2 | 2.2e-3 | 2.1e-4 | 1.3 |
 //! | die, e 0.5, µ 0.35, after 1 s | 1.1 | 3.7e-1 | 1.2e-1 | 2.8e-2 | 0.9 |
 //!
-//! **f32 or f64.** There is only f64. Events are ordered by their times across bodies, and an f32 holds a time of 2 s
-//! to 2e-7 s, in which a marble at 1 m/s moves by 4e-5 of its radius: contacts would be found too early or too late by
+//! **f32 or f64.** There is only f64. Events are ordered by their times across bodies. An f32 holds a time of 2 s to
+//! 2e-7 s, in which a marble at 1 m/s moves by 4e-5 of its radius: contacts would be found too early or too late by
 //! more than the presets allow.
 //!
-//! In `step`, ρ is the radius of curvature of a centre's way and k a rolling marble's inertia over m r²: the step is a
-//! part of the radian of its swinging in a bowl.
+//! In `step`, ρ is the radius of curvature of a centre's path, and k is a rolling marble's inertia over m r²: the step
+//! is a fraction of a radian of the marble's swing in a bowl.
 //!
 //! Every length is in units of a body's own size and every time in units of `√(size/g)`, so no tolerance is absolute:
 //! the same world at another scale gives the same bits up to the scale.
@@ -93,17 +93,17 @@
 use crate::error::WorldError;
 use serde::{Deserialize, Serialize};
 
-/// A named point of the scale between fast and exact.
+/// A named setting between fast and exact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Preset {
-    /// For looking for ideas: contact is coarse.
+    /// For trying out ideas: contact is coarse.
     Draft,
     /// The default: outcome distributions agree with the reference within sampling noise (see `cargo xtask tradeoff`).
     Standard,
     /// Trajectories agree with the reference to about a thousandth of a radius until chaos separates them.
     Fine,
-    /// What the others are measured against.
+    /// The standard that the others are compared with.
     Reference,
 }
 

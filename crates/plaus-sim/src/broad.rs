@@ -1,19 +1,19 @@
-//! The broad phase: which boxes meet a box, found without looking at all of them.
+//! The broad phase: which boxes meet a given box, without looking at all of them.
 //!
-//! Boxes hang under a binary tree whose leaves are sorted by place: halves of halves along the longest side. A box that
-//! changes is changed up to the root; after as many changes as there are boxes the tree is sorted anew. So a look costs
-//! about the logarithm of their number, and as what is found comes in ascending order, nothing depends on how the tree
-//! stands.
+//! The boxes are in a binary tree whose leaves are sorted by place: halves of halves along the longest side. A box that
+//! changes is updated up to the root; after as many changes as there are boxes, the tree is sorted again. So a query
+//! costs about the logarithm of the number of boxes. Results come in ascending order, so nothing depends on the shape
+//! of the tree.
 
 use crate::scenery::Aabb;
 
-/// Boxes up to which all are looked at: a scan of so few costs no more than a tree.
+/// Up to this many boxes, all are looked at: a scan of so few costs no more than a tree.
 const FEW: usize = 24;
 
 /// A tree over boxes that its owner keeps.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BoxTree {
-    /// Which box each leaf is of.
+    /// The box of each leaf.
     order: Vec<u32>,
     /// The leaf of each box.
     leaf: Vec<u32>,
@@ -31,12 +31,12 @@ impl BoxTree {
         tree
     }
 
-    /// Forgets how it stands: the boxes are new.
+    /// Forgets the tree: the boxes are new.
     pub(crate) fn reset(&mut self) {
         self.order.clear();
     }
 
-    /// A box has changed.
+    /// Updates the tree after a box has changed.
     pub(crate) fn change(&mut self, k: usize, to: &Aabb) {
         self.changes += 1;
         if self.order.is_empty() {
@@ -67,7 +67,7 @@ impl BoxTree {
         self.find(around, found);
     }
 
-    /// The same of a tree whose boxes do not change.
+    /// The same for a tree whose boxes do not change.
     pub(crate) fn find(&self, around: &Aabb, found: &mut Vec<u32>) {
         found.clear();
         let mut open = [0_usize; 64];
@@ -112,8 +112,7 @@ impl BoxTree {
     }
 }
 
-/// Sorts leaves so that the first half of `room` has the lower ones along the side on which they are spread most, and
-/// so on.
+/// Sorts leaves so that the first half of `room` has the lower ones along the side of largest spread, and so on.
 fn halve(order: &mut [u32], room: usize, middles: &[[f64; 3]]) {
     let half = room / 2;
     if order.len() <= half {

@@ -1,9 +1,9 @@
-//! What can be wrong with a world before any stepping. Running out of events is no error but an
+//! What can be wrong with a world before it is simulated. Running out of events is not an error, but an
 //! [`Outcome`](crate::Outcome).
 
 use glam::DVec3;
 
-/// The first of some vectors' coordinates that is NaN or infinite, for an error to name.
+/// The first coordinate of some vectors that is NaN or infinite, for an error message.
 pub(crate) fn first_not_finite(vectors: &[DVec3]) -> Option<f64> {
     vectors.iter().flat_map(|v| v.to_array()).find(|x| !x.is_finite())
 }
@@ -72,7 +72,7 @@ pub enum WorldError {
         area: f64,
     },
     /// A triangle names a vertex that the mesh lacks.
-    #[error("triangle {triangle} names vertex {vertex}, but the mesh has {vertices}")]
+    #[error("triangle {triangle} names vertex {vertex}, but the mesh has only {vertices} vertices")]
     UnknownVertex {
         /// Index of the triangle.
         triangle: usize,
@@ -94,7 +94,7 @@ pub enum WorldError {
         to: usize,
     },
     /// A vertex was moved farther than the margin that its mesh was made with.
-    #[error("vertex {vertex} moved {distance} m from where the mesh was made, more than its margin {margin} m")]
+    #[error("vertex {vertex} moved {distance} m from its original place, more than its margin of {margin} m")]
     MovedTooFar {
         /// Index of the vertex.
         vertex: usize,
@@ -146,7 +146,7 @@ pub enum WorldError {
         at: DVec3,
     },
     /// Too few points for a hull.
-    #[error("{points} distinct points have no hull, at least 4 have")]
+    #[error("{points} distinct points have no hull: at least 4 are needed")]
     FewPoints {
         /// How many there are.
         points: usize,
@@ -156,28 +156,28 @@ pub enum WorldError {
     FlatHull {
         /// How many there are.
         points: usize,
-        /// Distance in metres up to which they count as in it.
+        /// Largest distance in metres at which they count as in the plane.
         thickness: f64,
     },
     /// A hull with too many points, corners or corners of one face.
-    #[error("a hull has {count} {what}, at most {most} are served")]
+    #[error("a hull has {count} {what}, but at most {most} are supported")]
     LargeHull {
-        /// What there are too many of.
+        /// What is too many.
         what: &'static str,
         /// How many there are.
         count: usize,
-        /// How many there may be.
+        /// The most allowed.
         most: usize,
     },
-    /// Points so nearly in one plane that rounding would decide on the faces of their hull.
+    /// Points so nearly in one plane that rounding would decide the faces of their hull.
     #[error(
-        "the faces of a hull near point {point} cannot be told apart: move it into their plane, or farther out of it"
+        "the faces of a hull near point {point} cannot be distinguished: move it into their plane, or farther out of it"
     )]
     UnclearHull {
         /// Index of a point near there.
         point: usize,
     },
-    /// A solid of a compound that is none.
+    /// An invalid solid of a compound.
     #[error("solid {member} of a compound: {field} is {value}, expected {expected}")]
     BadMember {
         /// Its index.
@@ -189,7 +189,7 @@ pub enum WorldError {
         /// What it should be.
         expected: &'static str,
     },
-    /// A key of a body that goes its own way.
+    /// An invalid key of a body that follows keyframes.
     #[error("body {body}: key {key} of its {track}: {field} is {value}, expected {expected}")]
     BadKey {
         /// Index of the body.
@@ -205,7 +205,7 @@ pub enum WorldError {
         /// What it should be.
         expected: &'static str,
     },
-    /// A state that was made for another world.
+    /// A state made for another world.
     #[error("the state has {state} bodies, the world {world}")]
     WrongState {
         /// Bodies of the state.

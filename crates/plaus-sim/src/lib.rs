@@ -1,14 +1,14 @@
 //! An exact, event-driven rigid-body simulator.
 //!
-//! Every body has its own clock and a closed-form motion from there on: free flight, sliding, rolling, spinning, rest.
-//! The loop ([`simulate`](mod@simulate)) takes the earliest event, brings only the bodies that it concerns to its time,
+//! Every body has its own clock, and from there a motion in closed form: free flight, sliding, rolling, spinning, rest.
+//! The loop ([`simulate`](mod@simulate)) takes the earliest event, brings only the bodies concerned to its time,
 //! resolves it and looks ahead again. Collisions are found as roots of polynomials, so nothing tunnels at any speed,
 //! and there is no time step. Contact that lasts and has no closed form (a marble in a bowl, a pile) advances in steps
 //! of its own group.
 //!
-//! A world is immutable, a [`State`] is data that can be cloned, serialised and resumed to the same bits, and a
-//! [`Scratch`] is work space for one thread. SI units throughout. The same input gives the same bits on every thread
-//! and at every optimisation level. What a run may cost and how exact it is follow from one [`Preset`].
+//! A world is immutable. A [`State`] is data that can be cloned, serialised and resumed to the same bits. A [`Scratch`]
+//! is work space for one thread. Units are SI throughout. The same input gives the same bits on every thread and at
+//! every optimisation level. One [`Preset`] decides how exact a run is, and what it may cost.
 //!
 //! ```
 //! use glam::DVec3;
@@ -34,7 +34,7 @@
 //! # Ok::<(), plaus_sim::WorldError>(())
 //! ```
 //!
-//! Listening is optional and costs nothing where it is not wanted: pass a [`trace::Trace`] for all motions and impacts,
+//! Listening is optional and otherwise costs nothing: pass a [`trace::Trace`] for all motions and impacts,
 //! [`trace::While`] to stop early, or `&mut ()`.
 pub mod accuracy;
 mod broad;

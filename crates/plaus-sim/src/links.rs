@@ -63,7 +63,7 @@ impl Links {
         }
     }
 
-    /// Keeps the links of which `keep` says so; it is asked twice for each and must answer alike.
+    /// Keeps the links for which `keep` returns true; it is called twice for each and must give the same answer.
     pub fn retain(&mut self, mut keep: impl FnMut(Link) -> bool) {
         self.both_ways.retain(|&[a, b]| keep([a.min(b), a.max(b)]));
     }

@@ -1,4 +1,4 @@
-//! What happens where two materials touch: a law per unordered pair of materials.
+//! What happens when two materials touch: one law for each unordered pair of materials.
 
 use crate::error::WorldError;
 use serde::{Deserialize, Serialize};
@@ -20,8 +20,8 @@ pub struct Law {
     /// super-ball.
     pub tangential: f64,
     /// Rolling resistance: the resisting torque is at most this × normal force × radius; in [0, ∞). Glass on wood:
-    /// 0.001–0.02. It acts while the ball rolls, and where it is at least `friction` it keeps a ball that slides
-    /// without turning from turning.
+    /// 0.001–0.02. It acts while the ball rolls. If it is at least `friction`, a ball that slides without turning does
+    /// not begin to turn.
     pub rolling: f64,
     /// Resistance to spinning about the normal: torque = this × normal force × radius; in [0, ∞).
     pub spinning: f64,
@@ -46,7 +46,8 @@ impl Law {
         Self { tangential, ..self }
     }
 
-    /// Whether sliding friction cannot turn a ball that does not turn: the resistance to rolling is as large as it.
+    /// Whether sliding friction cannot make a ball turn that does not turn yet, because the resistance to rolling is as
+    /// large.
     #[inline]
     pub(crate) fn holds_from_turning(&self) -> bool {
         self.rolling >= self.friction
@@ -80,7 +81,7 @@ impl Laws {
     /// A world of one material only.
     ///
     /// # Errors
-    /// [`WorldError::BadLaw`] where a number is out of its range or NaN.
+    /// [`WorldError::BadLaw`] if a number is out of its range or NaN.
     pub fn uniform(law: Law) -> Result<Self, WorldError> {
         Self::new(1, law)
     }
@@ -88,7 +89,7 @@ impl Laws {
     /// A table for `materials` materials, all pairs with the law `default`.
     ///
     /// # Errors
-    /// [`WorldError::BadLaw`] where a number is out of its range or NaN.
+    /// [`WorldError::BadLaw`] if a number is out of its range or NaN.
     pub fn new(materials: u16, default: Law) -> Result<Self, WorldError> {
         let mut laws = Self { materials, table: vec![default; usize::from(materials) * usize::from(materials)] };
         if materials > 0 {
@@ -100,7 +101,7 @@ impl Laws {
     /// Gives one unordered pair its own law.
     ///
     /// # Errors
-    /// [`WorldError::BadLaw`] where a number is out of its range or NaN, [`WorldError::UnknownMaterial`] where the
+    /// [`WorldError::BadLaw`] if a number is out of its range or NaN, [`WorldError::UnknownMaterial`] if the
     /// table lacks a material.
     pub fn set(&mut self, a: Material, b: Material, law: Law) -> Result<(), WorldError> {
         self.require(a)?;
@@ -115,7 +116,8 @@ impl Laws {
     /// Checks that the table has a material.
     ///
     /// # Errors
-    /// [`WorldError::UnknownMaterial`] where it has not.
+    ///
+    /// [`WorldError::UnknownMaterial`] if it does not.
     pub fn require(&self, material: Material) -> Result<(), WorldError> {
         if material.0 < self.materials {
             Ok(())

@@ -1,4 +1,4 @@
-//! The seam between the event loop and the kinds of bodies: what a kind must be able to say about its bodies.
+//! The interface between the event loop and the kinds of bodies: what a kind must say about its bodies.
 //!
 //! The loop is compiled once per kind, so a world of marbles holds no orientation, no shape and no code for turning
 //! bodies.
@@ -48,7 +48,7 @@ pub trait Mechanics {
     /// Whether bodies in lasting contact with each other can meet at more points while it lasts.
     const WATCHES_LINKED: bool = false;
 
-    /// From how many bodies on an event's group counts as a heap, whose events of one time are resolved before it
+    /// From this many bodies on, an event's group counts as a heap: events at one time are all resolved before it
     /// settles.
     const HEAP: usize = usize::MAX;
 
@@ -58,9 +58,9 @@ pub trait Mechanics {
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
-    /// When the world's run is over, in s.
+    /// When the world's runs end, in s.
     fn duration(&self) -> f64;
-    /// Most events of a run.
+    /// Most events in a run.
     fn event_budget(&self) -> u64;
 
     /// The body's own clock.
@@ -73,8 +73,8 @@ pub trait Mechanics {
     fn is_resting(&self, body: &Self::Body) -> bool;
     /// Whether all numbers are finite.
     fn is_finite(&self, body: &Self::Body) -> bool;
-    /// Which of two bodies, with these indices, comes first where an impact goes on through both at once. By index,
-    /// unless a kind knows an order that labels have no part in.
+    /// Which of two bodies, with these indices, comes first if an impact passes through both at once. By index, unless
+    /// a kind of bodies has an order that does not depend on labels.
     fn order(&self, [i, j]: [u32; 2], _bodies: [&Self::Body; 2]) -> Ordering {
         i.cmp(&j)
     }
@@ -93,8 +93,8 @@ pub trait Mechanics {
         None
     }
 
-    /// Collides a body with a surface, both at the body's clock; records the contact where it lasts. Reports the
-    /// impacts, one a point that is struck; whether there were any.
+    /// Collides a body with a surface, both at the body's clock; records the contact if it lasts. Reports the impacts,
+    /// one for each point that is struck; returns whether there were any.
     fn hit_surface(
         &self,
         index: usize,
@@ -102,8 +102,8 @@ pub trait Mechanics {
         surface: Surface,
         report: &mut dyn FnMut(&Impact),
     ) -> bool;
-    /// Collides two bodies, as above; where they did collide, says whether they are to be linked. `linked` says whether
-    /// they are already.
+    /// Collides two bodies in the same way; if they did collide, returns whether they should be linked. `linked` says
+    /// whether they already are.
     fn hit_body(
         &self,
         pair: [usize; 2],
@@ -114,6 +114,6 @@ pub trait Mechanics {
     /// The lasting surface contacts of a body.
     fn contacts<'b>(&self, body: &'b Self::Body) -> &'b [Surface];
     /// Decides what a group of bodies in lasting contact with each other (`links` among `members`, all clocks equal)
-    /// does next: gives each a closed form. Drops contacts and links that have ended.
+    /// does next, and gives each a closed form. Drops contacts and links that have ended.
     fn settle(&self, members: &[u32], bodies: &mut [Self::Body], links: &mut Links, scratch: &mut Self::Scratch);
 }

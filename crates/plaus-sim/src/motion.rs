@@ -1,11 +1,11 @@
-//! One stretch of closed-form motion: a parabola of the centre, valid from its own clock on.
+//! One piece of closed-form motion: a parabola of the centre, valid from its own clock on.
 
 use crate::scenery::{Aabb, greater, lesser};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// Centre `x + v τ + a τ²/2` with `τ = time − t`. Free flight, sliding, rolling, rest and the steps of a contact group
-/// are all of this form, so detection knows only it.
+/// all have this form, so detection needs no other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Parabola {
     /// The body's own clock: the time from which the motion is valid, in s.
@@ -48,8 +48,8 @@ impl Parabola {
     }
 }
 
-/// A motion and when its coordinates turn, in seconds after its clock, and where: for boxes around many stretches of
-/// it.
+/// A motion with the times at which its coordinates turn, in seconds after its clock, and their values: for boxes
+/// around many parts of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Course<'p> {
     path: &'p Parabola,

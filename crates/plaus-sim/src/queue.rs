@@ -1,8 +1,8 @@
 //! The event queue: one slot per body, holding its earliest event, under a tournament tree.
 //!
-//! An event that a change elsewhere has made stale is recognised by the partner's generation when it comes up; the body
-//! is then looked at anew. That loses nothing, since everything later of that body was left out only because the stale
-//! event came first.
+//! An event may become stale through a change elsewhere. The partner's generation shows that when the event comes up,
+//! and the body is looked at again. Nothing is lost: later events of that body were left out only because the stale one
+//! came first.
 
 use crate::scenery::Surface;
 use serde::{Deserialize, Serialize};
@@ -35,12 +35,12 @@ pub struct Event {
     pub happening: Happening,
 }
 
-/// What orders bodies whose events are due at the same time: the numbers in turn, then the index. A kind of bodies that
-/// gives each its own numbers, from how it starts, makes ties independent of labels.
+/// The order of bodies whose events are due at the same time: by these numbers in turn, then by index. If a kind of
+/// bodies sets the numbers from how each body starts, ties do not depend on labels.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Place(pub [f64; 4]);
 
-/// Which of two bodies comes first where times do not tell.
+/// Which of two bodies comes first if times are equal.
 fn order(a: u32, b: u32, places: &[Place]) -> Ordering {
     let (p, q) = (places[a as usize].0, places[b as usize].0);
     let by_place = p.iter().zip(&q).map(|(s, t)| s.total_cmp(t)).find(|o| o.is_ne());
@@ -48,7 +48,7 @@ fn order(a: u32, b: u32, places: &[Place]) -> Ordering {
 }
 
 impl Event {
-    /// Those involved, in their order.
+    /// The bodies involved, in order.
     fn pair(&self, body: u32, places: &[Place]) -> [u32; 2] {
         match self.happening {
             Happening::Body { other, .. } if order(other, body, places).is_lt() => [other, body],
@@ -57,7 +57,7 @@ impl Event {
         }
     }
 
-    /// Whether this event of `body` comes before `other` of `rival`: by time, then by those involved, so that ties
+    /// Whether this event of `body` comes before `other` of `rival`: by time, then by the bodies involved, so that ties
     /// never depend on bookkeeping.
     #[inline]
     #[must_use]

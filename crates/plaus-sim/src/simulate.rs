@@ -1,5 +1,5 @@
-//! The loop: take the earliest event, bring the bodies it concerns to its time, resolve it, let the groups they belong
-//! to settle, and look ahead again.
+//! The loop: take the earliest event, bring the bodies concerned to its time, resolve it, let their groups settle, and
+//! look ahead again.
 //!
 //! Nothing else moves. A body far from others is touched only at its own events.
 

@@ -12,7 +12,7 @@ fn what_cannot_be_is_refused_with_its_limit() {
         ("pins = [1, 11]", "11"),
         ("pins = [0]", "0"),
         ("pins = []", "pins"),
-        ("pins = [6, 7]\nleave = [10]", "pin 10 can't be left"),
+        ("pins = [6, 7]\nleave = [10]", "pin 10 cannot be left"),
         ("pins = [6, 6]", "named twice"),
         ("ln_lambda = -1.0", "ln_lambda"),
         ("pin_kg = 0.0", "pin_kg"),

@@ -17,11 +17,11 @@ fn refused(overrides: &[&str], said: &[&str]) {
 fn errors_name_the_key_and_the_limit() {
     refused(&["text=HELLO", "columns=10"], &["world.spelling.columns", "10 columns are too few", "17 bins wide"]);
     refused(&["rows=2"], &["world.spelling.rows", "2 rows are too few", "3 bins high"]);
-    refused(&["text=Ω"], &["world.spelling.text", "no 'Ω'", "A to Z"]);
-    refused(&["text=\"\""], &["world.spelling.text", "at least one must be"]);
-    refused(&["text=HI", "bitmap=\"#.#\""], &["world.spelling.text", "there is a `bitmap` besides"]);
+    refused(&["text=Ω"], &["world.spelling.text", "lacks 'Ω'", "A to Z"]);
+    refused(&["text=\"\""], &["world.spelling.text", "there must be at least one"]);
+    refused(&["text=HI", "bitmap=\"#.#\""], &["world.spelling.text", "there is a `bitmap` too"]);
     refused(&["balls=36"], &["world.spelling.balls", "36 balls are more than the 35 bins"]);
-    refused(&["balls=9"], &["world.spelling.balls", "9 balls cannot fill the 10 designated bins"]);
+    refused(&["balls=9"], &["world.spelling.balls", "9 balls cannot fill 10 bins"]);
     refused(&["ball_radius_mm=8.3"], &["world.spelling.ball_radius_mm", "does not fit a bin", "at most 8.200 mm"]);
     refused(&["box.partition_mm=10"], &["world.spelling.ball_radius_mm", "at most 4.200 mm"]);
     refused(&["drop_height_mm=18"], &["world.spelling.drop_height_mm", "more than 18.800 mm"]);

@@ -1,8 +1,8 @@
-//! What of a GLB the reader takes for granted: that its numbers lie within it.
+//! Checks what the GLB reader takes for granted: that a file's numbers lie within the file.
 
 use gltf::Accessor;
 
-/// Whether all numbers of an accessor lie in the file's own data. The reader divides and subtracts without looking.
+/// Whether all numbers of an accessor lie in the file's own data. The reader divides and subtracts without checking.
 pub(super) fn is_sound(accessor: &Accessor<'_>, blob: &[u8]) -> bool {
     let Some(view) = accessor.view().filter(|_| accessor.sparse().is_none()) else { return false };
     let (size, count) = (accessor.size(), accessor.count());

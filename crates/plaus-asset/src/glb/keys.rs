@@ -16,7 +16,7 @@ pub struct Key {
     pub turn: DQuat,
 }
 
-/// How a node goes from key to key.
+/// How a node moves between keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Between {
     /// It jumps.
@@ -51,7 +51,7 @@ impl<T: Copy> Track<T> {
 }
 
 impl Glb {
-    /// The keys of a node that is at `world` where nothing moves, how it goes between them, and what is left out.
+    /// The keys of a node whose pose without animation is `world`, how it moves between them, and what is left out.
     pub(super) fn keys(&self, node: &gltf::Node<'_>, world: &DMat4) -> (Vec<Key>, Between, Vec<String>) {
         let (mut places, mut turns): (Option<Track<DVec3>>, Option<Track<DQuat>>) = (None, None);
         let (mut between, mut left_out) = (Between::Linear, Vec::new());
@@ -64,12 +64,12 @@ impl Glb {
                 Property::Translation => places.is_none(),
                 Property::Rotation => turns.is_none(),
                 Property::Scale | Property::MorphTargetWeights => {
-                    left_out.push(format!("its animated {property:?}: shapes stay as they are"));
+                    left_out.push(format!("its animated {property:?}: shapes do not change"));
                     continue;
                 }
             };
             if !is_new {
-                left_out.push(format!("its {property:?} in another animation: the first counts"));
+                left_out.push(format!("its {property:?} in another animation: the first one is used"));
                 continue;
             }
             let interpolation = channel.sampler().interpolation();
@@ -113,7 +113,7 @@ impl Glb {
         (keys, between, left_out)
     }
 
-    /// Times and values of a channel. Of a cubic spline the values alone.
+    /// Times and values of a channel. For a cubic spline, only the values.
     fn samples(&self, channel: &Channel<'_>) -> (Vec<f64>, Option<Values>) {
         let reader = channel.reader(|_| Some(&self.blob[..]));
         let times: Vec<f64> = reader.read_inputs().into_iter().flatten().map(f64::from).collect();
@@ -138,7 +138,7 @@ enum Values {
     Turns(Vec<DQuat>),
 }
 
-/// Of a spline's triples of tangent, value and tangent the values.
+/// The values out of a spline's triples of tangent, value and tangent.
 fn middle<T>(values: Vec<T>, is_cubic: bool) -> Vec<T> {
     if is_cubic { values.into_iter().skip(1).step_by(3).collect() } else { values }
 }

@@ -1,4 +1,4 @@
-//! Binary glTF: nodes with their meshes, keyframes, and what is said of them besides.
+//! Binary glTF: nodes with their meshes, keyframes, and extra properties.
 
 mod check;
 mod keys;
@@ -18,7 +18,7 @@ use serde_json::Value;
 pub struct Glb {
     document: Document,
     blob: Vec<u8>,
-    /// The file's JSON, with what the reader does not know.
+    /// The file's JSON, with properties that the reader does not know.
     json: Value,
     /// The nodes that the scene holds, in the order of the tree.
     nodes: Vec<Placed>,
@@ -35,29 +35,29 @@ struct Placed {
 /// A node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// Its name, as [`Object::name`].
+    /// Its name, like [`Object::name`].
     pub name: String,
-    /// Its place among the file's nodes.
+    /// Its index among the file's nodes.
     pub index: usize,
-    /// That of the node that it hangs on.
+    /// The index of its parent node.
     pub parent: Option<usize>,
     /// Where its origin is in the file, in m.
     pub at: DVec3,
     /// Turns its axes into those of the file.
     pub turn: DQuat,
-    /// What it is scaled by along its axes.
+    /// Its scale along its axes.
     pub scale: DVec3,
     /// Whether it has a mesh.
     pub has_mesh: bool,
-    /// Its `extras`; null where there are none.
+    /// Its `extras`; null if there are none.
     pub extras: Value,
-    /// Its extensions by name; null where there are none.
+    /// Its extensions by name; null if there are none.
     pub extensions: Value,
-    /// How it moves; empty where it does not.
+    /// How it moves; empty if it does not.
     pub keys: Vec<Key>,
-    /// How it goes from key to key.
+    /// How it moves between keys.
     pub between: Between,
-    /// What of its motion is left out, in words.
+    /// The parts of its motion that are left out, in words.
     pub left_out: Vec<String>,
 }
 
@@ -65,12 +65,13 @@ impl Glb {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`AssetError::Broken`] for what is no GLB, or says what cannot be.
+    ///
+    /// [`AssetError::Broken`] for bytes that are not a GLB, or are an invalid one.
     pub fn read(bytes: &[u8]) -> Result<Self, AssetError> {
-        let broken = |what: String| AssetError::Broken(format!("it is no GLB that can be read: {what}"));
+        let broken = |what: String| AssetError::Broken(format!("it is not a valid GLB: {what}"));
         let length = bytes.get(8..12).and_then(|length| length.try_into().ok()).map(u32::from_le_bytes);
         if !bytes.starts_with(b"glTF") || length.is_none_or(|length| length as usize != bytes.len()) {
-            return Err(broken("its head does not say glTF and how long it is".into()));
+            return Err(broken("its header lacks the word glTF or its length".into()));
         }
         let json = gltf::Glb::from_slice(bytes).map_err(|error| broken(error.to_string()))?.json;
         let json: Value = serde_json::from_slice(&json).map_err(|error| broken(error.to_string()))?;
@@ -83,7 +84,7 @@ impl Glb {
         Ok(Self { document, blob, json, nodes })
     }
 
-    /// What has a mesh.
+    /// The nodes with a mesh.
     pub(crate) fn objects(&self) -> Result<Vec<Object>, AssetError> {
         let mut objects = Vec::new();
         for &Placed { index, world, .. } in &self.nodes {
@@ -97,7 +98,7 @@ impl Glb {
                     Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => continue,
                     mode => {
                         return Err(AssetError::Broken(format!(
-                            "{name:?} has triangles as {mode:?}: make them single"
+                            "{name:?} has triangles as {mode:?}: export single triangles"
                         )));
                     }
                 }
@@ -116,7 +117,7 @@ impl Glb {
                 colour = colour.or_else(|| given.then(|| [0, 1, 2].map(|k| screen(base[k]))));
             }
             let (at, turn) = pose(&world);
-            // What is left of the node's matrix: what it is scaled by. A mirror image turns faces inside out.
+            // The rest of the node's matrix is its scale. A mirror image turns faces inside out.
             let rest = DMat4::from_rotation_translation(turn, at).inverse() * world;
             if DMat3::from_mat4(rest).determinant() < 0.0 {
                 faces.iter_mut().for_each(|face| face.swap(1, 2));
@@ -154,13 +155,13 @@ impl Glb {
         self.nodes.iter().filter_map(node).collect()
     }
 
-    /// The file's JSON of one entry of a list: `nodes`, `meshes`, `materials`; null where there is none.
+    /// The file's JSON for one entry of a list: `nodes`, `meshes`, `materials`; null if there is none.
     #[must_use]
     pub fn said(&self, list: &str, index: usize) -> &Value {
         &self.json[list][index]
     }
 
-    /// What the file says beyond its nodes, by extension; null where it says nothing.
+    /// The file's data for an extension, beyond its nodes; null if there are none.
     #[must_use]
     pub fn extension(&self, name: &str) -> &Value {
         &self.json["extensions"][name]
@@ -188,11 +189,11 @@ fn placed(document: &Document) -> Result<Vec<Placed>, AssetError> {
     open.reverse();
     while let Some((node, parent, around)) = open.pop() {
         if std::mem::replace(&mut seen[node.index()], true) {
-            return Err(AssetError::Broken(format!("node {} stands in the scene twice", node.index())));
+            return Err(AssetError::Broken(format!("node {} is in the scene twice", node.index())));
         }
         let world = around * matrix(&node);
         if !world.is_finite() {
-            return Err(AssetError::Broken(format!("node {} has no place: its matrix is not finite", node.index())));
+            return Err(AssetError::Broken(format!("node {} has a matrix that is not finite", node.index())));
         }
         found.push(Placed { index: node.index(), parent, world });
         let children: Vec<_> = node.children().map(|child| (child, Some(node.index()), world)).collect();
@@ -201,12 +202,12 @@ fn placed(document: &Document) -> Result<Vec<Placed>, AssetError> {
     Ok(found)
 }
 
-/// Where a node is in its parent.
+/// A node's pose relative to its parent.
 fn matrix(node: &gltf::Node<'_>) -> DMat4 {
     DMat4::from_cols_array_2d(&node.transform().matrix().map(|column| column.map(f64::from)))
 }
 
-/// A linear channel of a colour as screens have it (IEC 61966-2-1).
+/// A channel of a colour, converted from linear to sRGB (IEC 61966-2-1).
 fn screen(linear: f32) -> u8 {
     let linear = f64::from(linear.clamp(0.0, 1.0));
     let shown = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * powf(linear, 1.0 / 2.4) - 0.055 };

@@ -1,39 +1,39 @@
-//! How a chance is asked for: what `plaus chance` and `plaus submit --chance` share, so that they mean the same.
+//! The flags that ask for a chance. `plaus chance` and `plaus submit --chance` share them, so that both mean the same.
 
 use plaus_mcmc::chance::Method;
 use plaus_run::chance::Asking;
 
-/// Methods, and how much work each makes.
+/// Methods, and how much work each does.
 #[derive(Debug, Clone, PartialEq, Eq, Default, clap::Args)]
 pub(crate) struct How {
-    /// Use this method; may be given several times. Unless given: counting, and all three where few draws hit
+    /// Use this method; may be given several times. By default: counting; all three if few draws hit
     #[arg(long, value_name = "METHOD", value_enum)]
     method: Vec<Way>,
-    /// Batches of each method: independent of each other, each as much work. Four times as many halve the error
+    /// Batches of each method, independent of each other and equally long. Four times as many halve the error
     #[arg(long, value_name = "B", value_parser = clap::value_parser!(u32).range(2..=100_000))]
     batches: Option<u32>,
-    /// Draws of the prior that a batch counts
+    /// Draws from the prior in each batch of counting
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     draws: Option<u64>,
-    /// Particles of a batch of splitting
+    /// Particles in each batch of splitting
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
     particles: Option<u32>,
-    /// Steps that a copied particle makes
+    /// Steps that each copied particle makes
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     steps: Option<u64>,
-    /// Rungs of a batch of stepping stones
+    /// Rungs in each batch of stepping stones
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=256))]
     rungs: Option<u32>,
 }
 
-/// A method, as the command line calls it.
+/// A method, under its name on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Way {
-    /// Draws of the prior, counted
+    /// Draw from the prior and count the hits
     Counting,
-    /// Particles that climb the constraint
+    /// Let particles climb the constraint
     Splitting,
-    /// Chains on a ladder between prior and target
+    /// Run chains on a ladder between prior and target
     Stones,
 }
 
@@ -48,13 +48,13 @@ impl From<Way> for Method {
 }
 
 impl How {
-    /// Methods that are asked for; none: those that fit.
+    /// The methods asked for. An empty list lets the program choose.
     pub(super) fn methods(&self) -> Vec<Method> {
         self.method.iter().copied().map(Method::from).collect()
     }
 
-    /// What is asked, where `asking` is what would be asked unless somebody said otherwise; `iterations` is of each
-    /// rung.
+    /// What is asked: the defaults in `asking`, with the flags' values in their place. `iterations` is the number for
+    /// each rung.
     pub(super) fn asking(&self, mut asking: Asking, iterations: Option<u64>) -> Asking {
         let Asking { batches, draws, splitting, stones, .. } = &mut asking;
         *batches = self.batches.unwrap_or(*batches);

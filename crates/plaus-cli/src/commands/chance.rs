@@ -21,24 +21,24 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread;
 use std::time::Duration;
 
-/// How often it is looked whether there is something to show, or a reason to stop.
+/// Time between two checks whether there is something to show, or a reason to stop.
 const TICK: Duration = Duration::from_millis(50);
 /// Seconds between two lines of progress: first, and at most.
 const EVERY: [f64; 2] = [2.0, 60.0];
 
-/// What is said last of all where batches are left to be made.
-pub(super) const GOES_ON: &str = "the same command goes on";
+/// The advice if some batches are not made yet.
+pub(super) const GOES_ON: &str = "run the same command again to continue";
 
-/// Why a piece whose file is at `path` broke off: a hidden file beside it, for those who look on.
+/// The hidden file beside `path` that says why the piece written there failed, for `plaus status`.
 pub(super) fn why_file(path: &Path) -> PathBuf {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     path.with_file_name(format!(".{name}.why"))
 }
 
-/// Of what, how, and where to keep it.
+/// What to estimate, how, and where to keep the result.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Scenario file (TOML), or a file that `--out` wrote, to be shown
+    /// Scenario file (TOML); or a file that `--out` wrote, to show it
     scenario: PathBuf,
     /// Seed of all randomness
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
@@ -51,18 +51,18 @@ pub(crate) struct Args {
     /// Iterations of each rung, after a warm-up of a quarter as many
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000))]
     iterations: Option<u64>,
-    /// File to keep the batches in. Where it holds some of this very asking, goes on with it. With `--shard`, `{shard}`
-    /// as its last part stands for the number of the piece, in `{shard}.json` too
+    /// File to keep the batches in. If it already holds batches of this same estimate, continue it. With `--shard`, a
+    /// file name `{shard}` or `{shard}.json` gets the number of the piece
     #[arg(long, alias = "output", value_name = "FILE.json")]
     out: Option<PathBuf>,
     /// Make only one piece of the batches, e.g. 3/16; `task/16` takes the number from HQ_TASK_ID or
-    /// SLURM_ARRAY_TASK_ID. `plaus merge` puts pieces together
+    /// SLURM_ARRAY_TASK_ID. `plaus merge` puts the pieces together
     #[arg(long, value_name = "PIECE/PIECES", allow_hyphen_values = true, requires = "out")]
     shard: Option<String>,
     /// Number of threads; 0: one per core. Results do not depend on it
     #[arg(long, value_name = "T", default_value_t = 0)]
     threads: usize,
-    /// Stop after this time, e.g. 60s, 1.5m or 2h, with the batches that are there
+    /// Stop after this time, e.g. 60s, 1.5m or 2h, with the batches made so far
     #[arg(long, value_name = "TIME", value_parser = parse_duration, allow_hyphen_values = true)]
     max_time: Option<Duration>,
     /// Print one JSON object
@@ -84,7 +84,7 @@ impl Args {
             Ok(Outcome::Interrupted | Outcome::Unsatisfied) => Some(GOES_ON.to_owned()),
             Ok(Outcome::Done) => None,
         };
-        // Nothing hangs on it; most pieces have none.
+        // Nothing depends on this file, and most pieces have none.
         let _ = match why {
             Some(why) => std::fs::write(why_file(out), why),
             None => std::fs::remove_file(why_file(out)),
@@ -133,11 +133,11 @@ impl Args {
         let said = self.say(&chance)?;
         let (done, due) = chance.done();
         if done < due && !self.json {
-            let how = if out.is_some() { GOES_ON } else { "with `--out FILE.json` it could go on" };
+            let how = if out.is_some() { GOES_ON } else { "use `--out FILE.json` to be able to continue later" };
             console::note_line(&format!("{done} of {due} batches are made; {how}"));
         } else if let (Some(shard), false) = (shard, self.quiet) {
             console::note_line(&format!(
-                "this is piece {shard}; when all are there: plaus merge PIECES --out FILE.json"
+                "this is piece {shard}; once you have all pieces: plaus merge PIECES --out FILE.json"
             ));
         }
         Ok(match shard {
@@ -167,7 +167,7 @@ impl Args {
         }
     }
 
-    /// Says what there is; how it ends.
+    /// Prints the result; gives the command's outcome.
     fn say(&self, chance: &Chance) -> Result<Outcome, Failure> {
         let answers = answers(chance);
         let Some(all) = answers.first() else { return Ok(Outcome::Unsatisfied) };

@@ -17,13 +17,13 @@ pub(crate) struct Args {
     /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE")]
     overrides: Vec<String>,
-    /// Draw so many animations from the prior, and print how many of them meet each thing that is asked
+    /// Draw N animations from the prior, and print how many of them meet each requirement
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     draws: Option<u64>,
     /// Print what `--draws` found as one JSON object, and nothing else
     #[arg(long, requires = "draws")]
     json: bool,
-    /// Print nothing where the scenario is valid, but what `--draws` found
+    /// Print nothing if the scenario is valid, except what `--draws` found
     #[arg(short, long)]
     quiet: bool,
 }

@@ -1,4 +1,4 @@
-//! Chains beside plain draws of the prior, in the same process, for as much processor time.
+//! Compares chains with plain draws from the prior, made in the same process for as much processor time.
 
 use crate::clock::ProcessorClock;
 use crate::console;
@@ -11,11 +11,11 @@ use plaus_mcmc::chance::{ChancePulse, Parts, count};
 use plaus_run::{Diagnosis, RunReader};
 use serde_json::json;
 
-/// Draws between two looks at the clock.
+/// Draws between two checks of the clock.
 const AT_A_TIME: u64 = 4;
 
-/// Makes draws of the prior for as long as the chains sampled after their warm-up, on one thread, and says how many
-/// independent solutions either makes in a minute of one processor.
+/// Draws from the prior on one thread, for as much processor time as the chains took after their warm-up. Prints how
+/// many independent solutions a minute of one processor gives, by chains and by plain draws.
 pub(super) fn with_prior(
     run: &RunReader<'_>,
     diagnosis: &Diagnosis,
@@ -25,7 +25,7 @@ pub(super) fn with_prior(
     let share = diagnosis.iterations as f64 / monitor.done().saturating_sub(monitor.begun_at()).max(1) as f64;
     let (Some(found), true) = (&diagnosis.independent, share <= 1.0) else {
         console::note_line(
-            "nothing to compare with draws of the prior: that needs solutions after the warm-up, of a run made in one go",
+            "cannot compare with draws from the prior: that needs an uninterrupted run with solutions after its warm-up",
         );
         return Ok(());
     };
@@ -47,8 +47,8 @@ pub(super) fn with_prior(
     }
     let times = if hits > 0 { format!(": {} times as many", short(chains / prior)) } else { String::new() };
     console::note_line(&format!(
-        "in a minute of one processor the chains make {} independent solutions, plain draws of the prior {} ({} of {} \
-         draws){times}",
+        "in a minute of one processor the chains make {} independent solutions, plain draws from the prior {} ({} of \
+         {} draws){times}",
         amount(chains),
         amount(prior),
         grouped(hits),

@@ -1,4 +1,4 @@
-//! `--confirm`: which solutions hold at the reference accuracy.
+//! `--confirm`: finds which solutions still hold at reference accuracy.
 
 use crate::console::{self, quoted};
 use crate::failure::Failure;
@@ -8,10 +8,10 @@ use plaus_run::disk::RealDisk;
 use plaus_run::{Confirmation, Run, RunReader};
 use plaus_scenes::AccuracyPreset;
 
-/// What solutions are held against.
+/// The accuracy at which solutions are confirmed.
 pub(super) const ACCURACY: AccuracyPreset = AccuracyPreset::Reference;
 
-/// Simulates every distinct solution of a run again and writes the list beside its records. `None`: interrupted.
+/// Simulates every distinct solution of a run again, and writes the list beside the run's records. `None`: interrupted.
 pub(super) fn confirm(run: &RunReader<'_>, threads: usize, tell: bool) -> Result<Option<Confirmation>, Failure> {
     let confirmation = Confirmation::of(run, ACCURACY, threads, |done, all| {
         if tell && console::is_live() {
@@ -32,10 +32,11 @@ pub(super) fn confirm(run: &RunReader<'_>, threads: usize, tell: bool) -> Result
     Ok(confirmation)
 }
 
-/// How many hold, in words.
+/// Says in words how many hold.
 pub(super) fn in_words(run: &Run, list: &Confirmation) -> String {
     format!(
-        "at {} accuracy {} of {} distinct solutions hold; {} lists them, and `plaus export --confirmed` keeps to those that hold",
+        "at {} accuracy {} of {} distinct solutions hold; {} lists them, and `plaus export --confirmed` keeps to \
+         those",
         list.accuracy.name(),
         grouped(list.held),
         grouped(list.solutions.len() as u64),

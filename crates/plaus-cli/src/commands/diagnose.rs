@@ -35,10 +35,10 @@ pub(super) fn draws_that_count(run: &RunReader<'_>) -> u64 {
     run.counted().iter().map(|&phase| run.draws(phase)).sum()
 }
 
-/// How long a run's chains are gone on with to find out how fast they are here.
+/// How long a run's chains are continued to measure how fast they are here.
 const TRIED: Duration = Duration::from_millis(300);
 
-/// Goes on with a chain for a moment, to nowhere; gives the seconds an iteration takes.
+/// Continues a chain for a moment without recording anything; gives the seconds that an iteration takes.
 fn seconds_each(run: &RunReader<'_>) -> Option<f64> {
     let (pulse, clock) = (Pulse::default(), ProcessorClock::start());
     let made = thread::scope(|scope| {
@@ -48,11 +48,11 @@ fn seconds_each(run: &RunReader<'_>) -> Option<f64> {
         });
         pace(run, &pulse)
     });
-    // What cannot be told is not told.
+    // Where no pace can be measured, none is shown.
     made.ok().flatten().filter(|&made| made > 0).map(|made| clock.seconds() / made as f64)
 }
 
-/// Independent solutions, and how many come in a minute of one processor here.
+/// The number of independent solutions, and how many a minute of one processor gives here.
 fn at_this_pace(run: &RunReader<'_>, diagnosis: &Diagnosis) -> String {
     let Some(found) = &diagnosis.independent else { return String::new() };
     let mut text = report::independent(diagnosis, None);
@@ -68,7 +68,7 @@ impl Args {
     pub(super) fn run(self) -> Result<Outcome, Failure> {
         let run = Run::open(&Folder::new(&self.run))?;
         if run.folder().is_being_written() {
-            console::note_line("note: the run is being written; this is as of its last checkpoint");
+            console::note_line("note: the run is still being written; this shows its last checkpoint");
         }
         let reader = run.reader()?;
         if reader.draws(Phase::Sampling) == 0 {
@@ -104,7 +104,7 @@ impl Args {
             };
             let (found, unknown) = beside.as_ref().map(report::beside).unwrap_or_default();
             let findings = findings + &found;
-            let verdict = if is_healthy { "nothing speaks against these chains\n" } else { "findings:\n" };
+            let verdict = if is_healthy { "nothing found that speaks against these chains\n" } else { "findings:\n" };
             output::print(&format!(
                 "{}\n{solutions}\n{}{some}\n{}\n{}{verdict}{findings}{unknown}",
                 report::headline(manifest),

@@ -9,8 +9,8 @@ use plaus_scenes::scenario::{self, KeyDoc, NoKey};
 /// What to explain.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A key such as sigma_d, world.ball2d.sigma_d or constraints[0].rest_at, a scene such as ball2d, or a word such as
-    /// chain or distinct; nothing lists all keys
+    /// A key such as sigma_d, world.ball2d.sigma_d or constraints[0].rest_at; a scene such as ball2d; or a word such as
+    /// chain or distinct. Lists all keys if left out
     key: Option<String>,
 }
 
@@ -50,7 +50,7 @@ fn list(prefix: &str) -> String {
     let rows = scenario::keys().into_iter().filter(|doc| doc.key.starts_with(prefix)).map(|doc| {
         let first = doc.description.lines().next().unwrap_or_default();
         let sentence = first.split_once(". ").map_or(first, |(sentence, _)| sentence).trim_end_matches('.');
-        // A default that takes several lines, in one.
+        // A default that takes several lines, joined into one.
         let default: Vec<&str> = doc.default.split_whitespace().collect();
         (doc.key, format!("{} = {}", sentence, default.join(" ")))
     });
@@ -69,7 +69,7 @@ fn describe(doc: &KeyDoc) -> String {
     format!("{}\n{facts}\n{}\n{inside}", doc.key, doc.description)
 }
 
-/// The keys in a table; nothing for a key that holds a value.
+/// Lists the keys in a table; empty for a key that holds a value.
 fn table_keys(key: &str) -> String {
     let keys = list(&format!("{key}."));
     if keys.is_empty() { keys } else { format!("\n{keys}") }

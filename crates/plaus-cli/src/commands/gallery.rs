@@ -8,10 +8,10 @@ use plaus_run::export::output;
 use plaus_run::{Error, Folder, Run, RunReader};
 use std::path::PathBuf;
 
-/// Pages longer than this are slow to open, in bytes.
+/// Pages longer than this, in bytes, open slowly.
 const LONG: usize = 25 << 20;
 
-/// Which run, how many solutions, where to.
+/// Which run, how many solutions, and to which file.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Folder of the run
@@ -25,7 +25,7 @@ pub(crate) struct Args {
     /// Replace what is there, if `plaus gallery` made it
     #[arg(long)]
     force: bool,
-    /// Read a damaged run as far as it is intact, and say what is lost
+    /// Read a damaged run as far as it is intact, and report what is lost
     #[arg(long)]
     salvage: bool,
 }
@@ -48,7 +48,7 @@ impl Args {
             run = run.salvaged();
             console::note_line(&super::salvage(&run.reader()?));
         } else if run.folder().is_being_written() {
-            console::note_line("note: the run is being written; this shows it as of its last checkpoint");
+            console::note_line("note: the run is still being written; this shows its last checkpoint");
         }
         let reader = run.reader()?;
         if super::diagnose::draws_that_count(&reader) == 0 {
@@ -62,7 +62,7 @@ impl Args {
             size as f64 / 1e6
         ));
         if size > LONG {
-            console::note_line("warning: a page of that size opens slowly; choose a smaller --count");
+            console::note_line("warning: a page of this size opens slowly; choose a smaller --count");
         }
         Ok(Outcome::Done)
     }

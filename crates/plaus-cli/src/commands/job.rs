@@ -8,7 +8,7 @@
 //! | `pieces/3` | a piece: a run of its own |
 //! | `logs/` | what the tasks printed |
 //! | `run` | the whole run, once it is merged |
-//! | `chance.json` | instead, where batches of `plaus chance` are the pieces: all of them, merged |
+//! | `chance.json` | in place of `run`, where the pieces are batches of `plaus chance`: all of them, merged |
 
 use crate::commands::shards::PLACE;
 use crate::failure::Failure;
@@ -36,24 +36,24 @@ pub(crate) enum Engine {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Description {
-    /// Version of plaus that wrote it, and that its pieces must have.
+    /// Version of plaus that wrote it. Its pieces must have the same.
     pub(super) plaus: String,
     pub(super) engine: Engine,
     pub(super) pieces: u32,
-    /// What is cut into pieces: so many chains, or batches.
+    /// How many chains, or batches, are cut into pieces.
     pub(super) total: u32,
     /// Name of the scenario file in the job's folder `scenario`.
     pub(super) scenario: String,
     pub(super) overrides: Vec<String>,
     pub(super) solutions: Option<u64>,
-    /// Flags of `plaus chance`, where that is what is asked; not there where it is a run.
+    /// Flags of `plaus chance`. Absent if the job is a run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) chance: Option<Vec<String>>,
     /// Threads of each piece.
     pub(super) threads: usize,
-    /// The program, where it lies on all machines.
+    /// Path of the program, the same on all machines.
     pub(super) program: String,
-    /// What the engine's own command is given besides.
+    /// Options added to the engine's own command.
     pub(super) options: Vec<String>,
 }
 
@@ -63,11 +63,11 @@ pub(crate) struct Job {
     pub(super) what: Description,
 }
 
-/// A path as the text that scripts hold; tasks start in folders of their own, so it is absolute.
+/// A path as text for scripts. It is absolute, because tasks start in folders of their own.
 pub(super) fn text_of(path: &Path) -> Result<String, Failure> {
     let absolute = std::path::absolute(path).map_err(|error| refuse(path, &error))?;
     let text = absolute.to_str().map(str::to_owned);
-    text.ok_or_else(|| refuse(path, &"its name is no UTF-8 text, which the files of engines have to be"))
+    text.ok_or_else(|| refuse(path, &"its name is not UTF-8 text, which the engines' files must be"))
 }
 
 fn refuse(path: &Path, why: &dyn std::fmt::Display) -> Failure {
@@ -86,7 +86,7 @@ impl Job {
             fs::create_dir_all(parent).map_err(|error| refuse(parent, &error))?;
         }
         fs::create_dir(&job.path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::AlreadyExists => refuse(path, &"exists already; choose another name"),
+            std::io::ErrorKind::AlreadyExists => refuse(path, &"already exists; choose another name"),
             _ => refuse(path, &error),
         })?;
         for folder in ["scenario", "submit", "pieces", "logs"] {
@@ -98,7 +98,7 @@ impl Job {
         Ok(job)
     }
 
-    /// Opens the folder of a job; `None` where it is none.
+    /// Opens the folder of a job; `None` if it is not one.
     pub(crate) fn open(path: &Path) -> Result<Option<Self>, Failure> {
         let file = path.join("job.json");
         let json = match fs::read(&file) {
@@ -111,7 +111,7 @@ impl Job {
         Shard::new(1, what.pieces).map_err(|error| refuse(&file, &error))?;
         if what.plaus != VERSION {
             let why =
-                format!("made by plaus {}, this is {VERSION}: its pieces would not be the same run's", what.plaus);
+                format!("made by plaus {}, but this is {VERSION}: their pieces would not fit together", what.plaus);
             return Err(refuse(path, &why));
         }
         Ok(Some(Self { path: std::path::absolute(path).map_err(|error| refuse(path, &error))?, what }))
@@ -127,7 +127,7 @@ impl Job {
         self.what.chance.is_some()
     }
 
-    /// Where all pieces are merged into: the folder of a run, or the file of a chance.
+    /// Where all pieces are merged: the folder of a run, or the file of a chance.
     pub(crate) fn merged(&self) -> PathBuf {
         self.path.join(if self.is_chance() { "chance.json" } else { "run" })
     }
@@ -154,7 +154,7 @@ impl Job {
         Ok(path)
     }
 
-    /// The command of a piece, one argument each; `piece` is its number, or what stands for it.
+    /// The command of a piece, one argument each; `piece` is its number, or the engine's placeholder for it.
     pub(super) fn piece_command(&self, piece: &str) -> Result<Vec<String>, Failure> {
         let Description { pieces, scenario, overrides, solutions, chance, threads, program, .. } = &self.what;
         let scenario = text_of(&self.path.join("scenario").join(scenario))?;
@@ -165,13 +165,13 @@ impl Job {
         words.extend(solutions.map(|wanted| format!("--solutions={wanted}")));
         words.extend(chance.iter().flatten().cloned());
         words.extend([format!("--shard={piece}/{pieces}"), format!("--out={out}")]);
-        // A chance goes on with what is there anyway.
+        // `plaus chance` always continues what is there.
         words.extend(chance.is_none().then(|| "--continue".to_owned()));
         words.extend([format!("--threads={threads}"), "--quiet".to_owned()]);
         Ok(words)
     }
 
-    /// The command that makes the whole of the pieces, one argument each.
+    /// The command that merges the pieces, one argument each.
     pub(super) fn merge_command(&self) -> Result<Vec<String>, Failure> {
         let (pieces, out) = (text_of(&self.path.join("pieces"))?, text_of(&self.merged())?);
         Ok(vec![self.what.program.clone(), "merge".to_owned(), pieces, format!("--out={out}"), "--quiet".to_owned()])

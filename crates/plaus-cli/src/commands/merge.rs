@@ -13,15 +13,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-/// How often it is looked whether there is something to show, or a reason to stop.
+/// Time between two checks whether there is something to show, or a reason to stop.
 const TICK: Duration = Duration::from_millis(20);
 /// Seconds between two lines of progress.
 const EVERY: f64 = 2.0;
 
-/// Which pieces, and where to.
+/// Which pieces, and to which folder or file.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Pieces of a run, or files that `plaus chance --shard` wrote, or folders of some; they stay as they are
+    /// Pieces of a run, or files that `plaus chance --shard` wrote, or folders that hold them; they are left unchanged
     #[arg(required = true, value_name = "PIECES")]
     pieces: Vec<PathBuf>,
     /// Folder to make for the whole run, or file for the whole chance; must not exist
@@ -66,7 +66,7 @@ impl Args {
         Ok(Outcome::Done)
     }
 
-    /// Pieces that are files are what `plaus chance` wrote.
+    /// Pieces that are files were written by `plaus chance`.
     fn chances(&self, files: &[PathBuf]) -> Result<Outcome, Failure> {
         let whole = plaus_run::chance::merge(files, &self.out, &RealDisk)?;
         if !self.quiet {

@@ -1,4 +1,4 @@
-//! The subcommands, one a file.
+//! The subcommands, one in each file.
 
 mod asking;
 mod chance;
@@ -40,7 +40,7 @@ fn salvage(run: &RunReader<'_>) -> String {
     } else {
         format!("lost: {}{more}", chains.join(", "))
     };
-    format!("salvaged: the first {} of {} iterations of each chain; {damage}", grouped(kept), grouped(planned))
+    format!("salvaged the first {} of {} iterations of each chain; {damage}", grouped(kept), grouped(planned))
 }
 
 /// What to do.
@@ -48,21 +48,21 @@ fn salvage(run: &RunReader<'_>) -> String {
 pub(crate) enum Command {
     /// Write a commented scenario file for a scene.
     New(new::Args),
-    /// Say whether a scenario file is valid, and show it with all defaults.
+    /// Check a scenario file, and show it with all defaults.
     Check(check::Args),
     /// Sample a scenario into a run folder.
     Sample(sample::Args),
-    /// Estimate how likely what a scenario demands is, before anything is demanded.
+    /// Estimate how likely it is that a random animation does what the scenario asks for.
     Chance(chance::Args),
     /// Continue an interrupted run from its last checkpoint, or make it longer.
     Resume(resume::Args),
-    /// Merge the pieces of a run, or of a chance, into the run that one machine would have made, byte for byte.
+    /// Merge the pieces of a run, or of a chance, into what one machine would have made, byte for byte.
     Merge(merge::Args),
     /// Write the job that samples a run in pieces on many machines, and submit it.
     Submit(submit::Args),
-    /// Say how far the pieces of a run are.
+    /// Show how far the pieces of a run are.
     Status(status::Args),
-    /// Say whether the chains of a run have converged: R-hat, effective sample sizes, acceptance.
+    /// Show whether the chains of a run have converged: R-hat, effective sample sizes, acceptance.
     Diagnose(diagnose::Args),
     /// Write the draws of a run as a table or for ArviZ, or samples as animations: glTF, USD, poses, impacts.
     Export(export::Args),
@@ -79,7 +79,7 @@ pub(crate) enum Command {
 }
 
 impl Command {
-    /// Does it.
+    /// Runs the command.
     pub(crate) fn run(self) -> Result<Outcome, Failure> {
         match self {
             Self::New(args) => args.run(),

@@ -12,16 +12,16 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Which scene, and where to.
+/// Which scene, and to which file.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Name of the scene, e.g. ball2d; with --from the file to write, else named after the asset and beside it
+    /// Name of the scene, e.g. ball2d. With --from: the file to write [default: beside the asset, with its name]
     #[arg(required_unless_present = "from")]
     scene: Option<String>,
-    /// File to write; nothing, or `-`, writes to standard output. Never overwritten
+    /// File to write; it is never overwritten. Without it, or with `-`, writes to standard output
     #[arg(conflicts_with = "from")]
     file: Option<PathBuf>,
-    /// Make a world of this file of shapes (.glb, .obj, .stl), and list what of it could not be taken over
+    /// Make a world from this file of shapes (.glb, .obj, .stl), and list what could not be taken over
     #[arg(long, value_name = "ASSET")]
     from: Option<PathBuf>,
 }
@@ -43,17 +43,18 @@ impl Args {
     }
 }
 
-/// Writes the scenario of a file of shapes.
+/// Writes a scenario made from a file of shapes.
 fn of_asset(asset: &Path, file: &Path) -> Result<Outcome, Failure> {
     let refuse = |what: String| Failure::Message(format!("{}: {what}", asset.display()));
-    let (path, anywhere) = from_folder(asset, file).map_err(|error| refuse(format!("it cannot be read: {error}")))?;
+    let (path, anywhere) = from_folder(asset, file).map_err(|error| refuse(format!("cannot read it: {error}")))?;
     let bytes = ScenarioFolder::of(file).bytes(&path, anywhere).map_err(refuse)?;
     let imported = import::scenario(&path, anywhere, &bytes).map_err(|error| refuse(error.to_string()))?;
     imported.left_out.iter().for_each(|what| console::note_line(&format!("not taken over: {what}")));
     write(&imported.text, Some(file))
 }
 
-/// An asset as a scenario names it: from its folder where it lies there, else from the root.
+/// The path under which a scenario names an asset: relative to the scenario's folder if it lies there, absolute
+/// otherwise.
 fn from_folder(asset: &Path, scenario: &Path) -> io::Result<(String, bool)> {
     let folder = scenario.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let (whole, folder) = (asset.canonicalize()?, folder.canonicalize()?);
@@ -63,14 +64,14 @@ fn from_folder(asset: &Path, scenario: &Path) -> io::Result<(String, bool)> {
 
 /// Writes a scenario to a file, or to standard output.
 fn write(text: &str, file: Option<&Path>) -> Result<Outcome, Failure> {
-    // Editors that know TOML read the schema that this line names.
+    // Editors that know TOML read the schema named in this line.
     let text = format!("#:schema ./{SCHEMA_FILE}\n{text}");
     match file.filter(|file| *file != Path::new("-")) {
         None => output::print(&text)?,
         Some(file) => {
             let refuse = |error: io::Error| {
                 let advice = match error.kind() {
-                    io::ErrorKind::AlreadyExists => "exists already; choose another name".to_owned(),
+                    io::ErrorKind::AlreadyExists => "already exists; choose another name".to_owned(),
                     _ => format!("cannot write: {error}"),
                 };
                 Failure::Message(format!("{}: {advice}", file.display()))
@@ -84,14 +85,14 @@ fn write(text: &str, file: Option<&Path>) -> Result<Outcome, Failure> {
     Ok(Outcome::Done)
 }
 
-/// Writes the schema beside a scenario, where there is none: with it an editor completes and explains keys, without
-/// it nothing is lost.
+/// Writes the schema beside a scenario, if there is none yet. Editors use it to complete and explain keys; nothing else
+/// needs it.
 fn write_schema(scenario: &Path) {
     let path = scenario.with_file_name(SCHEMA_FILE);
     if let Ok(mut out) = File::create_new(&path) {
         let written = out.write_all(format!("{:#}\n", scenario::published_schema()).as_bytes());
         if written.is_ok() {
-            console::note_line(&format!("wrote {}, which editors complete keys by", quoted(&path)));
+            console::note_line(&format!("wrote {}: editors use it to complete keys", quoted(&path)));
         }
     }
 }

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 pub(crate) struct Args {
     /// Folder of the run
     run: PathBuf,
-    /// The sample: its chain and its draw, as in the table of `plaus export`, e.g. 0:17; 0:w17 is one of the warm-up
+    /// The sample as CHAIN:DRAW, as in the table of `plaus export`, e.g. 0:17; 0:w17 is one from the warm-up
     #[arg(long, value_name = "CHAIN:DRAW")]
     sample: SampleId,
     /// Poses per second, besides those at every impact
@@ -30,7 +30,7 @@ pub(crate) struct Args {
     accuracy: Option<AccuracyPreset>,
 }
 
-/// A format of animation.
+/// How the motion is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Format {
     /// Rows of t,body,x,y,z,qx,qy,qz,qw,impact: seconds and metres, y up, and orientations as unit quaternions.
@@ -72,7 +72,8 @@ fn closing(replay: &Replay) -> String {
     match replay.recorded {
         None => format!("sample {sample} rebuilt bit for bit: log p {log_p:?}, {} the constraint", is(*satisfied)),
         Some(recorded) => format!(
-            "sample {sample} simulated at {} accuracy: log p {log_p:?}, {} the constraint; as recorded: log p {:?}, {} it",
+            "sample {sample} simulated at {} accuracy: log p {log_p:?}, {} the constraint; as \
+             recorded: log p {:?}, {} it",
             recorded.accuracy.name(),
             is(*satisfied),
             recorded.log_p,
@@ -81,7 +82,7 @@ fn closing(replay: &Replay) -> String {
     }
 }
 
-/// The facts of the sample and its whole motion.
+/// The facts about the sample, and its whole motion.
 fn to_json(manifest: &Manifest, replay: &Replay, poses: serde_json::Value) -> serde_json::Value {
     let mut all = label::of(manifest, replay).facts;
     let motion = [

@@ -11,10 +11,10 @@ use std::path::PathBuf;
 pub(crate) struct Args {
     /// Folder of the run
     run: PathBuf,
-    /// Make the run longer: iterations of each chain after the warm-up, in all
+    /// Make the run longer: iterations of each chain after the warm-up, in total
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     iterations: Option<u64>,
-    /// Look for more: stop once K distinct solutions are recorded in all
+    /// Look for more: stop once K distinct solutions are recorded in total
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     solutions: Option<u64>,
     #[command(flatten)]

@@ -20,10 +20,10 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Draws of all chains together that the closing summary looks at; `plaus diagnose` looks at all.
+/// The closing summary looks at this many draws of all chains together; `plaus diagnose` looks at all.
 const SUMMARISED: u64 = 400_000;
 
-/// Rows of the closing table; `plaus diagnose` shows all.
+/// The closing table has this many rows; `plaus diagnose` shows all.
 const SHOWN_SCALARS: usize = 16;
 
 /// What to sample, and how.
@@ -31,22 +31,22 @@ const SHOWN_SCALARS: usize = 16;
 pub(crate) struct Args {
     #[command(flatten)]
     wanted: Wanted,
-    /// Folder to make for the run; must not exist. With `--shard`, `{shard}` as its last part stands for the number of
-    /// the piece
+    /// Folder to make for the run; must not exist. With `--shard`, a last part `{shard}` becomes the number of the
+    /// piece
     #[arg(long, alias = "output", value_name = "RUN")]
     out: PathBuf,
     /// Sample only one piece of the run's chains, e.g. 3/16; `task/16` takes the number from HQ_TASK_ID or
-    /// SLURM_ARRAY_TASK_ID. `plaus merge` makes the whole of all
+    /// SLURM_ARRAY_TASK_ID. `plaus merge` puts the pieces together
     #[arg(long, value_name = "PIECE/PIECES", allow_hyphen_values = true)]
     shard: Option<String>,
-    /// If RUN already holds this run, go on with it; wait while another process writes it
+    /// If the folder already holds this run, continue it; if another process writes it, wait
     #[arg(long = "continue")]
     go_on: bool,
     #[command(flatten)]
     watching: Watching,
 }
 
-/// How a run is watched.
+/// How progress is shown, and when the run stops.
 #[derive(clap::Args)]
 pub(crate) struct Watching {
     /// Number of threads; 0: one per core. Never more than there are cores or chains. Results do not depend on it
@@ -61,14 +61,14 @@ pub(crate) struct Watching {
     /// Show no progress
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
-    /// Show progress more often, chain by chain, also where there is no terminal
+    /// Show progress more often, chain by chain, even without a terminal
     #[arg(short, long)]
     verbose: bool,
     /// At the end, simulate every distinct solution again at reference accuracy, and list which of them hold
     #[arg(long)]
     confirm: bool,
-    /// At the end, make plain draws of the prior for as much processor time as the chains took after their warm-up, and
-    /// say how many solutions these find
+    /// At the end, draw from the prior for as much processor time as the chains took after their warm-up, and say how
+    /// many solutions that finds
     #[arg(long)]
     compare_prior: bool,
 }
@@ -105,7 +105,7 @@ impl Watching {
         }
     }
 
-    /// Runs `sampling`, shows how it goes, and sums up.
+    /// Runs `sampling`, shows its progress, and sums up.
     pub(super) fn watch(
         &self,
         folder: &Folder,
@@ -121,12 +121,12 @@ impl Watching {
         self.sum_up(folder, &monitor, ended?)
     }
 
-    /// Threads that are asked for, as far as there are cores for them.
+    /// The number of threads asked for, limited by the number of cores.
     fn threads(&self) -> usize {
         self.threads.min(cores())
     }
 
-    /// Whether solutions are to be confirmed.
+    /// Whether to confirm solutions.
     pub(super) fn confirms(&self) -> bool {
         self.confirm
     }
@@ -145,7 +145,7 @@ impl Watching {
                 "way": manifest.way,
                 "iteration": done,
             });
-            // Where the reader has gone, the end of the run will say so.
+            // If the reader has gone, the end of the run will report it.
             let _ = output::print_line(&begin.to_string());
         } else if self.quiet {
             console::note_line(&format!("seed {}", manifest.plan.seed));
@@ -155,14 +155,14 @@ impl Watching {
                 console::note_line(&way);
             }
             if done > 0 {
-                console::note_line(&format!("going on from iteration {}", grouped(done)));
+                console::note_line(&format!("continuing from iteration {}", grouped(done)));
             }
         }
         let useful = plaus_mcmc::useful_threads(self.threads(), &manifest.plan, &manifest.chains());
         if useful < self.threads && !self.json && !self.quiet {
             let why = if useful < self.threads() { "chains" } else { "cores" };
             let (asked, used) = (grouped(self.threads as u64), grouped(useful as u64));
-            console::note_line(&format!("note: {used} of {asked} threads are used, as there are no more {why}"));
+            console::note_line(&format!("note: using {used} of {asked} threads, because there are no more {why}"));
         }
         if let Some(warning) = report::warning(manifest) {
             console::note_line(&warning);
@@ -179,7 +179,9 @@ impl Watching {
         let diagnosis = Diagnosis::of(&reader, Some(SUMMARISED / run.manifest().chains().len().max(1) as u64))?;
         let confirmed = if self.confirm {
             let Some(list) = confirm::confirm(&reader, self.threads(), !self.json && !self.quiet)? else {
-                console::note_line(&format!("interrupted while confirming; go on: plaus resume {path} --confirm"));
+                console::note_line(&format!(
+                    "interrupted while confirming; continue with: plaus resume {path} --confirm"
+                ));
                 return Ok(Outcome::Interrupted);
             };
             Some(list)
@@ -200,7 +202,7 @@ impl Watching {
         }
         let is_satisfied = self.tell_what_is_missing(&reader, &diagnosis, monitor, ending)?;
         if is_empty(&diagnosis, ending) {
-            return Ok(Outcome::Unsatisfied); // the summary has said why
+            return Ok(Outcome::Unsatisfied); // the summary says why
         }
         if let Some(list) = confirmed.as_ref().filter(|_| !self.json) {
             console::note_line(&confirm::in_words(&run, list));
@@ -218,11 +220,11 @@ impl Watching {
             0 => "before all chains had started, so nothing is kept".to_owned(),
             done => format!("after iteration {}, with a checkpoint", grouped(done)),
         };
-        console::note_line(&format!("interrupted {left}; go on: plaus resume {path}"));
+        console::note_line(&format!("interrupted {left}; continue with: plaus resume {path}"));
         Ok(Outcome::Interrupted)
     }
 
-    /// Whether the run found what it was asked for; where it did not, says what is missing, and how to go on.
+    /// Whether the run found what it was asked for. If it did not, says what is missing and how to continue.
     fn tell_what_is_missing(
         &self,
         run: &RunReader<'_>,
@@ -236,7 +238,7 @@ impl Watching {
             let found = tally.distinct;
             let more = if ending == Ending::Complete { longer(&plan) } else { String::new() };
             console::note_line(&format!(
-                "only {found} of the {wanted} distinct solutions were found; go on: plaus resume {path}{more}"
+                "only {found} of the {wanted} distinct solutions were found; continue with: plaus resume {path}{more}"
             ));
         }
         if tally.is_satisfied() || is_empty(diagnosis, ending) {
@@ -244,7 +246,8 @@ impl Watching {
         }
         if monitor.done() <= plan.warmup && ending == Ending::Stopped {
             console::note_line(&format!(
-                "still in the warm-up, and no iteration has satisfied the constraint yet; go on: plaus resume {path}"
+                "still in the warm-up, and no iteration has satisfied the constraint yet; continue with: plaus resume \
+                 {path}"
             ));
             return Ok(false);
         }
@@ -256,7 +259,7 @@ impl Watching {
     }
 }
 
-/// Whether a run came to its end, and recorded nothing that can be diagnosed.
+/// Whether a run came to its end without recording anything that can be diagnosed.
 fn is_empty(diagnosis: &Diagnosis, ending: Ending) -> bool {
     diagnosis.draws == 0 && ending == Ending::Complete
 }
@@ -285,15 +288,15 @@ fn end_as_json(
 }
 
 impl Watching {
-    /// A piece that came to its end is as it should be, whatever it found: that is asked of the whole.
+    /// A piece that came to its end is as it should be, whatever it found: only the whole run is asked for results.
     fn end_of_piece(&self, run: &Run, ending: Ending) -> Result<Outcome, Failure> {
         let path = quoted(run.folder().path());
         if ending == Ending::Stopped {
-            console::note_line(&format!("this piece is not finished; go on: plaus resume {path}"));
+            console::note_line(&format!("this piece is not finished; continue with: plaus resume {path}"));
             return Ok(Outcome::Unsatisfied);
         }
         if !self.quiet {
-            console::note_line("this is one piece; when all are there: plaus merge PIECES --out RUN");
+            console::note_line("this is one piece; once you have all pieces: plaus merge PIECES --out RUN");
         }
         Ok(Outcome::Done)
     }
@@ -326,7 +329,7 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     if ending == Ending::Complete && diagnosis.draws == 0 {
         return text + &nothing_recorded(&plan, &path);
     }
-    // Restarts count from the end of the warm-up on, in all sessions; the clock knows this session.
+    // Restarts are counted from the end of the warm-up, over all sessions; the clock knows only this session.
     let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
     let sampling = (monitor.begun_at() == 0).then_some(sampling);
     text += &report::independent(diagnosis, sampling);
@@ -342,7 +345,7 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     }
     text += &match plan.solutions {
         _ if diagnosis.draws == 0 => String::new(),
-        Some(_) => format!("(whether they come up as often as they are plausible: `plaus diagnose {path}`)\n"),
+        Some(_) => format!("(do they come up as often as they are plausible? `plaus diagnose {path}`)\n"),
         None => statistics(diagnosis, &path),
     };
     text += "\nnext:\n";
@@ -365,7 +368,8 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     text
 }
 
-/// What a run says that was not made for solutions alone: how its numbers are spread, and whether to trust them.
+/// The statistics of a run that was not made for solutions alone: how its numbers are spread, and whether to trust
+/// them.
 fn statistics(diagnosis: &Diagnosis, path: &str) -> String {
     let mut text = format!("\n{}", report::scalar_table(diagnosis, SHOWN_SCALARS));
     let more = diagnosis.scalars.len().saturating_sub(SHOWN_SCALARS);
@@ -386,12 +390,13 @@ fn statistics(diagnosis: &Diagnosis, path: &str) -> String {
     text
 }
 
-/// A run that has ended, of whose sampling phase nothing was to be recorded.
+/// A finished run whose sampling phase recorded nothing.
 fn nothing_recorded(plan: &Plan, path: &str) -> String {
     let (thin, iterations) = (grouped(plan.thin), grouped(plan.iterations));
     format!(
-        "\nnothing was recorded after the warm-up: one in {thin} iterations is, and there were {iterations}\n\nnext:\n  \
-         sample again with a smaller --thin, or make the run longer:\n  plaus resume {path} --iterations {}\n",
+        "\nnothing was recorded after the warm-up: one in {thin} iterations is recorded, and there were only \
+         {iterations}\n\nnext:\n  sample again with a smaller --thin, or make the run longer:\n  plaus resume {path} \
+         --iterations {}\n",
         plan.thin.saturating_mul(100)
     )
 }
@@ -401,7 +406,7 @@ fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
-/// What makes a run that has ended ten times as long.
+/// The flags that make a finished run ten times as long.
 fn longer(plan: &Plan) -> String {
     format!(" --iterations {}", plan.iterations.saturating_mul(10))
 }

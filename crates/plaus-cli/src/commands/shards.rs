@@ -5,10 +5,10 @@ use plaus_run::{Shard, ShardError};
 use std::env;
 use std::path::{Path, PathBuf};
 
-/// Where engines say which task of an array this is: the innermost first, as HyperQueue's workers may run within an
-/// array of Slurm.
+/// Variables in which engines give the number of this task in its array. The innermost comes first, because
+/// HyperQueue's workers may run within an array of Slurm.
 const TASKS: [&str; 2] = ["HQ_TASK_ID", "SLURM_ARRAY_TASK_ID"];
-/// What stands for the number of the piece in `--out`.
+/// Placeholder in `--out` for the number of the piece.
 pub(super) const PLACE: &str = "{shard}";
 
 /// Reads `3/16`, or `task/16`.
@@ -22,8 +22,8 @@ pub(super) fn named(text: &str) -> Result<Shard, Failure> {
     format!("{value}/{of}").parse().map_err(|error: ShardError| refuse(&format!("{name} is `{value}`: {error}")))
 }
 
-/// Where a piece lies: `{shard}` as the last part of `out`, or `{shard}.json`, stands for its number. Nowhere else, so
-/// that folders may be called what they like.
+/// Where a piece lies: a last part `{shard}` or `{shard}.json` of `out` gets its number. Nothing else is replaced, so
+/// that folders may have any name.
 pub(super) fn place(out: &Path, shard: Option<Shard>) -> PathBuf {
     let name = out.file_name().and_then(|name| name.to_str());
     match (shard, name.and_then(|name| name.strip_prefix(PLACE))) {

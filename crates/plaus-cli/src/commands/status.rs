@@ -1,4 +1,4 @@
-//! `plaus status`: how far pieces are, from the small files that they write. Nothing is asked over a network.
+//! `plaus status`: how far pieces are, according to the small files that they write. No network is used.
 
 use super::job::Job;
 use crate::clock::{in_words, unix_seconds};
@@ -12,7 +12,7 @@ use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Pieces that are shown one by one, unless all are asked for.
+/// Pieces shown one by one, unless all are asked for.
 const SHOWN: usize = 20;
 
 /// Which job.
@@ -29,21 +29,21 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// How a piece stands.
+/// The state of a piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Standing {
     /// Nothing is there yet.
     Waiting,
-    /// At work.
+    /// Running.
     Running,
-    /// At its end.
+    /// Finished.
     Done,
     /// Stopped with a checkpoint: interrupted, or out of time.
     Stopped,
-    /// Broken off, and it could say why.
+    /// Failed, with a reason.
     Failed,
-    /// Said nothing for longer than a piece at work does, and nobody writes it: it was killed.
+    /// Silent for longer than a running piece ever is, and written by nobody: it was killed.
     Died,
 }
 
@@ -66,25 +66,25 @@ pub(crate) struct PieceStatus {
     pub(crate) standing: Standing,
     pub(crate) folder: PathBuf,
     pub(crate) signal: Option<Signal>,
-    /// Seconds since it last said something.
+    /// Seconds since its last signal.
     pub(crate) silent: Option<u64>,
-    /// Of a chance: batches that are made, and that are to be.
+    /// Of a chance: batches made, and batches planned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) batches: Option<[usize; 2]>,
-    /// Why it broke off.
+    /// Why it failed.
     pub(crate) why: Option<String>,
-    /// Whether it is of a chance, not of a run.
+    /// Whether it belongs to a chance, not to a run.
     #[serde(skip)]
     is_chance: bool,
 }
 
 impl PieceStatus {
-    /// Looks at a piece.
+    /// Looks up the state of a piece.
     pub(crate) fn of(folder: &Folder) -> Self {
         let signal = read_signal(folder);
         let silent = signal.as_ref().map(|signal| unix_seconds().saturating_sub(signal.time));
         let standing = match &signal {
-            // Locks may not be seen from another machine; what it said lately is.
+            // A lock may be invisible from another machine, but a recent signal is not.
             _ if folder.is_being_written() => Standing::Running,
             None if folder.manifest().exists() => Standing::Died,
             None => Standing::Waiting,
@@ -101,7 +101,7 @@ impl PieceStatus {
         Self { standing, folder: folder.path().to_owned(), signal, silent, batches: None, why, is_chance: false }
     }
 
-    /// Looks at a piece of a chance, which is in a file.
+    /// Looks up the state of a piece of a chance, which is one file.
     pub(crate) fn of_batches(path: PathBuf) -> Self {
         let found = chance::read(&path);
         let written = std::fs::metadata(&path).and_then(|file| file.modified()).ok();
@@ -124,7 +124,7 @@ impl PieceStatus {
 
     /// The share of its work that is done.
     fn share(&self) -> f64 {
-        // Pieces that have not said anything are taken to be as long as the others.
+        // A piece without a signal is taken to be as long as the others.
         match (&self.signal, self.batches, self.standing) {
             (_, _, Standing::Done) => 1.0,
             (Some(signal), ..) => signal.iteration as f64 / signal.end.max(1) as f64,
@@ -143,7 +143,7 @@ pub(crate) fn of_job(job: &Job) -> Vec<(Shard, PieceStatus)> {
     job.pieces().map(|shard| (shard, status(shard))).collect()
 }
 
-/// How many of a job's pieces stand how, in a line.
+/// One line that counts a job's pieces by their state.
 pub(crate) fn in_a_line(job: &Job) -> String {
     Summary::of(&of_job(job).into_iter().map(|(_, piece)| piece).collect::<Vec<_>>()).in_words()
 }
@@ -156,10 +156,10 @@ struct Summary {
     /// Share of the iterations, or batches, that are done.
     share: f64,
     iterations_per_second: f64,
-    /// Whether batches are what there is to do.
+    /// Whether the work consists of batches.
     #[serde(skip)]
     batches: bool,
-    /// Seconds until the last of those at work ends, at its speed.
+    /// Seconds until the last running piece ends, at its present speed.
     eta_seconds: Option<f64>,
 }
 
@@ -187,7 +187,7 @@ impl Summary {
 
     fn in_words(&self) -> String {
         let counts: Vec<String> = self.standings.iter().map(|(name, count)| format!("{count} {name}")).collect();
-        let eta = self.eta_seconds.map(|eta| format!("  those at work end in {}", in_words(eta))).unwrap_or_default();
+        let eta = self.eta_seconds.map(|eta| format!("  running pieces end in {}", in_words(eta))).unwrap_or_default();
         let (counts, share) = (counts.join(", "), percent(self.share));
         if self.batches {
             return format!("{} pieces: {counts}  {share} of the batches", self.pieces);
@@ -207,7 +207,7 @@ impl Args {
                 let run = job.merged();
                 merged = Some(run.exists().then_some(run));
             } else if !path.is_dir() {
-                let message = format!("{}: there is no job here, and no piece of a run", path.display());
+                let message = format!("{}: this is neither a job nor a piece of a run", path.display());
                 return Err(Failure::Message(message));
             } else {
                 pieces.extend(plaus_run::merge::folders_at(path)?.iter().map(PieceStatus::of));
@@ -231,7 +231,7 @@ impl Args {
     }
 
     fn table(&self, pieces: &[PieceStatus], summary: &Summary) -> String {
-        // Those with something to tell come first.
+        // Pieces with something to report come first.
         let rank = |piece: &PieceStatus| match piece.standing {
             Standing::Failed => 0,
             Standing::Died => 1,

@@ -1,5 +1,5 @@
-//! Which run is wanted: a scenario, and what the command line says of it. `plaus sample` and `plaus submit` share it,
-//! so that they mean the same run.
+//! Which run is asked for: a scenario, and the flags that change it. `plaus sample` and `plaus submit` share this, so
+//! that they mean the same run.
 
 use crate::failure::Failure;
 use crate::scenario_file;
@@ -26,7 +26,7 @@ pub(crate) struct Wanted {
     /// Record one in N iterations
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     thin: Option<u64>,
-    /// Stop once K distinct solutions are recorded, those found while moves were adapted among them
+    /// Stop once K distinct solutions are recorded; those found in the warm-up count too
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     solutions: Option<u64>,
     /// Set any key of the scenario, e.g. `--set sigma_d=0.05`; may be given several times
@@ -35,18 +35,18 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
-    /// Reads the scenario for a chance, which has no chains; gives the iterations of each rung besides.
+    /// Reads the scenario for a chance, which has no chains; also gives the iterations of each rung.
     pub(super) fn of_chance(self) -> Result<(Recipe, Option<u64>), Failure> {
         let Self { chains, warmup, thin, solutions, iterations, .. } = &self;
         let of_runs = [("chains", chains), ("warmup", warmup), ("thin", thin), ("solutions", solutions)];
         if let Some((name, _)) = of_runs.iter().find(|(_, value)| value.is_some()) {
-            return Err(Failure::Message(format!("--{name} goes with a run, not with --chance")));
+            return Err(Failure::Message(format!("--{name} is for a run; it cannot be used with --chance")));
         }
         let iterations = *iterations;
         Ok((Self { iterations: None, ..self }.recipe()?, iterations))
     }
 
-    /// Reads the scenario, with all that the command line says in force.
+    /// Reads the scenario, and applies all that the command line says.
     pub(super) fn recipe(self) -> Result<Recipe, Failure> {
         let flags = [
             ("seed", self.seed),

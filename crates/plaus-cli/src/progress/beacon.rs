@@ -1,5 +1,5 @@
-//! A small file in the folder of a piece that says how far it is: read by `plaus status`, on any machine that sees the
-//! folder, and believed by nobody else.
+//! A small file in the folder of a piece that says how far the piece is. `plaus status` reads it, on any machine that
+//! sees the folder; nothing else relies on it.
 
 use crate::clock::unix_seconds;
 use plaus_mcmc::ChainPulse;
@@ -8,48 +8,48 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::PathBuf;
 
-/// Seconds between two signals, at most: of a thousand pieces, a shared disk sees some thirty files a second.
+/// Most seconds between two signals. A thousand pieces then write about thirty files a second to a shared disk.
 pub(crate) const LONGEST: f64 = 30.0;
 /// Seconds between the first two.
 const SHORTEST: f64 = 1.0;
 
-/// What became of a piece, as it says.
+/// What state a piece is in, by its own account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum State {
-    /// At work when this was written.
+    /// Running when this was written.
     Running,
-    /// At its end.
+    /// Finished.
     Done,
     /// Stopped before its end, with a checkpoint.
     Stopped,
-    /// Broken off.
+    /// Failed.
     Failed,
 }
 
 /// How far a piece is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Signal {
-    /// What became of it.
+    /// Its state.
     pub(crate) state: State,
-    /// Why it broke off.
+    /// Why it failed.
     pub(crate) why: Option<String>,
-    /// Which of how many.
+    /// The number of the piece, and of how many.
     pub(crate) piece: u32,
     pub(crate) of: u32,
-    /// Iterations of each chain, as a mean, and those that are planned.
+    /// Iterations that each chain has done, as a mean, and those that are planned.
     pub(crate) iteration: u64,
     pub(crate) end: u64,
     /// Satisfying iterations of all its chains.
     pub(crate) hits: u64,
-    /// Distinct solutions of its own.
+    /// Distinct solutions that this piece found.
     pub(crate) distinct: u64,
-    /// Of all its chains together, since it began or went on.
+    /// Iterations per second of all its chains together, since it began or was continued.
     pub(crate) iterations_per_second: f64,
-    /// How long ago that is, in seconds.
+    /// Seconds since then.
     pub(crate) seconds: f64,
     pub(crate) chains: u32,
-    /// Who writes, and when that was, in seconds since 1970.
+    /// The machine that writes, and the time of writing, in seconds since 1970.
     pub(crate) host: String,
     pub(crate) process: u32,
     pub(crate) time: u64,
@@ -86,7 +86,7 @@ impl Beacon {
         Some(Self { folder: folder.clone(), signal, sent: None })
     }
 
-    /// Whether the last signal is old, at so many seconds of the run.
+    /// Whether the last signal is old, `seconds` into the run.
     pub(super) fn is_due(&self, seconds: f64) -> bool {
         self.sent.is_none_or(|sent| seconds - sent >= (0.1 * seconds).clamp(SHORTEST, LONGEST))
     }
@@ -114,19 +114,19 @@ impl Beacon {
             time,
             ..self.signal.clone()
         };
-        // Nothing hangs on it: a disk that is full, say, has its say where the run is written.
+        // Nothing depends on it. A full disk, for example, is reported where the run itself is written.
         let next = self.folder.progress().with_extension("json.next");
         let json = serde_json::to_vec_pretty(&self.signal).unwrap_or_default();
         let _ = fs::write(&next, json).and_then(|()| fs::rename(&next, self.folder.progress()));
     }
 }
 
-/// What a piece said last; `None` where it has not said anything yet.
+/// The last signal of a piece; `None` if it has not sent one yet.
 pub(crate) fn read(folder: &Folder) -> Option<Signal> {
     serde_json::from_slice(&fs::read(folder.progress()).ok()?).ok()
 }
 
-/// Name of this machine, where it says one.
+/// Name of this machine, if it has one.
 pub(crate) fn host() -> String {
     let names = ["/proc/sys/kernel/hostname", "/etc/hostname"].map(PathBuf::from);
     let read = names.iter().find_map(|path| fs::read_to_string(path).ok());

@@ -1,7 +1,7 @@
-//! Watches a run: shows how far it is, makes it durable about once a second, stops it when asked to.
+//! Watches a run: shows how far it is, saves it about once a second, and stops it when asked to.
 //!
-//! A thread of its own looks at the chains' [`Pulse`] while they work, so that something is seen from the first second
-//! on, however long a round takes.
+//! A separate thread reads the chains' [`Pulse`] while they run, so that progress shows from the first second, however
+//! long a round takes.
 
 mod beacon;
 mod view;
@@ -22,9 +22,9 @@ use std::thread;
 use std::time::Duration;
 use view::{Standing, View};
 
-/// How often it is looked whether there is a reason to stop, or something to show.
+/// Time between two checks for a reason to stop, or something to show.
 const TICK: Duration = Duration::from_millis(50);
-/// What finding out how well a run mixes takes is at most one part in so many of its time.
+/// Measuring how well a run mixes takes at most this fraction of its time: one part in 60.
 const MIXING_SHARE: f64 = 60.0;
 
 /// How progress is shown.
@@ -32,7 +32,7 @@ const MIXING_SHARE: f64 = 60.0;
 pub(crate) enum Style {
     /// Not at all.
     Silent,
-    /// A block of lines on a terminal, drawn again and again.
+    /// A block of lines on a terminal, redrawn again and again.
     Live,
     /// A line now and then.
     Plain,
@@ -72,11 +72,11 @@ pub(crate) struct Monitor {
     limit: Option<Duration>,
     pulse: Arc<Pulse>,
     board: Mutex<Board>,
-    /// Told when the sampling is over.
+    /// Notified when the sampling is over.
     over: Condvar,
 }
 
-/// What is known of the run, and what was shown of it.
+/// What is known of the run, and what has been shown of it.
 struct Board {
     clock: Stopwatch,
     processor: ProcessorClock,
@@ -93,7 +93,7 @@ struct Board {
     /// Lines on the terminal that the next drawing replaces.
     drawn: usize,
     stop: Option<Stop>,
-    /// Where the run is a piece.
+    /// Set if the run is a piece.
     beacon: Option<Beacon>,
 }
 
@@ -118,10 +118,9 @@ impl Monitor {
         Self { folder, style, verbose, limit, pulse: Arc::default(), board: Mutex::new(board), over: Condvar::new() }
     }
 
-    /// Does `sampling` while a thread looks on; then takes away what was drawn, so that what follows stands in its
-    /// place.
+    /// Runs `sampling` while a thread watches it. Then clears what was drawn, so that later output takes its place.
     pub(crate) fn over<T>(&self, sampling: impl FnOnce() -> T) -> T {
-        /// Ends the other thread, also where `sampling` panics.
+        /// Ends the other thread, even if `sampling` panics.
         struct End<'a>(&'a Monitor);
         impl Drop for End<'_> {
             fn drop(&mut self) {
@@ -144,22 +143,22 @@ impl Monitor {
         self.board().stop
     }
 
-    /// Iterations each chain has recorded.
+    /// Iterations that each chain has recorded.
     pub(crate) fn done(&self) -> u64 {
         self.board().done
     }
 
-    /// Iterations each chain had done before.
+    /// Iterations that each chain had done before.
     pub(crate) fn begun_at(&self) -> u64 {
         self.board().begun_at
     }
 
-    /// Seconds since the run began, or went on, until it ended.
+    /// Seconds from when the run began, or was continued, until it ended.
     pub(crate) fn seconds(&self) -> f64 {
         self.board().seconds()
     }
 
-    /// Processor seconds of all threads since the run began, or went on, until it ended.
+    /// Processor seconds of all threads, from when the run began, or was continued, until it ended.
     pub(crate) fn processor_seconds(&self) -> f64 {
         self.board().spent
     }
@@ -181,7 +180,7 @@ impl Monitor {
         }
     }
 
-    /// Stops the run where there is a reason.
+    /// Stops the run if there is a reason.
     fn check(&self, board: &mut Board) {
         if interrupt::asked() {
             board.stop = Some(Stop::Interrupted);
@@ -199,7 +198,7 @@ impl Monitor {
             (Style::Silent, _) => return,
             (Style::Live, _) => 0.15,
             (Style::Json, _) | (Style::Plain, true) => 1.0,
-            // Who reads a file wants to see that it works, and later not a thousand lines of it.
+            // A reader of the file wants to see at first that the run works, and later not thousands of lines of it.
             (Style::Plain, false) => (0.5 * seconds).clamp(1.0, 60.0),
         };
         let chains = self.pulse.chains();
@@ -215,7 +214,7 @@ impl Monitor {
                 lines.extend(view.chain_lines());
                 board.draw(&lines);
             }
-            // Where the reader has gone, the end of the run will say so.
+            // If the reader has gone, the end of the run will report it.
             Style::Json => drop(output::print_line(&view.json().to_string())),
             _ => {
                 console::note_line(&view.headlines().join("  "));
@@ -226,7 +225,7 @@ impl Monitor {
         board.shown = Some(Stopwatch::start());
     }
 
-    /// Tells who looks at pieces from elsewhere how far this one is.
+    /// Tells those who watch pieces from elsewhere how far this one is.
     fn signal(&self, board: &mut Board) {
         let seconds = board.seconds();
         let Some(mut beacon) = board.beacon.take_if(|beacon| beacon.is_due(seconds)) else { return };
@@ -236,7 +235,7 @@ impl Monitor {
         board.beacon = Some(beacon);
     }
 
-    /// The last that is told: how the sampling ended.
+    /// The last signal: how the sampling ended.
     pub(crate) fn signal_end(&self, ended: Result<&Ending, &Failure>) {
         let mut board = self.board();
         let chains = self.pulse.chains();
@@ -271,10 +270,10 @@ impl Board {
         Speed { per_second, done, chains: chains.len() as u64 }
     }
 
-    /// Draws lines in place of those before.
+    /// Draws lines in place of the previous ones.
     fn draw(&mut self, lines: &[String]) {
         let text: String = lines.iter().map(|line| format!("\x1b[2K{line}\n")).collect();
-        // Without wrapping meanwhile: a line is a row, however narrow the terminal.
+        // Turns wrapping off in the meantime: then a line takes one row, however narrow the terminal.
         console::note(&format!("\x1b[?7l{}{text}\x1b[J\x1b[?7h", self.up()));
         self.drawn = lines.len();
     }
@@ -291,19 +290,19 @@ impl Board {
     }
 }
 
-/// A [`Monitor`] in the thread that samples, with what only that thread needs.
+/// A [`Monitor`] in the sampling thread, with what only that thread needs.
 pub(crate) struct Rounds<'a> {
     monitor: &'a Monitor,
     checkpoint: Stopwatch,
-    /// Seconds to the next checkpoint: few before the first, then at least one, and more where writing one takes long.
+    /// Seconds to the next checkpoint: short before the first, then at least one, and longer if writing one takes long.
     pause: f64,
     writing: Option<Stopwatch>,
     mixing: Stopwatch,
-    /// Seconds until it is next found out how well the run mixes.
+    /// Seconds until mixing is measured again.
     mixing_pause: f64,
-    /// Said once it is known what is sampled.
+    /// Called once it is known what is sampled.
     opening: &'a dyn Fn(&Manifest, u64),
-    /// Whether to wait for another process that writes the run.
+    /// Whether to wait for another process that is writing the run.
     waits: bool,
     waiting: bool,
     is_piece: bool,
@@ -349,8 +348,8 @@ impl Watch for Rounds<'_> {
         if let Some(writing) = self.writing.take() {
             self.pause = (20.0 * writing.seconds()).max(1.0);
             if self.is_piece {
-                // Many pieces share a disk: what one loses when it is killed is at most this part of what it has, and
-                // at most a minute.
+                // Many pieces share a disk. A piece that is killed loses at most a twentieth of its work, and at most a
+                // minute.
                 self.pause = self.pause.max((self.monitor.seconds() / 20.0).min(60.0));
             }
         }
@@ -364,7 +363,7 @@ impl Watch for Rounds<'_> {
     fn locked(&mut self, folder: &Folder) -> bool {
         if self.waits && !self.waiting {
             console::note_line(&format!(
-                "{}: another process writes it; waiting for it to end",
+                "{}: another process is writing it; waiting for that process to end",
                 folder.path().display()
             ));
         }

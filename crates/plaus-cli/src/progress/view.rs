@@ -1,4 +1,4 @@
-//! How far a run is, in words and as JSON.
+//! The progress of a run, in words and as JSON.
 
 use super::Speed;
 use crate::clock::in_words;
@@ -10,18 +10,18 @@ use serde_json::{Value, json};
 /// Chains shown on a terminal; the others are summed up.
 const SHOWN_CHAINS: usize = 8;
 
-/// Where a run stood after its last round.
+/// The state of a run after its last round.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Standing {
-    /// Per chain, how often each move ended how, and hits.
+    /// For each chain, how often each move ended in each way, and its hits.
     chains: Vec<(Vec<MoveCounts>, Hits)>,
-    /// Where chains are tempered.
+    /// Set if chains are tempered.
     restarts: Option<u64>,
     pub(super) mixing: Option<Mixing>,
 }
 
 impl Standing {
-    /// Takes over what a round brought.
+    /// Takes over the results of a round.
     pub(super) fn update(&mut self, progress: &Progress<'_>) {
         self.chains = progress.chains.iter().map(|(counts, hits)| (counts.to_vec(), *hits)).collect();
         let restarts = || progress.climbs.iter().map(|climb| climb.restarts()).sum();
@@ -29,7 +29,7 @@ impl Standing {
     }
 }
 
-/// All that is shown at a moment.
+/// Everything that is shown at one moment.
 pub(super) struct View<'a> {
     pub(super) manifest: &'a Manifest,
     pub(super) standing: &'a Standing,
@@ -45,7 +45,7 @@ impl View<'_> {
         self.chains.iter().map(|chain| chain.iterations).sum::<u64>() / (self.chains.len() as u64).max(1)
     }
 
-    /// How far the run is, what it has found, and how well it mixes where that is known.
+    /// How far the run is, what it has found, and how well it mixes, if that is known.
     pub(super) fn headlines(&self) -> Vec<String> {
         let (plan, done) = (&self.manifest.plan, self.done());
         let end = plan.end();
@@ -67,7 +67,7 @@ impl View<'_> {
             self.standing.restarts.map(|restarts| format!("  restarts {}", grouped(restarts))).unwrap_or_default();
         let hits = percent(hits as f64 / iterations as f64);
         let mut lines = vec![far, format!("hits {hits}  distinct {}{wanted}{fresh}", grouped(self.distinct))];
-        // Whoever looks for solutions is not told how well averages over them could be trusted.
+        // A run that looks for solutions does not say how far averages over them can be trusted.
         let mixing = self.standing.mixing.as_ref().filter(|_| plan.solutions.is_none());
         if let Some(Mixing { rhat, ess: (scarce, ess) }) = mixing {
             let rhat =
@@ -77,7 +77,7 @@ impl View<'_> {
         lines
     }
 
-    /// A column a chain: how fast it is, what it hits, what it accepts of each move.
+    /// One column for each chain: its speed, its hits, and the share of each move that it accepts.
     pub(super) fn chain_lines(&self) -> Vec<String> {
         let first = self.manifest.chains().start as usize;
         let shown = self.chains.len().min(SHOWN_CHAINS);

@@ -27,7 +27,7 @@ pub struct Choice {
 const NAME: &str = "Choice";
 
 impl Choice {
-    /// Each of `values`, all different, with its weight above 0; no weights at all are equal ones.
+    /// Each of `values`, all different, with its weight above 0; without weights, all are equal.
     ///
     /// # Errors
     /// [`ParamError`] for no values, values that are equal or not within ±1e300, and weights that are not from 1e-100
@@ -36,7 +36,7 @@ impl Choice {
         let count = values.len() as f64;
         ParamError::unless(!values.is_empty(), NAME, "number of values", count, "at least 1")?;
         let fits = weights.is_empty() || weights.len() == values.len();
-        ParamError::unless(fits, NAME, "number of weights", weights.len() as f64, "that of the values")?;
+        ParamError::unless(fits, NAME, "number of weights", weights.len() as f64, "the number of values")?;
         let mut pairs: Vec<[f64; 2]> = Vec::with_capacity(values.len());
         for (place, &value) in values.iter().enumerate() {
             ParamError::unless(value.abs() <= LARGEST, NAME, "value", value, "from -1e300 to 1e300")?;
@@ -76,7 +76,7 @@ impl Choice {
         &self.values
     }
 
-    /// The place of a value.
+    /// The index of a value.
     fn place(&self, x: f64) -> Option<usize> {
         self.values.binary_search_by(|value| value.total_cmp(&(x + 0.0))).ok()
     }
@@ -84,7 +84,7 @@ impl Choice {
 
 impl Density<f64> for Choice {
     /// # Errors
-    /// [`NotANumber`] where `x` is NaN.
+    /// [`NotANumber`] if `x` is NaN.
     fn log_density(&self, x: &f64) -> Result<LogDensity, NotANumber> {
         if x.is_nan() {
             return LogDensity::new(*x);
@@ -111,12 +111,12 @@ as_number_law!(Choice {
         false
     }
 
-    /// In places of the list.
+    /// In indices of the list.
     fn width(&self) -> f64 {
         self.values.len() as f64
     }
 
-    /// So many places on in the list, whose ends are joined.
+    /// Moves this many places on in the list, whose ends are joined.
     fn step(&self, x: f64, by: f64) -> f64 {
         let Some(place) = self.place(x).filter(|_| by.is_finite()) else { return x };
         let count = self.values.len() as f64;

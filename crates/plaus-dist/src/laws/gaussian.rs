@@ -79,7 +79,7 @@ pub(crate) fn standardised(x: f64, mean: f64, sd: f64) -> f64 {
 
 impl Density<f64> for Gaussian {
     /// # Errors
-    /// [`NotANumber`] where `x` is NaN. At ±∞ the density is 0.
+    /// [`NotANumber`] if `x` is NaN. At ±∞ the density is 0.
     #[inline]
     fn log_density(&self, x: &f64) -> Result<LogDensity, NotANumber> {
         LogDensity::new(self.log_peak - 0.5 * math::square(standardised(*x, self.mean, self.sd)))

@@ -1,4 +1,4 @@
-//! The Gibbs factor λ^k that turns a count of wishes met into a preference.
+//! The Gibbs factor λ^k, which turns a count of things achieved into a preference.
 
 use crate::LogPotential;
 use crate::math;
@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 
 const LARGEST_LN_LAMBDA: f64 = 700.0;
 
-/// Weight `λ^k` of a state that meets `k` wishes (Chenney & Forsyth 2000, sections 5.2 and 5.3: pins down, bins
+/// Weight `λ^k` of a state that achieves `k` things (Chenney & Forsyth 2000, sections 5.2 and 5.3: pins down, bins
 /// filled).
 ///
 /// Unnormalised, and only ever held as `k · ln λ` in nats: λ^k itself passes the largest float at k = 2 for λ = e^400.
-/// λ = 1 prefers nothing; each wish met multiplies the odds by λ.
+/// λ = 1 prefers nothing; each thing achieved multiplies the odds by λ.
 ///
 /// ```
 /// use plaus_dist::Gibbs;
@@ -51,7 +51,7 @@ impl Gibbs {
         Ok(Self { ln_lambda })
     }
 
-    /// From ln λ, in nats per wish.
+    /// From ln λ, in nats for each thing achieved.
     ///
     /// # Errors
     /// [`ParamError`] unless 0 ≤ ln λ ≤ 700.

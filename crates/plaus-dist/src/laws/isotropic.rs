@@ -61,7 +61,7 @@ impl<const D: usize> IsotropicGaussian<D> {
 
 impl<const D: usize> Density<[f64; D]> for IsotropicGaussian<D> {
     /// # Errors
-    /// [`NotANumber`] where a component is NaN. Infinitely far out the density is 0.
+    /// [`NotANumber`] if a component is NaN. Infinitely far out the density is 0.
     #[inline]
     fn log_density(&self, x: &[f64; D]) -> Result<LogDensity, NotANumber> {
         let squares = x.iter().fold(0.0, |sum, component| sum + math::square(component / self.sd));

@@ -1,4 +1,4 @@
-//! Quantities kept as logarithms: what may be mixed up silently has a type of its own.
+//! Quantities kept as logarithms: those that could be confused silently have types of their own.
 //!
 //! * [`LogDensity`]: log of a **normalised** density or probability. Terms whose dimension changes between states
 //!   must be these.
@@ -6,9 +6,10 @@
 //!   something.
 //! * [`LogRatio`]: log of an acceptance or Hastings ratio.
 //!
-//! −∞ is a value of all three (probability 0). NaN never is: it is the error [`NotANumber`] where it would arise, so
-//! that a broken model stops with a message instead of silently rejecting, or worse accepting, for ever. +∞ is no value
-//! of a density or a potential (an infinitely likely state could never be left) but it is one of a ratio.
+//! −∞ is a value of all three (probability 0). NaN never is: where it would arise, the error [`NotANumber`] is
+//! returned, so that a broken model stops with a message instead of silently rejecting, or worse accepting, for ever.
+//! +∞ is not a value of a density or a potential (an infinitely likely state could never be left), but a ratio may have
+//! it.
 //!
 //! ```
 //! use plaus_dist::{LogDensity, LogPotential};
@@ -66,7 +67,7 @@ impl LogDensity {
     /// Wraps `nats`.
     ///
     /// # Errors
-    /// [`NotANumber`] where `nats` is NaN or +∞.
+    /// [`NotANumber`] if `nats` is NaN or +∞.
     #[inline]
     pub fn new(nats: f64) -> Result<Self, NotANumber> {
         checked(nats, "log density").map(Self)
@@ -125,7 +126,7 @@ impl LogPotential {
     /// Wraps `nats`.
     ///
     /// # Errors
-    /// [`NotANumber`] where `nats` is NaN or +∞.
+    /// [`NotANumber`] if `nats` is NaN or +∞.
     #[inline]
     pub fn new(nats: f64) -> Result<Self, NotANumber> {
         checked(nats, "log potential").map(Self)
@@ -156,7 +157,7 @@ impl LogPotential {
     /// `beta` = 0.
     ///
     /// # Errors
-    /// [`NotANumber`] where `beta` is NaN, negative against a forbidden state, or the product overflows upwards.
+    /// [`NotANumber`] if `beta` is NaN, negative against a forbidden state, or the product overflows upwards.
     pub fn tempered(self, beta: f64) -> Result<Self, NotANumber> {
         if self.is_zero() && beta >= 0.0 {
             return Ok(self);
@@ -212,7 +213,7 @@ impl LogRatio {
     /// Wraps `nats`.
     ///
     /// # Errors
-    /// [`NotANumber`] where `nats` is NaN.
+    /// [`NotANumber`] if `nats` is NaN.
     #[inline]
     pub fn new(nats: f64) -> Result<Self, NotANumber> {
         if nats.is_nan() { Err(NotANumber { quantity: "log ratio", value: nats }) } else { Ok(Self(nats)) }
@@ -221,7 +222,7 @@ impl LogRatio {
     /// `numerator / denominator` of two densities.
     ///
     /// # Errors
-    /// [`NotANumber`] where both are 0.
+    /// [`NotANumber`] if both are 0.
     #[inline]
     pub fn of(numerator: LogDensity, denominator: LogDensity) -> Result<Self, NotANumber> {
         Self::new(numerator.0 - denominator.0)

@@ -46,7 +46,7 @@ impl LogNormal {
 
 impl Density<f64> for LogNormal {
     /// # Errors
-    /// [`NotANumber`] where `x` is NaN.
+    /// [`NotANumber`] if `x` is NaN.
     fn log_density(&self, x: &f64) -> Result<LogDensity, NotANumber> {
         if *x <= 0.0 || *x == f64::INFINITY {
             return Ok(LogDensity::ZERO);

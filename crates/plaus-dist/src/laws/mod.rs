@@ -1,4 +1,4 @@
-//! Distributions, and what they are drawn with.
+//! Distributions, and the streams that they are drawn with.
 
 pub(crate) mod bernoulli;
 pub(crate) mod choice;
@@ -47,7 +47,7 @@ pub trait Density<X: ?Sized> {
     /// Log density at `x`; [`LogDensity::ZERO`] outside the support.
     ///
     /// # Errors
-    /// [`NotANumber`] where `x` holds a NaN, or the density there is infinite.
+    /// [`NotANumber`] if `x` holds a NaN, or the density there is infinite.
     fn log_density(&self, x: &X) -> Result<LogDensity, NotANumber>;
 }
 

@@ -1,4 +1,4 @@
-//! What every law of one number can do, for whoever needs not know which it is.
+//! The interface of every law of one number, for code that need not know which law it is.
 
 use crate::{Density, LogDensity, NotANumber, Sample, Stream};
 use std::fmt::Debug;
@@ -22,7 +22,7 @@ pub trait NumberLaw: Debug + Send + Sync {
     /// Log density at a value.
     ///
     /// # Errors
-    /// [`NotANumber`] where it is NaN.
+    /// [`NotANumber`] if it is NaN.
     fn log_density_at(&self, x: f64) -> Result<LogDensity, NotANumber>;
 
     /// Between which values all draws lie; infinite where there is no end.

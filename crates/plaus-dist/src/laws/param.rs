@@ -1,4 +1,4 @@
-//! What is refused when a distribution is built, and the range every location and scale shares.
+//! Errors of parameters, and the range that all locations and scales share.
 
 /// Smallest standard deviation, in the units of the variable. Its reciprocal and its log are ordinary floats.
 pub const SMALLEST_SCALE: f64 = 1e-300;

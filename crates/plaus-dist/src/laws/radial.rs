@@ -1,4 +1,4 @@
-//! The paper's printed recipe for fresh offsets: a random direction and a Gaussian length.
+//! The paper's printed recipe for new offsets: a random direction and a Gaussian length.
 
 use crate::gaussian::HALF_LN_TAU;
 use crate::normal::standard_normal;
@@ -76,7 +76,7 @@ impl<const D: usize> Radial<D> {
 
 impl<const D: usize> Density<[f64; D]> for Radial<D> {
     /// # Errors
-    /// [`NotANumber`] where a component is NaN, and at the centre itself for `D` ≥ 2, where the density is infinite.
+    /// [`NotANumber`] if a component is NaN, and at the centre itself for `D` ≥ 2, if the density is infinite.
     /// Infinitely far out it is 0.
     fn log_density(&self, x: &[f64; D]) -> Result<LogDensity, NotANumber> {
         if let Some(&nan) = x.iter().find(|component| component.is_nan()) {

@@ -61,7 +61,7 @@ impl Triangular {
 
 impl Density<f64> for Triangular {
     /// # Errors
-    /// [`NotANumber`] where `x` is NaN.
+    /// [`NotANumber`] if `x` is NaN.
     fn log_density(&self, x: &f64) -> Result<LogDensity, NotANumber> {
         let x = *x;
         if x.is_nan() {

@@ -132,7 +132,7 @@ impl TruncatedGaussian {
 
 impl Density<f64> for TruncatedGaussian {
     /// # Errors
-    /// [`NotANumber`] where `x` is NaN.
+    /// [`NotANumber`] if `x` is NaN.
     fn log_density(&self, x: &f64) -> Result<LogDensity, NotANumber> {
         if *x < self.low || *x > self.high {
             return Ok(LogDensity::ZERO);

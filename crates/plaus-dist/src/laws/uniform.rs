@@ -73,7 +73,7 @@ impl Uniform {
 
 impl Density<f64> for Uniform {
     /// # Errors
-    /// [`NotANumber`] where `x` is NaN.
+    /// [`NotANumber`] if `x` is NaN.
     #[inline]
     fn log_density(&self, x: &f64) -> Result<LogDensity, NotANumber> {
         if x.is_nan() {

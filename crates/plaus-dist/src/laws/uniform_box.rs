@@ -36,7 +36,7 @@ impl<const D: usize> UniformBox<D> {
 
 impl<const D: usize> Density<[f64; D]> for UniformBox<D> {
     /// # Errors
-    /// [`NotANumber`] where a coordinate is NaN, even if another is outside.
+    /// [`NotANumber`] if a coordinate is NaN, even if another is outside.
     #[inline]
     fn log_density(&self, x: &[f64; D]) -> Result<LogDensity, NotANumber> {
         self.sides.iter().zip(x).try_fold(LogDensity::ONE, |sum, (side, x)| Ok(sum + side.log_density(x)?))

@@ -80,7 +80,7 @@ impl Density<f64> for VonMises {
     /// The same at all values that differ by whole periods.
     ///
     /// # Errors
-    /// [`NotANumber`] where `x` is NaN or infinite.
+    /// [`NotANumber`] if `x` is NaN or infinite.
     fn log_density(&self, x: &f64) -> Result<LogDensity, NotANumber> {
         let from_mean = self.ring.wrap(*x) - self.mean;
         // cos a − 1 = −2 sin² (a/2), without cancellation.

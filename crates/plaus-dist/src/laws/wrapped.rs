@@ -72,7 +72,7 @@ fn wrap_outside(x: f64, low: f64, high: f64) -> f64 {
 
 impl Density<f64> for WrappedUniform {
     /// # Errors
-    /// [`NotANumber`] where `x` is NaN.
+    /// [`NotANumber`] if `x` is NaN.
     #[inline]
     fn log_density(&self, x: &f64) -> Result<LogDensity, NotANumber> {
         self.0.log_density(x)

@@ -12,9 +12,9 @@ use std::path::Path;
 
 pub(super) struct Json;
 
-/// Begin of such a file.
+/// Beginning of such a file.
 const HEAD: &str = "{\"plaus_motion\":1,";
-/// Milliseconds are divided into so many parts.
+/// A millisecond has this many time units.
 const TIME: f64 = 128.0;
 /// Largest number of a share.
 const FULL: f64 = 32767.0;
@@ -25,9 +25,9 @@ impl Exporter for Json {
             name: "json",
             ending: "json",
             about: "compact motion for games: whole numbers, a throw of a die in a few kB",
-            help: "Per clip and body, keys as differences of whole numbers: times in parts of 1/128 ms, \
-                positions in steps of `step` metres, quaternions in parts of 32767; straight lines between them, as \
-                for glb. docs/engines.md has a reader of 40 lines.",
+            help: "For each clip and body, keys as differences of whole numbers: times in units of 1/128 ms, \
+                   positions in steps of `step` metres, quaternions in units of 1/32767; straight lines between them, \
+                   as for glb. docs/engines.md has a reader of 40 lines.",
         }
     }
 
@@ -70,7 +70,7 @@ fn body(clip: &Clip<'_>, track: &Track) -> Value {
     let keys = of_track(clip.animation, track, &clip.cut);
     let time = |time: f64| ((time - clip.cut.from()) * 1000.0 * TIME).round() as i64;
     let places = thin::places(track, &keys, 0.0);
-    // A tenth of what straight lines may be off by.
+    // A tenth of the tolerance of straight lines.
     let step = 0.1 * thin::tolerance(track.shape.reach());
     let whole = |place: DVec3| place.to_array().map(|x| (x / step).round() as i64);
     let mut body = json!({"name": track.name, "colour": hex(track.look.colour), "shape": form(&track.shape), "step": step,
@@ -84,7 +84,7 @@ fn body(clip: &Clip<'_>, track: &Track) -> Value {
     body
 }
 
-/// Numbers one after the other, each less the one before it.
+/// Numbers in a row, each minus the previous one.
 fn differences<const N: usize>(keys: impl Iterator<Item = [i64; N]>) -> Value {
     let mut last = [0; N];
     let mut all = Vec::new();

@@ -15,9 +15,9 @@ impl Exporter for Wav {
             name: "wav",
             ending: "wav",
             about: "sound: impacts, rolling and slipping, 48 kHz, one channel",
-            help: "By a simple model of what things are made of (docs/sound.md), of the pressure at a metre, turned up or \
-                down so that nothing clips. --min-impulse and --merge as for events. With --into, samples one after \
-                the other.",
+            help: "A simple model of what things are made of (docs/sound.md) gives the pressure at a metre, scaled so \
+                   that nothing clips. --min-impulse and --merge as for events. With --into, one sample after the \
+                   other.",
         }
     }
 

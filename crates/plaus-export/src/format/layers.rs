@@ -6,7 +6,7 @@ use crate::{glb, ours, usda};
 use std::io::Write;
 use std::path::Path;
 
-/// Clips of one file, which take up to 0.3 MB (GLB) or 0.5 MB (USD) of memory each.
+/// Most clips in one file; each takes up to 0.3 MB (GLB) or 0.5 MB (USD) of memory.
 const MOST: usize = 2000;
 
 pub(super) struct Gltf;
@@ -18,10 +18,10 @@ impl Exporter for Gltf {
             name: "glb",
             ending: "glb",
             about: "animated glTF 2.0: Blender, Godot, Unity, Unreal, browsers",
-            help: "Straight lines between keys, right to 0.2 mm and 0.03 degrees in every program; with --keys exact \
-                cubic splines, which programs that follow glTF play exactly, and Blender does not. A key at every \
-                impact. Beside it PATH.import, which has Godot sample it densely enough. With --into, one clip a \
-                sample.",
+            help: "Straight lines between keys, right to 0.2 mm and 0.03 degrees in every program. With --keys exact, \
+                   cubic splines: programs that follow glTF play them exactly, but Blender does not. There is a key \
+                   at every impact. PATH.import beside it makes Godot sample it densely enough. With --into, each \
+                   sample is a clip.",
         }
     }
 
@@ -60,10 +60,10 @@ impl Exporter for Usd {
             name: "usda",
             ending: "usda",
             about: "USD as text: usdview, Houdini, Omniverse, Maya, Blender",
-            help: "An animated Xform a body, meshes with materials, and physics' collision attributes on what stands still. \
-                24 time codes a second, so that Blender, whose scenes have 24 frames a second and which takes a time \
-                code for a frame, plays it in the right time; for a scene of 60, --time-codes 60. With --into, one \
-                variant of the variant set `solution` a sample.",
+            help: "An animated Xform for each body, meshes with materials, and collision attributes of physics on the \
+                   scenery. 24 time codes per second, because Blender's scenes have 24 frames per second and it \
+                   takes one time code as one frame; for a scene of 60, --time-codes 60. With --into, each sample is \
+                   a variant of the variant set `solution`.",
         }
     }
 

@@ -16,8 +16,9 @@ impl Exporter for Poses {
             name: "poses",
             ending: "csv",
             about: "CSV, one row per sample, body and key",
-            help: "Columns chain, draw (w17: of the warm-up), t (s), body, x, y, z (m, y up), a unit quaternion qx, qy, \
-                qz, qw, and whether it is at an impact. Keys at every frame, impact and begin of a piece of motion.",
+            help: "Columns: chain, draw (w17: from the warm-up), t (s), body, x, y, z (m, y up), a unit quaternion qx, \
+                   qy, qz, qw, and whether it is at an impact. There are keys at every frame, at every impact, and at \
+                   the start of every piece of motion.",
         }
     }
 
@@ -39,11 +40,11 @@ impl Exporter for Events {
         &Row {
             name: "events",
             ending: "csv",
-            about: "impacts and lasting contacts, for sound: CSV, or JSON where PATH ends in .json",
-            help: "One row an impact: t (s), the pair as names of nodes, what each is made of, point (m), normal, speed \
-                of approach (m/s), impulse (N s). One row a contact that lasts: t and end, and means of the speeds of \
-                slipping and rolling (m/s) and of the force between the two (N). --min-impulse leaves out weak \
-                impacts, --merge joins those of one pair that follow each other closely.",
+            about: "impacts and lasting contacts, for sound: CSV, or JSON if PATH ends in .json",
+            help: "One row for each impact: t (s), the pair as names of nodes, what each is made of, point (m), normal, \
+                   speed of approach (m/s), impulse (N s). One row for each contact that lasts: t and end, mean speeds \
+                   of slipping and rolling (m/s), and the mean force between the two (N). --min-impulse leaves out \
+                   weak impacts, --merge joins those of one pair that follow each other closely.",
         }
     }
 
@@ -66,14 +67,14 @@ impl Exporter for Events {
     }
 }
 
-/// Begin of a list of events.
+/// Beginning of a list of events.
 const JSON_HEAD: &str = "{\"impacts\":";
 
 fn head(columns: &str) -> String {
     format!("chain,draw,{columns}")
 }
 
-/// Chain and draw, as the label's facts say; of the warm-up as `--sample` takes it, `w17`.
+/// Chain and draw, from the label's facts; for the warm-up in the form of `--sample`, `w17`.
 fn sample(label: &Label) -> [Value; 2] {
     let fact = |name: &str| label.facts.get(name).cloned().unwrap_or(Value::Null);
     let named = label.facts.get("sample").and_then(Value::as_str).and_then(|name| name.split_once(':'));

@@ -37,7 +37,7 @@ impl Blob {
         self.push(root, floats(uvs.as_flattened()), content)
     }
 
-    /// Corners of triangles, in two bytes each where that is enough.
+    /// Corners of triangles, in two bytes each if that is enough.
     pub(super) fn indices(&mut self, root: &mut Root, indices: &[u32]) -> Index<Accessor> {
         let short: Option<Vec<u16>> =
             indices.iter().map(|&i| u16::try_from(i).ok().filter(|&i| i < u16::MAX)).collect();

@@ -1,4 +1,4 @@
-//! A document in the making, and its bytes.
+//! An unfinished document, and its bytes.
 
 use super::GENERATOR;
 use super::blob::Blob;
@@ -12,12 +12,12 @@ use gltf_json::{Asset, Index, Mesh, Root, mesh::Mode, mesh::Primitive, mesh::Sem
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// A glTF document in the making.
+/// A glTF document under construction.
 pub(super) struct Document {
     pub(super) root: Root,
     pub(super) blob: Blob,
     materials: Materials,
-    /// Values that something has all the time, with the accessors of their one key.
+    /// Constant values, with the accessors of their one key.
     pub(super) stills: Vec<(Vec<f32>, [Index<Accessor>; 2])>,
 }
 
@@ -29,14 +29,14 @@ impl Default for Document {
     }
 }
 
-/// Facts as they are written.
+/// Facts in written form.
 pub(super) fn extras(facts: &Map<String, Value>) -> Result<Option<Box<RawValue>>, ExportError> {
     let text = serde_json::to_string(facts).map_err(|error| ExportError::Json(error.to_string()))?;
     RawValue::from_string(text).map(Some).map_err(|error| ExportError::Json(error.to_string()))
 }
 
 impl Document {
-    /// A mesh of parts; `None` where there is nothing to be seen.
+    /// A mesh of parts; `None` if nothing is visible.
     pub(super) fn mesh(&mut self, name: &str, parts: &[Part]) -> Option<Index<Mesh>> {
         let drawn = parts.iter().filter(|part| !part.mesh.triangles.is_empty());
         let primitives: Vec<Primitive> = drawn.map(|part| self.primitive(part)).collect();

@@ -1,12 +1,12 @@
-//! A sidecar for Godot, which samples animations anew when it imports them, 30 times a second unless told otherwise,
-//! and drops keys it thinks superfluous.
+//! A sidecar file for Godot, which on import samples animations 30 times a second, unless told otherwise, and drops
+//! keys that it thinks superfluous.
 
-/// How often Godot is to sample a motion, in Hz. At 60 Hz impacts are rounded off by up to 10 mm (Godot 4.6.3), at this
-/// by what bodies fall short of in an eighth of a millisecond. Its dialogue offers at most 120; the file may ask for
-/// more.
+/// How often Godot should sample a motion, in Hz. At 60 Hz impacts are rounded off by up to 10 mm (Godot 4.6.3); at
+/// this rate, by the distance that bodies fall in an eighth of a millisecond. Its dialogue offers at most 120; the file
+/// may ask for more.
 const RATE: u32 = 3840;
 
-/// Text of `NAME.glb.import`, to lie beside `NAME.glb`. Godot adds what it knows when it first imports the file.
+/// Text of `NAME.glb.import`, which belongs beside `NAME.glb`. Godot adds its own data when it first imports the file.
 #[must_use]
 pub fn godot_import(file: &str) -> String {
     let file: String = file.chars().filter(|c| !matches!(c, '"' | '\\' | '\n')).collect();

@@ -6,7 +6,7 @@ use gltf_json::{Index, Root};
 use plaus_animation::{Colour, Look, Material};
 use plaus_dist::math::exp;
 
-/// Materials made so far: one a look.
+/// Materials made so far: one for each look.
 #[derive(Default)]
 pub(super) struct Materials(Vec<(Look, Index<gltf_json::Material>)>);
 
@@ -24,7 +24,7 @@ impl Materials {
     }
 }
 
-/// A name that is not taken: the wanted one, or the first of it with a number from 2 on.
+/// A name that is not taken: the wanted one, or the first of it with a number from 2.
 pub(crate) fn unique(wanted: &str, before_number: &str, taken: impl Fn(&str) -> bool) -> String {
     let numbered = (2..).map(|number| format!("{wanted}{before_number}{number}"));
     std::iter::once(wanted.to_owned()).chain(numbered).find(|name| !taken(name)).unwrap_or_default()
@@ -43,7 +43,7 @@ pub(crate) fn surface(material: Material) -> (f32, f32, f32) {
     }
 }
 
-/// A colour with linear components, as renderers want it.
+/// A colour with linear components, for renderers.
 pub(crate) fn linear(Colour(channels): Colour) -> [f32; 3] {
     channels.map(|channel| {
         let c = f64::from(channel) / 255.0;

@@ -13,7 +13,7 @@ use gltf_json::{Index, Mesh, Node, accessor::Accessor};
 use plaus_animation::Track;
 use std::f64::consts::FRAC_PI_2;
 
-/// The animation of one clip in the making.
+/// The unfinished animation of one clip.
 pub(super) struct Channels(Animation);
 
 impl Channels {
@@ -22,13 +22,13 @@ impl Channels {
         Self(Animation { extensions: None, extras, channels: Vec::new(), name, samplers: Vec::new() })
     }
 
-    /// Whether it says how a node turns.
+    /// Whether it turns a node.
     pub(super) fn turns(&self, node: Index<Node>) -> bool {
         let turns = |channel: &Channel| channel.target.node == node && channel.target.path == Valid(Property::Rotation);
         self.0.channels.iter().any(turns)
     }
 
-    /// A value that a node has all the time.
+    /// A constant value of a node.
     pub(super) fn still<const N: usize>(
         &mut self,
         document: &mut Document,
@@ -61,8 +61,8 @@ impl Channels {
     }
 }
 
-/// What the keys of bodies are written in: the animation's own axes and metres, or, where a body is above all other
-/// nodes, those that the style asks for.
+/// The axes and units of keys: those of the animation, in metres; or, for a body that is the root node, those of the
+/// style.
 #[derive(Clone, Copy)]
 pub(super) struct Frame {
     turn: DQuat,
@@ -95,7 +95,7 @@ impl Frame {
     }
 }
 
-/// The rotation that makes the animation's y axis the one that points up.
+/// The rotation from an animation's y axis to the axis that points up.
 pub(super) fn turn(up: Up) -> DQuat {
     if up == Up::Z { DQuat::from_rotation_x(FRAC_PI_2) } else { DQuat::IDENTITY }
 }
@@ -138,7 +138,7 @@ impl Document {
         [self.blob.times(&mut self.root, times), self.blob.values(&mut self.root, values)]
     }
 
-    /// One key at the beginning, stored once for all that have this value.
+    /// One key at the beginning, stored once for all equal values.
     fn still<const N: usize>(&mut self, value: &[f32; N]) -> [Index<Accessor>; 2] {
         let found = self.stills.iter().find(|(known, _)| known == value).map(|(_, io)| *io);
         found.unwrap_or_else(|| {
@@ -149,14 +149,14 @@ impl Document {
     }
 }
 
-/// Times, and per key the tangent on arrival, the value, and the tangent on leaving. Keys that single precision cannot
-/// tell apart become one.
+/// Times, and for each key the tangent on arrival, the value, and the tangent on leaving. Keys that are equal in single
+/// precision become one.
 fn splines(keys: &[Key], begin: f64, frame: Frame) -> (Vec<f32>, Vec<[f32; 3]>) {
     let (mut times, mut splines) = (Vec::<f32>::new(), Vec::<[f32; 3]>::new());
     for key in keys {
         let time = (key.time - begin) as f32;
         if times.last() == Some(&time) {
-            // Arrives as the first of them did, leaves as the last.
+            // It arrives like the first of them, and leaves like the last.
             splines.truncate(splines.len() - 2);
         } else {
             times.push(time);
@@ -167,7 +167,7 @@ fn splines(keys: &[Key], begin: f64, frame: Frame) -> (Vec<f32>, Vec<[f32; 3]>) 
     (times, splines)
 }
 
-/// Times and values. Keys that single precision cannot tell apart become one: the last.
+/// Times and values. Keys that are equal in single precision become one: the last.
 fn each<T: Copy, const N: usize>(
     keys: &[(f64, T)],
     begin: f64,

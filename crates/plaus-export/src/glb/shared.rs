@@ -1,9 +1,9 @@
 //! Several clips in one file: each an animation, with bodies, scenery and materials that they share.
 //!
-//! A body of one name is one node in all clips that show it alike; balls that differ in their radius are one node of
-//! different scale. What is not in a clip has the scale 0 in it, as glTF recommends for what is hidden. The document
-//! shows the first clip; an animation names only nodes that differ from that, so that a file grows with its clips, not
-//! with their square.
+//! Bodies of one name are one node in all clips that show them alike; balls of different radius are one node with
+//! different scales. A body that is not in a clip has the scale 0 there, as glTF recommends for hidden nodes. The
+//! document shows the first clip; an animation names only nodes that differ from it, so that a file grows with its
+//! clips, not with their square.
 
 use super::file::{Document, extras};
 use super::materials::unique;
@@ -47,7 +47,7 @@ pub struct Writer {
     style: Style,
 }
 
-/// A body as it is drawn.
+/// A body in the form in which it is drawn.
 struct Body {
     name: String,
     shape: Shape,
@@ -56,7 +56,7 @@ struct Body {
     turns: bool,
 }
 
-/// A node, and its scale in each clip; clips that it is not in have 0.
+/// A node, and its scale in each clip: 0 in clips that it is not in.
 struct Thing<T> {
     what: T,
     node: Index<Node>,
@@ -71,7 +71,7 @@ impl<T> Thing<T> {
 }
 
 impl Body {
-    /// The scale at which this shows a body, if it can.
+    /// The scale at which this node can show a body; `None` if it cannot.
     fn scale(&self, track: &Track) -> Option<f64> {
         if self.name != track.name || self.look != track.look {
             return None;
@@ -88,13 +88,14 @@ impl Writer {
     /// Adds a clip.
     ///
     /// # Errors
-    /// [`ExportError::Json`] where its facts cannot be written.
+    /// [`ExportError::Json`] if its facts cannot be written.
     pub fn add(&mut self, clip: &Clip<'_>) -> Result<(), ExportError> {
         let number = self.clips.len();
         self.style = clip.style;
         let (bodies, scenery) = (clip.animation.tracks.len(), clip.animation.scenery.len());
         if clip.style.root_motion && (bodies, scenery) != (1, 0) {
-            let message = format!("root motion is that of one body alone: here are {bodies}, and {scenery} that stand");
+            let message =
+                format!("root motion is for one body alone: here are {bodies}, and {scenery} pieces of scenery");
             return Err(ExportError::Impossible(message));
         }
         let unit = Frame::of(clip.style).scale;
@@ -146,7 +147,7 @@ impl Writer {
         self.bodies.len() - 1
     }
 
-    /// The name of a thing; where another thing has it, with that of its clip.
+    /// The name of a thing; if another thing has it, with the name of its clip.
     fn node_name(&self, wanted: &str, clip: &str) -> String {
         let taken = |name: &str| self.document.root.nodes.iter().any(|node| node.name.as_deref() == Some(name));
         let name = if taken(wanted) { format!("{wanted} {clip}") } else { wanted.to_owned() };
@@ -156,7 +157,8 @@ impl Writer {
     /// The bytes of the file.
     ///
     /// # Errors
-    /// [`ExportError::TooLong`] where it would be longer than the format can say.
+    ///
+    /// [`ExportError::TooLong`] if it would be longer than the format allows.
     pub fn finish(mut self) -> Result<Vec<u8>, ExportError> {
         self.show();
         let things = self.props.iter().map(|thing| thing.node).chain(self.bodies.iter().map(|thing| thing.node));
@@ -176,7 +178,7 @@ impl Writer {
         self.document.finish()
     }
 
-    /// Scales where they differ between clips, and orientations where a body turns in one clip and does not in another.
+    /// Sets scales that differ between clips, and orientations of bodies that turn in some clips only.
     fn show(&mut self) {
         let (count, upright) = (self.clips.len(), Frame::of(self.style).quaternion(DQuat::IDENTITY));
         let nodes = &mut self.document.root.nodes;
@@ -187,7 +189,7 @@ impl Writer {
             scales.resize(count, 0.0);
             if scales.iter().any(|scale| *scale != 1.0) {
                 nodes[node.value()].scale = Some([scales[0]; 3]);
-                // A node that an animation does not name stays as the document has it.
+                // A node that an animation does not name stays as in the document.
                 let others = scales.iter().enumerate().filter(|(_, scale)| **scale != scales[0]);
                 shown.extend(others.map(|(clip, &scale)| (clip, node, scale)));
             }
@@ -223,7 +225,7 @@ impl Writer {
     }
 }
 
-/// The node above all others, which turns and scales what is below it as the style says.
+/// The root node, which turns and scales everything below it according to the style.
 fn root_node(name: &str, children: Vec<Index<Node>>, extras: &Extras, style: Style) -> Node {
     Node {
         name: Some(name.to_owned()),

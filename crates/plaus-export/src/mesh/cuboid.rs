@@ -5,11 +5,11 @@ use glam::{DVec2, DVec3};
 
 /// Radius of the edges, as a share of half the shortest side.
 const ROUND: f64 = 0.2;
-/// Tangents of 0°, 15°, 30° and 45°: where the grid on a face is to be so that its rounded edge is evenly divided.
+/// Tangents of 0°, 15°, 30° and 45°: places of the grid on a face that divide its rounded edge evenly.
 const TANGENTS: [f64; 4] = [0.0, 0.267_949_192_431_122_7, 0.577_350_269_189_625_8, 1.0];
 /// Where pips are, as a share of half the side.
 const PLACE: f64 = 0.46;
-/// How far pips stand off, as a share of half the side: enough not to flicker, too little to see.
+/// How far pips stand out, as a share of half the side: enough not to flicker, too little to see.
 const LIFT: f64 = 0.004;
 
 /// The three axes of a face: across, up, and outwards.

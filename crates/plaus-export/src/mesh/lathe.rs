@@ -12,7 +12,7 @@ const AROUND: u32 = 32;
 const ALONG: u32 = 18;
 /// Corners along the rounded edge of a coin, a quarter circle.
 const EDGE: u32 = 4;
-/// Neighbouring parts of a profile that turn by more than this cosine says meet at an edge.
+/// Neighbouring parts of a profile meet at an edge if the cosine of their angle is below this.
 const SMOOTH: f64 = 0.8;
 
 /// A texture from the lower end to the upper.

@@ -9,16 +9,16 @@ use plaus_animation::{Form, Look, Material, Shape};
 use plaus_dist::math::sin_cos;
 use std::f64::consts::TAU;
 
-/// Triangles with one normal a corner; metres, counter-clockwise as seen from outside.
+/// Triangles with one normal for each corner; metres, counter-clockwise as seen from outside.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
     /// Corners.
     pub positions: Vec<[f32; 3]>,
-    /// A unit vector a corner.
+    /// A unit vector for each corner.
     pub normals: Vec<[f32; 3]>,
-    /// Texture coordinates a corner, from the upper left as glTF has them. A body of revolution: once around, and from
-    /// its lower end to its upper. A box that moves: its six faces in three columns and two rows. Spots: a disc in the
-    /// unit square. What stands still: metres.
+    /// Texture coordinates for each corner, from the upper left as in glTF. Bodies of revolution: once around, and from
+    /// the lower end to the upper. Boxes that move: their six faces in three columns and two rows. Spots: a disc in the
+    /// unit square. Scenery: metres.
     pub uvs: Vec<[f32; 2]>,
     /// Three corners each.
     pub triangles: Vec<[u32; 3]>,
@@ -110,7 +110,7 @@ fn coin(radius: f64, thickness: f64, look: Look) -> Vec<Part> {
     vec![Part { look, mesh: lathe::coin(radius, thickness) }, face]
 }
 
-/// What is readable on a colour.
+/// A look that is readable on a colour.
 fn contrast(look: Look) -> Look {
     let [r, g, b] = look.colour.0.map(u32::from);
     let bright = 2 * r + 5 * g + b > 8 * 110;

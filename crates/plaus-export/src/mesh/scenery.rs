@@ -1,4 +1,4 @@
-//! What stands still.
+//! Scenery.
 
 use super::Mesh;
 use glam::{DQuat, DVec2, DVec3};

@@ -1,20 +1,20 @@
-//! Sound of an animation, by a simple physical model: what hits what, how hard, and what both are made of.
+//! Sound of an animation, by a simple physical model of what hits what, how hard, and what both are made of.
 //!
 //! - **Impacts** press two things together for as long as Hertz says (Johnson, *Contact Mechanics*, 1985, equation
 //!   11.24), with a force that rises and falls as half a sine wave and has the impact's impulse. Short and hard contact
 //!   is bright, long and soft contact dull.
-//! - **Clicks**: a small body that is suddenly slowed down pushes air about as an oscillating sphere does: a pressure
-//!   that goes with the rate of its acceleration (Koss & Alfredson, *J. Sound Vib.* 27, 1973). That is what one hears
-//!   of marbles and dice, whose own tones are beyond hearing.
-//! - **Rings**: modes of free spheres, bars and panels, with the frequencies that size and stiffness give and the loss
-//!   of what they are made of, radiate as small pistons (van den Doel & Pai, *Presence* 7, 1998, for modal synthesis;
-//!   Rayleigh for the piston).
-//! - **Rolling and slipping**: roughness that is run over presses the contact in and out: a random force whose pitch
-//!   goes with the speed, and whose strength is the roughness of both times the stiffness of their contact (after
-//!   Thompson, *Railway Noise and Vibration*, 2009, chapter 2, above the contact's resonance).
+//! - **Clicks**: a small body that is suddenly slowed pushes air as an oscillating sphere does, with a pressure
+//!   proportional to the rate of change of its acceleration (Koss & Alfredson, *J. Sound Vib.* 27, 1973). This is what
+//!   one hears of marbles and dice, whose own tones are beyond hearing.
+//! - **Rings**: modes of free spheres, bars and panels, with frequencies from size and stiffness and losses from the
+//!   material, radiate as small pistons (van den Doel & Pai, *Presence* 7, 1998, for modal synthesis; Rayleigh for the
+//!   piston).
+//! - **Rolling and slipping**: running over roughness presses the contact in and out. This is a random force whose
+//!   pitch is proportional to the speed, and whose strength is the roughness of both times the stiffness of their
+//!   contact (after Thompson, *Railway Noise and Vibration*, 2009, chapter 2, above the contact's resonance).
 //!
-//! The pressure is that at a metre. A file is turned up or down so that its loudest moment is at −1 dB: nothing clips.
-//! Noise comes from a counter, sines from [`plaus_dist::math`]: the same bytes everywhere.
+//! The pressure is that at a distance of one metre. A file is scaled so that its loudest moment is at −1 dB: nothing
+//! clips. Noise comes from a counter, sines from [`plaus_dist::math`]: the same bytes everywhere.
 
 mod substance;
 
@@ -24,48 +24,48 @@ use plaus_dist::math::{cbrt, cos, exp, ln, square};
 use std::f64::consts::{PI, TAU};
 use substance::{Mode, Sounding, of_body, of_prop, unknown};
 
-/// Samples a second.
+/// Samples per second.
 pub const RATE: u32 = 48_000;
-/// Silence after the last moment, s: what rings then may fade.
+/// Silence after the last moment, in s, so that ringing can fade.
 const TAIL: f64 = 0.6;
-/// Highest frequency of a mode that is heard, Hz.
+/// Highest audible frequency of a mode, in Hz.
 const HIGHEST: f64 = 18_000.0;
 /// Density of air, kg/m³, and the speed of sound, m/s.
 const AIR: [f64; 2] = [1.2, 343.0];
-/// Distance of whoever listens, m.
+/// Distance of the listener, m.
 const DISTANCE: f64 = 1.0;
-/// Size of what roughness consists of, m: its pitch is the speed over that.
+/// Size of the grains of roughness, m: its pitch is the speed over this.
 const GRAIN: f64 = 1e-3;
-/// Samples in which rolling and slipping come and go: a millisecond.
+/// Samples over which rolling and slipping fade in and out: a millisecond.
 const EDGE: f64 = 48.0;
 /// Force of slipping over that of rolling at the same speed: grains are torn over each other.
 const SLIPPING: f64 = 3.0;
 /// Loudest moment of a file, as a share of what a sample can hold: −1 dB.
 const LOUDEST: f64 = 0.891;
 
-/// What is heard of an animation: things that sound, and what presses them when.
+/// The sounds of an animation: things that sound, and what presses them when.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Score {
     /// Things by name, in the order in which they are first pressed.
     pub things: Vec<(String, Thing)>,
-    /// One an impact of the animation, in their order.
+    /// One for each impact of the animation, in order.
     pub strikes: Vec<Strike>,
-    /// One a contact that lasts, in their order.
+    /// One for each contact that lasts, in order.
     pub rubs: Vec<Rub>,
 }
 
 /// A thing that sounds, a metre away.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thing {
-    /// Pressure for a rate of force, Pa s/N: what is heard of a body that is slowed down.
+    /// Pressure for a rate of change of force, Pa s/N: the sound of a body that is slowed down.
     pub click: f64,
-    /// Its modes, as far as they are heard.
+    /// Its audible modes.
     pub modes: Vec<Resonator>,
-    /// What it is made of, how heavy and how curved it is.
+    /// Its material, mass and curvature.
     sounding: Sounding,
 }
 
-/// A mode: what it does with a force.
+/// A mode: its response to a force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resonator {
     /// Rad/s.
@@ -104,7 +104,7 @@ pub struct Rub {
     pub pair: [usize; 2],
 }
 
-/// What is heard of an animation.
+/// The sounds of an animation.
 #[must_use]
 pub fn score(animation: &Animation) -> Score {
     let mut score = Score::default();
@@ -167,11 +167,11 @@ pub fn pressure(clip: &Clip<'_>) -> Vec<f64> {
 struct Forces(Vec<Vec<f64>>);
 
 impl Forces {
-    /// A force like half a sine wave: each sample has its mean over the sample, so that pulses shorter than one keep
-    /// their impulse.
+    /// A force like half a sine wave. Each sample is the mean over its duration, so that pulses shorter than one sample
+    /// keep their impulse.
     fn strike(&mut self, thing: usize, start: f64, time: f64, impulse: f64) {
         let rate = f64::from(RATE);
-        // The impulse so far of a pulse of impulse 1.
+        // The impulse up to a time, for a pulse of impulse 1.
         let so_far = |t: f64| 0.5 * (1.0 - cos(PI * (t / time).clamp(0.0, 1.0)));
         let first = (start * rate).floor().max(0.0) as usize;
         let last = ((start + time) * rate).ceil() as usize;
@@ -182,8 +182,8 @@ impl Forces {
         }
     }
 
-    /// A random force that follows grains of a surface. It comes and goes within a millisecond around its ends, so that
-    /// contacts that follow each other make one sound.
+    /// A random force that follows the grains of a surface. It fades in and out within a millisecond around its ends,
+    /// so that successive contacts make one sound.
     fn rub(&mut self, thing: usize, [start, end]: [f64; 2], speed: f64, strength: f64, noise: u64) {
         if speed <= 0.0 || strength <= 0.0 {
             return;
@@ -191,7 +191,7 @@ impl Forces {
         let rate = f64::from(RATE);
         let half = 0.5 * EDGE / rate;
         let [first, last] = [start - half, end + half].map(|time| (time * rate).max(0.0) as usize);
-        // One number a grain, and a cosine between them.
+        // One number for each grain, with a cosine between them.
         let step = (speed / GRAIN / rate).min(1.0);
         let force = &mut self.0[thing];
         for (sample, force) in force.iter_mut().enumerate().take(last).skip(first) {
@@ -205,7 +205,7 @@ impl Forces {
     }
 }
 
-/// A number from −1 to 1 for each place: a hash (the finaliser of SplitMix64).
+/// A number from −1 to 1 for each index: a hash (the finaliser of SplitMix64).
 fn uneven(noise: u64, place: u64) -> f64 {
     let mut x = noise.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(place).wrapping_add(0x9e37_79b9_7f4a_7c15);
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -220,8 +220,8 @@ fn reduced(a: &Sounding, b: &Sounding) -> [f64; 2] {
     [1.0 / (soft(a) + soft(b)), 1.0 / (1.0 / a.radius + 1.0 / b.radius)]
 }
 
-/// The force of roughness on two things that a force presses together, N: what grains of both push the contact in,
-/// times how stiff it is (Hertz, `(6 E² R F)^(1/3)`). Not more than the force itself, or they would part.
+/// The force of roughness on two things pressed together, N: how far the grains of both push the contact in, times its
+/// stiffness (Hertz, `(6 E² R F)^(1/3)`). It is at most the force itself; otherwise the things would separate.
 fn roughly(a: &Sounding, b: &Sounding, force: f64) -> f64 {
     let [modulus, radius] = reduced(a, b);
     let stiffness = cbrt(6.0 * square(modulus) * radius * force);
@@ -229,7 +229,7 @@ fn roughly(a: &Sounding, b: &Sounding, force: f64) -> f64 {
     (stiffness * grains).min(force)
 }
 
-/// How long two things touch that meet at a speed, s: Hertz. Shorter than a hundredth of a second in any case.
+/// How long two things touch when they meet at a given speed, s: Hertz. At most a hundredth of a second.
 fn contact_time(a: &Sounding, b: &Sounding, speed: f64) -> f64 {
     let [stiff, radius] = reduced(a, b);
     let mass = 1.0 / (1.0 / a.mass + 1.0 / b.mass);
@@ -251,7 +251,7 @@ impl Thing {
 }
 
 impl Resonator {
-    /// A piston of the mode's area that radiates, the less the smaller it is to its wave length.
+    /// A piston of the mode's area, which radiates less the smaller it is compared with its wavelength.
     fn of(mode: &Mode) -> Self {
         let omega = TAU * mode.frequency;
         let size = omega / AIR[1] * (mode.area / PI).sqrt();
@@ -276,7 +276,7 @@ fn ring(mode: &Resonator, force: &[f64], air: &mut [f64]) {
     let step = 1.0 / f64::from(RATE);
     let decay = exp(-mode.fades * step);
     let (first, second) = (2.0 * decay * cos(mode.omega * step), -decay * decay);
-    // The velocity that an impulse gives, and the pressure of its rate.
+    // The velocity that an impulse gives, and the pressure from its rate of change.
     let factor = mode.loud * step;
     let (mut before, mut last) = (0.0, 0.0);
     for (air, force) in air.iter_mut().zip(force) {
@@ -286,10 +286,10 @@ fn ring(mode: &Resonator, force: &[f64], air: &mut [f64]) {
     }
 }
 
-/// A WAV file of one channel and 16 bits: clips one after the other.
+/// A WAV file of one channel and 16 bits: one clip after the other.
 ///
 /// # Errors
-/// [`ExportError::TooLong`] where it would be longer than 4 GiB.
+/// [`ExportError::TooLong`] if it would be longer than 4 GiB.
 pub fn wav(pressure: &[f64], generator: &str) -> Result<Vec<u8>, ExportError> {
     let peak = pressure.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
     let gain = if peak > 0.0 { LOUDEST * f64::from(i16::MAX) / peak } else { 0.0 };

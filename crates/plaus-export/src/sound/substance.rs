@@ -1,4 +1,4 @@
-//! What things are made of, as far as one hears it, and how they ring.
+//! Materials, as far as they can be heard, and how they ring.
 
 use plaus_animation::{Form, Look, Material, Prop, Shape, Track};
 use plaus_dist::math::square;
@@ -24,9 +24,8 @@ const fn substance(young: f64, poisson: f64, density: f64, loss: f64, rough: f64
 }
 
 // Young's moduli, Poisson's ratios and densities: Ashby, Materials Selection in Mechanical Design (2011), appendix A.
-// Loss factors: Cremer, Heckl & Petersson, Structure-Borne Sound (2005), table 3.2; the higher ends, as things lie on
-// something.
-// Roughness: order of magnitude of a polished, a turned, a planed and a woven surface.
+// Loss factors: Cremer, Heckl & Petersson, Structure-Borne Sound (2005), table 3.2; the upper ends, because things lie
+// on something. Roughness: order of magnitude of a polished, a turned, a planed and a woven surface.
 const GLASS: Substance = substance(70e9, 0.22, 2500.0, 0.003, 2e-7);
 const ACRYLIC: Substance = substance(3.2e9, 0.37, 1190.0, 0.03, 1e-6);
 const POLYESTER: Substance = substance(4.0e9, 0.36, 1250.0, 0.03, 1e-6);
@@ -54,7 +53,7 @@ pub(super) struct Sounding {
     pub(super) substance: Substance,
     /// Radius of curvature where it touches, m.
     pub(super) radius: f64,
-    /// kg; infinite for what stands still.
+    /// kg; infinite for scenery.
     pub(super) mass: f64,
     pub(super) modes: Vec<Mode>,
 }
@@ -68,7 +67,7 @@ const PANEL: f64 = 0.02;
 /// Frequencies of a panel's modes, Hz: in steps of a fifth, as those of a plate thicken evenly.
 const PANEL_MODES: usize = 9;
 
-/// A body. What it is made of is told by its shape and its look.
+/// A body. Its shape and look determine its material.
 pub(super) fn of_body(track: &Track) -> Sounding {
     let material = track.look.material;
     let (substance, radius, mass, modes) = match &track.shape {
@@ -155,7 +154,7 @@ pub(super) fn of_prop(prop: &Prop) -> Sounding {
         Form::Mesh { .. } | Form::Heightfield { .. } => 0.2,
     };
     let side = (2.0 * size).clamp(0.1, 1.0);
-    // A supported square plate of that side, at most a metre: what is farther away does not ring with it.
+    // A supported square plate with that side, at most a metre: anything farther away does not ring with it.
     let stiff = (substance.young / (12.0 * (1.0 - square(substance.poisson)) * substance.density)).sqrt() * PANEL;
     let first = PI * stiff / square(side);
     let mass = 0.25 * substance.density * PANEL * square(side);
@@ -170,7 +169,7 @@ pub(super) fn of_prop(prop: &Prop) -> Sounding {
     Sounding { substance, radius: f64::INFINITY, mass: f64::INFINITY, modes }
 }
 
-/// What nothing is known of: a look that no thing has.
+/// An unknown thing: a look that nothing has.
 pub(super) fn unknown() -> Sounding {
     of_prop(&Prop::block("", Look::STONE, glam::DVec3::ZERO, glam::DVec3::ONE))
 }

@@ -1,4 +1,4 @@
-//! What is heard: pitches, loudness, silence, and the file.
+//! Pitches, loudness, silence, and the file.
 
 use super::*;
 use crate::clip::{Cut, Label};

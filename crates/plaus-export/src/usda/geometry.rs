@@ -55,7 +55,7 @@ pub(super) fn shape(text: &mut Text, name: &str, shape: &Shape, look: Look, look
     }
 }
 
-/// A part of the scenery: `NAME_shape`. What is solid is for others to collide with.
+/// A part of the scenery: `NAME_shape`. If it is solid, other things can collide with it.
 pub(super) fn form(text: &mut Text, name: &str, form: &Form, look: Look, solid: bool, looks: &Looks) {
     triangles(text, &format!("{name}_shape"), &mesh::of_form(form, look), solid, looks);
 }

@@ -1,9 +1,8 @@
 //! USD as text: opens in usdview, Blender, Houdini, Omniverse and Maya.
 //!
-//! A body is an animated `Xform` with its geometry, uniquely named, under it; between time samples USD interpolates
-//! linearly, so they are as dense as the motion asks for, with one at every impact. The label's facts are the layer's
-//! custom data. What stands still has physics' collision attributes, so that programs that simulate may go on from
-//! there.
+//! A body is an animated `Xform` with its geometry, uniquely named, under it. USD interpolates linearly between time
+//! samples, so they are as dense as the motion requires, with one at every impact. The label's facts are the layer's
+//! custom data. Scenery has collision attributes of physics, so that other programs can simulate further.
 //!
 //! Several clips are variants of one prim, which share bodies, scenery and materials: see [`Writer`].
 
@@ -15,9 +14,9 @@ pub use variants::Writer;
 
 use crate::clip::Clip;
 
-/// Says who made a file; exports replace only files that begin so.
+/// Names the program that made a file; exports replace only files that begin so.
 pub const HEAD: &str = concat!("#usda 1.0\n# made by plaus ", env!("CARGO_PKG_VERSION"));
-/// Begin of [`HEAD`] whatever the version.
+/// Beginning of [`HEAD`] for any version.
 pub const HEAD_OF_ANY_VERSION: &str = "#usda 1.0\n# made by plaus ";
 
 /// The text of a USDA file with one clip.

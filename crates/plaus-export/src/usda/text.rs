@@ -1,11 +1,11 @@
-//! Text in the making, and what may stand in it.
+//! Text under construction, and what may occur in it.
 
 use crate::glb::unique;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// Text in the making. Writing to a string cannot fail.
+/// Unfinished text. Writing to a string cannot fail.
 #[derive(Default)]
 pub(super) struct Text(pub(super) String);
 
@@ -15,7 +15,7 @@ impl Text {
     }
 }
 
-/// A fact as a typed entry of a dictionary; what has no simple type is text.
+/// A fact as a typed entry of a dictionary; values without a simple type become text.
 pub(super) fn fact(key: &str, value: &Value) -> String {
     let key = quoted(&format!("plaus:{key}"));
     match value {
@@ -44,7 +44,7 @@ pub(super) fn quoted(text: &str) -> String {
     quoted
 }
 
-/// Names of prims: letters, digits and underscores, not beginning with a digit, and each once.
+/// Names of prims: unique; letters, digits and underscores, not beginning with a digit.
 #[derive(Default)]
 pub(super) struct Names(BTreeSet<String>);
 

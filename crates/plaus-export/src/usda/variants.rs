@@ -67,7 +67,7 @@ impl Writer {
         self.clips.push(Take { name: identifier(&clip.label.name), label: clip.label.clone(), end, motion });
     }
 
-    /// Which body shows a track, and at which scale.
+    /// The body that shows a track, and its scale.
     fn body(&mut self, number: usize, track: &Track) -> (usize, f64) {
         let alike = |thing: &Thing<Body>| {
             let body = &thing.what;
@@ -147,7 +147,7 @@ impl Writer {
         text.line(0, ")\n");
     }
 
-    /// Opens the prim that everything is under, turned and scaled as the style says.
+    /// Opens the root prim, turned and scaled according to the style.
     fn root(&self, text: &mut Text) {
         text.line(0, "def Xform \"plaus\" (\n    kind = \"component\"");
         if let [first, _, ..] = &self.clips[..] {
@@ -176,7 +176,7 @@ impl Writer {
         text.line(depth, "}");
     }
 
-    /// What is one clip's own.
+    /// The content of one clip only.
     fn variant(&self, text: &mut Text, number: usize, take: &Take) {
         text.line(2, &format!("\"{}\" (", take.name));
         text.line(3, "customData = {");

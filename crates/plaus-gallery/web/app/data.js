@@ -12,7 +12,7 @@ async function unpack(element) {
   return { meta, bytes };
 }
 
-// Bytes of base64. A plain loop: a callback for each of millions of characters takes several times as long.
+// Bytes of base64, by a plain loop: a callback for each of millions of characters takes several times as long.
 function bytesOf(text) {
   if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
   const letters = atob(text), bytes = new Uint8Array(letters.length);
@@ -31,7 +31,7 @@ class Columns {
   }
 }
 
-// A mesh as three.js wants it.
+// A mesh in the form that three.js needs.
 function geometryOf(bytes, mesh) {
   const columns = new Columns(bytes, mesh.at);
   const count = mesh.corners;

@@ -1,4 +1,4 @@
-// What is known of the chosen solution, and what can be done with it.
+// Facts about the chosen solution, and actions on it.
 
 class Details {
   constructor(app) {

@@ -23,7 +23,7 @@ class Filters {
     const asked = [...new Set(this.app.solutions.flatMap((s) => s.asked.map(({ what }) => what)))].map((what) => ({
       name: what, unit: 's', of: (s) => s.asked.find((one) => one.what === what)?.found ?? NaN,
     }));
-    // Results of the simulation before random variables.
+    // Outcomes come before random variables.
     return [...fixed, ...asked, ...scalars.filter((s) => !s.draw), ...scalars.filter((s) => s.draw)].map((v) => this.ranged(v));
   }
 
@@ -51,7 +51,7 @@ class Filters {
       more.value = '';
     });
     box.append(more);
-    const clear = this.button('clear', 'Clear', 'Take all filters away');
+    const clear = this.button('clear', 'Clear', 'Remove all filters');
     clear.classList.remove('toggle');
     clear.addEventListener('click', () => this.clear());
     box.append(clear);
@@ -94,7 +94,7 @@ class Filters {
         this.apply();
       });
     }
-    // The handles' own rounding must not shut out the ends.
+    // Rounding of the handles must not exclude the ends.
     const slack = 1e-6 * (variable.high - variable.low);
     const limits = () => [+low.value <= variable.low + slack ? -Infinity : +low.value, +high.value >= variable.high - slack ? Infinity : +high.value];
     const update = () => { first.textContent = show(+low.value); last.textContent = `${show(+high.value)} ${variable.unit ?? ''}`; };
@@ -164,7 +164,7 @@ class Filters {
   }
 }
 
-// Three digits, or none where there is nothing but rounding.
+// Three digits; 0 for a value that is only rounding error.
 function short(value) {
   return Math.abs(value) < 5e-4 ? '0' : String(+value.toPrecision(3));
 }

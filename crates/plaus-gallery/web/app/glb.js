@@ -1,4 +1,4 @@
-// A solution as animated glTF, in the layout that `plaus export --format glb` has: straight lines between keys, a key at every impact.
+// A solution as animated glTF, in the layout of `plaus export --format glb`: straight lines between keys, a key at every impact.
 
 function glbOf({ meta, stage }, solution, fps = 60) {
   const json = {
@@ -88,10 +88,10 @@ function unit(normals) {
   return out;
 }
 
-// Farthest that a body may be from a straight line between keys, in m and as a share of its reach; and the largest turn between keys, in rad: as `plaus export` has them.
+// How far a body may be from a straight line between keys, in m and as a share of its reach; and the largest turn between keys, in rad. The numbers are those of `plaus export`.
 const OFF = 2e-4, OFF_SHARE = 0.01, LARGEST_TURN = 0.5;
 
-// Times, positions and orientations: at frames, at begins of pieces, and between where a body falls or turns fast.
+// Times, positions and orientations: at frames, at starts of pieces, and in between where a body falls or turns fast.
 function keysOf({ meta }, solution, track, fps) {
   const open = solution.open(), [, model, count] = solution.tracks[track], first = open.firsts[track], end = solution.duration;
   const most = Math.min(OFF, OFF_SHARE * meta.models[model].reach);

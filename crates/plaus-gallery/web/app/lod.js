@@ -1,12 +1,12 @@
 // Fewer triangles for small pictures: the corners that lie in one cell of a grid become one (Rossignac and Borrel, "Multi-resolution 3D
 // approximations for rendering complex scenes", 1993). Cells are about a pixel wide, so the difference cannot be seen.
 
-// Meshes with fewer triangles stay as they are.
+// Meshes with fewer triangles are not changed.
 const FEW = 150;
-// Sides of cells, in pixels; at least half of it, as cells double from level to level.
+// Largest side of a cell, in pixels; sides are at least half of it, because they double from level to level.
 const CELL = 1.6;
 
-// A geometry for pictures in which a pixel is so many metres wide.
+// A geometry for pictures in which a pixel is `pixel` metres wide.
 function atDetail(geometry, pixel) {
   if (geometry.index.count < 3 * FEW) return geometry;
   const levels = (geometry.userData.levels ??= new Map()), level = Math.floor(Math.log2(CELL * pixel));
@@ -25,7 +25,7 @@ function coarser(geometry, cell) {
   for (let k = 0; k < count; k++) {
     const i = 3 * k, [x, y, z] = [0, 1, 2].map((axis) => Math.floor(from[i + axis] / cell));
     cellOf[k] = numbered(cells, `${x},${y},${z}`);
-    // Edges stay sharp: a corner for each side that its normals look to, all at one place.
+    // Edges stay sharp: a place has one corner for each direction that its normals point to.
     const size = [0, 1, 2].map((axis) => Math.abs(normal[i + axis])), side = size.indexOf(Math.max(...size));
     cornerOf[k] = numbered(corners, 6 * cellOf[k] + 2 * side + (normal[i + side] > 0 ? 1 : 0));
   }

@@ -13,7 +13,7 @@ const SURFACES = {
   matte: [0, 0.9, 1], glossy: [0, 0.25, 1], glass: [0, 0.08, 0.16], metal: [1, 0.3, 1], wood: [0, 0.55, 1], felt: [0, 1, 1], mark: [0, 0.8, 0.55],
 };
 
-// Planks, seen from any side: drawn once, laid on by position in the world.
+// Planks, seen from any side: drawn once, and mapped by position in the world.
 function grain(colour) {
   const canvas = document.createElement('canvas');
   canvas.width = canvas.height = 256;
@@ -62,7 +62,7 @@ function tiled(canvas) {
   return texture;
 }
 
-// Texture coordinates by the axis a corner's normal is nearest to.
+// Texture coordinates, from the axis nearest to a corner's normal.
 function lay(geometry, size) {
   const p = geometry.getAttribute('position'), n = geometry.getAttribute('normal'), uv = new Float32Array(2 * p.count);
   for (let k = 0; k < p.count; k++) {

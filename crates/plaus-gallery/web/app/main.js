@@ -1,4 +1,4 @@
-// The page: what is chosen, what is drawn when.
+// The page: which solution is chosen, and what is drawn when.
 
 class App {
   constructor(meta, bytes) {

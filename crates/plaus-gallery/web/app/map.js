@@ -1,4 +1,4 @@
-// The map: a dot a solution, near where they are alike.
+// The map: a dot for each solution; dots of similar solutions are near each other.
 
 const RAMP = ['#46337e', '#2a788e', '#22a884', '#7ad151', '#fde725'];
 
@@ -36,7 +36,7 @@ class SolutionMap {
 
   toggle() { this.show(this.kind === 'path' ? 'outcome' : 'path'); }
 
-  // Where dots are, in CSS pixels: equal scales both ways, so that distances can be compared.
+  // Positions of dots, in CSS pixels, with equal scales along both axes, so that distances can be compared.
   layout() {
     const { canvas, app, kind } = this, points = app.solutions.map((s) => s[kind]);
     const low = [0, 1].map((axis) => Math.min(...points.map((p) => p[axis]))), high = [0, 1].map((axis) => Math.max(...points.map((p) => p[axis])));
@@ -89,7 +89,7 @@ class SolutionMap {
     });
   }
 
-  // How long a distance on the map is.
+  // A scale bar for distances on the map.
   drawScale(pen, colour) {
     const wanted = 60 / this.scale, power = 10 ** Math.floor(Math.log10(wanted)), step = [1, 2, 5, 10].map((n) => n * power).reduce((a, b) => (Math.abs(b - wanted) < Math.abs(a - wanted) ? b : a));
     const length = step * this.scale, y = this.canvas.clientHeight - 6;

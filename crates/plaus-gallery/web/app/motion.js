@@ -67,7 +67,7 @@ class Solution {
     return low;
   }
 
-  // Position, and orientation where one is asked for, of a track at a time.
+  // Position of a track at a time, and orientation if asked for.
   pose(track, time, position, orientation) {
     const open = this.open(), k = this.piece(track, time), t = Math.max(time - open.start[k], 0);
     const p = open.position, v = open.velocity, a = open.acceleration, i = 3 * k;

@@ -29,13 +29,13 @@ class Player {
 
   get duration() { return Math.max(this.app.a.duration, this.app.b?.duration ?? 0); }
 
-  // What is over in a moment is shown slowly at first.
+  // Very short animations are shown slowly at first.
   gentle() {
     const durations = this.app.solutions.map((s) => s.duration).sort((a, b) => a - b), middle = durations[durations.length >> 1];
     return middle < 0.8 ? '0.25' : middle < 1.6 ? '0.5' : '1';
   }
 
-  // Keeps the direction and distance that the user chose; fits anew only what they never touched.
+  // Keeps the direction and distance that the user chose; otherwise fits the view again.
   fit() {
     const aspect = this.canvas.clientWidth / Math.max(this.canvas.clientHeight, 1);
     if (!this.touched) return this.reset();
@@ -55,7 +55,7 @@ class Player {
     this.app.wake();
   }
 
-  // A solution was chosen: begins at its begin, playing.
+  // A solution was chosen: plays it from the start.
   load(play) {
     this.scrub.max = this.duration;
     this.seek(0);
@@ -91,7 +91,7 @@ class Player {
     this.app.wake();
   }
 
-  // To the impact before or after.
+  // To the previous or next impact.
   jump(direction) {
     const times = this.app.a.impacts.map((hit) => hit.time), slack = 1e-4;
     const target = direction > 0 ? times.find((t) => t > this.time + slack) : times.findLast((t) => t < this.time - slack);
@@ -118,7 +118,7 @@ class Player {
     return { canvas: this.canvas, camera: this.camera, solution: app.a, other: app.b, time: this.time, trails: app.trails, until: true, flash: true, moving: this.playing || this.turning };
   }
 
-  // Impacts as ticks: taller where bodies meet faster. Times that are asked for as diamonds, their windows as bars.
+  // Impacts are ticks, taller for faster impacts. Times asked for are diamonds, their windows bars.
   drawMarks() {
     const { marks, app } = this, ratio = window.devicePixelRatio || 1, width = marks.clientWidth, height = marks.clientHeight;
     if (!width) return;

@@ -1,11 +1,11 @@
-// Sound of a solution: what things are struck and rubbed by, and how they ring. The model is that of exported sound, and
-// so are its numbers (docs/sound.md); here it is reckoned when it is asked for, and off until then.
+// Sound of a solution: how things are struck and rubbed, and how they ring. Model and numbers are those of exported
+// sound (docs/sound.md). Here it is computed on demand, and off by default.
 
 // Samples a second; silence after the last moment, in s; size of what roughness consists of, in m; the loudest moment.
 const RATE = 48000, TAIL = 0.6, GRAIN = 1e-3, LOUDEST = 0.891;
-// Samples in which rolling and slipping come and go.
+// Samples over which rolling and slipping fade in and out.
 const EDGE = 48;
-// The sound is begun anew where it is farther than this from the picture, in s of listening.
+// The sound restarts if it is farther than this from the picture, in s of listening.
 const APART = 0.12;
 
 class Sound {
@@ -24,7 +24,7 @@ class Sound {
     else this.stop();
   }
 
-  // Plays what is heard of a solution from a time on; `null` where nothing is to be begun.
+  // Plays the sound of a solution from a time on; `null` starts nothing.
   follow(solution, time, speed) {
     if (!this.on || time === null) return;
     const { playing, context } = this;
@@ -47,7 +47,7 @@ class Sound {
   // Pressure a metre away, in Pa, sample by sample.
   heard(solution) { return pressure(solution, this.things); }
 
-  // The last one that was heard is kept.
+  // The last one played is kept.
   buffer(solution) {
     if (this.last?.solution !== solution) {
       const air = this.heard(solution);
@@ -96,7 +96,7 @@ function rub(force, start, end, speed, strength, noise) {
   }
 }
 
-// A number from -1 to 1 for each place: a hash (Wellons, "lowbias32").
+// A number from -1 to 1 for each index: a hash (Wellons, "lowbias32").
 function uneven(noise, place) {
   let x = (Math.imul(noise + 1, 0x9e3779b1) + place) | 0;
   x = Math.imul(x ^ (x >>> 16), 0x21f0aaad);

@@ -1,4 +1,4 @@
-// The world that is drawn: one set of bodies and scenery, posed anew for every picture.
+// The world to draw: one set of bodies and scenery, posed again for every picture.
 
 class Stage {
   constructor(meta, bytes, solutions) {
@@ -16,7 +16,7 @@ class Stage {
     this.light();
   }
 
-  // The box most solutions stay in, with what the scene wants to be seen.
+  // The box that most solutions stay in, with what the scene wants to show.
   commonFrame() {
     const { solutions, meta } = this, low = new THREE.Vector3(), high = new THREE.Vector3();
     if (meta.alone) {
@@ -35,7 +35,7 @@ class Stage {
     return { low, high };
   }
 
-  // How many bodies of each model there are at most.
+  // The largest number of bodies of each model.
   mostBodies() {
     const most = this.meta.models.map(() => 1);
     for (const { tracks } of this.solutions) {
@@ -117,7 +117,7 @@ class Stage {
     this.sun.shadow.normalBias = 0.002 * this.size;
     this.sun.shadow.radius = 4;
     this.scene.add(this.sky, this.sun, this.sun.target);
-    // Shadows need something to fall on, also beside the table.
+    // Shadows need a surface, even beside the table.
     let floor = low.y;
     for (const index of this.solutions[0]?.props ?? []) floor = Math.min(floor, this.prop(index).geometry.boundingBox.min.y);
     this.ground = new THREE.Mesh(new THREE.CircleGeometry((software ? 1.5 : 6) * this.size, 64), new THREE.ShadowMaterial({ opacity: 0.28 }));
@@ -132,9 +132,9 @@ class Stage {
     this.ground.material.opacity = dark ? 0.5 : 0.28;
   }
 
-  // Ready to be drawn: a solution at a time, another over it, trails, `plain` where the picture is small or must be made fast, flashes of impacts.
+  // Poses a solution at a time, perhaps with another over it, trails, and flashes of impacts; `plain` for pictures that are small or must be made fast.
   pose({ solution, time, other = null, trails = true, until = false, flash = false, camera, width, height, seen, plain }) {
-    // How wide a pixel is, in the middle of what is seen.
+    // The width of a pixel, in the middle of the view.
     const far = camera.position.distanceTo(this.middle), pixel = (2 * far * Math.tan((camera.fov * Math.PI) / 360)) / height;
     this.shadows(width);
     const wanted = new Set(solution.props);
@@ -151,7 +151,7 @@ class Stage {
     this.flash(flash ? solution : null, time, camera);
   }
 
-  // A map of shadows that is about as fine as the picture; one of each size is kept.
+  // A shadow map about as fine as the picture; one of each size is kept.
   shadows(width) {
     if (!software) return;
     const { shadow } = this.sun, size = Math.min(Math.max(2 ** Math.round(Math.log2(1.2 * width)), 256), 1024);

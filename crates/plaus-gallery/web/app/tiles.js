@@ -63,7 +63,7 @@ class Tiles {
     this.app.wake();
   }
 
-  // What is to be drawn now: what moves, and some of what is out of date.
+  // What to draw now: tiles that move, and some that are out of date.
   jobs(now) {
     const { app } = this, jobs = [];
     const moving = new Set(app.animateAll ? this.visible : []);
@@ -73,7 +73,7 @@ class Tiles {
       jobs.push({ canvas: this.canvas(solution), solution, time: cycle((since / 1000) * +app.player.speed.value, solution.duration), trails: true, flash: true, moving: true });
       this.stale.add(solution);
     }
-    // What moves comes first.
+    // Moving tiles come first.
     let budget = moving.size || app.player.playing ? 1 : software ? 3 : 12;
     for (const solution of this.stale) {
       if (moving.has(solution)) continue;

@@ -1,21 +1,21 @@
-// Lines along the ways of bodies, kept while there is room.
+// Lines along the paths of bodies, kept while there is room.
 
-// So many bodies have thin lines also in large pictures.
+// From this many bodies, lines are thin even in large pictures.
 const MANY = 12;
-// Lines that are kept.
+// Number of lines kept.
 const KEPT = 160;
-// Parts of a straight way: a body that leaves for ever is far away then.
+// Most parts of a straight path: a body that leaves for ever is far away by then.
 const MOST_PARTS = 200;
 
 class Trails {
-  // `size` is that of what is seen, in metres.
+  // `size` is the size of the view, in metres.
   constructor(scene, meta, size) {
     Object.assign(this, { scene, meta, size });
     this.made = new Map();
     this.shown = [];
   }
 
-  // Shows the ways of a solution, and of another, up to a time; `plain` lines are made faster; in a picture `width` by `height` CSS pixels.
+  // Shows the paths of a solution, and of another, up to a time, in a picture of `width` by `height` CSS pixels; `plain` lines are faster.
   draw(solution, other, until, plain, [width, height]) {
     this.hide();
     for (const [one, ghost] of [[solution, false], [other, true]]) {
@@ -84,8 +84,8 @@ class Trails {
   }
 }
 
-// The ways of all bodies, as pairs of ends in order of time. They leave out what makes a difference below `tolerance`; none is longer than `longest`,
-// as some renderers draw no line one pixel wide that begins behind the camera.
+// The paths of all bodies, as pairs of ends in order of time. Differences below `tolerance` are left out. No line is longer than `longest`,
+// because some renderers do not draw a line one pixel wide that begins behind the camera.
 function trailOf(solution, tolerance, longest) {
   const segments = [];
   solution.tracks.forEach(([, model], track) => {
@@ -102,7 +102,7 @@ function trailOf(solution, tolerance, longest) {
   return segments.sort((a, b) => a.time - b.time);
 }
 
-// Points along the way of one body: where its motion bends, and between where it is curved.
+// Points along the path of one body: where its motion changes, and in between where it is curved.
 function wayOf(solution, track) {
   const open = solution.open(), first = open.firsts[track], count = solution.tracks[track][2], points = [], at = new THREE.Vector3();
   const step = solution.duration / Math.min(Math.max(12, Math.floor(6000 / solution.tracks.length)), 160), end = solution.duration;

@@ -1,6 +1,6 @@
-// One WebGL context for all pictures: each is drawn into a scissored part of its canvas, then copied to where it is seen.
+// One WebGL context for all pictures: each is drawn into a scissored part of its canvas, then copied to its place on the page.
 
-// Pixels per pixel, along a side, of large pictures that move: the next where the one before is too slow.
+// Resolution of large moving pictures, along a side: if one is too slow, the next is used.
 const DETAILS = [1, 0.75, 0.58, 0.45, 0.36];
 
 class Views {
@@ -16,7 +16,7 @@ class Views {
     renderer.shadowMap.enabled = true;
     renderer.shadowMap.type = software ? THREE.BasicShadowMap : THREE.PCFShadowMap;
     this.width = this.height = 0;
-    this.detail = software ? 2 : 0; // the first picture soon, then as sharp as there is time for
+    this.detail = software ? 2 : 0; // the first picture soon, then as sharp as time allows
     this.slow = 0;
     this.lost = false;
     renderer.domElement.addEventListener('webglcontextlost', (event) => { event.preventDefault(); this.lost = true; });
@@ -58,7 +58,7 @@ class Views {
     flush();
   }
 
-  // Calls back once what was asked for so far is drawn: a processor that draws may be far behind.
+  // Calls back once everything asked for so far is drawn: software rendering may be far behind.
   drawn(then) {
     const gl = this.renderer.getContext(), fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
@@ -68,7 +68,7 @@ class Views {
     setTimeout(look, 0); // between frames: each waits for its own pictures
   }
 
-  // Copying out of the canvas costs as much as all of it: it shrinks when for a while only small pictures were drawn.
+  // Copying costs as much as copying the whole canvas, so it shrinks when only small pictures were drawn for a while.
   fit(width, height) {
     const { renderer } = this, roomy = 2 * width * height < this.width * this.height;
     this.roomy = roomy ? (this.roomy ?? 0) + 1 : 0;

@@ -4,8 +4,8 @@ use crate::target::{ModelError, Target};
 use crate::view::Reweighed;
 use plaus_dist::LogPotential;
 
-/// `p_w(draw)` restricted to outcomes whose log constraint is above a level: 1 there, 0 elsewhere. Where a simulation
-/// cannot exceed the level it may stop, as it does below the floor of a chain.
+/// `p_w(draw)` restricted to outcomes with a log constraint above a level: 1 there, 0 elsewhere. A simulation that
+/// cannot exceed the level may stop, as it does below the floor of a chain.
 pub(super) struct Above<'a, T> {
     pub(super) target: &'a T,
     pub(super) level: LogPotential,

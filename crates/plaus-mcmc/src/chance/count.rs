@@ -5,23 +5,23 @@ use crate::target::Goal;
 use plaus_dist::Seed;
 use serde::{Deserialize, Serialize};
 
-/// Draws between two looks at whether to stop.
+/// Draws between two checks whether to stop.
 const AT_A_TIME: u64 = 16;
 
-/// What a batch counted.
+/// The counts of one batch.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Counted {
-    /// Independent draws of the prior.
+    /// Number of independent draws from the prior.
     pub draws: u64,
-    /// Those that reach the goal, then those that meet each of its parts.
+    /// Number of draws that reach the goal, then of those that meet each of its parts.
     pub hits: Vec<u64>,
 }
 
-/// Counts which of `draws` draws of the prior reach the goal of `target`, and which meet each of its `parts`.
+/// Counts how many of `draws` draws from the prior reach the goal of `target`, and how many meet each of its `parts`.
 ///
 /// # Errors
-/// [`ChanceError`] where the model fails, there are no draws to make, or the pulse was stopped.
+/// [`ChanceError`] if the model fails, there are no draws to make, or the pulse was stopped.
 pub fn count<T: Goal>(
     target: &T,
     parts: Parts<'_, T>,

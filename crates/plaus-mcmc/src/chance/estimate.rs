@@ -1,4 +1,4 @@
-//! What batches come to: a probability with its error, and whether two estimates can be of the same one.
+//! The result of batches: a probability with its error, and whether two estimates can be of the same probability.
 
 use super::{Counted, Split, Stoned};
 use plaus_dist::{math, normal_quantile};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Two-sided level of intervals.
 const LEVEL: f64 = 0.95;
-/// Estimates of one probability are called different that differ by more than all but this share would.
+/// Two estimates are called different if estimates of one probability would differ as much only in this share of cases.
 const ALARM: f64 = 1e-3;
 
 /// How a probability was estimated.
@@ -24,23 +24,23 @@ pub enum Method {
 /// An estimated probability.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Estimate {
-    /// How.
+    /// The method.
     pub method: Method,
     /// The estimate.
     pub probability: f64,
-    /// Its standard error; 0 where nothing was seen that tells it.
+    /// Its standard error; 0 if nothing was seen that would show it.
     pub error: f64,
-    /// Where the probability lies, with 95 % confidence if the method has seen every way to the goal.
+    /// 95 % confidence interval, if the method has seen every way to the goal.
     pub interval: [f64; 2],
-    /// Simulations it took.
+    /// Number of simulations that it took.
     pub simulations: u64,
-    /// Draws where it was counted, else batches.
+    /// Number of draws for counting, of batches for the other methods.
     pub count: u64,
 }
 
 impl Estimate {
-    /// Of event number `event` of those that were counted: a share of independent draws, with Wilson's interval (1927),
-    /// which holds for few hits and for none.
+    /// The probability of event number `event` from counts: a share of independent draws, with Wilson's interval
+    /// (1927), which also holds for few hits and for none.
     #[must_use]
     pub fn counted(batches: &[Counted], event: usize) -> Option<Self> {
         let draws: u64 = batches.iter().map(|batch| batch.draws).sum();
@@ -56,22 +56,22 @@ impl Estimate {
         Some(Self { method: Method::Counting, probability: share, error, interval, simulations: draws, count: draws })
     }
 
-    /// Of event number `event` of those that particles climbed to.
+    /// The probability of event number `event` from splitting.
     #[must_use]
     pub fn split(batches: &[Split], event: usize) -> Option<Self> {
         let values: Vec<f64> = batches.iter().filter_map(|batch| batch.probability.get(event).copied()).collect();
         Self::mean(Method::Splitting, &values, batches.iter().map(|batch| batch.simulations).sum())
     }
 
-    /// Of the goal, by stepping stones.
+    /// The probability of the goal from stepping stones.
     #[must_use]
     pub fn stones(batches: &[Stoned]) -> Option<Self> {
         let values: Vec<f64> = batches.iter().map(|batch| batch.probability).collect();
         Self::mean(Method::Stones, &values, batches.iter().map(|batch| batch.simulations).sum())
     }
 
-    /// The mean of independent estimates; error and interval, in the logarithm, from how they differ. `None` of fewer
-    /// than two.
+    /// The mean of independent estimates; error and interval follow, in the logarithm, from their differences. `None`
+    /// for fewer than two.
     fn mean(method: Method, values: &[f64], simulations: u64) -> Option<Self> {
         if values.len() < 2 {
             return None;
@@ -89,15 +89,15 @@ impl Estimate {
         Some(Self { method, probability, error, interval, simulations, count: values.len() as u64 })
     }
 
-    /// How far the logarithm may be off at the alarm's level.
+    /// The possible error of the logarithm, at the alarm's level.
     fn reach(&self) -> f64 {
         let freedom = if self.method == Method::Counting { u64::MAX } else { self.count - 1 };
         student(freedom, 1.0 - 0.5 * ALARM) * self.error / self.probability
     }
 }
 
-/// Quantile of Student's distribution, from the normal one's by the Cornish–Fisher expansion to the third order
-/// (Abramowitz & Stegun 26.7.5): within 1 % from 3 degrees of freedom on, at levels up to 97.5 %.
+/// Quantile of Student's distribution, from the normal one by the Cornish–Fisher expansion to third order (Abramowitz &
+/// Stegun 26.7.5): within 1 % for at least 3 degrees of freedom and levels up to 97.5 %.
 #[must_use]
 pub fn student(freedom: u64, level: f64) -> f64 {
     let (z, n) = (normal_quantile(level), freedom as f64);
@@ -108,21 +108,21 @@ pub fn student(freedom: u64, level: f64) -> f64 {
     z + (first + (second + third / n) / n) / n
 }
 
-/// Two estimates that cannot well be of one probability.
+/// Two estimates that are unlikely to be of one probability.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Disagreement {
     /// The method that found less.
     pub less: Method,
     /// The method that found more.
     pub more: Method,
-    /// How many times as much; `None` where the other found nothing.
+    /// How many times as much; `None` if the other found nothing.
     pub factor: Option<f64>,
 }
 
-/// Which of the estimates differ by more than one in a thousand right ones would.
+/// The pairs of estimates that differ by more than one in a thousand correct pairs would.
 ///
-/// Where one found nothing, the other is held against it: as many independent draws as it counted would all have missed
-/// what comes up that often, or as many batches.
+/// If one found nothing, the other is tested against it: would as many independent draws as it counted, or as many
+/// batches, all have missed something with that probability?
 #[must_use]
 pub fn disagree(estimates: &[Estimate]) -> Vec<Disagreement> {
     let pairs = estimates.iter().enumerate().flat_map(|(k, a)| estimates[k + 1..].iter().map(move |b| (a, b)));
@@ -132,7 +132,7 @@ pub fn disagree(estimates: &[Estimate]) -> Vec<Disagreement> {
             let apart = math::ln(more.probability / less.probability);
             apart > (math::square(less.reach()) + math::square(more.reach())).sqrt()
         } else if less.method == Method::Counting {
-            // The least that the other one allows.
+            // The least value that the other one allows.
             more.probability > 0.0 && less.count as f64 * more.probability * math::exp(-more.reach()) > -math::ln(ALARM)
         } else {
             more.interval[0] > 0.0

@@ -1,4 +1,4 @@
-//! How likely it is that a draw of the prior reaches the goal: three estimators that check each other.
+//! How likely it is that a draw from the prior reaches the goal: three estimators that check each other.
 //!
 //! | | for | error, relative |
 //! | --- | --- | --- |
@@ -6,13 +6,13 @@
 //! | [`split()`]: particles climb the constraint, level by level | rare goals, also behind plateaus | about `√(ln(1/p)/particles)` |
 //! | [`stones()`]: chains on a ladder between prior and target | rare goals of smooth constraints | by how chains mix |
 //!
-//! All draw from [`Target::start`], which must have the law of the prior; draws of density 0 are
-//! no draws. Each comes in batches, which are functions of target, seed and number alone, so they can be made anywhere
-//! and in any order. [`Estimate`] is what they come to, with an error from how batches differ.
+//! All draw from [`Target::start`], which must follow the law of the prior; draws of density 0 do not count. Each works
+//! in batches, which are functions of target, seed and number alone, so that they can be made anywhere and in any
+//! order. [`Estimate`] is their result, with an error from the differences between batches.
 //!
-//! Counting is right whatever the world is like. The two others go by what their particles and chains have seen: a way
-//! to the goal that none of them found is missing from both, and then they are too low. Where they [`disagree`]
-//! beyond their errors, at least one has missed something.
+//! Counting is right for every world. The other two rely on what their particles and chains have seen: if none of them
+//! found a way to the goal, it is missing from both, and they are too low. If methods [`disagree`] beyond their errors,
+//! at least one has missed something.
 
 mod above;
 mod count;
@@ -30,11 +30,11 @@ use crate::target::{Goal, ModelError, State, StateOf, StateRefOf, Target};
 use plaus_dist::{ChainStreams, Purpose, Seed, Stream};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
-/// Draws of density 0 in a row that are too many.
+/// This many draws of density 0 in a row are too many.
 const TRIES: u64 = 10_000_000;
-/// What a draw of the prior is made from.
+/// Purpose of the random numbers for a draw from the prior.
 const DRAW: Purpose = Purpose(4);
-/// Which particle another one is put in place of.
+/// Purpose of the random numbers that choose the particle to copy.
 const BRANCH: Purpose = Purpose(5);
 
 /// Why there is no estimate.
@@ -58,25 +58,25 @@ pub enum ChanceError {
         /// How.
         source: ChainError,
     },
-    /// Nothing can be estimated from numbers like these.
-    #[error("`{name}` is {value}; it must be at least {least}")]
+    /// A number from which nothing can be estimated.
+    #[error("`{name}` is {value}, but must be at least {least}")]
     Plan {
         /// The number.
         name: &'static str,
-        /// What it is.
+        /// Its value.
         value: u64,
-        /// What it must be.
+        /// Its least allowed value.
         least: u64,
     },
     /// The operating system gave no thread.
     #[error("cannot start worker threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
-    /// Somebody asked for an end.
+    /// A stop was requested.
     #[error("stopped")]
     Stopped,
 }
 
-/// Simulations made so far, for other threads, and a request to stop.
+/// Number of simulations made so far, for other threads, and a request to stop.
 #[derive(Debug, Default)]
 pub struct ChancePulse {
     simulations: AtomicU64,
@@ -84,18 +84,18 @@ pub struct ChancePulse {
 }
 
 impl ChancePulse {
-    /// Simulations, of all batches.
+    /// Number of simulations, over all batches.
     #[must_use]
     pub fn simulations(&self) -> u64 {
         self.simulations.load(Relaxed)
     }
 
-    /// Asks all batches to give up.
+    /// Asks all batches to stop.
     pub fn stop(&self) {
         self.stopped.store(true, Relaxed);
     }
 
-    /// Whether batches are to give up.
+    /// Whether batches should stop.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.stopped.load(Relaxed)
@@ -107,12 +107,12 @@ impl ChancePulse {
     }
 }
 
-/// Streams of a batch: none of them is a chain's of a run.
+/// Streams of a batch, which differ from those of all chains of a run.
 fn streams(seed: Seed, batch: u32) -> ChainStreams {
     seed.chain(1 << 63 | u64::from(batch))
 }
 
-/// A draw of the prior, wholly evaluated.
+/// A draw from the prior, fully evaluated.
 pub(crate) fn prior<T: Target>(
     target: &T,
     stream: &mut Stream,
@@ -127,14 +127,14 @@ pub(crate) fn prior<T: Target>(
     Err(ModelError::new(format!("none of {TRIES} start draws has positive prior density")))
 }
 
-/// Says of each part of a goal whether a state meets it, in as many places as there are parts.
+/// Sets, for each part of a goal, whether a state meets it; the slice has one place for each part.
 pub type Met<'a, T> = &'a (dyn Fn(&T, StateRefOf<'_, T>, &mut [bool]) + Sync);
 
-/// Parts of a goal that states may meet one by one: each is an event of its own, besides the goal.
+/// Parts of a goal that states may meet one by one. Each is an event of its own, besides the goal.
 pub struct Parts<'a, T: Target> {
-    /// How many.
+    /// Number of parts.
     pub count: usize,
-    /// Which of them a state meets.
+    /// Sets which of them a state meets.
     pub met: Met<'a, T>,
 }
 
@@ -146,12 +146,13 @@ impl<T: Target> Clone for Parts<'_, T> {
 impl<T: Target> Copy for Parts<'_, T> {}
 
 impl<T: Target> Parts<'_, T> {
-    /// None: only the goal is asked about.
+    /// No parts: only the goal counts.
     pub const NONE: Self = Self { count: 0, met: &|_, _, _| {} };
 }
 
 impl<T: Goal> Parts<'_, T> {
-    /// Whether a state reaches the goal, then whether it meets each part; `met` has a place more than there are parts.
+    /// Sets whether a state reaches the goal, then whether it meets each part; `met` has one place more than there are
+    /// parts.
     fn look(&self, target: &T, state: StateRefOf<'_, T>, met: &mut [bool]) {
         if let Some((all, parts)) = met.split_first_mut() {
             *all = target.class(state).is_some();

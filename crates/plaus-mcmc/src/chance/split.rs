@@ -1,19 +1,19 @@
-//! Multilevel splitting: particles of the prior climb the constraint, the lowest first.
+//! Multilevel splitting: particles from the prior climb the constraint, the lowest first.
 //!
-//! In each round all particles at the lowest log constraint ℓ die; each is put in place again as a copy of one that
-//! lives, moved on within the prior above ℓ. Of N particles k die: the share of the prior above ℓ, among what is at ℓ
-//! or above it, is taken to be `1 − k/N`. What dies leaves its share of the weight behind, so the estimate of any
-//! event's probability is
+//! In each round all particles at the lowest log constraint ℓ die. Each is replaced by a copy of a living one, moved on
+//! within the prior above ℓ. If k of N particles die, the share of the prior above ℓ, relative to ℓ and above, is
+//! estimated as `1 − k/N`. The dead leave their share of the weight behind, so the estimate of any event's probability
+//! is
 //!
 //! `Σ_rounds w/N · (dead that meet it) + w/N · (living ones at the end that meet it)`,  `w = Π (1 − k/N)`.
 //!
-//! Dying together is what makes that right where many particles are at one level: constraints that count fulfilled
-//! parts have nothing but plateaus. The usual estimator, a factor `1 − 1/N` for each death, is not even consistent
-//! there (C. Walter, "Rare event simulation and splitting for discontinuous random variables", ESAIM: P&S 19, 2015, arXiv
-//! 1507.00919, whose correction this is; the weighted sum is unbiased for any event, and any rule of stopping, by
-//! Bréhier, Gazeau, Goudenège, Lelièvre & Rousset, "Unbiasedness of some generalized adaptive multilevel splitting
-//! algorithms", Annals of Applied Probability 26, 2016). It needs draws of the prior above ℓ that are independent of
-//! the copied particle; a number of steps of the target's moves stands in for that.
+//! Letting all at one level die together makes this right where many particles share a level: constraints that count
+//! fulfilled parts consist of plateaus. The usual estimator, a factor `1 − 1/N` for each death, is not even consistent
+//! there (C. Walter, "Rare event simulation and splitting for discontinuous random variables", ESAIM: P&S 19, 2015,
+//! arXiv 1507.00919, gives this correction; Bréhier, Gazeau, Goudenège, Lelièvre & Rousset, "Unbiasedness of some
+//! generalized adaptive multilevel splitting algorithms", Annals of Applied Probability 26, 2016, show that the
+//! weighted sum is unbiased for any event and any stopping rule). It needs draws from the prior above ℓ that are
+//! independent of the copied particle; a number of steps of the target's moves approximates that.
 
 use super::above::Above;
 use super::{BRANCH, ChanceError, ChancePulse, DRAW, Parts, at_least, prior, streams};
@@ -26,7 +26,7 @@ use plaus_dist::{ChainStreams, LogPotential, Seed};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How particles are split.
+/// Settings of splitting.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Splitting {
@@ -34,23 +34,23 @@ pub struct Splitting {
     pub particles: u32,
     /// Steps that a copy makes, at least 1.
     pub steps: u64,
-    /// A batch ends where the weight of what is left falls below this.
+    /// A batch ends when the weight of what is left falls below this.
     pub least: f64,
 }
 
-/// What a batch came to.
+/// The result of a batch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Split {
     /// The estimated probability of the goal, then of each of its parts.
     pub probability: Vec<f64>,
-    /// Levels that were climbed.
+    /// Number of levels climbed.
     pub levels: u64,
-    /// Particles that died.
+    /// Number of particles that died.
     pub deaths: u64,
-    /// Simulations, also those that stopped early.
+    /// Number of simulations, including those that stopped early.
     pub simulations: u64,
-    /// Of how many of the first particles the last ones come.
+    /// Number of the first particles that the last ones descend from.
     pub ancestors: u32,
 }
 
@@ -65,7 +65,7 @@ struct Particle<D, O> {
 /// Splits one batch of particles towards the goal of `target`, with its `moves`.
 ///
 /// # Errors
-/// [`ChanceError`] where the model fails, the plan makes no batch, or the pulse was stopped.
+/// [`ChanceError`] if the model fails, the plan makes no batch, or the pulse was stopped.
 pub fn split<T: Goal + 'static>(
     (target, moves): (&T, &Arc<Mixture<T>>),
     parts: Parts<'_, T>,
@@ -92,10 +92,10 @@ struct Population<'a, T: Goal> {
     pulse: &'a ChancePulse,
     streams: ChainStreams,
     particles: Vec<Particle<T::Draw, T::Outcome>>,
-    /// Share of the prior that the particles stand for.
+    /// Share of the prior that the particles represent.
     weight: f64,
     made: Split,
-    /// Steps made by all copies: each has random numbers of its own.
+    /// Number of steps made by all copies: each step has random numbers of its own.
     steps: u64,
 }
 
@@ -111,7 +111,8 @@ impl<'a, T: Goal + 'static> Population<'a, T> {
         let (streams, mut scratch) = (streams(seed, batch), T::Scratch::default());
         let mut particles = Vec::with_capacity(splitting.particles as usize);
         for draw in 0..u64::from(splitting.particles) {
-            // Not the draws that are counted: an estimate that shared them would agree for nothing.
+            // These draws differ from the counted ones: an estimate that shared them would agree without being
+            // independent.
             let mut stream = streams.at((1 << 47) + draw, DRAW);
             let state = prior(target, &mut stream, &mut scratch);
             let state = state.map_err(|source| ChanceError::Model { batch, draw, source })?;
@@ -127,14 +128,14 @@ impl<'a, T: Goal + 'static> Population<'a, T> {
         ChanceError::Model { batch: self.batch, draw: 0, source: crate::target::ModelError::new(message) }
     }
 
-    /// The lowest level; that of outcomes that the constraint forbids is the lowest of all.
+    /// The lowest level; outcomes that the constraint forbids are at the lowest level of all.
     fn lowest(&self) -> LogPotential {
         let mut levels = self.particles.iter().map(|particle| particle.level);
         let first = levels.next().unwrap_or(LogPotential::ZERO);
         levels.fold(first, |lowest, level| if level < lowest { level } else { lowest })
     }
 
-    /// Whether there is nothing to climb for: all have reached the goal, are at one level, or stand for next to
+    /// Whether there is nothing left to climb for: all have reached the goal, are at one level, or represent next to
     /// nothing.
     fn is_there(&self) -> bool {
         let lowest = self.lowest();
@@ -143,7 +144,7 @@ impl<'a, T: Goal + 'static> Population<'a, T> {
             || self.weight < self.splitting.least
     }
 
-    /// Lets the lowest die and copies of others take their places.
+    /// Removes the lowest particles and replaces them by copies of others.
     fn climb(&mut self, moves: &Mixture<Above<'a, T>>) -> Result<(), ChanceError> {
         let level = self.lowest();
         let all = self.particles.len() as f64;

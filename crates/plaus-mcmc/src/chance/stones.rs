@@ -1,4 +1,4 @@
-//! Stepping stones: tempered replicas on a ladder between prior and target, each rung as a stone to the next.
+//! Stepping stones: tempered replicas on a ladder between prior and target, where each rung is a stone to the next.
 //!
 //! With V the log constraint, rung k samples `π_k ∝ p_w exp(β_k V)`, from β_0 = 0 to β_K = 1. The normalising constant
 //! of the target against the prior is a product of ratios that each step can see well (Xie, Lewis, Fan, Kuo & Chen,
@@ -6,8 +6,8 @@
 //!
 //! `Z = P(V > −∞) · Π_k E_k[exp((β_k+1 − β_k) V)]`,  and  `P(goal) = Z · E_K[1_goal exp(−V)]`.
 //!
-//! The first factor is there because rung 0 samples what the constraint does not forbid. A batch is one set of
-//! replicas, with its own ladder, adapted in its warm-up.
+//! The first factor is needed because rung 0 samples only what the constraint allows. A batch is one set of replicas
+//! with its own ladder, adapted in its warm-up.
 
 use super::{ChanceError, ChancePulse, at_least};
 use crate::moves::Mixture;
@@ -18,7 +18,7 @@ use crate::target::Goal;
 use plaus_dist::{Seed, math};
 use serde::{Deserialize, Serialize};
 
-/// How stones are laid.
+/// Settings of stepping stones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stones {
@@ -26,25 +26,25 @@ pub struct Stones {
     pub rungs: u32,
     /// Iterations between two swaps, at least 1.
     pub swap_every: u64,
-    /// Iterations in which the ladder is adapted, and nothing is taken.
+    /// Iterations in which the ladder is adapted, and nothing is used.
     pub warmup: u64,
-    /// Iterations of each rung that the estimate is made of, at least 1.
+    /// Iterations of each rung that the estimate uses, at least 1.
     pub iterations: u64,
 }
 
-/// What a batch came to.
+/// The result of a batch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stoned {
     /// The estimated probability of the goal.
     pub probability: f64,
-    /// The estimated `ln Z`; −10³⁰⁸ where nothing is allowed.
+    /// The estimated `ln Z`; −10³⁰⁸ if nothing is allowed.
     pub log_z: f64,
     /// Share of the target's states that reach the goal.
     pub satisfying: f64,
     /// The barrier between prior and target: see [`Ladder::barrier`](crate::Ladder::barrier).
     pub barrier: f64,
-    /// Simulations, also those that stopped early.
+    /// Number of simulations, including those that stopped early.
     pub simulations: u64,
 }
 
@@ -59,7 +59,7 @@ struct LogMean {
 impl LogMean {
     const NONE: Self = Self { most: f64::NEG_INFINITY, sum: 0.0, count: 0 };
 
-    /// Takes in `exp(log)`.
+    /// Adds `exp(log)`.
     fn note(&mut self, log: f64) {
         self.count += 1;
         if log <= self.most {
@@ -78,7 +78,7 @@ impl LogMean {
 /// Estimates the probability of the goal of `target` from one set of tempered replicas, which walk by its `moves`.
 ///
 /// # Errors
-/// [`ChanceError`] where a chain fails, the plan makes no batch, or the pulse was stopped.
+/// [`ChanceError`] if a chain fails, the plan makes no batch, or the pulse was stopped.
 pub fn stones<T: Goal>(
     target: &T,
     moves: &Mixture<T>,
@@ -93,8 +93,8 @@ pub fn stones<T: Goal>(
     {
         at_least(name, value, least)?;
     }
-    // Batches are what runs side by side. Within one, replicas that are handed from thread to thread after each
-    // iteration would cost more than what they do.
+    // Batches run in parallel. Within a batch, passing replicas from thread to thread after each iteration would cost
+    // more than their work.
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     parallel::install(&alone, || lay(target, moves, seed, batch, plan, pulse))
 }
@@ -111,7 +111,7 @@ fn lay<T: Goal>(
     let fresh = Mixture::of(Box::new(Redraw));
     let course = Course { target, moves, fresh: &fresh, tempering: Tempering { rungs, swap_every, warmup } };
     let fail = |source| ChanceError::Chain { batch, source };
-    // Numbers of chains from the far end, which no run has.
+    // Numbers of chains from the far end, which no run uses.
     let mut replicas = Replicas::start(course, seed, u32::MAX - batch).map_err(fail)?.adapting(warmup);
     let mut seen = made(&replicas, pulse, 0)?;
     while replicas.iteration() < warmup {
@@ -140,7 +140,7 @@ fn lay<T: Goal>(
     })
 }
 
-/// What is taken from the rungs after each iteration.
+/// Data collected from the rungs after each iteration.
 struct Walk {
     steps: Vec<LogMean>,
     goal: LogMean,
@@ -162,13 +162,13 @@ impl Walk {
     }
 }
 
-/// Draws of the first rung that the constraint allows, and all that were simulated.
+/// Number of draws of the first rung that the constraint allows, and of all that were simulated.
 fn allowed<T: Goal>(replicas: &Replicas<'_, T>) -> (u64, u64) {
     let counts = replicas.counts_of(0).first().copied().unwrap_or_default();
     (counts.accepted, counts.accepted + counts.rejected + counts.rejected_early)
 }
 
-/// Tells the pulse of simulations beyond the `seen` ones; gives all.
+/// Reports simulations beyond the `seen` ones to the pulse; gives their total.
 fn made<T: Goal>(replicas: &Replicas<'_, T>, pulse: &ChancePulse, seen: u64) -> Result<u64, ChanceError> {
     let rungs = 0..replicas.climb().ladder().betas().len();
     let counts = rungs.flat_map(|rung| replicas.counts_of(rung));

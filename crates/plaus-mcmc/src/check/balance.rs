@@ -9,14 +9,14 @@ use std::fmt;
 /// How to check balance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
-    /// Largest allowed `|π_i P_ij − π_j P_ji|`, and deviation of a row sum from 1. Probabilities add up to 1, so 1e-12
-    /// is some 10⁴ rounding errors.
+    /// Largest allowed `|π_i P_ij − π_j P_ji|`, and largest deviation of a row sum from 1. Probabilities add up to 1,
+    /// so 1e-12 is about 10⁴ rounding errors.
     pub tolerance: f64,
     /// Seed of the proposals that are compared with the lists.
     pub seed: Seed,
-    /// Proposals made from each state; 0 leaves that comparison out.
+    /// Proposals made from each state; 0 skips that comparison.
     pub tries: u64,
-    /// Probability of a false alarm of that comparison, over all moves together, above 0 and below 1.
+    /// Probability of a false alarm in that comparison, over all moves together, above 0 and below 1.
     pub false_alarm: f64,
     /// Largest allowed difference between the ratio an accept step uses and [`crate::Move::log_ratio`], in nats.
     pub ratio_tolerance: f64,
@@ -33,7 +33,7 @@ impl Default for Balance {
 pub struct Unbalance {
     /// `max |π_i P_ij − π_j P_ji|`.
     pub value: f64,
-    /// Indices (i, j) into the list of states, where there is any imbalance.
+    /// Indices (i, j) into the list of states, if there is any imbalance.
     pub states: Option<(usize, usize)>,
 }
 
@@ -46,7 +46,7 @@ pub struct MoveBalance {
     pub unbalance: Unbalance,
     /// Largest deviation of the sum of its branches' probabilities from 1.
     pub row_error: f64,
-    /// How what it proposes compares with its list; `None` for no tries.
+    /// How its proposals compare with its list; `None` without tries.
     pub frequencies: Option<Frequencies>,
 }
 
@@ -61,7 +61,7 @@ pub struct BalanceReport {
     pub moves: Vec<MoveBalance>,
     /// The mixture.
     pub mixture: Unbalance,
-    /// `max_j |Σ_i π_i P_ij − π_j|` of the mixture: whether the target is invariant, balanced or not.
+    /// `max_j |Σ_i π_i P_ij − π_j|` of the mixture: shows whether the target is invariant, even without balance.
     pub drift: f64,
 }
 
@@ -72,7 +72,7 @@ impl BalanceReport {
         self.mixture_passed() && self.moves.iter().all(|one| one.unbalance.value <= self.plan.tolerance)
     }
 
-    /// The same, except that a move need not be in balance by itself: for moves that are each other's reverse.
+    /// The same, except that a single move need not be in balance: for moves that are each other's reverse.
     #[must_use]
     pub fn mixture_passed(&self) -> bool {
         let Balance { tolerance, ratio_tolerance, .. } = self.plan;
@@ -117,7 +117,7 @@ impl fmt::Display for BalanceReport {
 /// Time and memory grow with the square of the number of states.
 ///
 /// # Errors
-/// [`CheckError`] where the model fails, a state is missing from `draws` or twice in it, or a setting or weight is out
+/// [`CheckError`] if the model fails, a state is missing from `draws` or twice in it, or a setting or weight is out
 /// of range.
 pub fn balance<T: Target>(
     target: &T,
@@ -175,7 +175,7 @@ fn law<D, O>(states: &[State<D, O>]) -> Vec<f64> {
     weights.into_iter().map(|weight| weight / total).collect()
 }
 
-/// Where each branch from each state leads. States of density 0 are never left from.
+/// Where each branch from each state leads. States of density 0 are never left.
 fn ways<T: Target>(target: &T, kernel: &dyn Enumerable<T>, states: &[StateOf<T>]) -> Result<Vec<Vec<Way>>, CheckError> {
     let from = |(from, state): (usize, &StateOf<T>)| -> Result<Vec<Way>, CheckError> {
         if state.log_p().is_zero() {

@@ -1,4 +1,4 @@
-//! Do savings change a state?
+//! Do optimisations change a state?
 
 use super::CheckError;
 use crate::chain::{Chain, ChainError, Verdict};
@@ -9,8 +9,8 @@ use plaus_dist::{LogDensity, LogPotential, Seed, Stream};
 use std::fmt;
 use std::sync::Arc;
 
-/// A target simulated the plain way: never stopped early, nothing reused from the current state, nothing remembered
-/// from one simulation to the next.
+/// A target simulated in the plain way: never stopped early, nothing reused from the current state, nothing remembered
+/// between simulations.
 #[derive(Debug)]
 pub struct NeverEarly<'a, T> {
     target: &'a T,
@@ -65,7 +65,7 @@ impl<T: Target + 'static> View for NeverEarly<'_, T> {
 pub struct Difference {
     /// The first iteration at which they differ; 0 is the start.
     pub iteration: u64,
-    /// What of the state, or the step, differs.
+    /// The part of the state, or of the step, that differs.
     pub field: &'static str,
 }
 
@@ -76,7 +76,7 @@ pub struct EarlyExitReport {
     pub seed: Seed,
     /// Iterations compared.
     pub iterations: u64,
-    /// How many of them stopped a simulation early. With 0 of them the check has not tested early stops.
+    /// How many of them stopped a simulation early. If there are none, the check has not tested early stops.
     pub stopped_early: u64,
     /// Where the chains part, if they do.
     pub difference: Option<Difference>,
@@ -104,13 +104,13 @@ impl fmt::Display for EarlyExitReport {
     }
 }
 
-/// Runs a chain with all the savings its target makes (early stops, reuse of the current state, scratch memory) beside
-/// its plain twin ([`NeverEarly`]) and compares them state by state, bit by bit.
+/// Runs a chain with all optimisations of its target (early stops, reuse of the current state, scratch memory) beside
+/// its plain twin ([`NeverEarly`]), and compares them state by state, bit by bit.
 ///
 /// Draws and outcomes are compared by `==`, so one that holds a NaN differs from itself.
 ///
 /// # Errors
-/// [`CheckError::Chain`] where either chain fails.
+/// [`CheckError::Chain`] if either chain fails.
 pub fn early_exit<T>(
     target: &T,
     moves: Arc<Mixture<T>>,

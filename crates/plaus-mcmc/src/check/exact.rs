@@ -7,12 +7,12 @@ use crate::target::{ModelError, State, StateOf, Target};
 use plaus_dist::{LogPotential, Seed, Stream, math, open_unit};
 use rand::RngExt;
 
-/// Draws tried for one that is kept, before giving up.
+/// Number of draws tried for one that is kept, before giving up.
 const TRIES: u64 = 10_000_000;
 
-/// Draws of the prior, as [`Target::start`] makes them; those of prior density 0 are thrown away. They are exact draws
-/// of `target` where its constraint is switched off ([`super::PriorOnly`]) **and** `start` draws from the prior: where
-/// it does not, [`super::one_step()`] says so.
+/// Draws from the prior, as [`Target::start`] makes them; those of prior density 0 are dropped. They are exact draws of
+/// `target` if its constraint is switched off ([`super::PriorOnly`]) **and** `start` draws from the prior; if it does
+/// not, [`super::one_step()`] detects that.
 pub fn prior<T: Target>(target: &T) -> impl FnMut(&mut Stream) -> Result<StateOf<T>, ModelError> {
     let mut scratch = T::Scratch::default();
     move |stream| {
@@ -26,11 +26,11 @@ pub fn prior<T: Target>(target: &T) -> impl FnMut(&mut Stream) -> Result<StateOf
     }
 }
 
-/// Exact draws of `target` by rejection: a draw of the prior is kept with probability `exp(log p_c − bound)`. Each
-/// costs about `exp(bound)` over the mean of `p_c` under the prior; a sampler that has to try 10⁷ times in a row gives
-/// up with an error, as does one that meets a constraint above `bound`.
+/// Exact draws of `target` by rejection: a draw from the prior is kept with probability `exp(log p_c − bound)`. Each
+/// costs about `exp(bound)` over the mean of `p_c` under the prior. A sampler that fails 10⁷ times in a row gives up
+/// with an error, and so does one that meets a constraint above `bound`.
 ///
-/// `bound` is the largest `log p_c` there is, or anything above.
+/// `bound` is the largest possible `log p_c`, or any larger number.
 pub fn rejection<T: Target>(
     target: &T,
     bound: LogPotential,
@@ -47,7 +47,7 @@ pub fn rejection<T: Target>(
                 return Ok(state);
             }
         }
-        Err(ModelError::new(format!("rejection kept none of {TRIES} draws of the prior")))
+        Err(ModelError::new(format!("rejection kept none of {TRIES} draws from the prior")))
     }
 }
 
@@ -63,11 +63,11 @@ pub fn any_of<D: Clone, O: Clone>(
     }
 }
 
-/// Every `every`-th of the states that a chain visits, `count` of them, its start left out: states typical of the
-/// target, with [`any_of`] a source for [`super::ratios()`].
+/// Every `every`-th state that a chain visits, `count` of them, without its start. These states are typical of the
+/// target; with [`any_of`] they are a source for [`super::ratios()`].
 ///
 /// # Errors
-/// [`CheckError::Chain`] where the chain fails.
+/// [`CheckError::Chain`] if the chain fails.
 pub fn visited<T: Target>(
     target: &T,
     moves: &Mixture<T>,

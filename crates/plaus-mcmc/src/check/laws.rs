@@ -5,17 +5,18 @@ use std::cmp::Ordering;
 use std::f64::consts::LN_2;
 use std::fmt;
 
-/// A p-value (or an upper bound of one) kept as its logarithm, at most 0, so that overwhelming evidence stays a number.
+/// A p-value (or an upper bound of one), kept as its logarithm, at most 0, so that overwhelming evidence remains a
+/// number.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct LogP(f64);
 
 impl LogP {
     /// No evidence: p = 1.
     pub const ONE: Self = Self(0.0);
-    /// What cannot happen has happened: p = 0.
+    /// Something impossible has happened: p = 0.
     pub const ZERO: Self = Self(f64::NEG_INFINITY);
 
-    /// From ln p; what exceeds 0 counts as 0.
+    /// From ln p; values above 0 count as 0.
     pub(super) fn of(ln_p: f64) -> Self {
         Self(ln_p.min(0.0))
     }
@@ -26,7 +27,7 @@ impl LogP {
         self.0
     }
 
-    /// p itself; 0 where it is below the smallest float.
+    /// p itself; 0 if it is below the smallest float.
     #[must_use]
     pub fn value(self) -> f64 {
         math::exp(self.0)
@@ -84,10 +85,10 @@ pub(super) fn same_law(a: &[f64], b: &[f64]) -> LogP {
     LogP::of(LN_2 - size * distance * distance)
 }
 
-/// Tests that counts over cells come from the probabilities, by the relative entropy D of what was seen: for
-/// `t = n D > k − 1`, `P ≤ exp(−t) (e t / (k − 1))^(k − 1)` (Agrawal, "Finite-sample concentration of the multinomial
-/// in relative entropy", IEEE Trans. Inf. Theory 66, 2020). 2t is the G statistic, asymptotically χ² with k − 1 degrees
-/// of freedom; the bound needs no cell to be well filled.
+/// Tests that counts over cells come from the given probabilities, by the relative entropy D of the observed shares:
+/// for `t = n D > k − 1`, `P ≤ exp(−t) (e t / (k − 1))^(k − 1)` (Agrawal, "Finite-sample concentration of the
+/// multinomial in relative entropy", IEEE Trans. Inf. Theory 66, 2020). 2t is the G statistic, asymptotically χ² with k
+/// − 1 degrees of freedom; the bound also holds for cells with few counts.
 pub(super) fn multinomial(cells: &[(u64, f64)]) -> LogP {
     let total: u64 = cells.iter().map(|(count, _)| count).sum();
     let free = cells.iter().filter(|(_, probability)| *probability > 0.0).count().saturating_sub(1) as f64;
@@ -105,15 +106,15 @@ pub(super) fn multinomial(cells: &[(u64, f64)]) -> LogP {
     }
 }
 
-/// The values of one statistic before the step, after it, and of draws that were never stepped from.
+/// The values of one statistic before the step, after it, and for fresh draws without a step.
 pub(super) struct Column {
     pub(super) before: Vec<f64>,
     pub(super) after: Vec<f64>,
     pub(super) fresh: Vec<f64>,
 }
 
-/// The strongest evidence of several tests that the law of a statistic after a step is the one before, and which test
-/// found it. The second number is how many tests there were.
+/// The strongest evidence, over several tests, that a step changes the law of a statistic, and the test that found it.
+/// The second number is how many tests there were.
 pub(super) fn compare(column: &Column, cells: usize) -> ((LogP, String), usize) {
     let Column { before, after, fresh } = column;
     let pairs = || before.iter().zip(after);
@@ -144,7 +145,7 @@ pub(super) fn compare(column: &Column, cells: usize) -> ((LogP, String), usize) 
     (strongest.unwrap_or((LogP::ONE, String::new())), count)
 }
 
-/// Edges between cells that hold equal shares of a sorted sample; between all its values where they are few.
+/// Edges between cells with equal shares of a sorted sample; if it has few values, edges between all of them.
 fn edges(sorted: &[f64], cells: usize) -> Vec<f64> {
     let mut values = Vec::new();
     for &x in sorted {

@@ -7,8 +7,8 @@
 //! | [`one_step()`] | exact draws of the target | a kernel that moves the law of exact draws, at a stated false-alarm rate |
 //! | [`early_exit()`] | nothing more | savings (early stops, reuse, scratch memory) that change a state |
 //!
-//! `ratios` alone proves little: a move that proposes from another law than its ratio assumes passes it. `one_step` is
-//! the judge; at λ = 1 it needs nothing but the prior ([`PriorOnly`], [`prior`]), and on a toy [`rejection`] gives it
+//! `ratios` alone proves little: a move that proposes from another law than its ratio assumes can pass it. `one_step`
+//! is decisive. At λ = 1 it needs nothing but the prior ([`PriorOnly`], [`prior`]); on a toy, [`rejection`] gives it
 //! exact draws at λ > 1.
 //!
 //! ```
@@ -80,10 +80,10 @@ use plaus_dist::Purpose;
 const EXACT: Purpose = Purpose(12);
 /// Exact draws to compare with.
 const FRESH: Purpose = Purpose(13);
-/// Proposals made outside of a chain.
+/// Proposals made outside a chain.
 const TRY: Purpose = Purpose(14);
 
-/// Why a check could not be carried out. A check that finds something is no error: it is in the report.
+/// Why a check could not be carried out. A finding of a check is not an error: it is in the report.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckError {
     /// The model, a move or an exact sampler failed.
@@ -102,7 +102,7 @@ pub enum CheckError {
         /// How.
         source: ChainError,
     },
-    /// A statistic is no finite number.
+    /// A statistic is not a finite number.
     #[error("statistic `{name}` is {value} in sample {index}")]
     Statistic {
         /// The statistic.
@@ -112,7 +112,7 @@ pub enum CheckError {
         /// The sample.
         index: u64,
     },
-    /// A setting is outside of its range.
+    /// A setting is outside its range.
     #[error("{setting} is {value}, but must be {allowed}")]
     Setting {
         /// The setting.
@@ -125,13 +125,13 @@ pub enum CheckError {
     /// The list of a toy's states holds one twice.
     #[error("states {first} and {second} of the list are equal")]
     Repeated {
-        /// Where it is first.
+        /// Its first index.
         first: usize,
-        /// Where it is again.
+        /// Its second index.
         second: usize,
     },
     /// A move leads from a listed state to one of positive prior density that is not listed.
-    #[error("move `{name}` leads from state {from} to a state of positive density that the list lacks")]
+    #[error("move `{name}` leads from state {from} to a state of positive density that is not in the list")]
     Unlisted {
         /// The move.
         name: String,
@@ -144,7 +144,7 @@ pub enum CheckError {
 }
 
 impl CheckError {
-    /// Tells which sample failed.
+    /// Adds which sample failed.
     fn model(index: u64) -> impl Fn(ModelError) -> Self {
         move |source| Self::Model { index, source }
     }
@@ -154,7 +154,7 @@ impl CheckError {
         if holds { Ok(()) } else { Err(Self::Setting { setting, value, allowed }) }
     }
 
-    /// A false-alarm rate is a probability that can be met.
+    /// Makes sure that a false-alarm rate is a probability that can be reached.
     fn check_false_alarm(rate: f64) -> Result<(), Self> {
         Self::unless(rate > 0.0 && rate < 1.0, "false_alarm", rate, "above 0 and below 1")
     }

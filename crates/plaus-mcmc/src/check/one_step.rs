@@ -1,4 +1,4 @@
-//! Does a step leave the law of exact draws as it is?
+//! Does a step preserve the law of exact draws?
 
 use super::laws::{Column, LogP, compare};
 use super::{CheckError, EXACT, FRESH};
@@ -8,7 +8,7 @@ use crate::target::{ModelError, State, StateOf, Target};
 use plaus_dist::{Seed, Stream};
 use std::fmt;
 
-/// A number read off a state whose law a step must not change.
+/// A number computed from a state, whose law a step must preserve.
 pub struct Statistic<'a, D, O> {
     name: String,
     value: Reading<'a, D, O>,
@@ -28,11 +28,11 @@ impl<'a, D, O> Statistic<'a, D, O> {
 pub struct OneStep {
     /// Seed of the exact draws and the steps.
     pub seed: Seed,
-    /// Exact draws to step from, and as many to compare with; at least 1000. A shift by a share s of a statistic's
-    /// standard deviation shows from about 100/s² on.
+    /// Exact draws to step from, and as many to compare with; at least 1000. A shift by a fraction s of a statistic's
+    /// standard deviation shows with about 100/s² samples.
     pub samples: u64,
-    /// Iterations from each; at least 1. One tests the kernel most directly; with a kernel that seldom accepts, several
-    /// let the drift of a fault add up.
+    /// Iterations from each; at least 1. One tests the kernel most directly. For a kernel that rarely accepts, several
+    /// let the effect of a fault add up.
     pub steps: u64,
     /// Cells of equal probability into which each statistic is cut, at least 2.
     pub cells: usize,
@@ -48,7 +48,7 @@ impl Default for OneStep {
 
 impl OneStep {
     fn check(&self) -> Result<(), CheckError> {
-        // Below 458 the Kolmogorov–Smirnov bound does not hold.
+        // Below 458 samples the Kolmogorov–Smirnov bound does not hold.
         CheckError::unless(self.samples >= 1000, "samples", self.samples as f64, "at least 1000")?;
         CheckError::unless(self.steps > 0, "steps", 0.0, "at least 1")?;
         CheckError::unless(self.cells >= 2, "cells", self.cells as f64, "at least 2")?;
@@ -56,7 +56,7 @@ impl OneStep {
     }
 }
 
-/// What became of one statistic.
+/// The result for one statistic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StatisticReport {
     /// The statistic.
@@ -74,7 +74,7 @@ pub struct StatisticReport {
 /// What [`one_step()`] found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OneStepReport {
-    /// The moves, with how often each ended how. A move that never was accepted has not been tested.
+    /// The moves, with how often each ended in each way. A move that was never accepted has not been tested.
     pub moves: Vec<(String, MoveCounts)>,
     /// The settings.
     pub plan: OneStep,
@@ -124,14 +124,15 @@ impl fmt::Display for OneStepReport {
 /// and in log prior and log constraint: mean, spread about the median, share in each of [`OneStep::cells`] cells, each
 /// by the signs of y − x; and the whole law, y against fresh draws, by Kolmogorov and Smirnov.
 ///
-/// `exact` is an exact sampler: [`super::prior`], [`super::rejection`], or your own. To test one move, give a mixture
-/// of it alone; moves that are each other's reverse (activate and deactivate) only leave the target invariant together.
+/// `exact` is an exact sampler: [`super::prior`], [`super::rejection`], or your own. To test one move, pass a mixture
+/// of that move alone. Moves that are each other's reverse (activate and deactivate) leave the target invariant only
+/// together.
 ///
 /// For kernels reversible for the target, which every mixture of Metropolis–Hastings moves is, no p-value relies on an
 /// approximation: (x, y) and (y, x) then have the same law, so the signs of y − x are fair coins.
 ///
 /// # Errors
-/// [`CheckError`] where the model, a move, a statistic or `exact` fails, or a setting is out of range.
+/// [`CheckError`] if the model, a move, a statistic or `exact` fails, or a setting is out of range.
 pub fn one_step<T: Target>(
     target: &T,
     moves: &Mixture<T>,

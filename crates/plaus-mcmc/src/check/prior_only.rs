@@ -4,8 +4,8 @@ use crate::target::{ModelError, Target};
 use crate::view::Reweighed;
 use plaus_dist::LogPotential;
 
-/// A target with its constraint switched off (λ = 1), so that the prior is what a chain must leave invariant. Draws,
-/// outcomes and simulation are the target's own, and its moves serve unchanged through [`crate::view::lend`].
+/// A target with its constraint switched off (λ = 1), so that a chain must leave the prior invariant. Draws, outcomes
+/// and simulation are the target's own, and its moves can be used unchanged through [`crate::view::lend`].
 #[derive(Debug)]
 pub struct PriorOnly<'a, T> {
     target: &'a T,

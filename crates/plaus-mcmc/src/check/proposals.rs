@@ -1,4 +1,4 @@
-//! Moves whose proposals can be listed, and whether `propose` makes what the list says.
+//! Moves whose proposals can be listed, and a check that `propose` agrees with the list.
 
 use super::laws::{LogP, multinomial};
 use super::ratios::compare;
@@ -7,28 +7,28 @@ use crate::moves::{Move, Path, Proposal};
 use crate::target::{ModelError, StateOf, StateRefOf, Target};
 use plaus_dist::Seed;
 
-/// One way a move may go from a state.
+/// One way in which a move may leave a state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch<D> {
-    /// The candidate; `None` where the move has nothing to change.
+    /// The candidate; `None` if the move has nothing to change.
     pub draw: Option<D>,
-    /// With which probability, in [0, 1].
+    /// Its probability, in [0, 1].
     pub probability: f64,
-    /// Along which path. Of no meaning where the move stays.
+    /// Its path. Without meaning if the move stays.
     pub path: Path,
 }
 
 /// A move on a toy world small enough that all its proposals from a state can be listed. Write the list from what the
-/// move is meant to do, not by calling [`Move::propose`]: the check holds one against the other.
+/// move is meant to do, not by calling [`Move::propose`]: the check compares the two.
 pub trait Enumerable<T: Target>: Move<T> {
     /// All ways from `state`. Their probabilities add up to 1; the same candidate may come more than once.
     ///
     /// # Errors
-    /// [`ModelError`] where the model fails.
+    /// [`ModelError`] if the model fails.
     fn branches(&self, target: &T, state: StateRefOf<'_, T>) -> Result<Vec<Branch<T::Draw>>, ModelError>;
 }
 
-/// How what a move proposes compares with its list.
+/// How the proposals of a move compare with its list.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frequencies {
     /// p-value of the state whose proposals deviate most, corrected for the number of states.
@@ -44,7 +44,7 @@ pub struct Frequencies {
 /// A branch that leads to a listed state, or nowhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Way {
-    /// Index of the candidate; `None` where the move stays, or leads to a candidate of prior density 0.
+    /// Index of the candidate; `None` if the move stays, or leads to a candidate of prior density 0.
     pub(super) to: Option<usize>,
     pub(super) probability: f64,
     pub(super) path: Path,
@@ -62,7 +62,7 @@ fn frequencies_from<T: Target>(
     let state = &states[from];
     let branches = kernel.branches(target, state.by_ref())?;
     let streams = seed.chain(from as u64);
-    // Branches told apart by nothing that can be seen share the cell of the first of them.
+    // Branches that cannot be distinguished share the cell of the first of them.
     let alike = |a: &Branch<T::Draw>, b: &Branch<T::Draw>| a.draw == b.draw && (a.draw.is_none() || a.path == b.path);
     let cell_of = |seen: &Branch<T::Draw>| branches.iter().position(|branch| alike(branch, seen));
     let mut cells = vec![(0_u64, 0.0); branches.len() + 1];

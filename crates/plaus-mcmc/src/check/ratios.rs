@@ -31,23 +31,23 @@ pub struct Pair<D, O> {
     pub from: State<D, O>,
     /// What it answered.
     pub proposal: Proposal,
-    /// Where it leads; `None` where it stayed, or the candidate has prior density 0.
+    /// Where it leads; `None` if it stayed, or the candidate has prior density 0.
     pub to: Option<State<D, O>>,
-    /// The ratios, where there is a `to`.
+    /// The ratios, if there is a `to`.
     pub ratios: Option<PairRatios>,
 }
 
 /// The ratios of one pair along one path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairRatios {
-    /// What the accept step uses: the ratio that `propose` gave, times what [`Move::log_ratio_after`] adds where it was
+    /// The ratio that the accept step uses: that of `propose`, times that of [`Move::log_ratio_after`] if it was
     /// announced.
     pub used: LogRatio,
     /// [`Move::log_ratio`] from `from` to `to`.
     pub forth: LogRatio,
     /// [`Move::log_ratio`] from `to` to `from` along the reverse path.
     pub back: LogRatio,
-    /// By how much the later part exceeds its announced bound, in nats; at most 0 is right.
+    /// By how much the later part exceeds its announced bound, in nats; at most 0 is correct.
     pub excess: f64,
     /// Whether the reverse of the reverse path is the path.
     pub path_returns: bool,
@@ -58,7 +58,7 @@ pub struct PairRatios {
 pub struct Worst {
     /// In nats.
     pub value: f64,
-    /// Index of the pair; `None` where there was no disagreement at all.
+    /// Index of the pair; `None` if there was no disagreement at all.
     pub index: Option<u64>,
 }
 
@@ -99,7 +99,7 @@ impl RatioReport {
     pub fn passed(&self) -> bool {
         let within = |worst: Worst| worst.value <= self.plan.tolerance;
         let compared = self.stayed + self.impossible < self.plan.pairs;
-        // A bound has no tolerance: an early stop by one that is too low by a rounding error is a wrong decision.
+        // A bound has no tolerance: an early stop on a bound that is too low by a rounding error is a wrong decision.
         let bounded = self.bound.index.is_none();
         compared && within(self.agreement) && within(self.reversal) && bounded && self.broken_path.is_none()
     }
@@ -132,11 +132,11 @@ impl fmt::Display for RatioReport {
             self.name
         )?;
         let (stayed, impossible, one_way) = (self.stayed, self.impossible, self.one_way);
-        writeln!(f, "  stayed {stayed}, prior density 0 {impossible}, cannot be undone {one_way}")?;
+        writeln!(f, "  stayed {stayed}, prior density 0 {impossible}, without a way back {one_way}")?;
         let rows = [
             ("used against log_ratio", self.agreement),
             ("there and back", self.reversal),
-            ("later part over its bound", self.bound),
+            ("later part above its bound", self.bound),
         ];
         for (what, Worst { value, index }) in rows {
             match index {
@@ -145,7 +145,7 @@ impl fmt::Display for RatioReport {
             }
         }
         match self.broken_path {
-            Some(index) => writeln!(f, "  path: its reverse's reverse is another one, pair {index}"),
+            Some(index) => writeln!(f, "  path: reversing it twice gives another path, pair {index}"),
             None => Ok(()),
         }
     }
@@ -156,14 +156,14 @@ fn gap(a: f64, b: f64) -> f64 {
     if a == b { 0.0 } else { (a - b).abs() }
 }
 
-/// Compares, over many pairs, the ratio that the accept step uses with [`Move::log_ratio`], and the latter's two
-/// directions with each other; and what a later part may be with what it is. `states` gives the state each pair starts
-/// from, e.g. [`super::prior`] or [`super::any_of`].
+/// Compares, over many pairs, the ratio that the accept step uses with [`Move::log_ratio`], and the two directions of
+/// the latter with each other; also the later part with its bound. `states` gives the state from which each pair
+/// starts, e.g. [`super::prior`] or [`super::any_of`].
 ///
 /// A move that is consistent but wrong about what it proposes passes: see [`super::one_step()`].
 ///
 /// # Errors
-/// [`CheckError::Model`] where the model or `states` fails; [`CheckError::Setting`] for no pairs.
+/// [`CheckError::Model`] if the model or `states` fails; [`CheckError::Setting`] for no pairs.
 pub fn ratios<T: Target>(
     target: &T,
     kernel: &dyn Move<T>,
@@ -192,7 +192,7 @@ pub fn ratios<T: Target>(
 /// One pair of [`ratios()`], made again: its states, its proposal and its ratios. `states` must be the same source.
 ///
 /// # Errors
-/// [`CheckError::Model`] where the model or `states` fails.
+/// [`CheckError::Model`] if the model or `states` fails.
 pub fn ratio_pair<T: Target>(
     target: &T,
     kernel: &dyn Move<T>,
@@ -218,7 +218,8 @@ pub fn ratio_pair<T: Target>(
     pair().map_err(CheckError::model(index))
 }
 
-/// The ratios of the way from the first state to the second, of which `propose` said `known` and announced `later`.
+/// The ratios of the way from the first state to the second, for which `propose` returned `known` and announced
+/// `later`.
 pub(super) fn compare<T: Target>(
     target: &T,
     kernel: &dyn Move<T>,

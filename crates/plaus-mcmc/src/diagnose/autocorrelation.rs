@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 
 /// Sokal's constant c: the sum over lags stops at the first lag M ≥ c·τ(M).
 ///
-/// With exponentially decaying correlations the sum then misses a share e⁻⁵ ≈ 0.7% of τ, and its variance is about (2M
-/// + 1) 2τ²/N. Sokal advises 4 to 6 for one exponential, up to 10 for several; 5 is also what emcee takes.
+/// With exponentially decaying correlations, the sum then misses a fraction e⁻⁵ ≈ 0.7% of τ, and its variance is about
+/// (2M + 1) 2τ²/N. Sokal advises 4 to 6 for one exponential, up to 10 for several; emcee also uses 5.
 pub const SOKAL_WINDOW: f64 = 5.0;
 
 /// Iterations that an independent draw costs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AutocorrelationTime {
-    /// τ = 1 + 2 Σ ρ_t, in iterations: 1 for independent draws, below 1 where neighbours repel each other.
+    /// τ = 1 + 2 Σ ρ_t, in iterations: 1 for independent draws, below 1 if neighbours are anticorrelated.
     ///
     /// The variance of the mean of N draws is their variance times τ/N, so N/τ is an effective sample size of the mean.
     /// [`ess_mean`](super::ess_mean) estimates the same quantity by Geyer's rule instead of Sokal's: τ ≈ N /
@@ -31,10 +31,10 @@ pub struct AutocorrelationTime {
 /// Correlation of the draws of one chain with those 0, 1, 2, …, `max_lag` iterations later.
 ///
 /// Starts with 1; the normalisation is 1/n at every lag, so far lags shrink towards 0. Lags stop at the last one the
-/// chain has. `None` where all draws are equal.
+/// chain has. `None` if all draws are equal.
 ///
 /// # Errors
-/// [`DiagnoseError`] where the draws are not finite or too few.
+/// [`DiagnoseError`] if the draws are not finite or too few.
 pub fn autocorrelation(chain: &[f64], max_lag: usize) -> Result<Option<Vec<f64>>, DiagnoseError> {
     let draws = [chain];
     let chains = Chains::new(&draws)?;
@@ -50,14 +50,14 @@ pub fn autocorrelation(chain: &[f64], max_lag: usize) -> Result<Option<Vec<f64>>
 /// Correlations are taken about the mean of **all** chains: chains that disagree never decorrelate, and τ approaches
 /// their length. For one chain with positive correlations the value is that of `emcee.autocorr.integrated_time`.
 ///
-/// Deviation: where neighbours repel each other (ρ₁ < 0) Sokal's rule would stop at once with a negative τ. There the
-/// window is chosen on (−1)ᵗ ρ_t, which are the correlations of the chain with every other deviation negated; τ itself
-/// stays the sum of ρ_t. It is kept above 1/log₁₀ N, the bound ArviZ sets on τ.
+/// Deviation: if neighbours are anticorrelated (ρ₁ < 0), Sokal's rule would stop at once with a negative τ. In that
+/// case the window is chosen on (−1)ᵗ ρ_t, which are the correlations of the chain with every other deviation negated;
+/// τ itself is still the sum of ρ_t. It is kept above 1/log₁₀ N, ArviZ's bound on τ.
 ///
-/// `None` where all draws are equal.
+/// `None` if all draws are equal.
 ///
 /// # Errors
-/// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
+/// [`DiagnoseError`] if the draws are not finite, too few or of unequal number.
 pub fn integrated_autocorrelation_time<C: AsRef<[f64]>>(
     chains: &[C],
 ) -> Result<Option<AutocorrelationTime>, DiagnoseError> {

@@ -1,4 +1,4 @@
-//! The draws, checked once, and how they are cut in halves.
+//! The draws, checked once, and their split into halves.
 
 use std::cmp::Ordering;
 
@@ -41,8 +41,8 @@ pub enum DiagnoseError {
 
 /// One row per chain, all finite, equally long, at least [`MIN_DRAWS`] draws each.
 ///
-/// Rows are in an order of their own, by what they hold: sums over chains then are the same to the last bit whatever
-/// the order in which the chains came, and where such a sum is compared with 0 no rounding decides by that order.
+/// Rows have an order of their own, by content. So sums over chains are the same to the last bit, whatever the order of
+/// the chains; and where such a sum is compared with 0, that order cannot decide through rounding.
 pub(super) struct Chains<'a> {
     rows: Vec<&'a [f64]>,
 }

@@ -7,13 +7,13 @@ use super::rank::{normal_scores, quantile};
 
 /// Effective sample size of the bulk: of the mean of the rank-normalised draws (Vehtari et al. 2021, section 4.1).
 ///
-/// How many independent draws would locate the centre of the distribution as well as these do, over all chains
-/// together. In (0, N·log₁₀ N] for N draws: above N where neighbours repel each other. Below 100 per chain neither it
-/// nor [`rhat`](super::rhat()) is reliable. The number of draws where all are equal (the middle one of an odd number
-/// per chain is not counted).
+/// The number of independent draws that would locate the centre of the distribution as well as all chains together do.
+/// It lies in (0, N·log₁₀ N] for N draws: above N if neighbours are anticorrelated. Below 100 per chain neither it nor
+/// [`rhat`](super::rhat()) is reliable. If all draws are equal, it is their number (the middle one of an odd number per
+/// chain is not counted).
 ///
 /// # Errors
-/// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
+/// [`DiagnoseError`] if the draws are not finite, too few or of unequal number.
 pub fn ess_bulk<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
     let halves = Chains::new(chains)?.halves();
     Ok(ess_of_rows(&as_rows(&normal_scores(&halves), halves[0].len())))
@@ -22,11 +22,11 @@ pub fn ess_bulk<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
 /// Effective sample size of the tails: the smaller of those of the 5% and the 95% quantile (Vehtari et al. 2021,
 /// section 4.3).
 ///
-/// That of a quantile is the effective sample size of the share of draws not above it. Range and constant draws as for
+/// For a quantile, it is the effective sample size of the share of draws not above it. Range and constant draws as for
 /// [`ess_bulk`].
 ///
 /// # Errors
-/// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
+/// [`DiagnoseError`] if the draws are not finite, too few or of unequal number.
 pub fn ess_tail<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
     let chains = Chains::new(chains)?;
     let mut pool = chains.rows().concat();
@@ -34,29 +34,28 @@ pub fn ess_tail<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
     Ok(ess_of_ends(&chains.halves(), ends))
 }
 
-/// Effective sample size of the mean of the draws as they are: the one that belongs to
+/// Effective sample size of the mean of the draws themselves: the one that belongs to
 /// [`mcse_mean`](super::mcse_mean()).
 ///
 /// Needs a finite variance; with heavy tails look at [`ess_bulk`]. Range and constant draws as there.
 ///
 /// # Errors
-/// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
+/// [`DiagnoseError`] if the draws are not finite, too few or of unequal number.
 pub fn ess_mean<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
     let chains = Chains::new(chains)?;
     let counted = chains.halves().len() * chains.halves()[0].len();
     Ok(Standardised::new(chains.rows()).map_or(counted as f64, |standard| ess_of_rows(&halves(&standard.rows()))))
 }
 
-/// Effective sample size of the draws that are `kept` among all: how many independent ones would place the centre of
-/// their distribution as well. Of independent draws it is about the number of those kept.
+/// Effective sample size of the draws that are `kept`: how many independent ones would place the centre of their
+/// distribution as well. For independent draws it is about the number kept.
 ///
-/// The mean over the kept draws is a ratio of two means over all; its error is that of the series which is 0 where a
-/// draw is not kept, and there the rank score among the kept ones. So what counts is how often a chain comes back to
-/// what is kept, and from where, not how long it stays. `None` where fewer than two are kept, or all of these are
-/// equal.
+/// The mean over the kept draws is a ratio of two means over all draws. Its error is that of a series which is 0 for
+/// draws not kept, and the rank score among the kept ones for the others. So it matters how often, and from where, a
+/// chain returns to what is kept, not how long it stays. `None` if fewer than two are kept, or all of these are equal.
 ///
 /// # Errors
-/// [`DiagnoseError`] where kept draws are not finite, or there are too few draws, or of unequal number.
+/// [`DiagnoseError`] if kept draws are not finite, or there are too few draws, or of unequal number.
 pub fn ess_where<C: AsRef<[f64]>, K: AsRef<[bool]>>(chains: &[C], kept: &[K]) -> Result<Option<f64>, DiagnoseError> {
     let is_kept = || kept.iter().flat_map(|kept| kept.as_ref().iter().copied());
     let values = chains.iter().flat_map(|chain| chain.as_ref().iter().copied()).zip(is_kept());
@@ -169,7 +168,8 @@ mod tests {
             rows.iter().map(|row| row.iter().map(|&x| x < 0.04).collect()).collect()
         };
         let count = |kept: &[Vec<bool>]| kept.iter().flatten().filter(|&&kept| kept).count() as f64;
-        // Independent draws: as many as are kept, within three times the error of an ESS of so many rows, some 5 %.
+        // Independent draws: as many as are kept, within three times the error of an ESS from this many rows, about 5
+        // %.
         let rows = [scrambled(20_000, 1), scrambled(20_000, 2)];
         let kept = kept_of(&rows);
         let ess = ess_where(&rows, &kept).unwrap().unwrap();

@@ -6,11 +6,11 @@ use super::moments::{Standardised, mean_and_variance, sum};
 
 /// Monte Carlo standard error of the mean: standard deviation / √[`ess_mean`](super::ess_mean()).
 ///
-/// In the unit of the draws, ≥ 0; 0 where all draws are equal. The true mean lies within two of them in about 95 runs
-/// of 100, provided the variance is finite and the chains have converged.
+/// In the unit of the draws, ≥ 0; 0 if all draws are equal. The true mean lies within two of them in about 95 of 100
+/// runs, provided the variance is finite and the chains have converged.
 ///
 /// # Errors
-/// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
+/// [`DiagnoseError`] if the draws are not finite, too few or of unequal number.
 pub fn mcse_mean<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
     let chains = Chains::new(chains)?;
     Ok(Standardised::new(chains.rows()).map_or(0.0, |standard| Moments::of(&standard).mcse_mean))
@@ -23,7 +23,7 @@ pub fn mcse_mean<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
 /// are equal.
 ///
 /// # Errors
-/// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
+/// [`DiagnoseError`] if the draws are not finite, too few or of unequal number.
 pub fn mcse_sd<C: AsRef<[f64]>>(chains: &[C]) -> Result<f64, DiagnoseError> {
     let chains = Chains::new(chains)?;
     Ok(Standardised::new(chains.rows()).map_or(0.0, |standard| mcse_sd_of(&standard)))

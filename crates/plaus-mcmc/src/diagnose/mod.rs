@@ -1,8 +1,7 @@
 //! Convergence diagnostics of one scalar over several chains.
 //!
-//! Everything is a pure function of the draws, given as chains of one length (`&[Vec<f64>]`, `&[&[f64]]`,
-//! `&[[f64; N]]`). [`summarize`] computes the usual table row at once; the single functions are there for whoever needs
-//! one number.
+//! Everything is a pure function of the draws, given as chains of one length (`&[Vec<f64>]`, `&[&[f64]]`, `&[[f64;
+//! N]]`). [`summarize`] computes the usual table row at once; single functions compute single numbers.
 //!
 //! ```
 //! use plaus_mcmc::diagnose;
@@ -29,7 +28,7 @@
 //! | [`mcse_mean`] | small beside what matters | standard error of the mean, autocorrelation included |
 //! | [`integrated_autocorrelation_time`] | far below the chain's length | iterations per independent draw |
 //!
-//! None of them can see a mode that no chain has visited: they compare the chains with themselves.
+//! None of them can see a mode that no chain has visited: they only compare the chains with each other.
 //!
 //! # Source
 //!
@@ -39,23 +38,23 @@
 //! Mechanics", 1997 (automatic window). The values agree with ArviZ 0.23 on stored draws to 1e-9
 //! (`tests/arviz_reference.rs`).
 //!
-//! Deviation: results do not depend on the unit of the draws. ArviZ takes draws that differ by less than 1e-15 for
-//! constant; here draws are constant only where they are all equal, and squares neither overflow at 1e300 nor vanish at
+//! Deviation: results do not depend on the unit of the draws. ArviZ treats draws that differ by less than 1e-15 as
+//! constant; here draws are constant only if they are all equal, and squares neither overflow at 1e300 nor vanish at
 //! 1e-300.
 //!
 //! # Draws that carry no information
 //!
 //! * NaN or ±∞ among the draws, fewer than [`MIN_DRAWS`] draws, no chain, chains of different lengths: a
 //!   [`DiagnoseError`]. Nothing panics.
-//! * All draws equal: R̂, autocorrelation and its time are `None`, since there is no variance to compare; every ESS is
-//!   the number of draws (ArviZ's convention), every MCSE is 0. A variable that should move and has this is **stuck**:
-//!   look at `sd` too.
+//! * All draws equal: R̂, autocorrelation and its time are `None`, because there is no variance to compare; every ESS
+//!   is the number of draws (ArviZ's convention), every MCSE is 0. A variable that should move but is like this is
+//!   **stuck**: look at `sd` too.
 //! * Each chain constant, but not the same constant: R̂ is `Some(+∞)`, ESS about half a draw per chain.
 //! * One chain: R̂ is `None` (it compares chains); everything else is defined.
 //!
-//! The Fourier transforms come from `realfft` without its vector instructions, which it would pick by the machine it
-//! runs on. Their sines are the platform's, so the last bits of ESS, MCSE and autocorrelations may still differ between
-//! platforms. They are for reading: nothing that must be reproducible may depend on them.
+//! The Fourier transforms come from `realfft` without its vector instructions, which would depend on the machine. Their
+//! sines are the platform's, so the last bits of ESS, MCSE and autocorrelations may still differ between platforms.
+//! They are for reading: nothing that must be reproducible may depend on them.
 
 mod autocorrelation;
 mod chains;

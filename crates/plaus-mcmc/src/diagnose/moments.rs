@@ -9,15 +9,15 @@ pub(super) fn sum(values: &[f64]) -> f64 {
     sum(left) + sum(right)
 }
 
-/// Mean, and variance over n − 1, of at least two values: the same to the last bit in whatever order they come, and the
-/// variance also of the negated values.
+/// Mean, and variance over n − 1, of at least two values: the same to the last bit in any order; the variance also for
+/// the negated values.
 pub(super) fn unordered_mean_and_variance(values: &[f64]) -> (f64, f64) {
     let centre = if is_constant(values) { values[0] } else { unordered_sum(values) / values.len() as f64 };
     let squares: Vec<f64> = values.iter().map(|x| (x - centre) * (x - centre)).collect();
     (centre, unordered_sum(&squares) / (values.len() as f64 - 1.0))
 }
 
-/// Those above 0 and those below, each from the least on.
+/// The values above 0 and those below, each from the smallest on.
 fn unordered_sum(values: &[f64]) -> f64 {
     let side = |sign: f64| {
         let mut side: Vec<f64> = values.iter().map(|x| sign * x).filter(|x| *x > 0.0).collect();
@@ -49,7 +49,7 @@ pub(super) fn mean_and_variance(values: &[f64]) -> (f64, f64) {
     (centre, sum(&squares) / (values.len() as f64 - 1.0))
 }
 
-/// Draws carried to a unit of their own: `x = (origin + span · y) / shrink`, with every |y| ≤ 1.
+/// Draws converted to a unit of their own: `x = (origin + span · y) / shrink`, with every |y| ≤ 1.
 ///
 /// Squares and fourth powers of y can neither overflow nor all vanish, whatever the unit of x.
 pub(super) struct Standardised {
@@ -62,7 +62,7 @@ pub(super) struct Standardised {
 }
 
 impl Standardised {
-    /// Nothing, where all draws are equal.
+    /// `None` if all draws are equal.
     pub(super) fn new(rows: &[&[f64]]) -> Option<Self> {
         let (low, high) = extremes(rows);
         if low == high {

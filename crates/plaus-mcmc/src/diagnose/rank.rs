@@ -1,4 +1,4 @@
-//! Ranks instead of values: what makes the diagnostics hold for heavy tails and under any monotone transformation.
+//! Ranks instead of values: they make the diagnostics valid for heavy tails and under any monotone transformation.
 
 use super::moments::extremes;
 use plaus_dist::normal_quantile;

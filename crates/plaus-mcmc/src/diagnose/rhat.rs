@@ -7,30 +7,30 @@ use super::rank::{folded_scores, normal_scores};
 /// Rank-normalised split R̂, the larger of the plain and the folded one (Vehtari et al. 2021, equations 3 to 5 and
 /// section 4).
 ///
-/// About 1 where all chains, and both halves of each, sample the same law; the authors advise to trust draws below
-/// 1.01. It may come out slightly below 1 by chance. The plain part compares locations, the folded part (distances from
-/// the common median) spreads.
+/// About 1 if all chains, and both halves of each, sample the same law; the authors advise to trust draws below 1.01.
+/// By chance it may be slightly below 1. The plain part compares locations, the folded part (distances from the common
+/// median) compares spreads.
 ///
-/// `None` for a single chain, as there is nothing to compare, and where all draws are equal. `Some(f64::INFINITY)`
-/// where every half chain is constant and they differ.
+/// `None` for a single chain, because there is nothing to compare, and if all draws are equal. `Some(f64::INFINITY)` if
+/// every half chain is constant and they differ.
 ///
 /// # Errors
-/// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
+/// [`DiagnoseError`] if the draws are not finite, too few or of unequal number.
 pub fn rhat<C: AsRef<[f64]>>(chains: &[C]) -> Result<Option<f64>, DiagnoseError> {
     let chains = Chains::new(chains)?;
     let halves = chains.halves();
     Ok(rank_rhat(&chains, &halves, &normal_scores(&halves)))
 }
 
-/// R̂ where the scores of the half chains are known already.
+/// R̂, if the scores of the half chains are already known.
 pub(super) fn rank_rhat(chains: &Chains<'_>, halves: &[&[f64]], scores: &[f64]) -> Option<f64> {
     if chains.chain_count() < 2 {
         return None;
     }
     let length = halves[0].len();
     let plain = scale_reduction(&as_rows(scores, length))?;
-    // No variance in the distances (two values, equally often) says nothing about the spread: the plain part stands
-    // alone.
+    // Distances without variance (two values, equally often) say nothing about the spread: then only the plain part
+    // counts.
     let folded = scale_reduction(&as_rows(&folded_scores(halves), length));
     Some(folded.map_or(plain, |folded| plain.max(folded)))
 }

@@ -49,7 +49,7 @@ pub struct Summary {
 /// 8 chains of 10⁶ draws take about two seconds in release on one core, and four times the memory of the draws besides.
 ///
 /// # Errors
-/// [`DiagnoseError`] where the draws are not finite, too few or of unequal number.
+/// [`DiagnoseError`] if the draws are not finite, too few or of unequal number.
 pub fn summarize<C: AsRef<[f64]>>(chains: &[C]) -> Result<Summary, DiagnoseError> {
     let chains = Chains::new(chains)?;
     let [q05, median, q95] = quantiles(&chains);

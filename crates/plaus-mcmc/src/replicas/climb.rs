@@ -1,14 +1,14 @@
-//! Where replicas are on the ladder, how they fared, and when the ladder is spaced anew.
+//! Where replicas are on the ladder, how they fared, and when the ladder is spaced again.
 
 use crate::ladder::Ladder;
 use serde::{Deserialize, Serialize};
 
-/// The ladder is adapted at the end of the warm-up, at its half, and so on, so many times.
+/// The ladder is adapted this many times: at the end of the warm-up, at half of it, at a quarter, and so on.
 const ADAPTATIONS: u32 = 5;
-/// Swaps that every pair must have proposed before rejections say anything.
+/// Swaps that every pair must have proposed before rejections mean anything.
 const ENOUGH: u64 = 4;
 
-/// How replicas are tempered.
+/// Settings of tempering.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tempering {
     /// Rungs of the ladder, at least 1; 1 is the target alone.
@@ -28,20 +28,20 @@ impl Tempering {
         (0..ADAPTATIONS).any(|k| (self.warmup >> k) / self.swap_every * self.swap_every == iteration)
     }
 
-    /// Whether that is the last time.
+    /// Whether that is the last adaptation.
     pub(super) fn ends_at(&self, iteration: u64) -> bool {
         self.warmup / self.swap_every * self.swap_every == iteration
     }
 }
 
-/// What was seen of the swaps between a rung and the next, since the ladder is what it is.
+/// Statistics of the swaps between a rung and the next, since the ladder was last changed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct RungStatistics {
     /// Swaps proposed.
     pub proposed: u64,
-    /// Those that were made.
+    /// Number of swaps made.
     pub swapped: u64,
-    /// Sum of the probabilities with which they were accepted: the same on average, and less noisy.
+    /// Sum of the probabilities with which they were accepted: equal to that number on average, and less noisy.
     pub expected: f64,
 }
 
@@ -59,7 +59,7 @@ pub struct Climb {
     pub(super) ladder: Ladder,
     /// The replica at each rung.
     pub(super) at: Vec<u32>,
-    /// By replica.
+    /// For each replica.
     pub(super) last: Vec<Last>,
     pub(super) statistics: Vec<RungStatistics>,
     pub(super) restarts: u64,
@@ -85,15 +85,15 @@ impl Climb {
         &self.ladder
     }
 
-    /// How often a replica came to the last rung that had been at the first since it was there before: each brings a
-    /// state that shares nothing with those the target's chain had of that replica before. The first arrivals count.
-    /// Since the end of the warm-up.
+    /// How often a replica arrived at the last rung after it had been at the first since its previous arrival. Each
+    /// arrival brings a state that shares nothing with the states that the target's chain got from that replica before.
+    /// First arrivals count too. Counted since the end of the warm-up.
     #[must_use]
     pub fn restarts(&self) -> u64 {
         self.restarts
     }
 
-    /// How often a replica came to the first rung from the last, since the end of the warm-up.
+    /// How often a replica arrived at the first rung from the last, since the end of the warm-up.
     #[must_use]
     pub fn round_trips(&self) -> u64 {
         self.round_trips
@@ -105,14 +105,15 @@ impl Climb {
         &self.statistics
     }
 
-    /// Share of swaps rejected between each rung and the next, on average; 0 where none was proposed.
+    /// Share of swaps rejected between each rung and the next, on average; 0 if none was proposed.
     #[must_use]
     pub fn rejected(&self) -> Vec<f64> {
         let share = |one: &RungStatistics| 1.0 - one.expected / one.proposed as f64;
         self.statistics.iter().map(|one| if one.proposed == 0 { 0.0 } else { share(one).max(0.0) }).collect()
     }
 
-    /// Spaces the ladder anew by what was rejected, where enough was proposed; `last`: from now on everything counts.
+    /// Spaces the ladder again by its rejections, if enough swaps were proposed. With `last`, everything counts from
+    /// now on.
     pub(super) fn adapt(&mut self, last: bool) {
         if self.statistics.iter().all(|seen| seen.proposed >= ENOUGH) {
             self.ladder = self.ladder.adapted(&self.rejected(), self.at.len());
@@ -124,7 +125,7 @@ impl Climb {
         }
     }
 
-    /// Notes who is at the ends after a swap.
+    /// Notes which replicas are at the ends after a swap.
     pub(super) fn note_ends(&mut self) {
         let (Some(&bottom), Some(&top)) = (self.at.first(), self.at.last()) else { return };
         let (bottom, top) = (bottom as usize, top as usize);

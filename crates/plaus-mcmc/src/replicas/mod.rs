@@ -1,13 +1,13 @@
-//! Parallel tempering: chains between the prior and the target exchange their places, so that the target's chain is
-//! restarted again and again from fresh draws, and is still exact.
+//! Parallel tempering: chains between the prior and the target exchange places, so that the target's chain is restarted
+//! from fresh draws again and again, and remains exact.
 //!
-//! Rung 0 samples the prior (restricted to what the constraint does not forbid) by drawing anew, the last rung the
-//! target, those between them `p_w p_c^β`. Every so many iterations neighbours swap with probability
-//! `min(1, exp((β_b − β_a)(log p_c(x_a) − log p_c(x_b))))`, which leaves the product of all rungs invariant. Pairs
-//! (0,1), (2,3), … alternate with (1,2), (3,4), …: a replica then keeps its direction until a swap is rejected, and
-//! makes the way in a time that grows like the number of rungs, not its square (Okabe et al. 2001; Syed et al. 2022,
-//! see [`Ladder::barrier`](crate::Ladder::barrier)). During the warm-up the ladder is spaced anew a few times, by what
-//! was rejected so far; then it stays, as it must for the chain to be exact.
+//! Rung 0 samples the prior (restricted to what the constraint allows) by drawing anew. The last rung samples the
+//! target, and those in between `p_w p_c^β`. At regular intervals neighbours swap with probability `min(1, exp((β_b −
+//! β_a)(log p_c(x_a) − log p_c(x_b))))`, which leaves the product of all rungs invariant. Pairs (0,1), (2,3), …
+//! alternate with (1,2), (3,4), …: so a replica keeps its direction until a swap is rejected, and its trip takes a time
+//! proportional to the number of rungs, not to its square (Okabe et al. 2001; Syed et al. 2022, see
+//! [`Ladder::barrier`](crate::Ladder::barrier)). During the warm-up the ladder is spaced again a few times, from the
+//! rejections so far; then it stays, as exactness requires.
 
 mod climb;
 
@@ -22,14 +22,14 @@ use plaus_dist::{ChainStreams, Purpose, Seed, math, open_unit};
 use serde::{Deserialize, Serialize};
 use std::sync::Mutex;
 
-/// Replicas between two iterations: all that their future follows from.
+/// Replicas between two iterations: everything that determines their future.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReplicasSnapshot<D, O> {
     /// Each replica's state.
     pub states: Vec<State<D, O>>,
-    /// How often each move ended how, by rung: of the redraw at the first, of the target's moves at the others.
+    /// How often each move ended in each way, for each rung: the redraw at the first, the target's moves at the others.
     pub counts: Vec<Vec<MoveCounts>>,
-    /// The scales of each rung's moves, where it adapts any.
+    /// The scales of each rung's moves, if it adapts any.
     pub scales: Vec<Option<Scales>>,
     climb: Climb,
 }
@@ -44,7 +44,8 @@ impl<D, O> ReplicasSnapshot<D, O> {
     /// The same with other states, one for one.
     ///
     /// # Errors
-    /// As `look` says.
+    ///
+    /// Those of `look`.
     pub fn try_map<P, E>(
         self,
         look: impl FnMut(State<D, O>) -> Result<State<D, P>, E>,
@@ -53,7 +54,7 @@ impl<D, O> ReplicasSnapshot<D, O> {
         Ok(ReplicasSnapshot { states: states.into_iter().map(look).collect::<Result<_, _>>()?, counts, scales, climb })
     }
 
-    /// Whether all its parts speak of `rungs` rungs, with this many moves at all but the first.
+    /// Whether all its parts are for `rungs` rungs, with this many moves at all but the first.
     #[must_use]
     pub fn fits(&self, rungs: u32, moves: usize) -> bool {
         let (count, climb) = (rungs as usize, &self.climb);
@@ -69,13 +70,13 @@ impl<D, O> ReplicasSnapshot<D, O> {
     }
 }
 
-/// What the replicas walk by: the target with its moves, and those of the first rung.
+/// The settings of replicas: the target with its moves, and those of the first rung.
 pub struct Course<'a, T: Target> {
     /// What the last rung samples.
     pub target: &'a T,
     /// Moves of all rungs but the first.
     pub moves: &'a Mixture<T>,
-    /// Moves of the first rung, which should draw anew, so that what comes from there shares nothing with what went
+    /// Moves of the first rung. They should draw anew, so that what comes from there shares nothing with what went
     /// there.
     pub fresh: &'a Mixture<T>,
     /// Rungs and swaps.
@@ -95,7 +96,7 @@ impl<'a, T: Target> Course<'a, T> {
     }
 }
 
-/// Replicas, one a rung at any time, all at the same iteration.
+/// Replicas: at any time one at each rung, all at the same iteration.
 pub struct Replicas<'a, T: Target> {
     course: Course<'a, T>,
     /// Each replica keeps its place in this list, whatever its rung.
@@ -104,12 +105,12 @@ pub struct Replicas<'a, T: Target> {
     swaps: ChainStreams,
 }
 
-/// What the chain of the last rung did.
+/// What the chain at the last rung did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TopStep {
     /// An iteration.
     Step(Step),
-    /// Its state was exchanged for that of the rung below, before the next iteration.
+    /// Its state was exchanged with the rung below, before the next iteration.
     Swapped,
 }
 
@@ -118,7 +119,7 @@ fn streams(seed: Seed, chain: u32, replica: usize) -> ChainStreams {
     seed.chain(u64::from(chain) | (replica as u64) << 32)
 }
 
-/// Makes so many steps of a chain, unless `goes_on` says no before one of them; gives whether all were made.
+/// Makes this many steps of a chain, unless `goes_on` returns false before one of them; returns whether all were made.
 fn stride<'a, T: Target>(
     chain: &mut Chain<'a, T>,
     steps: u64,
@@ -136,10 +137,10 @@ fn stride<'a, T: Target>(
 }
 
 impl<'a, T: Target> Replicas<'a, T> {
-    /// One replica a rung, from start draws of the target, with random numbers of chain `chain` of `seed`.
+    /// One replica for each rung, from start draws of the target, with random numbers of chain `chain` of `seed`.
     ///
     /// # Errors
-    /// [`ChainError`] where a chain cannot start.
+    /// [`ChainError`] if a chain cannot start.
     pub fn start(course: Course<'a, T>, seed: Seed, chain: u32) -> Result<Self, ChainError> {
         let climb = Climb::new(course.tempering.rungs.max(1));
         let betas = climb.ladder.betas();
@@ -150,15 +151,16 @@ impl<'a, T: Target> Replicas<'a, T> {
         Ok(Self { course, chains, climb, swaps: streams(seed, chain, 0) })
     }
 
-    /// The same replicas, which adapt the scales of each rung's moves in the iterations before `until` and keep them
-    /// from then on: see [`Chain::adapting`]. To be said of replicas that have just started.
+    /// The same replicas, adapting the scales of each rung's moves in the iterations before `until`, and keeping them
+    /// from then on: see [`Chain::adapting`]. To be called on replicas that have just started.
     #[must_use]
     pub fn adapting(self, until: u64) -> Self {
         let chains = self.chains.into_iter().map(|chain| chain.adapting(until)).collect();
         Self { chains, ..self }
     }
 
-    /// Replicas that go on from a snapshot, which must [fit](ReplicasSnapshot::fits), made after iteration `iteration`.
+    /// Replicas that continue from a snapshot made after iteration `iteration`, which must
+    /// [fit](ReplicasSnapshot::fits).
     #[must_use]
     pub fn resume(
         course: Course<'a, T>,
@@ -186,7 +188,7 @@ impl<'a, T: Target> Replicas<'a, T> {
         Self { course, chains, climb, swaps: streams(seed, chain, 0) }
     }
 
-    /// A single replica, of the target, that goes on.
+    /// A single replica, of the target, that continues.
     #[must_use]
     pub fn resume_one(
         course: Course<'a, T>,
@@ -201,7 +203,7 @@ impl<'a, T: Target> Replicas<'a, T> {
         Self::resume(course, seed, chain, iteration, one)
     }
 
-    /// All that the replicas' future follows from, with [`Replicas::iteration`].
+    /// Everything that determines the replicas' future, together with [`Replicas::iteration`].
     #[must_use]
     pub fn snapshot(&self) -> ReplicasSnapshot<T::Draw, T::Outcome> {
         let rungs = || self.climb.at.iter().map(|&replica| &self.chains[replica as usize]);
@@ -213,12 +215,12 @@ impl<'a, T: Target> Replicas<'a, T> {
         }
     }
 
-    /// Advances all replicas to `iteration`; tells `watch` of every step of the last rung's chain, and of every swap
-    /// that changes its state. Replicas run in parallel on the current pool of threads; their number has no influence
-    /// on the result.
+    /// Advances all replicas to `iteration`; reports to `watch` every step of the last rung's chain, and every swap
+    /// that changes its state. Replicas run in parallel on the current pool of threads; the number of threads does not
+    /// influence the result.
     ///
     /// # Errors
-    /// [`ChainError`] where a replica fails.
+    /// [`ChainError`] if a replica fails.
     pub fn advance(
         &mut self,
         iteration: u64,
@@ -227,8 +229,8 @@ impl<'a, T: Target> Replicas<'a, T> {
         self.advance_while(iteration, || true, watch).map(drop)
     }
 
-    /// As [`Replicas::advance`], as long as `goes_on` says so, asked before every step; gives whether it always did.
-    /// Where it did not, the replicas are at different iterations: they can only be dropped.
+    /// Like [`Replicas::advance`], as long as `goes_on` returns true; it is called before every step. Returns whether
+    /// it always did. If it did not, the replicas are at different iterations and can only be dropped.
     ///
     /// # Errors
     /// As [`Replicas::advance`].
@@ -274,7 +276,7 @@ impl<'a, T: Target> Replicas<'a, T> {
         walked.into_iter().try_fold(first?, |all, one| Ok(all && one?))
     }
 
-    /// Proposes the swaps due after iteration `now`, and adapts the ladder where that is due.
+    /// Proposes the swaps due after iteration `now`, and adapts the ladder if that is due.
     fn swap(&mut self, now: u64, watch: &mut impl FnMut(&Chain<'a, T>, TopStep)) {
         let (tempering, climb) = (self.course.tempering, &mut self.climb);
         let mut stream = self.swaps.at(now, Purpose::SWAP);
@@ -283,7 +285,7 @@ impl<'a, T: Target> Replicas<'a, T> {
         for rung in (0..top).filter(|rung| (*rung as u64 + parity).is_multiple_of(2)) {
             let u = open_unit(&mut stream);
             let (low, high) = (climb.at[rung] as usize, climb.at[rung + 1] as usize);
-            // Finite: what the constraint forbids is forbidden at every rung.
+            // Finite: anything that the constraint forbids is forbidden at every rung.
             let weights = [low, high].map(|replica| self.chains[replica].state().log_constraint.value());
             let alpha = math::exp(log_alpha([betas[rung], betas[rung + 1]], weights)).min(1.0);
             let seen = &mut climb.statistics[rung];
@@ -325,7 +327,7 @@ impl<'a, T: Target> Replicas<'a, T> {
         self.climb.at.get(rung).map(|&replica| self.chains[replica as usize].state())
     }
 
-    /// How often each move of a rung ended how; empty where there is no such rung.
+    /// How often each move of a rung ended how; empty if there is no such rung.
     #[must_use]
     pub fn counts_of(&self, rung: usize) -> &[MoveCounts] {
         self.climb.at.get(rung).map_or(&[], |&replica| self.chains[replica as usize].counts())
@@ -344,7 +346,7 @@ impl<'a, T: Target> Replicas<'a, T> {
     }
 }
 
-/// Log of the ratio by which a swap is accepted, of states with these log constraints (at β = 1) at these inverse
+/// Log of the ratio with which a swap is accepted, for states with these log constraints (at β = 1) at these inverse
 /// temperatures.
 fn log_alpha(betas: [f64; 2], log_constraints: [f64; 2]) -> f64 {
     (betas[1] - betas[0]) * (log_constraints[0] - log_constraints[1])

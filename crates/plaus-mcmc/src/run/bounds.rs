@@ -1,12 +1,12 @@
-//! Where blocks end: early ones soon, so that a run can be looked at, stopped and resumed from its first iterations on,
-//! however slow they are.
+//! Where blocks end: the first ones soon, so that a run can be looked at, stopped and resumed from its first
+//! iterations, however slow they are.
 
-/// Blocks grow with what is done, until they have full size: what a run loses that is cut short is at most this part of
-/// what it has.
+/// Blocks grow with the work done, until they have full size: a run that is cut short loses at most this part of its
+/// work.
 const PART: u64 = 8;
 
-/// End of the block that begins after iterations `0 .. done`; full blocks end at multiples of `block`. A function of
-/// these two alone, so that a run that was stopped and goes on records what one that was never stopped does.
+/// End of the block that begins after iterations `0 .. done`; full blocks end at multiples of `block`. It is a function
+/// of these two alone, so that a run that was stopped and continued records the same as one that was never stopped.
 pub(super) fn end_of_block(done: u64, block: u64) -> u64 {
     let grown = (done / PART).max(1);
     let size = if grown >= block { block } else { 1 << grown.ilog2() };

@@ -1,9 +1,8 @@
 //! Solutions found within a round: chains tell each other, so that none goes far beyond the iteration that completes
-//! what is demanded.
+//! the number asked for.
 //!
-//! The iteration that completes it follows from the chains alone. What is known of it while they work is never too
-//! early: another solution can only bring it forward. So a chain that stops behind it has made everything that the run
-//! will hold.
+//! That iteration follows from the chains alone. The value known while they run is never too early: another solution
+//! can only bring it forward. So a chain that stops after it has made everything that the run will hold.
 
 use super::pulse::Pulse;
 use crate::solutions::{Distinct, FirstOfClass};
@@ -17,11 +16,11 @@ pub(super) struct Hunt<'a> {
     pub(super) pulse: &'a Pulse,
     /// Solutions of the rounds before.
     known: &'a Distinct,
-    /// How many more are demanded, at least 1; `None` where any number is welcome.
+    /// How many more are asked for, at least 1; `None` if any number is welcome.
     missing: Option<usize>,
-    /// The first iteration, as far as is known, that recorded each class not known before.
+    /// The first iteration known so far that recorded each class not known before.
     found: Mutex<BTreeMap<SolutionClass, u64>>,
-    /// The iteration that completes the demanded solutions, as far as is known.
+    /// The iteration known so far that completes the solutions asked for.
     last: AtomicU64,
 }
 
@@ -31,7 +30,7 @@ impl<'a> Hunt<'a> {
         Self { pulse, known, missing, found: Mutex::default(), last: AtomicU64::new(u64::MAX) }
     }
 
-    /// Whether a chain that has done the iterations `0 .. done` is to make the next.
+    /// Whether a chain that has done the iterations `0 .. done` should make the next.
     #[inline]
     pub(super) fn goes_on(&self, done: u64) -> bool {
         done <= self.last.load(Relaxed) && !self.pulse.is_stopped()

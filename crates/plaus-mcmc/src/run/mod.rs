@@ -1,9 +1,9 @@
 //! Several chains in parallel, in rounds, with the same bits whatever the number of threads.
 //!
-//! Every chain advances to the end of a block of iterations, then all wait: rounds are where the caller receives
-//! records and snapshots, in order of chain, and says whether to go on. A run that goes on from its last snapshots
-//! gives the bits of one that was never interrupted. Between rounds a [`Pulse`] shows how far the chains are, and stops
-//! them.
+//! Every chain advances to the end of a block of iterations; then all wait. After each round the caller receives
+//! records and snapshots, in order of chain, and says whether to continue. A run continued from its last snapshots
+//! gives the same bits as one that was never interrupted. Between rounds a [`Pulse`] shows how far the chains are, and
+//! can stop them.
 
 mod bounds;
 mod hunt;
@@ -28,24 +28,24 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use worker::{Job, Made, Worker};
 
-/// How long, how often, from which seed.
+/// Length, recording interval and seed of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Plan {
     /// Seed of the run.
     pub seed: Seed,
     /// Number of chains, at least 1.
     pub chains: u32,
-    /// Iterations before the sampling phase; recorded, but told apart.
+    /// Iterations before the sampling phase; recorded, but kept apart.
     pub warmup: u64,
-    /// Iterations of the sampling phase, whose states are what diagnostics see.
+    /// Iterations of the sampling phase, whose states diagnostics use.
     pub iterations: u64,
     /// Every `thin`-th iteration is recorded; at least 1.
     pub thin: u64,
-    /// Most iterations between two points at which the run can stop and later go on; at least 1. A run begins with
+    /// Most iterations between two points at which the run can stop and later continue; at least 1. A run begins with
     /// shorter blocks, of about an eighth of what is done.
     pub block: u64,
-    /// Stop at the first iteration by which the chains together have recorded this many distinct solutions, those of
-    /// the warm-up among them: see [`Plan::counts_from`].
+    /// Stop at the first iteration by which the chains together have recorded this many distinct solutions, including
+    /// those of the warm-up: see [`Plan::counts_from`].
     pub solutions: Option<u64>,
     /// Rungs between the prior and the target that each chain climbs and descends, 1 for none, and iterations between
     /// two swaps. Only states of the target are recorded, and iterations are those of each rung.
@@ -63,8 +63,8 @@ impl Plan {
         self.warmup.saturating_add(self.iterations)
     }
 
-    /// The first iteration whose state may count as a distinct solution. Who looks for solutions takes each from the
-    /// start on; else they are those of the sampling phase.
+    /// The first iteration whose state may count as a distinct solution. If the run looks for solutions, this is the
+    /// start; otherwise it is the first of the sampling phase.
     #[must_use]
     pub fn counts_from(&self) -> u64 {
         if self.solutions.is_some() { 0 } else { self.warmup }
@@ -103,17 +103,17 @@ impl Plan {
     }
 }
 
-/// A plan that makes no run.
+/// A plan that cannot be run.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// A number that must be positive is 0.
     #[error("`{0}` is 0, but must be at least 1")]
     Zero(&'static str),
-    /// The last iteration is no 48-bit number: streams would repeat.
-    #[error("{0} iterations are more than the 2^48 that have random numbers of their own")]
+    /// The last iteration does not fit in 48 bits: streams would repeat.
+    #[error("{0} iterations are more than the limit of 2^48")]
     TooLong(u64),
-    /// Chains that the plan does not have, or none.
-    #[error("chains {} to {} are none of the plan's {chains}", .some.start, .some.end)]
+    /// Chains that the plan does not have, or no chains.
+    #[error("chains {} to {} are not among the plan's {chains}", .some.start, .some.end)]
     Chains {
         /// Chains that were to be run.
         some: Range<u32>,
@@ -121,9 +121,7 @@ pub enum PlanError {
         chains: u32,
     },
     /// Starts for another number of chains, or not all at the same iteration.
-    #[error(
-        "{found} starts for {chains} chains, or not all at the same iteration: they are not the snapshots of one run"
-    )]
+    #[error("{found} starts for {chains} chains, or starts at different iterations: they are not snapshots of one run")]
     Starts {
         /// Chains that were to be run.
         chains: u32,
@@ -132,27 +130,27 @@ pub enum PlanError {
     },
 }
 
-/// A chain between two blocks: all that its future and its statistics follow from.
+/// A chain between two blocks: everything that determines its future and its statistics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot<D, O> {
     /// Iterations 0 up to here, exclusive, are done and recorded.
     pub end_iteration: u64,
     /// The state of iteration `end_iteration − 1`.
     pub state: State<D, O>,
-    /// How often each move ended how.
+    /// How often each move ended in each way.
     pub counts: Vec<MoveCounts>,
-    /// The scales of its moves; `None` where it adapts none.
+    /// The scales of its moves; `None` if it adapts none.
     pub scales: Option<Scales>,
     /// Satisfying iterations.
     pub hits: Hits,
     /// Proposals accepted since the last recorded draw, and the last such move.
     pub pending: (u32, Option<MoveId>),
-    /// Where all rungs are; `None` where there is one.
+    /// Where all rungs are; `None` if there is one.
     pub replicas: Option<ReplicasSnapshot<D, O>>,
 }
 
 impl<D, O> Snapshot<D, O> {
-    /// The same with other states, one for one: as a target over the same draws sees them.
+    /// The same snapshot with other states, one for one: as seen by a target over the same draws.
     ///
     /// # Errors
     /// As `look` says.
@@ -167,7 +165,7 @@ impl<D, O> Snapshot<D, O> {
     }
 }
 
-/// Where a chain goes on from, with the classes of solutions it has recorded (from its records).
+/// Where a chain continues from, with the classes of solutions that it has recorded (from its records).
 pub struct Start<D, O> {
     /// The snapshot.
     pub snapshot: Snapshot<D, O>,
@@ -175,7 +173,7 @@ pub struct Start<D, O> {
     pub distinct: Distinct,
 }
 
-/// What the caller says after a round.
+/// The caller's answer after a round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Control {
     /// Go on.
@@ -184,7 +182,7 @@ pub enum Control {
     Stop,
 }
 
-/// Receives what the chains leave behind.
+/// Receives what the chains record.
 pub trait Sink<D, O> {
     /// What may go wrong in the sink.
     type Error;
@@ -202,7 +200,7 @@ pub trait Sink<D, O> {
     fn round(&mut self, progress: &Progress<'_>) -> Result<Control, Self::Error>;
 }
 
-/// Where a run stands after a round.
+/// The state of a run after a round.
 pub struct Progress<'a> {
     /// Iterations done by every chain.
     pub end_iteration: u64,
@@ -219,9 +217,9 @@ pub struct Progress<'a> {
 pub enum Ending {
     /// All planned iterations are done.
     Complete,
-    /// The demanded number of distinct solutions is recorded.
+    /// The number of distinct solutions asked for is recorded.
     EnoughSolutions,
-    /// The sink, or who watches the pulse, said stop.
+    /// The sink stopped it, or the pulse did.
     Stopped,
 }
 
@@ -239,7 +237,7 @@ pub enum RunError<E> {
     /// The sink failed.
     #[error(transparent)]
     Sink(E),
-    /// The plan or the starts make no run.
+    /// The plan or the starts cannot be run.
     #[error("{0}")]
     Plan(#[from] PlanError),
     /// The operating system gave no threads.
@@ -247,11 +245,11 @@ pub enum RunError<E> {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Runs, or goes on with, the chains of `plan` on `threads` threads (0: one a core; never more than there are replicas
-/// of chains, see [`useful_threads`]). `starts` is empty, or holds one start a chain, all at the same iteration.
+/// Runs, or continues, the chains of `plan` on `threads` threads (0: one per core; never more than there are replicas
+/// of chains, see [`useful_threads`]). `starts` is empty, or holds one start for each chain, all at the same iteration.
 ///
 /// # Errors
-/// [`RunError`] where the plan makes no run, or a chain or the sink fails. Everything the sink received before stays
+/// [`RunError`] if the plan makes no run, or a chain or the sink fails. Everything the sink received before stays
 /// valid.
 pub fn run<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     target: &T,
@@ -264,8 +262,8 @@ pub fn run<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     run_watched(target, moves, plan, starts, threads, sink, &Pulse::default())
 }
 
-/// As [`run()`], with counters that other threads can read meanwhile, and through which they can stop it: within an
-/// iteration of each chain, or while the chains start. Then nothing at all is recorded.
+/// Like [`run()`], with counters that other threads can read while it runs, and through which they can stop it: within
+/// one iteration of each chain, or while the chains start. In the latter case nothing at all is recorded.
 ///
 /// # Errors
 /// As [`run()`].
@@ -281,11 +279,11 @@ pub fn run_watched<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     run_some(target, moves, plan, 0..plan.chains, starts, threads, sink, pulse)
 }
 
-/// As [`run_watched()`], only the chains `some` of the plan's: they leave the same bits as they do among all. Distinct
-/// solutions, and the demand for them, are those of these chains together.
+/// Like [`run_watched()`], for only the chains `some` of the plan: they leave the same bits as in the whole run.
+/// Distinct solutions, and the number asked for, are those of these chains together.
 ///
 /// # Errors
-/// As [`run()`], and where `some` are none of the plan's chains.
+/// As [`run()`], and if `some` are none of the plan's chains.
 #[allow(clippy::too_many_arguments, reason = "each is a thing of its own, and there is one caller a layer up")]
 pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     target: &T,
@@ -318,7 +316,8 @@ pub fn run_some<T: Goal, S: Sink<T::Draw, T::Outcome>>(
     Ok(if fleet.has_enough() { Ending::EnoughSolutions } else { Ending::Complete })
 }
 
-/// As many of `threads` as the chains `some` of a plan can keep busy: one a replica. 0, which is one a core, stays.
+/// How many of `threads` the chains `some` of a plan can keep busy: one for each replica. 0, which means one per core,
+/// stays 0.
 #[must_use]
 pub fn useful_threads(threads: usize, plan: &Plan, some: &Range<u32>) -> usize {
     threads.min(some.len().max(1).saturating_mul(plan.rungs.max(1) as usize))
@@ -335,7 +334,7 @@ struct Fleet<'a, T: Target> {
     job: Job<'a, T>,
     workers: Vec<Worker<'a, T>>,
     pulse: &'a Pulse,
-    /// Of all chains together, in the order of iteration, then chain.
+    /// Over all chains, in the order of iteration, then chain.
     distinct: Distinct,
     /// Iterations 0 up to here, exclusive, are done.
     done: u64,
@@ -359,8 +358,8 @@ impl<'a, T: Goal> Fleet<'a, T> {
         fleet
     }
 
-    /// Advances to the end of the block, or to the iteration that completes the demanded solutions; `None` where the
-    /// pulse was stopped before all chains were there: they are then in no common state.
+    /// Advances to the end of the block, or to the iteration that completes the solutions asked for; `None` if the
+    /// pulse was stopped before all chains got there: they then have no common state.
     fn round(&mut self) -> Result<Option<Vec<MadeOf<T>>>, Failed> {
         let plan = self.job.plan;
         let mut end = end_of_block(self.done, plan.block).min(plan.end());
@@ -372,8 +371,8 @@ impl<'a, T: Goal> Fleet<'a, T> {
         let mut made: Vec<_> = parallel::map_mut(&mut self.workers, |_, worker| worker.advance(job, end, &hunt));
         self.merge(made.iter().flat_map(|made| made.firsts.iter().copied()).collect());
         if let Some(last) = self.completed() {
-            // Some chains ran past the iteration that completed the demanded number: they redo the round up to there,
-            // so that the result does not depend on the block, nor on who was faster.
+            // Some chains ran past the iteration that completed the number asked for. They repeat the round up to it,
+            // so that the result depends neither on the block nor on which chain was faster.
             end = last + 1;
             self.distinct.truncate(last);
             let (job, hunt) = (&self.job, Hunt::new(pulse, &self.distinct, None));
@@ -400,7 +399,7 @@ impl<'a, T: Goal> Fleet<'a, T> {
         Ok(Some(made))
     }
 
-    /// Workers in the state of these, to redo a round.
+    /// Workers in the state of these, for repeating a round.
     fn keep(&self) -> Vec<Worker<'a, T>> {
         let copy = |worker: &Worker<'a, T>| match worker.snapshot() {
             Some(snapshot) => {
@@ -423,7 +422,7 @@ impl<'a, T: Goal> Fleet<'a, T> {
         self.completed().is_some() || self.job.plan.solutions == Some(0)
     }
 
-    /// The iteration that recorded the last demanded solution.
+    /// The iteration that recorded the last solution asked for.
     fn completed(&self) -> Option<u64> {
         let wanted = usize::try_from(self.job.plan.solutions?).ok()?;
         self.distinct.firsts().get(wanted.checked_sub(1)?).map(|first| first.iteration)

@@ -1,10 +1,10 @@
-//! What other threads see of a run while its chains are at work, and how they cut it short.
+//! What other threads can see of a run while its chains are running, and how they can stop it.
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
-/// Counters of one run that its chains keep up to date in every iteration, and a request to stop. Nothing that is
-/// recorded depends on who reads them, or when; a request to stop says only where the records end.
+/// Counters of one run that its chains update in every iteration, and a request to stop. Nothing that is recorded
+/// depends on who reads them, or when; a request to stop only decides where the records end.
 #[derive(Debug, Default)]
 pub struct Pulse {
     chains: OnceLock<Box<[Beat]>>,
@@ -12,7 +12,7 @@ pub struct Pulse {
     stopped: AtomicBool,
 }
 
-/// Counters of one chain, on cache lines of their own: no chain waits for what another writes.
+/// Counters of one chain, on cache lines of their own, so that chains do not wait for each other's writes.
 #[derive(Debug, Default)]
 #[repr(align(128))]
 struct Beat {
@@ -25,18 +25,18 @@ struct Beat {
 pub struct ChainPulse {
     /// Iterations done.
     pub iterations: u64,
-    /// Satisfying ones among them.
+    /// Number of satisfying ones among them.
     pub hits: u64,
 }
 
 impl Pulse {
-    /// Asks the chains to stop where they are. What they did since the last round is dropped, so that what was recorded
-    /// before is the beginning of the whole run.
+    /// Asks the chains to stop at once. Anything done since the last round is dropped, so that what was recorded before
+    /// is the beginning of the whole run.
     pub fn stop(&self) {
         self.stopped.store(true, Relaxed);
     }
 
-    /// Whether the chains are to stop.
+    /// Whether the chains should stop.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.stopped.load(Relaxed)
@@ -50,8 +50,8 @@ impl Pulse {
         self.chains.get().map(|beats| beats.iter().map(read).collect()).unwrap_or_default()
     }
 
-    /// Distinct solutions recorded by all chains together, see [`Plan::counts_from`](super::Plan::counts_from). It may fall by what a chain found beyond
-    /// the end of a run.
+    /// Distinct solutions recorded by all chains together, see [`Plan::counts_from`](super::Plan::counts_from). It may
+    /// fall at the end of a run, by solutions that a chain found beyond that end.
     #[must_use]
     pub fn distinct(&self) -> u64 {
         self.distinct.load(Relaxed)

@@ -9,7 +9,7 @@ use crate::replicas::{Climb, Course, Replicas, TopStep};
 use crate::solutions::{Distinct, FirstOfClass, Hits};
 use crate::target::{Goal, SolutionClass, Target};
 
-/// What all workers read.
+/// What all workers share.
 pub(super) struct Job<'a, T: Target> {
     pub(super) target: &'a T,
     pub(super) moves: &'a Mixture<T>,
@@ -30,13 +30,13 @@ impl<'a, T: Target> Job<'a, T> {
     }
 }
 
-/// One chain at work.
+/// One running chain.
 pub(super) struct Worker<'a, T: Target> {
     replicas: Option<Replicas<'a, T>>,
     pub(super) books: Books,
 }
 
-/// What is noted about a chain.
+/// The records and tallies of a chain.
 #[derive(Clone)]
 pub(super) struct Books {
     pub(super) index: u32,
@@ -51,9 +51,9 @@ pub(super) struct Books {
 pub(super) struct Made<D, O> {
     pub(super) block: Block<D, O>,
     pub(super) firsts: Vec<FirstOfClass>,
-    /// What ended it early.
+    /// The failure that ended it early, if any.
     pub(super) failure: Option<ChainError>,
-    /// Whether the run was stopped before it was there: the worker can only be dropped.
+    /// Whether the run was stopped before it finished: then the worker can only be dropped.
     pub(super) is_cut: bool,
 }
 
@@ -99,7 +99,7 @@ impl<'a, T: Goal> Worker<'a, T> {
         let (Self { replicas, books }, plan) = (self, &job.plan);
         let goes_on = || !hunt.pulse.is_stopped();
         if !goes_on() {
-            // Of many chains some may not even have started.
+            // If there are many chains, some may not even have started.
             made.is_cut = true;
             return Ok(());
         }
@@ -110,7 +110,7 @@ impl<'a, T: Goal> Worker<'a, T> {
             *replicas = Some(started);
         }
         let Some(replicas) = replicas else { return Ok(()) };
-        // Replicas wait for each other only where they swap.
+        // Replicas wait for each other only when they swap.
         let stride = if plan.rungs > 1 { plan.swap_every } else { 1 };
         while books.end_iteration < end && hunt.goes_on(books.end_iteration) {
             let now = replicas.iteration();
@@ -136,7 +136,7 @@ impl<'a, T: Goal> Worker<'a, T> {
         Ok(())
     }
 
-    /// Shows how far it is.
+    /// Shows its progress.
     pub(super) fn show(&self, job: &Job<'a, T>, pulse: &Pulse) {
         pulse.set_chain(self.books.index - job.first, self.books.end_iteration, self.books.hits.count);
     }
@@ -166,7 +166,7 @@ impl<'a, T: Goal> Worker<'a, T> {
 }
 
 impl Books {
-    /// Books the chain's state as that of `iteration`.
+    /// Records the chain's state as that of `iteration`.
     #[inline]
     fn note<T: Target>(
         &mut self,
@@ -184,7 +184,7 @@ impl Books {
             return;
         }
         let (accepted, by) = std::mem::take(&mut self.pending);
-        // A solution that is there already where counting begins is one too.
+        // A solution that is already there when counting begins counts too.
         let counts = iteration >= plan.counts_from();
         let is_first = counts && iteration - plan.counts_from() < plan.thin;
         let fresh = accepted > 0 || made.block.entries.is_empty() || is_first;

@@ -12,12 +12,12 @@ use std::path::Path;
 /// All formats, in the order in which they are listed.
 pub const ALL: [&dyn Exporter; 3] = [&still::Png, &still::Gif, &mp4::Mp4];
 
-/// What all files made here say of themselves, whatever the version.
+/// The beginning of the note in all files made here, for any version.
 const MADE_BY: &str = "plaus ";
-/// Longest file that is looked through for that.
+/// Longest file that is searched for it.
 const LONGEST: u64 = 1 << 28;
 
-/// Whether a file begins like that and says that it was made here.
+/// Whether a file begins with `head` and contains that note.
 fn is_ours(path: &Path, head: &[u8]) -> bool {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(LONGEST).read_to_end(&mut bytes)).is_ok();

@@ -11,9 +11,9 @@ use std::process::{Child, Command, Stdio};
 
 pub(super) struct Mp4;
 
-/// Rays of a pixel.
+/// Rays in each pixel.
 const RAYS: u32 = 4;
-/// What runs where nothing else is named by the environment variable [`VARIABLE`].
+/// The program that is run unless the environment variable [`VARIABLE`] names another.
 const PROGRAM: &str = "ffmpeg";
 /// Names another program of the same kind.
 const VARIABLE: &str = "PLAUS_FFMPEG";
@@ -25,9 +25,9 @@ impl Exporter for Mp4 {
         &Row {
             name: "mp4",
             ending: "mp4",
-            about: "a video with its sound; with --into, up to 64 samples side by side, without",
-            help: "Needs the program ffmpeg (PLAUS_FFMPEG names another one). H.264, 1280 x 720 pixels and 30 frames a \
-                second unless --size and --fps say otherwise.",
+            about: "a video with sound; with --into, up to 64 samples side by side, without sound",
+            help: "Needs the program ffmpeg (PLAUS_FFMPEG names another one). H.264. Without --size and --fps: 1280 x \
+                   720 pixels and 30 frames per second.",
         }
     }
 
@@ -51,15 +51,15 @@ impl Exporter for Mp4 {
 struct Video {
     path: PathBuf,
     sheet: Sheet,
-    /// Of the only clip.
+    /// The sound of the only clip.
     sound: Vec<f64>,
 }
 
-/// A file that is gone when this is.
+/// A file that is deleted together with this value.
 struct Temporary(PathBuf);
 
 impl Temporary {
-    /// Beside a file, so that it is on a disk that has room.
+    /// A file beside another, so that it is on a disk with room.
     fn beside(path: &Path, end: &str) -> Self {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         Self(path.with_file_name(format!(".{name}.{}.{end}", std::process::id())))
@@ -68,7 +68,7 @@ impl Temporary {
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // It may never have come to be.
+        // It may never have existed.
         let _ = fs::remove_file(&self.0);
     }
 }
@@ -78,7 +78,7 @@ impl Collection for Video {
         self.sheet.add(clip)?;
         let (width, height) = self.sheet.size();
         if width % 2 + height % 2 > 0 {
-            let odd = format!("--size {width}x{height}: videos have even numbers of pixels");
+            let odd = format!("--size {width}x{height}: videos need even numbers of pixels");
             return Err(ExportError::Impossible(odd));
         }
         Ok(())
@@ -101,7 +101,7 @@ impl Collection for Video {
         if let Some(mut errors) = child.stderr.take() {
             errors.read_to_string(&mut said)?;
         }
-        // An encoder that stops in the middle has said why, and the broken pipe has not.
+        // An encoder that stops in the middle has said why; the broken pipe has not.
         if !child.wait()?.success() {
             return Err(ExportError::Impossible(format!("{PROGRAM} could not make the video: {}", said.trim())));
         }
@@ -127,8 +127,8 @@ impl Video {
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::piped());
         command.spawn().map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => ExportError::Impossible(format!(
-                "videos are made by the program {}, which is not here: install it, or name it by {VARIABLE}; --format \
-                gif needs no other program",
+        "videos are made by the program {}, which was not found: install it, or name it in {VARIABLE}; --format gif \
+         needs no other program",
                 program.display()
             )),
             _ => ExportError::Output(error),

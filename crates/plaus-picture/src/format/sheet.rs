@@ -4,14 +4,14 @@ use crate::{Camera, Film, Image, Quality, Renderer};
 use plaus_animation::Animation;
 use plaus_export::{Clip, Cut, ExportError};
 
-/// Clips on one sheet at most.
+/// Most clips on one sheet.
 pub(super) const MOST: usize = 64;
 /// Pixels between clips.
 const GAP: u32 = 4;
-/// Sizes, in pixels, that a picture may have: what is larger than the largest screens takes hours.
+/// Allowed sizes of a picture, in pixels: anything larger than the largest screens takes hours.
 const SIZES: std::ops::RangeInclusive<u32> = 16..=16384;
 
-/// Clips that are shown together, in the order in which they came.
+/// Clips that are shown together, in the order in which they were added.
 pub(super) struct Sheet {
     clips: Vec<(Animation, Cut)>,
     size: (u32, u32),
@@ -20,7 +20,7 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    /// Of that size unless clips ask for another.
+    /// A sheet of that size unless clips ask for another.
     pub(super) fn new(size: (u32, u32), rays: u32) -> Self {
         Self { clips: Vec::new(), size, rays, progress: |_, _| () }
     }
@@ -33,7 +33,7 @@ impl Sheet {
             return Err(ExportError::Impossible(wrong));
         }
         if self.clips.len() == MOST {
-            let many = format!("one picture shows {MOST} samples at most: choose some by --sample");
+            let many = format!("one picture shows at most {MOST} samples: choose some by --sample");
             return Err(ExportError::Impossible(many));
         }
         (self.size, self.progress) = ((width, height), clip.progress);
@@ -46,22 +46,22 @@ impl Sheet {
         self.size
     }
 
-    /// The clip, where there is one only.
+    /// The clip, if there is only one.
     pub(super) fn alone(&self) -> Option<&(Animation, Cut)> {
         self.clips.first().filter(|_| self.clips.len() == 1)
     }
 
-    /// Frames a second.
+    /// Frames per second.
     pub(super) fn fps(&self) -> f64 {
         self.clips.first().map_or(1.0, |(_, cut)| cut.fps())
     }
 
-    /// Hands over the picture of where all clips end.
+    /// Passes on the picture of the ends of all clips.
     pub(super) fn last<E>(&self, mut take: impl FnMut(Image) -> Result<(), E>) -> Result<(), E> {
         take(self.draw(&mut self.films(), f64::INFINITY))
     }
 
-    /// Hands over all frames: the longest clip from its beginning to its end; others stay as they end.
+    /// Passes on all frames: the longest clip from its start to its end; others stay at their ends.
     pub(super) fn frames<E>(&self, mut take: impl FnMut(Image) -> Result<(), E>) -> Result<(), E> {
         let mut films = self.films();
         let longest = self.clips.iter().map(|(_, cut)| cut.length()).fold(0.0, f64::max);
@@ -74,7 +74,7 @@ impl Sheet {
         Ok(())
     }
 
-    /// How many clips stand side by side, and the pixels that each has.
+    /// How many clips are side by side, and the size of each in pixels.
     fn grid(&self) -> (u32, (u32, u32)) {
         let count = self.clips.len().max(1) as u32;
         let columns = (1..).find(|columns| columns * columns >= count).unwrap_or(1);

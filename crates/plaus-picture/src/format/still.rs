@@ -10,12 +10,12 @@ use std::path::Path;
 pub(super) struct Png;
 pub(super) struct Gif;
 
-/// Rays of a pixel: pictures are looked at longer than frames.
+/// Rays in each pixel: pictures are looked at longer than frames.
 const RAYS: u32 = 16;
 const RAYS_OF_A_FRAME: u32 = 4;
-/// How thoroughly the palette of a frame is sought, from 1 (all pixels are looked at) to 30.
+/// How thoroughly the palette of a frame is computed, from 1 (all pixels are used) to 30.
 const PALETTE: i32 = 10;
-/// Ticks a second in which GIF counts delays.
+/// Ticks per second in which GIF counts delays.
 const TICKS: f64 = 100.0;
 
 impl Exporter for Png {
@@ -23,9 +23,9 @@ impl Exporter for Png {
         &Row {
             name: "png",
             ending: "png",
-            about: "a picture of how it ends; with --into, of up to 64 samples side by side",
-            help: "1280 x 720 pixels unless --size says otherwise; the same on every machine. --time-range 0:1.5 shows \
-                it 1.5 s after the beginning.",
+            about: "a picture of the end; with --into, up to 64 samples side by side",
+            help: "1280 x 720 pixels unless --size says otherwise; the same on every machine. With --time-range 0:1.5, \
+                   a picture at 1.5 s.",
         }
     }
 
@@ -72,8 +72,8 @@ impl Exporter for Gif {
             name: "gif",
             ending: "gif",
             about: "a loop for web pages and chats; with --into, up to 64 samples side by side",
-            help: "640 x 360 pixels and 20 frames a second unless --size and --fps say otherwise; the format counts \
-                time in hundredths of a second.",
+            help: "640 x 360 pixels and 20 frames per second unless --size and --fps say otherwise; the format counts \
+                   time in hundredths of a second.",
         }
     }
 

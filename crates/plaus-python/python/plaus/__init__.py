@@ -5,10 +5,10 @@
     strikes = plaus.sample(plaus.Scenario.default("bowling"), solutions=12)
     strikes.gallery()
 
-A `Scenario` says what must happen; `sample` draws animations from the distribution of all that fit, by Markov chain
-Monte Carlo, and gives a `Run`: its draws as arrays, its solutions, their motion and impacts, a page that plays them.
-`chance` says how likely that is before it is demanded. A `Requirement` asks for what no scenario file can say, by a
-function of yours. `plaus.sim` is the simulator alone.
+A `Scenario` says what must happen. `sample` draws animations from the distribution of all that fit, by Markov chain
+Monte Carlo, and returns a `Run`: draws as arrays, solutions with their motion and impacts, a page that plays them.
+`chance` estimates how likely it is that a random animation does what a scenario asks. A `Requirement` is a function of
+yours that asks for what no scenario file can express. `plaus.sim` is the simulator alone.
 
 Lengths are metres, times seconds, angles radians unless a name says otherwise (`offset_mm`); y points up in motions.
 """

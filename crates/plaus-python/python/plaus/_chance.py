@@ -1,4 +1,4 @@
-"""How likely what a scenario demands is, before it is demanded."""
+"""How likely it is, under its prior, that a scenario does what it asks for."""
 
 from __future__ import annotations
 
@@ -18,68 +18,67 @@ NAN = float("nan")
 
 
 class Estimate(NamedTuple):
-    """A probability as one method has it."""
+    """A probability, as estimated by one method."""
 
     method: str
     """`counting`, `splitting` or `stones`."""
     probability: float
     """The estimate."""
     error: float
-    """Its standard error; 0 where nothing was seen that tells it."""
+    """Its standard error; 0 if nothing was seen that would show it."""
     interval: tuple[float, float]
-    """Where the probability lies, with 95 % confidence if the method has seen every way to the goal."""
+    """95 % confidence interval, if the method has seen every way to the goal."""
     simulations: int
-    """Simulations that it took."""
+    """Number of simulations that it took."""
     count: int  # type: ignore[assignment]  # Every tuple has a method of that name.
-    """Draws where it was counted, else batches."""
+    """Number of draws for `counting`, of batches for the other methods."""
 
 
 class Disagreement(NamedTuple):
-    """Two methods that cannot both be right: one has missed what the other has seen, or has not looked long enough."""
+    """Two methods that cannot both be right: one has missed what the other saw, or has not searched long enough."""
 
     less: str
     """The method that finds less."""
     more: str
     """The method that finds more."""
     factor: float | None
-    """How many times as much; None where the other finds nothing."""
+    """How many times as much; None if the other finds nothing."""
 
 
 class Answer:
-    """How likely one thing is: all that is demanded, or a part of it."""
+    """How likely one thing is: everything that the scenario asks for, or a part of it."""
 
     def __init__(self, made: dict[str, Any]) -> None:
         self.name: str = made["name"]
-        """What."""
+        """What it is about."""
         self.estimates: list[Estimate] = [_estimate(one) for one in made["estimates"]]
-        """What each method says."""
+        """The estimate of each method."""
         self.best: Estimate | None = made["best"] and _estimate(made["best"])
-        """The one with the smallest relative error; where methods disagree, the largest. None where no batch is
-        made."""
+        """The estimate with the smallest relative error; if methods disagree, the largest estimate. None if no batch is
+        made yet."""
         self.disagreements: list[Disagreement] = [Disagreement(**one) for one in made["disagreements"]]
-        """Which methods cannot both be right: one has missed what the other has seen."""
+        """Pairs of methods that cannot both be right: one has missed what the other saw."""
         self.lopsided: list[str] = made["lopsided"]
-        """Methods whose estimate rests on one batch for more than half: more batches are needed."""
+        """Methods with more than half of their estimate from one batch: they need more batches."""
 
     @property
     def probability(self) -> float:
-        """The best estimate; NaN where no batch is made."""
+        """The best estimate; NaN if no batch is made yet."""
         return NAN if self.best is None else self.best.probability
 
     @property
     def error(self) -> float:
-        """Its standard error; NaN where no batch is made."""
+        """Its standard error; NaN if no batch is made yet."""
         return NAN if self.best is None else self.best.error
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Where the probability lies with 95 % confidence, by the best estimate; all of 0 to 1 where no batch is
-        made."""
+        """95 % confidence interval of the best estimate; from 0 to 1 if no batch is made yet."""
         return (0.0, 1.0) if self.best is None else self.best.interval
 
     @property
     def agrees(self) -> bool:
-        """Whether the methods agree, as far as can be told."""
+        """Whether the methods agree, as far as is known."""
         return not self.disagreements
 
     def __repr__(self) -> str:
@@ -92,10 +91,10 @@ def _estimate(made: dict[str, Any]) -> Estimate:
 
 
 class Chance(Answer):
-    """How likely all that a scenario demands is under its prior, and each part of it in `parts`.
+    """How likely it is, under its prior, that a scenario does what it asks for; `parts` has the same for each part.
 
-    `plaus.chance` gives one; `Chance.open` reads one from a file that it, or the command, kept it in. As text it is
-    what the command prints.
+    `plaus.chance` makes one; `Chance.open` reads one from a file that `plaus.chance` or the command wrote. `str` gives
+    the text that the command prints.
     """
 
     def __init__(
@@ -111,13 +110,13 @@ class Chance(Answer):
         self._text, self._file, self._effective = known[1:]
         super().__init__(self.facts["answers"][0])
         self.parts: list[Answer] = [Answer(made) for made in self.facts["answers"][1:]]
-        """Each thing that is demanded by itself, where it is more than one."""
+        """An answer for each thing that is asked for, if there is more than one."""
         self.path: str | None = None if _path is None else os.fspath(_path)
-        """The file that it is kept in."""
+        """The file that holds it."""
         self.ending: str | None = None
-        """How asking ended: `complete`, `out_of_time`, `interrupted`, `callback`; None where it was opened."""
+        """How the estimation ended: `complete`, `out_of_time`, `interrupted`, `callback`; None for one from a file."""
         self.seconds: float | None = None
-        """Seconds that asking took this time; None where it was opened."""
+        """Seconds that the estimation took this time; None for one from a file."""
 
     @classmethod
     def open(cls, path: Path) -> Chance:
@@ -126,12 +125,12 @@ class Chance(Answer):
 
     @property
     def batches(self) -> tuple[int, int]:
-        """Batches that are made, and that are to be, of all methods together."""
+        """Batches made, and batches planned, of all methods together."""
         return self.facts["batches_done"], self.facts["batches_due"]
 
     @property
     def methods(self) -> list[str]:
-        """Methods that are used."""
+        """The methods used."""
         return list(self.facts["methods"])
 
     @property
@@ -154,21 +153,21 @@ class Chance(Answer):
 
 
 class ChanceProgress:
-    """How far a chance is; what a callback gets."""
+    """How far the estimation is: the argument of a callback."""
 
     def __init__(self, state: dict[str, Any]) -> None:
         self.seconds: float = state["seconds"]
-        """Seconds since asking began."""
+        """Seconds since it began."""
         self.simulations: int = state["simulations"]
-        """Simulations made since."""
+        """Simulations since then."""
         self.batches: int = state["batches"]
-        """Batches that are made."""
+        """Batches made."""
         self.batches_planned: int = state["batches_planned"]
-        """Batches that are to be made, of all methods; 0 until the first is."""
+        """Batches planned, of all methods; 0 until the first one is made."""
 
     @property
     def share(self) -> float:
-        """Done share of the batches, in [0, 1]."""
+        """Share of the batches that is made, in [0, 1]."""
         return self.batches / max(1, self.batches_planned)
 
     @property
@@ -202,27 +201,27 @@ def chance(
     callback: Callable[[ChanceProgress], object] | None = None,
     progress: bool | None = None,
 ) -> Chance:
-    """Estimates how likely what a scenario demands is under its prior, before it is demanded.
+    """Estimates how likely it is, under its prior, that a scenario does what it asks for.
 
-    Three methods, held against each other: `counting` draws of the prior, `splitting` particles that climb the
-    constraint, stepping `stones` between prior and target. Unless `methods` names some, counting alone where 16 of the
-    first 500 draws hit, else all three.
+    Three methods check each other: `counting` draws from the prior, `splitting` particles that climb the constraint,
+    and stepping `stones` between prior and target. If `methods` names none, counting alone is used if 16 of the first
+    500 draws hit, and otherwise all three.
 
-    - `out`: a file that batches are kept in. Where it holds some of this very asking, it is gone on with: the same call
-      again goes on after an interruption, and gives the same bytes as one that was never interrupted.
-    - `seed`, `set`: as for `sample`. A requirement of your own plays no part: only what the scenario demands does.
-    - `batches` of each method (16): four times as many halve the error; `draws` of the prior that a batch counts (500);
-      `particles` of a batch of splitting (100), `steps` that a copied one makes (20); `rungs` of a batch of stones
-      (10), `iterations` of each (1600), after a quarter as many of warm-up.
-    - `max_time`: stop after so many seconds with the batches that are made; `threads`: 0 is one a core, and no result
-      depends on it.
+    - `out`: a file to keep batches in. If it already holds batches of the same estimate, that estimate is continued: so
+      the same call continues after an interruption, and gives the same bytes as one that was never interrupted.
+    - `seed`, `set`: as for `sample`. Only what the scenario asks for counts, not a `Requirement`.
+    - `batches`: batches of each method (16); four times as many halve the error. `draws`: draws in a batch of counting
+      (500). `particles`: particles in a batch of splitting (100). `steps`: steps of each copied particle (20). `rungs`:
+      rungs in a batch of stones (10). `iterations`: iterations of each rung (1600), after a quarter as many of warm-up.
+    - `max_time`: stop after this many seconds, with the batches made so far; `threads`: 0 means one per core, and no
+      result depends on it.
     - `callback`, called a few times a second with a `ChanceProgress`, and `progress`: as for `sample`.
 
-    Ctrl-C gives what the batches say that were made until then (`Chance.ending` is `"interrupted"`); a second one does
+    Ctrl-C returns the estimate from the batches made so far (`Chance.ending` is `"interrupted"`); a second Ctrl-C does
     not wait.
 
-    Raises `ScenarioError` for a wrong scenario, `RunError` where the file holds something else or cannot be written,
-    `ValueError` for numbers out of range and methods that there are not.
+    Raises `ScenarioError` for a wrong scenario, `RunError` if the file holds something else or cannot be written, and
+    `ValueError` for numbers out of range and unknown methods.
     """
     made = _scenario_of(scenario)
     seeded = _whole("seed", seed, 0)
@@ -254,7 +253,7 @@ def chance(
     known, why, seconds = _watched(ask, ChanceProgress, callback, progress, max_time)
     found = Chance(known, _path=out)
     done, due = found.batches
-    # What was asked to stop may be done all the same.
+    # Even if it was asked to stop, it may be complete.
     found.ending = "complete" if done == due else why or "stopped"
     found.seconds = seconds
     return found

@@ -6,7 +6,7 @@ from plaus import _plaus
 
 
 def main() -> int:
-    """Does what the command line says, and gives the exit code."""
+    """Runs the command line, and returns the exit code."""
     return _plaus.command(["plaus", *sys.argv[1:]])
 
 

@@ -18,9 +18,9 @@ class Poses(NamedTuple):
     """Where all bodies are, and how they are turned, at some times."""
 
     times: Floats
-    """Seconds, one a frame."""
+    """Seconds, one for each frame."""
     bodies: list[str]
-    """Names, one a body."""
+    """Names, one for each body."""
     position: Floats
     """Metres, y up: (frame, body, xyz)."""
     orientation: Floats
@@ -28,16 +28,16 @@ class Poses(NamedTuple):
 
 
 class Events(dict[str, Any]):
-    """Impacts in order of time, as columns: a dictionary that data frames take as it is.
+    """Impacts in order of time, as columns: a dictionary that data frames accept unchanged.
 
     `t` (s), `body` and `other` (names), `x`, `y`, `z` (m), `nx`, `ny`, `nz` (unit normal towards `body`), `speed` (m/s,
-    at
-    which the two met along the normal), `impulse` (N s). `point` and `normal` are the same as arrays (event, xyz).
+    at which the two met along the normal), `impulse` (N s). `point` and `normal` hold places and normals as arrays
+    (event, xyz).
     """
 
     def __init__(self, columns: dict[str, Any]) -> None:
         self.point: Floats = columns["point"]
-        """Where, in m: (event, xyz)."""
+        """Places in m: (event, xyz)."""
         self.normal: Floats = columns["normal"]
         """Unit normals of the surfaces hit, towards the bodies: (event, xyz)."""
         super().__init__(
@@ -52,7 +52,7 @@ class Events(dict[str, Any]):
 
     @property
     def count(self) -> int:
-        """How many impacts there are."""
+        """Number of impacts."""
         return len(self["t"])
 
     def __repr__(self) -> str:
@@ -60,15 +60,14 @@ class Events(dict[str, Any]):
 
 
 class Replay:
-    """A sample, simulated again from its draw: bit for bit what the chain saw, unless another accuracy was asked
-    for."""
+    """A sample, simulated again from its draw: bit for bit as in the chain, unless another accuracy was asked for."""
 
     def __init__(self, facts: str, motion: _plaus.Motion) -> None:
         import json
 
         self._motion = motion
         self.facts: dict[str, Any] = json.loads(facts)
-        """All that is known of it: sample, iteration, seed, log p, numbers of the scene."""
+        """What is known of it: sample, iteration, seed, log p, scalars of the scene."""
 
     @property
     def chain(self) -> int:
@@ -77,7 +76,7 @@ class Replay:
 
     @property
     def draw(self) -> int:
-        """Its number in the chain's sampling phase, from 0."""
+        """Its number among the chain's draws after the warm-up, from 0."""
         return int(self.facts["draw"])
 
     @property
@@ -87,17 +86,17 @@ class Replay:
 
     @property
     def satisfied(self) -> bool:
-        """Whether it satisfies the constraint, and a requirement where there is one."""
+        """Whether it satisfies the constraint, and the requirement if there is one."""
         return bool(self.facts["satisfied"])
 
     @property
     def scalars(self) -> dict[str, float]:
-        """The scene's numbers, as in the table of draws."""
+        """The scene's scalars, as in the table of draws."""
         return dict(self.facts["scalars"])
 
     @property
     def duration(self) -> float:
-        """Seconds."""
+        """Duration in seconds."""
         return self._motion.duration
 
     @property
@@ -106,8 +105,8 @@ class Replay:
         return self._motion.bodies
 
     def poses(self, fps: float = 60.0, *, times: Sequence[float] | Floats | None = None) -> Poses:
-        """Poses of all bodies at `fps` frames a second from 0 on, or at `times` (s), from closed forms: exact at any
-        time."""
+        """Poses of all bodies at `fps` frames per second from 0, or at `times` (s). They come from closed forms, exact
+        at any time."""
         at = None if times is None else [float(time) for time in times]
         moments, position, orientation = self._motion.poses(fps, at)
         return Poses(moments, self.bodies, position, orientation)
@@ -118,7 +117,7 @@ class Replay:
         return Events(self._motion.events)
 
     def to_json(self) -> str:
-        """The motion whole: closed-form pieces, impacts, shapes and scenery."""
+        """The whole motion: closed-form pieces, impacts, shapes and scenery."""
         return self._motion.to_json()
 
     def __repr__(self) -> str:

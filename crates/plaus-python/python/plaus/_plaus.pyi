@@ -40,20 +40,20 @@ class ScenarioError(ValueError):
     """A scenario that cannot be sampled."""
 
     problems: list[Problem]
-    """All that is wrong; the other attributes are those of the first."""
+    """Everything that is wrong; the other attributes are those of the first problem."""
     message: str
     """What is wrong."""
     key: str
-    """The key to blame, dotted from the root; empty where the text is no TOML."""
+    """The key at fault, dotted from the root; empty if the text is not TOML."""
     line: int | None
     """Line in the text, from 1."""
     column: int | None
     """Column in characters, from 1."""
     hint: str | None
-    """What would mend it, if that is known."""
+    """How to mend it, if that is known."""
 
 class RunError(RuntimeError):
-    """A run that cannot be made, read or gone on with."""
+    """A run that cannot be made, read or continued."""
 
 class WorldError(ValueError):
     """A world, or a start in it, that cannot be simulated."""
@@ -63,29 +63,29 @@ class Problem:
     """One thing that is wrong with a scenario."""
 
     key: str
-    """The key to blame, dotted from the root; empty where the text is no TOML."""
+    """The key at fault, dotted from the root; empty if the text is not TOML."""
     message: str
-    """What is wrong, with the allowed range where there is one."""
+    """What is wrong, with the allowed range if there is one."""
     hint: str | None
-    """What would mend it, if that is known."""
+    """How to mend it, if that is known."""
     line: int | None
     """Line in the text, from 1; None for overrides and for tables that the text lacks."""
     column: int | None
     """Column in characters, from 1."""
     said: str | None
-    """The override that said so, as `key=value`; None for the text itself."""
+    """The override at fault, as `key=value`; None for the text itself."""
 
 def _scenario(
     text: str, name: str, overrides: Sequence[str], files: Sequence[tuple[str, bytes]] = ...
 ) -> Scenario:
-    """A scenario as it was pickled, with the files that it names."""
+    """Restores a pickled scenario, with the files that it names."""
 
 @final
 class Scenario:
     """A scenario: a world, what must happen in it, and how it is sampled.
 
-    Made by `from_file`, `from_text`, `from_dict` or `default`, which read and check it: what is wrong is raised as
-    `ScenarioError`, all of it at once. A scenario never changes; `set` gives another one.
+    `from_file`, `from_text`, `from_dict` and `default` read and check it. They raise one `ScenarioError` with
+    everything that is wrong. A scenario never changes; `set` returns another one.
     """
 
     @staticmethod
@@ -93,52 +93,51 @@ class Scenario:
         """Reads a scenario file (TOML)."""
     @staticmethod
     def from_text(text: str, name: str = "scenario.toml") -> Scenario:
-        """Reads the text of a scenario file; `name` is what it is called in messages and in runs."""
+        """Reads the text of a scenario file; `name` is its name in messages and in runs."""
     @staticmethod
     def from_dict(tables: Mapping[str, Any], name: str = "scenario.toml") -> Scenario:
-        """A scenario from nested dictionaries, as the tables of a file are: `{"world": {"ball2d": {"target": 2}}}`."""
+        """A scenario from nested dictionaries, like the tables of a file: `{"world": {"ball2d": {"target": 2}}}`."""
     @staticmethod
     def default(scene: str) -> Scenario:
         """The scenario of a scene (`ball2d`, `bowling`, `dice`, `spelling`) with all settings at their defaults."""
     def set(self, *overrides: str, **keys: Any) -> Scenario:
-        """The same with some keys changed: `set("sigma_d=0.05")` as on the command line, or `set(sigma_d=0.05)`, or
-        `set(**{"weights.aim": 2})`. A key is a full dotted name or an end of it that no other key has."""
+        """The same scenario with some keys changed: `set("sigma_d=0.05")` as on the command line, or
+        `set(sigma_d=0.05)`, or `set(**{"weights.aim": 2})`. A key is a full dotted name, or a unique ending of it."""
     def check(self, *, draws: int | None = None) -> dict[str, Any]:
-        """Every key with the value in force, defaults too, as nested dictionaries. What is wrong was raised when the
-        scenario was made.
+        """Every key with its value, including defaults, as nested dictionaries. Errors were raised when the scenario
+        was made.
 
-        With `draws`: so many animations are drawn from the prior, and what comes back is how many of them met each
-        thing that is asked, the best margin of each, and pairs that were never met together: what `plaus check --draws
-        N --json` prints."""
+        With `draws`: draws this many animations from the prior. Returns how many of them met each requirement, the best
+        margin of each, and pairs that were never met together: what `plaus check --draws N --json` prints."""
     @property
     def toml(self) -> str:
-        """Every key with the value in force, as the text of a scenario file."""
+        """Every key with its value, as the text of a scenario file."""
     @property
     def scene(self) -> str:
         """The scene's name."""
     @property
     def text(self) -> str:
-        """The text that it was read from, without what was set since."""
+        """The text that it was read from, without the keys set since."""
     @property
     def name(self) -> str:
-        """What the text is called."""
+        """The name of the text."""
     @property
     def overrides(self) -> list[str]:
         """Keys set since, as `key=value`."""
 
 @final
 class Outcome:
-    """What came of a candidate: what a requirement judges.
+    """The outcome of a candidate, which a requirement judges.
 
-    Numbers are at hand; motion and impacts are made when they are first asked for. A function that asked for them once
-    gets them from the simulation that was run anyway, where the scene keeps it; else by simulating once more.
+    Scalars are available at once; motion and impacts are made when they are first used. Once a function has used them,
+    they come from the simulation that runs anyway, if the scene keeps it, and otherwise from a further simulation.
     """
 
     def __getitem__(self, name: str, /) -> float:
-        """One of the scene's numbers: `outcome["rest_x"]`."""
+        """One of the scene's scalars: `outcome["rest_x"]`."""
     @property
     def scalars(self) -> dict[str, float]:
-        """The scene's numbers by name, as in the table of draws."""
+        """The scene's scalars by name, as in the table of draws."""
     @property
     def log_prior(self) -> float:
         """Log prior density of the draw, up to a constant."""
@@ -150,20 +149,20 @@ class Outcome:
         """Whether the scenario's own constraint is satisfied."""
     @property
     def motion(self) -> Motion:
-        """The motion of all bodies, without what stands still around them."""
+        """The motion of all bodies, without the scenery."""
     @property
     def bodies(self) -> list[str]:
         """Names of the bodies."""
     @property
     def rest(self) -> dict[str, list[float]]:
-        """Where each body is at the end, by name: x, y, z in m, y up."""
+        """Position of each body at the end, by name: x, y, z in m, y up."""
     @property
     def rest_orientation(self) -> dict[str, list[float]]:
-        """How each body is turned at the end, by name: a unit quaternion x, y, z, w from its axes to the world's."""
+        """Orientation of each body at the end, by name: a unit quaternion x, y, z, w from its axes to the world's."""
 
 @final
 class Parcels:
-    """Opens outcomes that came from another process, of one scenario."""
+    """Opens outcomes of one scenario that came from another process."""
 
     def __new__(cls, scenario: Scenario) -> Self: ...
     def open(self, parcel: bytes) -> Outcome:
@@ -184,9 +183,9 @@ class Motion:
         """Impacts in order of time, as columns: t (s), body, other, point (m), normal, speed (m/s), impulse (N s)."""
     def poses(self, fps: float = 60.0, times: list[float] | None = None) -> list[NDArray[np.float64]]:
         """Times (s), positions (time, body, xyz; m, y up) and unit quaternions (time, body, xyzw) at `times`, or at
-        `fps` frames a second."""
+        `fps` frames per second."""
     def to_json(self) -> str:
-        """The motion whole, in closed-form pieces, as JSON."""
+        """The whole motion, in closed-form pieces, as JSON."""
 
 @final
 class Asked:
@@ -205,21 +204,21 @@ class RunFolder:
     def manifest(self) -> str:
         """What the run is, as JSON."""
     def size(self) -> tuple[int, int, int]:
-        """Draws of the warm-up and of the sampling phase that each chain has, and iterations done."""
+        """Numbers of each chain: draws of the warm-up, draws after it, and iterations done."""
     def chains(self) -> tuple[int, int]:
         """Numbers of the chains that the folder holds: the first, and one past the last."""
     def is_being_written(self) -> bool:
-        """Whether another process is writing the run now, as far as can be told."""
+        """Whether another process is writing the run now, as far as is known."""
     def columns(self, warmup: bool) -> list[tuple[str, str, str, Any]]:
         """Columns of a phase: name, unit, role, and an array (chain, draw)."""
     def solutions(self) -> list[tuple[int, int, int, float, bool]]:
-        """The first draw of each distinct solution: chain, draw, iteration, log p, and whether it is of the warm-up."""
+        """The first draw of each distinct solution: chain, draw, iteration, log p, whether it is from the warm-up."""
     def replay(self, samples: Sequence[tuple[int, int, bool]], accuracy: str | None = None) -> list[tuple[str, Motion]]:
-        """What is known of samples that are simulated again, as JSON, and their motions."""
+        """Simulates samples again: what is known of each, as JSON, and its motion."""
     def gallery(self, count: int) -> tuple[str, int, int]:
         """A page that plays solutions, how many it shows, and how many there are."""
     def diagnose(self, most: int | None = None) -> str:
-        """What `plaus diagnose --json` says."""
+        """What `plaus diagnose --json` prints."""
 
 def sample(
     scenario: Scenario | None,
@@ -236,8 +235,7 @@ def sample(
     poll: Callable[[dict[str, Any]], bool] | None,
     interval: float,
 ) -> tuple[str, float]:
-    """Samples into `folder`, or goes on with the run there where `scenario` is None; gives how it ended, and
-    seconds."""
+    """Samples into `folder`, or continues the run there if `scenario` is None; returns how it ended, and seconds."""
 
 def chance(
     scenario: Scenario,
@@ -251,17 +249,17 @@ def chance(
     poll: Callable[[dict[str, Any]], bool] | None,
     interval: float,
 ) -> tuple[tuple[str, str, str, str], str | None, float]:
-    """Asks how likely what a scenario demands is; gives what is known (JSON, words, the scenario's name and text), why
-    it was stopped, and seconds."""
+    """Estimates how likely it is that a scenario does what it asks for. Returns what is known (JSON, words, the
+    scenario's name and text), why it was stopped, and seconds."""
 
 def read_chance(path: str | os.PathLike[str]) -> tuple[str, str, str, str]:
-    """Reads a file that an inquiry was kept in."""
+    """Reads the file of an estimate."""
 
 def command(arguments: Sequence[str]) -> int:
-    """Does what a command line says, its first word being the program's name, and gives the exit code."""
+    """Runs a command line, whose first word is the program's name, and returns the exit code."""
 
 def call(arguments: Sequence[str]) -> None:
-    """Does what a command line without the program's name says; what is wrong is raised."""
+    """Runs a command line that begins without the program's name; raises errors."""
 
 @final
 class SimWorld:
@@ -288,13 +286,13 @@ class SimWorld:
         """Dice of 16 mm on a flat table."""
     @staticmethod
     def of_scenario(scenario: Scenario) -> SimWorld:
-        """The world of a scenario, with all that is random left out."""
+        """The world of a scenario without its randomness."""
     @property
     def places(self) -> list[list[float]]:
-        """Where bodies may start, one a row; none where the world was built by hand."""
+        """Places where bodies can start, one in each row; none for a world that the user built."""
     @property
     def bodies(self) -> int:
-        """How many bodies there are."""
+        """Number of bodies."""
     def run(
         self,
         position: Any,
@@ -308,16 +306,16 @@ class SimWorld:
         events: bool,
         threads: int | None,
     ) -> dict[str, Any]:
-        """Runs from every start, on all threads; arrays by name."""
+        """Runs from every start, on all threads; returns arrays by name."""
 
 @final
 class Rng:
     """Random numbers of one iteration: the same for the same seed, chain and iteration, whatever else is drawn."""
 
     def __new__(cls, seed: int) -> Self:
-        """Numbers of a seed, outside of any chain."""
+        """Random numbers of a seed, outside any chain."""
     def uniform(self, low: float = 0.0, high: float = 1.0) -> float:
-        """Uniform between `low` and `high`, without the ends."""
+        """Uniform between `low` and `high`, excluding both."""
     def normal(self, mean: float = 0.0, sd: float = 1.0) -> float:
         """Normal with this mean and standard deviation."""
     def below(self, count: int) -> int:
@@ -337,7 +335,7 @@ class Kernel:
 
 @final
 class CheckReport:
-    """What checks of moves found. True where that is nothing; as text, what it is."""
+    """The findings of checks of moves. True if there are none; as text, the findings."""
 
     passed: bool
     """Whether nothing was found."""
@@ -346,7 +344,7 @@ class CheckReport:
     p: float
     """Smallest p-value of the statistical checks."""
     accepted: float
-    """Share of candidates that were accepted in them: a move that is never accepted has not been tested."""
+    """Share of candidates accepted in them: a move that is never accepted has not been tested."""
     def __bool__(self) -> bool: ...
 
 def check(
@@ -360,7 +358,7 @@ def check(
     false_alarm: float,
     bound: float | None,
 ) -> CheckReport:
-    """Checks moves: their ratios against each other, and that a step from exact draws leaves the law of exact draws."""
+    """Checks moves: that ratios match those of the reverse steps, and that a step preserves the law of exact draws."""
 
 def sample_target(
     functions: Functions,
@@ -372,4 +370,4 @@ def sample_target(
     seed: int | None,
     solutions: int | None,
 ) -> dict[str, Any]:
-    """Samples a target; arrays by name."""
+    """Samples a target; returns arrays by name."""

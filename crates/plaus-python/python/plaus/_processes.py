@@ -1,4 +1,4 @@
-"""Other processes that a requirement is asked in, so that slow functions do not wait for each other."""
+"""Other processes that evaluate a requirement, so that calls of a slow function do not wait for each other."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ from typing import Any
 
 from plaus import _plaus
 
-# Seconds that a process has for its end before it is ended.
+# Seconds that a process gets to end by itself before it is terminated.
 _PATIENCE = 5.0
-# This process's ends of all pipes: what is forked closes them, so that each process sees when its own is closed.
+# This process's ends of all pipes. Forked processes close them, so that each process notices when its own is closed.
 _ours: set[Connection] = set()
 _starting = threading.Lock()
 
 
 class _Elsewhere(Exception):
-    """Where in another process something was raised."""
+    """The traceback of an exception in another process."""
 
     def __str__(self) -> str:
         return f'\n"""\n{self.args[0]}"""'
 
 
 class Processes:
-    """Processes that a function is asked in; they end where the block does that they are made for."""
+    """Processes that evaluate a function; they end with the `with` block that they were made for."""
 
     def __init__(self, function: Callable[[_plaus.Outcome], object], scenario: _plaus.Scenario, count: int) -> None:
-        # Where there is fork, functions of notebooks and closures go along; elsewhere they have to be importable.
+        # With fork, functions from notebooks and closures are available; without it, they have to be importable.
         context: Any = multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
         self._idle: queue.SimpleQueue[Connection] = queue.SimpleQueue()
         self._all: list[tuple[Connection, Any]] = []
         with _starting, warnings.catch_warnings():
-            # What a fork leaves behind in threads of others is not used: a process only waits, and calls the function.
+            # The state that a fork leaves of other threads is not used: a process only waits, and calls the function.
             warnings.simplefilter("ignore", DeprecationWarning)
             for _ in range(count):
                 ours, theirs = context.Pipe()
@@ -55,14 +55,14 @@ class Processes:
                 self._idle.put(ours)
 
     def ask(self, parcel: bytes) -> tuple[float, object]:
-        """Has a process that is idle, or the first that will be, ask the function about an outcome: seconds that it
-        took, and its answer."""
+        """Has an idle process, or the next one that becomes idle, call the function with an outcome. Returns the
+        seconds that it took, and its answer."""
         connection = self._idle.get()
         try:
             connection.send_bytes(parcel)
             seconds, answer, raised = connection.recv()
         except (EOFError, OSError) as lost:
-            raise _plaus.RunError(f"a process that a requirement was asked in has ended{self._how()}") from lost
+            raise _plaus.RunError(f"a process that evaluates a requirement has ended{self._how()}") from lost
         finally:
             self._idle.put(connection)
         if raised is not None:
@@ -100,7 +100,7 @@ def _serve(
     function: Callable[[_plaus.Outcome], object],
     scenario: _plaus.Scenario,
 ) -> None:
-    """Answers until nobody asks any more."""
+    """Answers until there are no more questions."""
     # Ctrl-C is for the process that samples.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for other in close:
@@ -115,13 +115,13 @@ def _serve(
         try:
             answer = function(parcels.open(parcel))
             reply = pickle.dumps((time.perf_counter() - begun, answer, None))
-        except BaseException as error:  # whatever it is, it is the user's to see
+        except BaseException as error:  # any exception is for the user to see
             reply = pickle.dumps((time.perf_counter() - begun, None, _parcelled(error)))
         connection.send_bytes(reply)
 
 
 def _parcelled(error: BaseException) -> tuple[BaseException, str]:
-    """An exception as another process can raise it, with its traceback as text."""
+    """An exception in a form that another process can raise, with its traceback as text."""
     where = "".join(traceback.format_exception(error))
     try:
         return pickle.loads(pickle.dumps(error)), where

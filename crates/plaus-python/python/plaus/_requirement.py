@@ -1,4 +1,4 @@
-"""What no scenario file can say: a requirement of your own."""
+"""Requirements written in Python, for what no scenario file can express."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Cost(NamedTuple):
     calls: int
     """How often the function was called."""
     seconds: float
-    """Seconds spent in it, with what it had simulated once more."""
+    """Seconds spent in it, including further simulations that it caused."""
     waited: float
-    """Seconds that chains waited for their turn, and for answers of other processes to arrive."""
+    """Seconds that chains waited for their turn, and for answers from other processes."""
 
     @property
     def microseconds_a_call(self) -> float:
@@ -32,25 +32,24 @@ class Cost(NamedTuple):
 
 
 class Requirement:
-    """Something more that must happen, as a function of the outcome.
+    """Something further that must happen, as a function of the outcome.
 
-    `function` is called with an `Outcome` and returns `(log potential, met)`: the log of a factor that the sampled
-    distribution gets (0 for no preference, `-inf` for impossible), and whether the requirement is met, so that the
-    outcome may count as a solution. `True` stands for `(0, True)`, `False` for `(-inf, False)`; but a chain must be
-    able to start, and finds its way much sooner along a slope than off a cliff.
+    `function` is called with an `Outcome` and returns `(log potential, met)`: the log of a factor in the sampled
+    distribution (0 for no preference, `-inf` for impossible), and whether the requirement is met, so that the outcome
+    may count as a solution. `True` stands for `(0, True)`, `False` for `(-inf, False)`. But a chain must be able to
+    start, and it reaches the goal much sooner if the potential rises towards it than if it jumps there.
 
-    The function must depend on the outcome alone: equal outcomes, equal answers. Then the chain stays exact, and the
-    same seed gives the same bits, whatever the number of threads.
+    The function must depend on the outcome alone: equal outcomes must give equal answers. Then the chain remains exact,
+    and the same seed gives the same bits, whatever the number of threads.
 
-    `most` is a number that the log potential never exceeds, 0 unless you say otherwise: with it, simulations that
-    cannot be accepted any more still stop early, and the function is not asked about them. `None` where there is no
-    such bound.
+    `most` is a number that the log potential never exceeds; the default is 0. With it, simulations that can no longer
+    be accepted still stop early, and the function is not called for them. `None` means that there is no such bound.
 
-    Chains simulate on all cores, but Python runs one call at a time: where the function is slow, they wait for each
-    other. With `processes`, so many further processes are started for each run, and calls go to them side by side;
-    outcomes travel there and answers back, which takes about a tenth of a millisecond, so for quick functions it
-    does not pay. The draws are the same. On Linux processes are forked, elsewhere the function must be importable; what
-    it changes outside of itself stays in its process. What was spent is in `cost`.
+    Chains simulate on all cores, but Python runs one call at a time: if the function is slow, chains wait for each
+    other. `processes` is the number of further processes to start for each run; they run calls in parallel. Sending an
+    outcome and its answer takes about a tenth of a millisecond, so this does not pay off for quick functions. The draws
+    are the same. On Linux, processes are forked; elsewhere, the function must be importable. Changes that it makes
+    outside of itself stay in its process. `cost` says how much time was spent.
     """
 
     def __init__(
@@ -61,11 +60,11 @@ class Requirement:
         self.function = function
         """The function."""
         self.name: str = name or getattr(function, "__name__", None) or type(function).__name__
-        """What it is called in the run's manifest and in messages."""
+        """Its name in the run's manifest and in messages."""
         self.most = most
-        """What its log potential never exceeds; None where there is no bound."""
+        """A number that its log potential never exceeds; None if there is no bound."""
         self.processes: int = _whole("processes", processes, 0) or 0
-        """How many processes it is asked in; 0: in the one that samples, a call at a time."""
+        """Number of processes that evaluate it; 0: only the one that samples, one call at a time."""
         self._asked = _plaus.Asked(function, self.name, most)
 
     @property
@@ -82,7 +81,7 @@ class Requirement:
         return Processes(self.function, scenario, self.processes)
 
     def __call__(self, outcome: _plaus.Outcome) -> tuple[float, bool] | bool:
-        """What the function says of an outcome, of one that an exception carries for example."""
+        """The function's answer for an outcome, for example one that an exception carries."""
         return self.function(outcome)
 
     def __repr__(self) -> str:

@@ -1,6 +1,6 @@
 """Runs: draws as arrays, solutions, motions, pages.
 
-What only some calls need is imported by them: `import plaus` stays quick.
+Modules that only some calls need are imported in those calls, so that `import plaus` is quick.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Sample(NamedTuple):
-    """A draw: its chain, its number there from 0, and whether it is one of the warm-up, which has numbers of its own."""
+    """A draw: its chain, its number there, from 0, and whether it is from the warm-up, which is numbered separately."""
 
     chain: int
     draw: int
@@ -41,11 +41,11 @@ class Solution(NamedTuple):
     log_p: float
     """Log probability density, up to a constant."""
     warmup: bool = False
-    """Whether it was found in the warm-up, while moves were adapted: it is no part of statistics then."""
+    """Whether it was found in the warm-up, while moves were adapted; statistics leave such draws out."""
 
     @property
     def sample(self) -> Sample:
-        """Which draw it is."""
+        """The draw that it is."""
         return Sample(self.chain, self.draw, self.warmup)
 
 
@@ -63,7 +63,7 @@ class _Folder:
 
 
 def _remove(folder: str, owner: int) -> None:
-    # A forked child leaves what its parent still needs.
+    # A forked child leaves the folder, which its parent still needs.
     if os.getpid() == owner:
         import shutil
 
@@ -71,7 +71,7 @@ def _remove(folder: str, owner: int) -> None:
 
 
 class _TemporaryFolder(_Folder):
-    """A run's folder that goes with it."""
+    """A run's folder that is deleted with the run."""
 
     fleeting = True
 
@@ -86,7 +86,7 @@ class _TemporaryFolder(_Folder):
 class Table(dict[str, Any]):
     """Columns of numbers, all equally long: a dictionary of names and read-only numpy arrays.
 
-    Data frames take it as it is: `polars.DataFrame(run.draws)`, `pandas.DataFrame(run.draws)`,
+    Data frames accept it unchanged: `polars.DataFrame(run.draws)`, `pandas.DataFrame(run.draws)`,
     `pyarrow.table(run.draws)`.
     """
 
@@ -105,24 +105,24 @@ class Table(dict[str, Any]):
 
 
 class Gallery:
-    """A page that plays solutions. Shows itself in notebooks, in a frame of its own; `open` shows it in a browser."""
+    """A page that plays solutions. Notebooks show it in a frame; `open` shows it in a browser."""
 
     def __init__(self, html: str, shown: int, distinct: int) -> None:
         self.html = html
         """The page: one text that needs nothing else."""
         self.shown = shown
-        """Solutions on it."""
+        """Number of solutions on it."""
         self.distinct = distinct
-        """Distinct solutions of the run."""
+        """Number of distinct solutions of the run."""
 
     def save(self, path: Path, *, force: bool = False) -> str:
-        """Writes the page; what is there already is replaced only by `force`."""
+        """Writes the page; an existing file is replaced only with `force`."""
         with open(path, "w" if force else "x", encoding="utf-8") as out:
             out.write(self.html)
         return os.fspath(path)
 
     def open(self) -> str:
-        """Shows the page in a browser; gives the file that it is in."""
+        """Shows the page in a browser; returns the path of its file."""
         import tempfile
         import webbrowser
 
@@ -134,7 +134,7 @@ class Gallery:
     def _repr_html_(self) -> str:
         from html import escape
 
-        # Without allow-same-origin: the page can run and download, and see nothing of the notebook.
+        # Without allow-same-origin, the page can run and download, but cannot see the notebook.
         return (
             f'<iframe sandbox="allow-scripts allow-downloads" srcdoc="{escape(self.html, quote=True)}" '
             'style="width:100%;height:640px;border:0" title="plaus gallery"></iframe>'
@@ -145,9 +145,9 @@ class Gallery:
 
 
 class Run:
-    """A run: what was sampled of a scenario. `Run(path)` opens a folder; `plaus.sample` gives one.
+    """The samples of a scenario. `Run(path)` opens a run's folder; `plaus.sample` makes a run.
 
-    A run never changes under your hands, except by `resume`, which gives a new one.
+    A run never changes while you use it; `resume` returns a new one.
     """
 
     def __init__(
@@ -171,7 +171,7 @@ class Run:
         self.seconds: float | None = _ended[1] if _ended else None
         """Seconds that sampling took; None for a run that was opened."""
         self.requirement = _requirement
-        """The requirement that it was sampled with, where that is known."""
+        """The requirement that it was sampled with, if known."""
         self._solutions: list[Solution] | None = None
 
     @property
@@ -181,7 +181,7 @@ class Run:
 
     @property
     def scenario(self) -> _plaus.Scenario:
-        """The scenario in force."""
+        """The scenario, with all overrides applied."""
         stored = self.manifest["scenario"]
         return _plaus.Scenario.from_text(stored["effective"], stored["file"])
 
@@ -192,23 +192,23 @@ class Run:
 
     @property
     def chains(self) -> int:
-        """How many chains the folder holds: all of the run, or those of a piece."""
+        """Number of chains in the folder: all chains of the run, or those of a piece."""
         first, end = self._run.chains()
         return end - first
 
     @property
     def iterations(self) -> int:
-        """Iterations that every chain has done, warm-up included."""
+        """Iterations that every chain has done, including the warm-up."""
         return self._run.size()[2]
 
     @property
     def draw_count(self) -> int:
-        """Draws of the sampling phase that each chain has."""
+        """Number of draws of each chain after the warm-up."""
         return self._run.size()[1]
 
     @property
     def draws(self) -> Table:
-        """All draws of the sampling phase: `chain`, `draw`, `log_p`, `satisfied`, then the scene's numbers."""
+        """All draws after the warm-up: `chain`, `draw`, `log_p`, `satisfied`, then the scene's scalars."""
         import numpy
 
         columns = self._run.columns(False)
@@ -225,7 +225,7 @@ class Run:
 
     @property
     def solutions(self) -> list[Solution]:
-        """The distinct solutions, each by its first draw, in the order in which they were found."""
+        """The distinct solutions, each represented by its first draw, in the order in which they were found."""
         if self._solutions is None:
             self._solutions = [Solution(*found) for found in self._run.solutions()]
         return self._solutions
@@ -242,7 +242,7 @@ class Run:
         if isinstance(which, tuple):
             return Sample(int(which[0]), int(which[1]))
         if isinstance(which, bool) or not hasattr(which, "__index__"):
-            raise TypeError(f"{which!r} names no sample: the number of a solution does, (chain, draw), or 'chain:draw'")
+            raise TypeError(f"{which!r} names no sample: give the number of a solution, (chain, draw), or 'chain:draw'")
         known = self.solutions
         try:
             return known[which].sample
@@ -250,20 +250,20 @@ class Run:
             raise IndexError(f"there is no solution {which}: there are {len(known)}") from None
 
     def replay(self, which: Which = 0, *, accuracy: str | None = None) -> Replay:
-        """One sample, simulated again: the solution of that number, or the draw `(chain, draw)` or `"chain:draw"`.
+        """Simulates one sample again: the solution with this number, or the draw `(chain, draw)` or `"chain:draw"`.
 
-        `accuracy`: what becomes of the same draw in a finer simulation, `"fine"` or `"reference"`.
+        `accuracy`: simulate the same draw at another accuracy, for example `"fine"` or `"reference"`.
         """
         [made] = self._run.replay([self._sample(which)], accuracy)
         return Replay(*made)
 
     def replays(self, which: Iterable[Which] | None = None) -> list[Replay]:
-        """Many samples, simulated again on all cores; by default one of each solution."""
+        """Simulates many samples again, on all cores; by default one sample of each solution."""
         chosen = [self._sample(one) for one in (self.solutions if which is None else which)]
         return [Replay(*made) for made in self._run.replay(chosen)]
 
     def poses(self, which: Which = 0, fps: float = 60.0) -> Poses:
-        """Poses of all bodies of one sample at `fps` frames a second: times, names, positions and orientations."""
+        """Poses of all bodies of one sample at `fps` frames per second: times, names, positions and orientations."""
         return self.replay(which).poses(fps)
 
     def events(self, which: Which = 0) -> Events:
@@ -271,10 +271,10 @@ class Run:
         return self.replay(which).events
 
     def diagnose(self, most: int | None = None) -> dict[str, Any]:
-        """What `plaus diagnose --json` says: R-hat and effective sample sizes of every number, acceptance of every
+        """What `plaus diagnose --json` prints: R-hat and effective sample size of every scalar, acceptance of every
         move.
 
-        `most`: look at so many draws of each chain at most.
+        `most`: the largest number of draws of each chain to use.
         """
         import json
 
@@ -282,9 +282,9 @@ class Run:
         return made
 
     def to_datatree(self, *, warmup: bool = True) -> xarray.DataTree:
-        """The draws as ArviZ and xarray take them: groups `posterior` and `sample_stats`, and the same of the warm-up.
+        """The draws for ArviZ and xarray: groups `posterior` and `sample_stats`, and the same groups for the warm-up.
 
-        Needs xarray. Arrays are not copied, and not to be written to.
+        Needs xarray. Arrays are not copied, and are read-only.
         """
         import numpy
         import xarray
@@ -318,7 +318,7 @@ class Run:
         return tree
 
     def to_inferencedata(self, *, warmup: bool = True) -> Any:
-        """The draws for ArviZ: an `InferenceData` in 0.23, a `DataTree` in 1.x, which has no other."""
+        """The draws for ArviZ: an `InferenceData` for version 0.23, a `DataTree` for 1.x, which has nothing else."""
         import arviz  # type: ignore[import-untyped,unused-ignore]
 
         tree = self.to_datatree(warmup=warmup)
@@ -365,24 +365,24 @@ class Run:
         return os.fspath(path)
 
     def gallery(self, count: int = 64) -> Gallery:
-        """A page that plays up to `count` solutions, chosen so that they differ as much as can be."""
+        """A page that plays up to `count` solutions, chosen to differ as much as possible."""
         if not 1 <= count <= 5000:
             raise ValueError(f"count is {count}, but must be from 1 to 5000")
         return Gallery(*self._run.gallery(count))
 
     def resume(self, **how: Any) -> Run:
-        """Goes on with the run: see `plaus.resume`."""
+        """Continues the run: see `plaus.resume`."""
         from plaus._sampling import resume
 
         return resume(self, **how)
 
     def save(self, path: Path) -> Run:
-        """Keeps the run in the folder `path`, which must not exist; gives it there."""
+        """Copies the run to the folder `path`, which must not exist; returns the copy."""
         import shutil
 
         place = os.fspath(path)
         if os.path.lexists(place):
-            raise FileExistsError(f"{place} exists already; choose another name")
+            raise FileExistsError(f"{place} already exists; choose another name")
         shutil.copytree(self.path, place)
         ended = None if self.ending is None else (self.ending, self.seconds or 0.0)
         return Run(place, _ended=ended, _requirement=self.requirement)
@@ -396,7 +396,7 @@ class Run:
 
 
 def _is_one(samples: Any) -> bool:
-    """Whether this names one sample, and is no list of names."""
+    """Whether this names one sample, and not a list of samples."""
     if isinstance(samples, (str, Sample, Solution)) or hasattr(samples, "__index__"):
         return True
     return isinstance(samples, tuple) and len(samples) == 2 and all(hasattr(part, "__index__") for part in samples)

@@ -1,4 +1,4 @@
-"""Sampling: in threads of plaus's own, while Python waits without its lock."""
+"""Sampling, in threads of plaus, while Python waits without holding its lock."""
 
 from __future__ import annotations
 
@@ -16,40 +16,40 @@ from plaus._run import Run, _Folder, _TemporaryFolder
 if TYPE_CHECKING:
     Path = str | os.PathLike[str]
 
-# Seconds between two looks of a callback, and of the line that shows progress.
+# Seconds between two calls of a callback, and between two updates of the progress line.
 _INTERVAL = 0.2
 
 
 class Progress:
-    """How far a run is; what a callback gets."""
+    """How far a run is: the argument of a callback."""
 
     def __init__(self, state: dict[str, Any]) -> None:
         self.seconds: float = state["seconds"]
         """Seconds since sampling began."""
         self.iterations: list[int] = state["iterations"]
-        """Iterations that each chain has done, warm-up included."""
+        """Iterations that each chain has done, including the warm-up."""
         self.iterations_planned: int = state["iterations_planned"]
-        """Iterations that each chain shall do, warm-up included."""
+        """Iterations that each chain will do, including the warm-up."""
         self.warmup: int = state["warmup"]
-        """Iterations of the warm-up among them."""
+        """Iterations of the warm-up."""
         self.satisfied: list[int] = state["satisfied"]
-        """Iterations of each chain that satisfy."""
+        """Iterations of each chain that satisfied the constraint."""
         self.distinct: int = state["distinct"]
-        """Distinct solutions recorded by all chains together, where so many are wanted those of the warm-up too."""
+        """Distinct solutions recorded by all chains; if a number is asked for, those of the warm-up count too."""
         self.solutions_wanted: int | None = state["solutions_wanted"]
-        """Distinct solutions after which the run stops; None where it does not."""
+        """Number of distinct solutions after which the run stops; None if no number was asked for."""
         before = state["iterations_before"] * len(self.iterations)
         self.per_second: float = max(0, sum(self.iterations) - before) / max(self.seconds, 1e-9)
-        """Iterations of all chains together, a second."""
+        """Iterations per second of all chains together."""
 
     @property
     def share(self) -> float:
-        """Done share of the planned iterations, in [0, 1]."""
+        """Share of the planned iterations that is done, in [0, 1]."""
         return min(self.iterations, default=0) / max(1, self.iterations_planned)
 
     @property
     def _bar(self) -> float:
-        """How full a bar is: solutions count where they are wanted."""
+        """How full the bar is: if solutions are asked for, they count too."""
         found = min(1.0, self.distinct / self.solutions_wanted) if self.solutions_wanted else 0.0
         return max(self.share, found)
 
@@ -65,14 +65,14 @@ class Progress:
 
 
 class _Far(Protocol):
-    """How far something is: as text, and as a bar."""
+    """Progress as text, and as a bar."""
 
     @property
     def _bar(self) -> float: ...
 
 
 class _Shown:
-    """Shows progress in a notebook, or in a line of a terminal."""
+    """Shows progress in a notebook, or on a line of a terminal."""
 
     def __init__(self, wanted: bool | None) -> None:
         self._display: Any = None
@@ -82,7 +82,7 @@ class _Shown:
         self._notebook = notebook
 
     def show(self, progress: _Far) -> None:
-        """Shows how far it is."""
+        """Shows the progress."""
         if not self._on:
             return
         if self._notebook:
@@ -102,7 +102,7 @@ class _Shown:
             self._length = len(text)
 
     def end(self) -> None:
-        """Takes the line away."""
+        """Clears the line."""
         if self._length:
             sys.stderr.write("\r" + " " * self._length + "\r")
             sys.stderr.flush()
@@ -126,7 +126,7 @@ def _watched(
     progress: bool | None,
     max_time: float | None,
 ) -> Made:
-    """Does work, which is given a function to tell how far it is and how often, and shows that."""
+    """Runs `work` and shows its progress. `work` gets a function to report progress with, and the interval."""
     if callback is not None and not callable(callback):
         raise TypeError(f"callback: a function of the progress is expected, not a {type(callback).__name__}")
     if max_time is not None and not float(max_time) > 0.0:
@@ -203,23 +203,24 @@ def sample(
 ) -> Run:
     """Samples animations of a scenario: a `Scenario`, the path of a file, or dictionaries.
 
-    The run is a folder, `out`, which must not exist; without it the folder is a temporary one that goes with the `Run`,
-    unless `Run.save` keeps it. The same scenario, seed and version give the same bytes, here and on the command line.
+    The run is a folder, `out`, which must not exist. Without `out`, the folder is temporary and is deleted with the
+    `Run`, unless `Run.save` keeps it. The same scenario, seed and version give the same bytes, here and on the command
+    line.
 
     - `seed`, `chains`, `iterations` (of each chain after the warm-up), `warmup`, `thin`: as in the scenario's
-      `[sampler]`; `set`: any keys, as `"sigma_d=0.05"`.
-    - `solutions`: stop once so many distinct satisfying solutions are recorded, those of the warm-up among them.
-    - `max_time`: stop after so many seconds; `threads`: 0 is one a core, and no result depends on it.
-    - `requirement`: a `Requirement`, or a function for one.
-    - `callback`: called a few times a second with a `Progress`; the run stops where it returns False. What it raises
-      stops the run, too, and is raised here.
-    - `progress`: whether to show how far it is; by default on terminals and in notebooks.
+      `[sampler]`; `set`: any keys, such as `"sigma_d=0.05"`.
+    - `solutions`: stop once this many distinct solutions are recorded, including those of the warm-up.
+    - `max_time`: stop after this many seconds; `threads`: 0 means one per core, and no result depends on it.
+    - `requirement`: a `Requirement`, or a function to make one of.
+    - `callback`: called a few times a second with a `Progress`; if it returns False, the run stops. An exception in it
+      also stops the run, and is raised here.
+    - `progress`: whether to show progress; by default it is shown on terminals and in notebooks.
 
-    Ctrl-C stops the run and gives what was found until then (`Run.ending` is `"interrupted"`); a second one does not
+    Ctrl-C stops the run and returns what was found so far (`Run.ending` is `"interrupted"`); a second Ctrl-C does not
     wait.
 
-    Raises `ScenarioError` for a wrong scenario, `RunError` where the folder exists or a chain fails, and what a
-    requirement raises, with a note that says in which chain and iteration.
+    Raises `ScenarioError` for a wrong scenario, and `RunError` if the folder exists or a chain fails. Exceptions of a
+    requirement are raised with a note that names the chain and the iteration.
     """
     made = _scenario_of(scenario)
     numbers = {
@@ -259,8 +260,7 @@ def resume(
     callback: Callable[[Progress], object] | None = None,
     progress: bool | None = None,
 ) -> Run:
-    """Goes on with a run from its last checkpoint, to its planned end, or to so many `iterations` or `solutions` in
-    all.
+    """Continues a run from its last checkpoint, to its planned end, or to a total of `iterations` or `solutions`.
 
     The result has the same bytes as a run that was never interrupted. A run with a requirement needs the same one
     again.
@@ -292,5 +292,5 @@ def _scenario_of(scenario: Any) -> _plaus.Scenario:
     if isinstance(scenario, (str, os.PathLike)):
         return _plaus.Scenario.from_file(scenario)
     raise TypeError(
-        f"a scenario is a plaus.Scenario, the path of a file or dictionaries, not a {type(scenario).__name__}"
+        f"a scenario is a plaus.Scenario, the path of a file, or dictionaries, not a {type(scenario).__name__}"
     )

@@ -1,4 +1,4 @@
-"""Targets of your own, for toy problems: sampled by plaus's chains, checked by plaus's checks."""
+"""Targets written in Python, for toy problems: sampled by plaus's chains, checked by plaus's checks."""
 
 from __future__ import annotations
 
@@ -18,16 +18,14 @@ if TYPE_CHECKING:
 
 
 class Target:
-    """A distribution over points: prior times density, each by a function.
+    """A distribution over points: a prior times a density, each given by a function.
 
-    - `start(rng)` draws a point, from the prior itself unless you know better; with an `Rng`, so that runs repeat.
-    - `log_prior(x)` is the log density of the prior at `x`, up to a constant; `-inf` where there is none.
-    - `log_density(x)` is the log of the factor on top of it, as a constraint brings it; no factor where it is not
-      given.
-    - `met(x)` says whether `x` is a solution: `True`, `False`, or whole numbers that tell solutions of one kind from
-      others.
+    - `start(rng)` draws a point, usually from the prior itself. It uses an `Rng`, so that runs can be repeated.
+    - `log_prior(x)` is the log density of the prior at `x`, up to a constant; `-inf` outside its support.
+    - `log_density(x)` is the log of a further factor, such as a constraint. Without it there is no such factor.
+    - `met(x)` says whether `x` is a solution: `True`, `False`, or whole numbers that distinguish kinds of solutions.
 
-    Points are arrays of floats of one length. Functions must depend on their arguments alone.
+    Points are arrays of floats, all of the same length. Functions must depend on their arguments alone.
     """
 
     def __init__(
@@ -45,7 +43,7 @@ class Target:
         self._start = start
 
     def _dimensions(self) -> int:
-        """How long its points are."""
+        """The length of its points."""
         made = self._start(_plaus.Rng(0))
         return len(made) if hasattr(made, "__len__") else 1
 
@@ -57,9 +55,9 @@ def _nothing(_: Any) -> float:
 class Move:
     """A way to propose another point.
 
-    `propose(x, rng)` gives the candidate, `None` to stay, or `(candidate, log ratio)`. `log_ratio(x, y)` is
-    `log q(x | y) - log q(y | x)`, by which the way back from `y` is likelier than the way there; without it, both are
-    taken to be equally likely. `check_moves` says whether that is right.
+    `propose(x, rng)` returns the candidate, `None` to stay, or `(candidate, log ratio)`. `log_ratio(x, y)` is
+    `log q(x | y) - log q(y | x)`: how much likelier the way back from `y` is than the way there. Without it, both are
+    taken to be equally likely. `check_moves` tests whether that is right.
     """
 
     def __init__(
@@ -73,14 +71,14 @@ class Move:
         if not callable(propose) or not (log_ratio is None or callable(log_ratio)):
             raise TypeError("propose and log_ratio are functions")
         self.name: str = name or str(getattr(propose, "__name__", type(propose).__name__))
-        """What it is called in reports."""
+        """Its name in reports."""
         self.weight = float(weight)
-        """How often it is chosen, beside the others' weights."""
+        """How often it is chosen, relative to the others' weights."""
         self._kernel = _plaus.Kernel(self.name, self.weight, propose, log_ratio)
 
     @classmethod
     def redraw(cls, *, weight: float = 1.0) -> Move:
-        """Proposes a new start. Right where `start` draws from the prior."""
+        """Proposes a new start. This is correct if `start` draws from the prior."""
         made = cls.__new__(cls)
         made.name, made.weight = "redraw_all", float(weight)
         made._kernel = _plaus.Kernel(made.name, made.weight, None, None)
@@ -109,12 +107,12 @@ class TargetRun:
         self.satisfied: NDArray[np.bool_] = made["satisfied"]
         """Whether `met` said so: (chain, draw)."""
         self.acceptance: dict[str, float] = dict(made["acceptance"])
-        """Accepted share of each move's proposals, warm-up included."""
+        """Share of each move's proposals that was accepted, including the warm-up."""
         self.ending: str = made["ending"]
         """How sampling ended."""
 
     def to_datatree(self) -> xarray.DataTree:
-        """The draws as ArviZ and xarray take them. Needs xarray."""
+        """The draws for ArviZ and xarray. Needs xarray."""
         import numpy
         import xarray
 
@@ -139,12 +137,11 @@ def sample_target(
     seed: int = 1,
     solutions: int | None = None,
 ) -> TargetRun:
-    """Samples a target by these moves, chosen by their weights. Ctrl-C gives what all chains have.
+    """Samples a target with these moves, chosen by their weights. Ctrl-C returns what all chains have so far.
 
-    With `solutions` it stops once so many distinct ones are found, and there is no warm-up: each counts from the first
-    on.
+    With `solutions`, it stops once this many distinct ones are found. There is then no warm-up: every iteration counts.
 
-    Raises what a function of the target or of a move raises, with a note that says in which chain and iteration.
+    Exceptions of the target's or a move's functions are raised with a note that names the chain and the iteration.
     """
     from plaus._numbers import _whole
 
@@ -171,16 +168,16 @@ def check_moves(
     false_alarm: float = 1e-6,
     bound: float | None = None,
 ) -> _plaus.CheckReport:
-    """Checks moves as the scenes' own moves are checked.
+    """Checks moves in the way in which the scenes' own moves are checked.
 
-    Ratios are held against their reverse; then a step is made from each of `samples` exact draws, which must leave
-    their law as it is: draws of the prior, with the factor switched off, and where `bound` is given, a number that
-    `log_density` never
-    exceeds, draws of the target by rejection as well. `target.start` must draw from the prior.
+    Each ratio is compared with that of the reverse step. Then one step is made from each of `samples` exact draws,
+    which must preserve their law. These are draws from the prior, with the factor switched off. If `bound` is given, a
+    number that `log_density` never exceeds, draws from the target by rejection are used as well. `target.start` must
+    draw from the prior.
 
-    A report is true where nothing was found; its text says what was. By chance it is false with probability
-    `false_alarm`. A fault that shifts a law by a share s of its standard deviation shows from about 100 / s² samples
-    on.
+    A report is true if nothing was found; its text describes any findings. It is false by chance with probability
+    `false_alarm`. To detect a fault that shifts a law by a fraction s of its standard deviation takes about 100 / s²
+    samples.
     """
     from plaus._numbers import _whole
 

@@ -8,9 +8,8 @@
     world.cuboid((0.016, 0.016, 0.016))
     throws = world.run(position=[[[0, 0, 0.1]]] * 1000, spin=numpy.random.normal(0, 20, (1000, 1, 3)))
 
-Exact and event-driven: no time step in flight, the same bits on every thread and machine. SI units throughout. Axes are
-as
-you build them; the worlds that come with it, `World.bins` and `World.dice`, have z up.
+Exact and event-driven: no time step in flight, the same bits on every thread and machine. Units are SI. You choose the
+axes; in the ready-made worlds, `World.bins` and `World.dice`, z points up.
 """
 
 from __future__ import annotations
@@ -31,12 +30,12 @@ Vector = Union[Sequence[float], "Floats"]
 
 __all__ = ["Batch", "World"]
 
-#: What `Batch.ending` says, by its number.
+#: The meaning of the numbers in `Batch.ending`.
 ENDINGS = ("at rest", "time over", "out of events", "not finite")
 
 
 class Batch:
-    """What came of many starts: arrays whose first axis is the start."""
+    """The results of many starts: arrays whose first axis is the start."""
 
     def __init__(self, made: dict[str, Any], times: Sequence[float]) -> None:
         self.ending: NDArray[np.uint8] = made["ending"]
@@ -44,25 +43,24 @@ class Batch:
         self.time: Floats = made["time"]
         """When each run ended, in s."""
         self.impacts: NDArray[np.int64] = made["impacts"]
-        """How many impacts there were."""
+        """Number of impacts in each run."""
         self.position: Floats = made["position"]
-        """Where bodies are at the end, in m: (start, body, xyz)."""
+        """Positions at the end, in m: (start, body, xyz)."""
         self.velocity: Floats = made["velocity"]
-        """In m/s: (start, body, xyz)."""
+        """Velocities at the end, in m/s: (start, body, xyz)."""
         self.spin: Floats = made["spin"]
-        """Angular velocity in rad/s, in world axes: (start, body, xyz)."""
+        """Angular velocities at the end, in rad/s, in world axes: (start, body, xyz)."""
         self.orientation: Floats = made["orientation"]
-        """Unit quaternions from body axes to world axes: (start, body, xyzw). Worlds of balls keep none: 0, 0, 0, 1."""
+        """Unit quaternions from body axes to world axes: (start, body, xyzw). In worlds of balls always 0, 0, 0, 1."""
         self.times = list(times)
-        """Times at which poses were kept, in s."""
+        """Times of the poses below, in s."""
         self.positions: Floats | None = made.get("positions")
-        """Where bodies are at `times`: (start, time, body, xyz); None where no times were asked for."""
+        """Positions at `times`: (start, time, body, xyz); None if no times were given."""
         self.orientations: Floats | None = made.get("orientations")
-        """How bodies are turned at `times`: (start, time, body, xyzw); None where no times were asked for."""
+        """Orientations at `times`: (start, time, body, xyzw); None if no times were given."""
         self.events: dict[str, Any] | None = made.get("events")
-        """Impacts of all starts as columns: `start`, `t` (s), `body`, `other` (-1: what stands still), `point` (m),
-        `normal`,
-        `speed` (m/s), `impulse` (N s); None where they were not asked for."""
+        """Impacts of all starts as columns: `start`, `t` (s), `body`, `other` (-1: scenery), `point` (m), `normal`,
+        `speed` (m/s), `impulse` (N s); None if they were not asked for."""
 
     def __len__(self) -> int:
         return len(self.ending)
@@ -73,13 +71,12 @@ class Batch:
 
 
 class World:
-    """A world of bodies among things that stand still.
+    """A world of bodies and scenery.
 
-    Materials are names; `law` says what happens where two of them meet. A world whose bodies are all balls, among
-    planes, meshes and caps, is run by the simulator for balls, which is faster and keeps no orientations; any other,
-    among
-    planes,
-    blocks and tables, by the one for bodies that turn. `engine` (`"marbles"`, `"rigid"`) chooses where both would do.
+    Materials are names; `law` says what happens when two of them meet. If all bodies are balls, among planes, meshes
+    and caps, the simulator for balls runs the world; it is faster and keeps no orientations. Any other world, among
+    planes, blocks and tables, is run by the simulator for bodies that turn. `engine` (`"marbles"`, `"rigid"`) chooses
+    one where both are possible.
     """
 
     def __init__(
@@ -91,9 +88,8 @@ class World:
         events: int | None = None,
         engine: str | None = None,
     ) -> None:
-        """`gravity` in m/s²; `duration`: when a run is over at the latest, in s; `accuracy`: `draft`, `standard`,
-        `fine` or
-        `reference`; `events`: most events of a run, for each body."""
+        """`gravity` in m/s²; `duration`: the longest that a run lasts, in s; `accuracy`: `draft`, `standard`, `fine` or
+        `reference`; `events`: the most events of a run, for each body."""
         if engine not in (None, "marbles", "rigid"):
             raise ValueError(f"engine is {engine!r}, but must be 'marbles' or 'rigid'")
         self._how: dict[str, Any] = {
@@ -126,8 +122,8 @@ class World:
 
     @classmethod
     def from_scenario(cls, scenario: _plaus.Scenario) -> World:
-        """The world of a scenario, with all that is random in it left out: a level table of mean friction and
-        restitution, bins whose vertices stand where they should, pins on their spots. z is up.
+        """The world of a scenario without its randomness: a level table with mean friction and restitution, bins with
+        vertices in their regular places, pins on their spots. z is up.
 
         Raises `ValueError` for a scene that has no simulator, because its motion has a closed form.
         """
@@ -141,7 +137,7 @@ class World:
 
     def _change(self) -> None:
         if self._made is not None and not self._bodies and not self._surfaces:
-            raise ValueError("this world came ready: build one with World() to add to it")
+            raise ValueError("this world is ready-made: to add things, build one with World()")
         self._made = None
 
     def _material(self, name: str) -> int:
@@ -158,7 +154,7 @@ class World:
         rolling: float = 0.0,
         spinning: float = 0.0,
     ) -> None:
-        """What happens where materials `a` and `b` meet; without names, where no other law says so.
+        """What happens when materials `a` and `b` meet; without names, for all pairs without a law of their own.
 
         `friction`: Coulomb's coefficient; `restitution` and `tangential` (of spheres) from 0 to 1; `rolling` and
         `spinning`: resistance, a torque over normal force times radius.
@@ -192,7 +188,7 @@ class World:
     def ball(
         self, radius: float, *, density: float | None = None, mass: float | None = None, material: str = "default"
     ) -> int:
-        """Adds a ball; gives its number. 1000 kg/m³ unless density (kg/m³) or mass (kg) say otherwise."""
+        """Adds a ball; returns its number. Give a density (kg/m³, default 1000) or a mass (kg)."""
         return self._body("ball", material, density, mass, size=[float(radius)])
 
     def cuboid(
@@ -204,7 +200,7 @@ class World:
         mass: float | None = None,
         material: str = "default",
     ) -> int:
-        """Adds a cuboid with these edges (m), rounded by a radius; gives its number."""
+        """Adds a cuboid with these edges (m) and rounding radius (m); returns its number."""
         return self._body("cuboid", material, density, mass, size=_vector("edges", edges), rounding=float(rounding))
 
     def hull(
@@ -216,12 +212,12 @@ class World:
         mass: float | None = None,
         material: str = "default",
     ) -> int:
-        """Adds the convex hull of points (m); gives its number. Its axes are its principal axes, its origin its centre
+        """Adds the convex hull of points (m); returns its number. Its axes are principal axes, its origin the centre
         of gravity."""
         return self._body("hull", material, density, mass, points=_rows("points", points), rounding=float(rounding))
 
     def pin(self, *, density: float | None = None, mass: float | None = None, material: str = "default") -> int:
-        """Adds a regulation bowling pin, upright along z; gives its number."""
+        """Adds a regulation bowling pin, upright along z; returns its number."""
         return self._body("pin", material, density, mass)
 
     def _surface(self, kind: str, material: str, **what: Any) -> None:
@@ -230,7 +226,7 @@ class World:
         self._surfaces.append({"kind": kind, "material": self._material(material), **nothing, **what})
 
     def plane(self, point: Vector, normal: Vector, *, material: str = "default") -> None:
-        """Adds a half space: all that is behind the plane is solid."""
+        """Adds a half space: everything behind the plane is solid."""
         self._surface("plane", material, vectors=[_vector("point", point), _vector("normal", normal)])
 
     def block(self, low: Vector, high: Vector, *, material: str = "default") -> None:
@@ -240,13 +236,13 @@ class World:
     def table(
         self, heights: ArrayLike, spacing: float, *, origin: Sequence[float] = (0.0, 0.0), material: str = "default"
     ) -> None:
-        """Adds a table `z = height(x, y)`: a cubic b-spline over control heights (m) on a grid, whose first index goes
-        along x; beyond the grid it goes on as at its edge. For bodies that turn."""
+        """Adds a table `z = height(x, y)`: a cubic b-spline over control heights (m) on a grid. The first index runs
+        along x; beyond the grid, the heights at its edge continue. For bodies that turn."""
         corner = [float(origin[0]), float(origin[1]), 0.0]
         self._surface("table", material, heights=_rows("heights", heights), radius=float(spacing), vectors=[corner])
 
     def mesh(self, vertices: ArrayLike, triangles: ArrayLike, *, material: str = "default") -> None:
-        """Adds triangles, whose corners run counter-clockwise seen from outside. For balls."""
+        """Adds triangles; seen from outside, their corners run counter-clockwise. For balls."""
         import numpy
 
         corners = numpy.asarray(triangles)
@@ -257,7 +253,7 @@ class World:
     def cap(
         self, centre: Vector, radius: float, low: Vector, high: Vector, *, hollow: bool, material: str = "default"
     ) -> None:
-        """Adds the part of a sphere between two corners of a box: a bowl where `hollow`, else a dome. For balls."""
+        """Adds the part of a sphere inside a box with these corners: a bowl if `hollow`, else a dome. For balls."""
         vectors = [_vector("centre", centre), _vector("low", low), _vector("high", high)]
         self._surface("cap", material, vectors=vectors, radius=float(radius), hollow=bool(hollow))
 
@@ -274,7 +270,7 @@ class World:
             if missing:
                 names = list(self._materials)
                 what = ", ".join(f"{names[a]} and {names[b]}" for a, b in missing)
-                raise ValueError(f"no law says what happens where {what} meet: say law(friction=…, restitution=…)")
+                raise ValueError(f"there is no law for {what}: add one with law(friction=…, restitution=…)")
             laws = [{"a": a, "b": b, **self._laws.get((a, b), self._default)} for a, b in pairs]
             made = _plaus.SimWorld(self._bodies, self._surfaces, laws, engine=engine, materials=count, **self._how)
             self._made = made
@@ -282,15 +278,15 @@ class World:
 
     @property
     def places(self) -> Floats:
-        """Where bodies may start, upright and at rest, without touching each other: (body, xyz), in m. Empty for a
-        world that was built by hand."""
+        """Places in m where bodies can start, upright and at rest, without touching each other: (body, xyz). Empty for
+        a world that you built."""
         import numpy
 
         return numpy.asarray(self._world().places, dtype=float).reshape(-1, 3)
 
     @property
     def bodies(self) -> int:
-        """How many bodies there are."""
+        """Number of bodies."""
         return self._world().bodies
 
     def run(
@@ -306,15 +302,15 @@ class World:
         events: bool = False,
         threads: int = 0,
     ) -> Batch:
-        """Runs the world from many starts, until all is at rest, `until` (s), or the world's duration.
+        """Runs the world from many starts, each until everything is at rest, `until` (s), or the world's duration.
 
         Arrays are (start, body, xyz): `position` (m) of centres of gravity, `velocity` (m/s), `spin` (rad/s, world
-        axes); `orientation` is (start, body, xyzw), `release` (start, body): when a body appears, in s. What is not
-        given is zero,
-        upright and at once. `times`: when poses are kept, `events`: whether impacts are. `threads`: 0 is one a core.
+        axes). `orientation` is (start, body, xyzw). `release` (start, body) is when a body appears, in s. By default,
+        bodies are at rest and upright, and appear at once. `times`: when to keep poses; `events`: whether to keep
+        impacts; `threads`: 0 means one per core.
 
-        Raises `WorldError`, naming the start, where bodies overlap or a number is not finite; `MemoryError` where the
-        arrays do not fit.
+        Raises `WorldError`, which names the start, if bodies overlap or a number is not finite; `MemoryError` if the
+        arrays do not fit into memory.
         """
         moments = [float(time) for time in times]
         made = self._world().run(

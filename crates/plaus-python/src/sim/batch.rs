@@ -1,4 +1,4 @@
-//! Many runs of one world, a thread a copy of it.
+//! Many runs of one world; each thread has a copy of it.
 
 use super::engine::{Engine, Pose, Start};
 use crate::errors::{WorldError, room, volume};
@@ -13,9 +13,9 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// Starts that a thread takes at a time.
+/// Number of starts that a thread takes at a time.
 const AT_ONCE: usize = 8;
-/// How often it is looked whether Python wants an end.
+/// Time between two checks whether Python wants to stop.
 const TICK: Duration = Duration::from_millis(20);
 
 /// Arrays (start, body, …), each row by row.
@@ -77,7 +77,7 @@ pub(super) struct Events {
     pub(super) impulse: Vec<f64>,
 }
 
-/// What came of a batch.
+/// The results of a batch.
 pub(super) struct Made {
     /// 0 at rest, 1 time over, 2 out of events, 3 not finite.
     pub(super) ending: Vec<u8>,
@@ -89,7 +89,7 @@ pub(super) struct Made {
     pub(super) events: Option<Events>,
 }
 
-/// Where one run of a batch puts what comes of it.
+/// The place for the results of one run of a batch.
 struct Row<'a> {
     index: usize,
     ending: &'a mut u8,
@@ -125,7 +125,7 @@ impl Made {
     fn rows(&mut self, bodies: usize, times: usize) -> Vec<Row<'_>> {
         let Self { ending, time, impacts, rest, way, .. } = self;
         fn parts(all: &mut [f64], size: usize) -> impl Iterator<Item = &mut [f64]> {
-            // Of nothing there is a piece of nothing for everybody.
+            // An empty array gives everyone an empty piece.
             all.chunks_mut(size.max(1)).map(Some).chain(std::iter::repeat_with(|| None)).map(Option::unwrap_or_default)
         }
         let mut position = parts(&mut rest.position, 3 * bodies);
@@ -152,7 +152,7 @@ impl Made {
     }
 }
 
-/// Says that a worker is done, also where it panics, and wakes who waits.
+/// Reports that a worker is done, even if it panics, and wakes the waiting thread.
 struct Over<'a>(&'a AtomicUsize, &'a thread::Thread);
 
 impl Drop for Over<'_> {
@@ -163,7 +163,7 @@ impl Drop for Over<'_> {
 }
 
 impl Batch {
-    /// Runs everything, without Python's lock but for a look now and then whether it wants an end.
+    /// Runs everything without Python's lock, except for checks now and then whether Python wants to stop.
     pub(super) fn run(&self, py: Python<'_>, world: &Mutex<Physical>, threads: usize) -> PyResult<Made> {
         let world = world.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let mut made = Made::of(self)?;
@@ -274,7 +274,7 @@ impl Batch {
         Ok(())
     }
 
-    /// Poses at the times asked for; before its release a body is where it starts.
+    /// Poses at the times asked for. Before its release, a body is at its start.
     fn keep_way<E: Engine>(&self, world: &E, trace: &Trace<E::Body>, starts: &[Start], row: &mut Row<'_>) {
         let places = self.times.iter().flat_map(|&time| (0..starts.len()).map(move |k| (time, k)));
         let rooms = row.positions.chunks_exact_mut(3).zip(row.orientations.chunks_exact_mut(4));

@@ -1,4 +1,4 @@
-//! Both kinds of worlds, as a batch sees them.
+//! Both kinds of worlds, behind one interface for batches.
 
 use glam::{DQuat, DVec3};
 use plaus_scenes::Physical;
@@ -16,7 +16,7 @@ pub(super) fn bodies(world: &Physical) -> usize {
     }
 }
 
-/// How a body starts, whatever it is.
+/// The start of a body of any kind.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Start {
     pub(super) position: DVec3,
@@ -49,7 +49,7 @@ pub(super) trait Engine: Mechanics + Sized {
 
     fn pose(body: &Self::Body) -> Pose;
 
-    /// The body as it is at a time within its motion.
+    /// The pose of the body at a time within its motion.
     fn pose_at(&self, index: usize, body: &Self::Body, time: f64) -> Pose {
         let mut moved = body.clone();
         if self.is_present(body) && self.is_finite(body) {

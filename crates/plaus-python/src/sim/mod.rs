@@ -17,12 +17,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Mutex;
 
-/// A world that can be run. Tables with bumps keep what was looked at, so each thread has a copy of its own.
+/// A world that can be run. Tables with bumps cache what was looked at, so each thread has its own copy.
 #[pyclass(frozen, module = "plaus._plaus")]
 pub(crate) struct SimWorld {
     world: Mutex<Physical>,
     bodies: usize,
-    /// Where bodies may start, where the world came with that.
+    /// Places where bodies can start, if the world came with them.
     places: Vec<[f64; 3]>,
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn wrong(error: plaus_sim::WorldError) -> PyErr {
 fn accuracy(name: &str, events: Option<u64>) -> PyResult<Accuracy> {
     let preset = Preset::ALL.into_iter().find(|preset| preset.name() == name).ok_or_else(|| {
         let known: Vec<&str> = Preset::ALL.map(Preset::name).to_vec();
-        PyValueError::new_err(format!("`{name}` is no accuracy: there are {}", known.join(", ")))
+        PyValueError::new_err(format!("`{name}` is not an accuracy: there are {}", known.join(", ")))
     })?;
     let preset = Accuracy::preset(preset);
     Ok(Accuracy { events: events.unwrap_or(preset.events), ..preset })
@@ -46,7 +46,7 @@ impl SimWorld {
     }
 }
 
-/// Which of the arrays of a batch are wanted.
+/// The arrays of a batch that were asked for.
 fn arrays<'py>(py: Python<'py>, made: Made, sides: [usize; 3]) -> PyResult<Bound<'py, PyDict>> {
     let [starts, bodies, times] = sides;
     let all = PyDict::new(py);
@@ -135,7 +135,7 @@ impl SimWorld {
         Ok(Self::of(Physical::Rigid(Box::new(die.world_of(count, |_, _| 0.0).map_err(wrong)?)), Vec::new()))
     }
 
-    /// The world of a scenario, with all that is random left out.
+    /// The world of a scenario without its randomness.
     #[staticmethod]
     fn of_scenario(scenario: &Scenario) -> PyResult<Self> {
         let world = &scenario.recipe.scenario.world;
@@ -147,7 +147,7 @@ impl SimWorld {
         Ok(Self::of(world, places.iter().map(|place| place.to_array()).collect()))
     }
 
-    /// Where bodies may start, one a row; none where the world was built by hand.
+    /// Places where bodies can start, one in each row; none for a world that the user built.
     #[getter]
     fn places(&self) -> Vec<[f64; 3]> {
         self.places.clone()
@@ -158,7 +158,7 @@ impl SimWorld {
         self.bodies
     }
 
-    /// Runs from every start, on all threads; arrays by name.
+    /// Runs from every start, on all threads; returns arrays by name.
     #[pyo3(signature = (position, *, velocity, spin, orientation, release, until, times, events, threads))]
     #[allow(clippy::too_many_arguments, reason = "named in Python, which is the only caller")]
     fn run<'py>(
@@ -195,10 +195,10 @@ impl SimWorld {
             release: array("release", release, 1)?,
         };
         if let Some(wrong) = times.iter().find(|time| !(**time >= 0.0 && time.is_finite())) {
-            return Err(PyValueError::new_err(format!("times: {wrong} is no time from 0 on")));
+            return Err(PyValueError::new_err(format!("times: {wrong} is not a time of at least 0")));
         }
         if until.is_nan() || until < 0.0 {
-            return Err(PyValueError::new_err(format!("until is {until}, but must be a time from 0 on")));
+            return Err(PyValueError::new_err(format!("until is {until}, but must be a time of at least 0")));
         }
         let sides = [count, bodies, times.len()];
         let made = Batch { starts, until, times, events }.run(py, &self.world, threads)?;

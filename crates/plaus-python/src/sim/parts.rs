@@ -35,10 +35,10 @@ pub(super) struct Body {
     material: u16,
 }
 
-/// Balls that make the skin of a pin, as in the simulator's own alley.
+/// Number of balls that make up the skin of a pin, as in the simulator's own alley.
 const STATIONS: usize = 40;
 
-/// What stands still.
+/// A piece of scenery.
 #[derive(FromPyObject)]
 pub(super) struct Surface {
     #[pyo3(item)]
@@ -51,7 +51,7 @@ pub(super) struct Surface {
     radius: f64,
     #[pyo3(item)]
     hollow: bool,
-    /// Control heights of a table, row by row; `radius` is then their spacing.
+    /// Control heights of a table, row by row; their spacing is in `radius`.
     #[pyo3(item)]
     heights: Vec<Vec<f64>>,
     #[pyo3(item)]
@@ -77,7 +77,7 @@ pub(super) struct Law {
     spinning: f64,
 }
 
-/// All of a world.
+/// A whole world.
 pub(super) struct Whole {
     pub(super) bodies: Vec<Body>,
     pub(super) surfaces: Vec<Surface>,
@@ -92,7 +92,7 @@ fn refuse<T>(message: impl Into<String>) -> PyResult<T> {
     Err(WorldError::new_err(message.into()))
 }
 
-/// The value at `index`, where Python gave one.
+/// The value at `index`, if Python gave one.
 fn at<T: Copy>(all: &[T], index: usize, what: &str) -> PyResult<T> {
     all.get(index).copied().map_or_else(|| refuse(format!("{what} is missing")), Ok)
 }
@@ -129,7 +129,9 @@ impl Whole {
                     vertices.extend(surface.vectors.iter().map(|&vector| DVec3::from_array(vector)));
                     triangles.extend(surface.triangles.iter().map(|corners| (corners.map(|c| c + first), material)));
                 }
-                other => return refuse(format!("a {other} is not for worlds of marbles: planes, meshes and caps are")),
+                other => {
+                    return refuse(format!("worlds of marbles cannot have a {other}, only planes, meshes and caps"));
+                }
             }
         }
         let mesh = Mesh::new(vertices, &triangles, 0.0).map_err(wrong)?;
@@ -161,13 +163,13 @@ impl Whole {
 
 impl Body {
     fn density(&self) -> f64 {
-        // A body that is given its mass has any density: only ratios of its moments remain.
+        // With a given mass, the density does not matter: only ratios of moments remain.
         self.density.unwrap_or(1000.0)
     }
 
     fn marble(&self) -> PyResult<MarbleSpec> {
         if self.kind != "ball" {
-            return refuse(format!("a {} is not for worlds of marbles: balls are", self.kind));
+            return refuse(format!("worlds of marbles cannot have a {}, only balls", self.kind));
         }
         let radius = at(&self.size, 0, "the radius of a ball")?;
         let mass = self.mass.unwrap_or(4.0 / 3.0 * PI * radius * radius * radius * self.density());
@@ -215,12 +217,14 @@ impl Surface {
             }
             "table" => Part::Table(Box::new(Table::new(self.table()?, material))),
             other => {
-                return refuse(format!("a {other} is for worlds of marbles: planes, blocks and tables are for others"));
+                return refuse(format!(
+                    "only worlds of marbles can have a {other}; others can have planes, blocks and tables"
+                ));
             }
         })
     }
 
-    /// A spline through control heights, level with the nearest one beyond them.
+    /// A spline through control heights; beyond them, it is level with the nearest one.
     fn table(&self) -> PyResult<Spline> {
         let heights = self.heights.clone();
         let (rows, columns) = (heights.len(), heights.first().map_or(0, Vec::len));
@@ -229,7 +233,7 @@ impl Surface {
         }
         let all = heights.iter().flatten();
         if let Some(height) = all.clone().find(|height| !height.is_finite()) {
-            return refuse(format!("heights: {height} is no height"));
+            return refuse(format!("heights: {height} is not a finite number"));
         }
         let low = all.clone().copied().fold(f64::INFINITY, f64::min);
         let high = all.copied().fold(f64::NEG_INFINITY, f64::max);

@@ -9,7 +9,7 @@ use plaus_mcmc::view::lend;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// What checks of moves found.
+/// The findings of checks of moves.
 #[pyclass(frozen, get_all, module = "plaus")]
 pub(crate) struct CheckReport {
     /// Whether nothing was found.
@@ -18,7 +18,7 @@ pub(crate) struct CheckReport {
     text: String,
     /// Smallest p-value of the statistical checks.
     p: f64,
-    /// Share of candidates that were accepted in them: a move that is never accepted has not been tested.
+    /// Share of candidates accepted in them: a move that is never accepted has not been tested.
     accepted: f64,
 }
 
@@ -74,7 +74,7 @@ fn look(
     }
     let statistic = |k: usize| Statistic::new(format!("x[{k}]"), move |state: &Point| state.draw[k]);
     let statistics: Vec<_> = (0..plan.dimensions).map(statistic).collect();
-    // The strength of evidence is shared out among the checks there are.
+    // The probability of a false alarm is shared among the checks.
     let share = plan.false_alarm / if plan.bound.is_some() { 2.0 } else { 1.0 };
     let asked = OneStep { seed: plan.seed, samples: plan.samples, false_alarm: share, ..OneStep::default() };
     let [at_prior, at_target] = moves;
@@ -96,7 +96,7 @@ fn look(
     Ok((text, passed, p, accepted, made))
 }
 
-/// Checks moves: their ratios against each other, and that a step from exact draws leaves the law of exact draws.
+/// Checks moves: that ratios match those of the reverse steps, and that a step preserves the law of exact draws.
 #[pyfunction]
 #[pyo3(signature = (functions, kernels, *, dimensions, samples, pairs, seed, false_alarm, bound))]
 #[allow(clippy::too_many_arguments, reason = "named in Python, which is the only caller")]
@@ -111,7 +111,7 @@ pub(crate) fn check(
     false_alarm: f64,
     bound: Option<f64>,
 ) -> PyResult<CheckReport> {
-    let wrong = |_| PyValueError::new_err("bound: a number that no log density exceeds, or None");
+    let wrong = |_| PyValueError::new_err("bound: expected a number that log_density never exceeds, or None");
     let bound = bound.map(LogPotential::new).transpose().map_err(wrong)?;
     let moves = [mixture(py, &kernels)?, mixture(py, &kernels)?];
     let kernels: Vec<_> = kernels.iter().map(|kernel| one(py, kernel)).collect();

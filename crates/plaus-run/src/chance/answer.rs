@@ -1,4 +1,4 @@
-//! What all batches come to.
+//! The result of all batches.
 
 use super::Chance;
 use plaus_mcmc::chance::{Disagreement, Estimate, disagree};
@@ -7,26 +7,26 @@ use serde::Serialize;
 /// How likely something is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Answer {
-    /// What: all that is demanded, or a part of it.
+    /// What it is about: all requirements, or one part.
     pub name: String,
-    /// What each method says.
+    /// The estimate of each method.
     pub estimates: Vec<Estimate>,
-    /// The one with the smallest relative error; where methods disagree, the largest, as what one has missed the other
-    /// has seen. `None` where nothing was found, and nothing counted.
+    /// The estimate with the smallest relative error; if methods disagree, the largest one, because another method
+    /// missed something that this one saw. `None` if nothing was found, and nothing counted.
     pub best: Option<Estimate>,
     /// Which methods cannot both be right.
     pub disagreements: Vec<Disagreement>,
-    /// Methods whose estimate rests on one batch for more than half: it is not to be trusted yet.
+    /// Methods with more than half of their estimate from one batch: not to be trusted yet.
     pub lopsided: Vec<plaus_mcmc::chance::Method>,
 }
 
-/// Answers for all that is demanded, then for each part.
+/// Answers for all requirements together, then for each part.
 #[must_use]
 pub fn answers(chance: &Chance) -> Vec<Answer> {
     let counted: Vec<_> = chance.counted.values().cloned().collect();
     let split: Vec<_> = chance.split.values().cloned().collect();
     let stones: Vec<_> = chance.stones.values().cloned().collect();
-    let names = std::iter::once("all that is demanded".to_owned()).chain(chance.parts.iter().cloned());
+    let names = std::iter::once("all requirements".to_owned()).chain(chance.parts.iter().cloned());
     let answer = |(event, name): (usize, String)| {
         let laid = if event == 0 { Estimate::stones(&stones) } else { None };
         let all = [Estimate::counted(&counted, event), Estimate::split(&split, event), laid];

@@ -1,4 +1,4 @@
-//! The file of an asking: JSON, replaced as a whole, with a checksum.
+//! The file of a chance: JSON, replaced as a whole, with a checksum.
 
 use super::Chance;
 use crate::disk::Disk;
@@ -15,7 +15,7 @@ const FORMAT: u32 = 1;
 /// Longest file that is read, in bytes.
 const LONGEST: u64 = 256 << 20;
 
-/// The file: what is asked between a version, which is looked at first, and a checksum.
+/// The file: the chance, between a version, which is checked first, and a checksum.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Envelope {
@@ -30,7 +30,7 @@ struct Probe {
 }
 
 fn broken(path: &Path, why: impl std::fmt::Display) -> Error {
-    let message = format!("{}: is no file that `plaus chance --out` wrote, or was changed: {why}", path.display());
+    let message = format!("{}: not a file that `plaus chance --out` wrote, or changed since: {why}", path.display());
     Error::Request(message)
 }
 
@@ -50,10 +50,10 @@ pub(super) fn write(path: &Path, disk: &dyn Disk, chance: &Chance) -> Result<(),
     Ok(())
 }
 
-/// Reads a file; `None` where there is none.
+/// Reads a file; `None` if there is none.
 ///
 /// # Errors
-/// [`Error`] where it is no such file, or damaged.
+/// [`Error`] if it is no such file, or damaged.
 pub fn read(path: &Path) -> Result<Option<Chance>, Error> {
     let length = match std::fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -65,7 +65,7 @@ pub fn read(path: &Path) -> Result<Option<Chance>, Error> {
     let json = std::fs::read(path).map_err(RunFileError::io(path, "read"))?;
     let Probe { format } = serde_json::from_slice(&json).map_err(|error| broken(path, error))?;
     if format != FORMAT {
-        return Err(broken(path, format!("it has format {format}, this plaus reads format {FORMAT}")));
+        return Err(broken(path, format!("it has format {format}, but this plaus reads format {FORMAT}")));
     }
     let Envelope { chance, checksum: stored, .. } =
         serde_json::from_slice(&json).map_err(|error| broken(path, error))?;
@@ -75,13 +75,13 @@ pub fn read(path: &Path) -> Result<Option<Chance>, Error> {
     Ok(Some(chance))
 }
 
-/// The same asking with nothing answered, of all batches.
+/// The same question without answers, for all batches.
 fn question(chance: &Chance) -> Chance {
     let (counted, split, stones) = Default::default();
     Chance { shard: None, counted, split, stones, ..chance.clone() }
 }
 
-/// How two askings differ, where they do.
+/// How two questions differ, if they do.
 fn difference(found: &Chance, wanted: &Chance) -> Option<String> {
     if question(found) == question(wanted) {
         return None;
@@ -89,9 +89,9 @@ fn difference(found: &Chance, wanted: &Chance) -> Option<String> {
     Some(if found.plaus != wanted.plaus {
         format!("it was made by plaus {}, not {}", found.plaus, wanted.plaus)
     } else if found.scenario.hash != wanted.scenario.hash {
-        "it is of another scenario".to_owned()
+        "it is for another scenario".to_owned()
     } else if found.asking != wanted.asking {
-        "it asks with another seed, or for other batches".to_owned()
+        "it has another seed, or other batches".to_owned()
     } else {
         "it uses other methods".to_owned()
     })
@@ -103,26 +103,26 @@ fn beside(path: &Path, what: &str) -> PathBuf {
     parent_of(path).join(format!(".{name}.{what}"))
 }
 
-/// Always empty; whoever writes the file at `path` holds a lock on it.
+/// Always empty; the process that writes the file at `path` holds a lock on it.
 fn lock_of(path: &Path) -> PathBuf {
     beside(path, "lock")
 }
 
-/// Claims the file at `path` for writing, until what is returned is dropped or the process ends.
+/// Claims the file at `path` for writing, until the returned file is dropped or the process ends.
 pub(super) fn claim(path: &Path) -> Result<File, Error> {
     let folder = parent_of(path);
     std::fs::create_dir_all(&folder).map_err(RunFileError::io(&folder, "make the folder"))?;
     Ok(crate::folder::claim(&lock_of(path), path)?)
 }
 
-/// Whether another process is writing the file at `path` now, as far as can be told.
+/// Whether another process is writing the file at `path` now, as far as is known.
 #[must_use]
 pub fn is_being_written(path: &Path) -> bool {
     crate::folder::is_claimed(&lock_of(path))
 }
 
-/// What the file holds already of what is to be asked. Of `begun` it need not be known by which methods: then those of
-/// the file are taken.
+/// What the file already holds of the question in `begun`. The methods of `begun` may be unknown: then the file's are
+/// used.
 pub(super) fn go_on(path: &Path, mut begun: Chance, knows_methods: bool) -> Result<Chance, Error> {
     let Some(found) = read(path)? else { return Ok(begun) };
     if !knows_methods {
@@ -130,18 +130,18 @@ pub(super) fn go_on(path: &Path, mut begun: Chance, knows_methods: bool) -> Resu
         begun.why.clone_from(&found.why);
     }
     let other = difference(&found, &begun);
-    let other = other.or_else(|| (found.shard != begun.shard).then(|| "it is of other batches".to_owned()));
+    let other = other.or_else(|| (found.shard != begun.shard).then(|| "it has other batches".to_owned()));
     match other {
         Some(difference) => Err(RunFileError::new(path, RunFileProblem::OtherRun(difference)).into()),
         None => Ok(found),
     }
 }
 
-/// The files at these paths, each one or a folder of some; `None` where one of them is no file, and no folder that
-/// holds files alone: runs, say.
+/// The files at these paths, each of which is a file or a folder of files; `None` if one of them is neither, such as a
+/// run.
 ///
 /// # Errors
-/// [`Error`] where a folder cannot be read.
+/// [`Error`] if a folder cannot be read.
 pub fn files_at(paths: &[PathBuf]) -> Result<Option<Vec<PathBuf>>, Error> {
     let mut found = Vec::new();
     for path in paths {
@@ -168,11 +168,12 @@ pub fn files_at(paths: &[PathBuf]) -> Result<Option<Vec<PathBuf>>, Error> {
     Ok(Some(found))
 }
 
-/// Puts pieces together into `out`, byte for byte what one machine would have written.
+/// Merges pieces into `out`, byte for byte what one machine would have written.
 ///
 /// # Errors
-/// [`Error`], naming the piece, where one is unfinished, being written, missing, there twice, or of another asking; or
-/// where `out` exists.
+///
+/// [`Error`], naming the piece, if one is unfinished, being written, missing, there twice, or for another question; or
+/// if `out` exists.
 pub fn merge(pieces: &[PathBuf], out: &Path, disk: &dyn Disk) -> Result<Chance, Error> {
     if std::fs::symlink_metadata(out).is_ok() {
         return Err(RunFileError::new(out, RunFileProblem::Exists).into());
@@ -182,14 +183,14 @@ pub fn merge(pieces: &[PathBuf], out: &Path, disk: &dyn Disk) -> Result<Chance, 
         let piece = finished(path)?;
         let all = whole.get_or_insert_with(|| question(&piece));
         if let Some(difference) = difference(&piece, all) {
-            return Err(refuse(path, format!("is no piece of the same: {difference}")));
+            return Err(refuse(path, format!("does not belong to the other pieces: {difference}")));
         }
         let twice = piece.batches().find(|batch| {
             all.counted.contains_key(batch) || all.split.contains_key(batch) || all.stones.contains_key(batch)
         });
         if let Some(twice) = twice {
             let shown = piece.shard.map_or("all of it".to_owned(), |shard| format!("piece {shard}"));
-            return Err(refuse(path, format!("is {shown}: batch {twice} is there twice")));
+            return Err(refuse(path, format!("is {shown}: batch {twice} is in two pieces")));
         }
         there.push(piece.shard);
         all.counted.extend(piece.counted);
@@ -220,13 +221,13 @@ fn finished(path: &Path) -> Result<Chance, Error> {
     if done < due {
         return Err(refuse(
             path,
-            format!("only {done} of its {due} batches are made: the same command goes on with it"),
+            format!("only {done} of its {due} batches are made: run the same command again to continue"),
         ));
     }
     Ok(piece)
 }
 
-/// Which piece is missing. It has a name where all were cut into equally many.
+/// Says which piece is missing, by its name if all were cut into equally many.
 fn missing(there: &[Option<Shard>], batch: u32, whole: &Chance) -> String {
     let of = there.first().copied().flatten().map(Shard::of);
     let of = of.filter(|&of| there.iter().all(|shard| shard.is_some_and(|shard| shard.of() == of)));

@@ -1,7 +1,8 @@
-//! How likely a scenario's demand is under its prior: asked in batches, kept in one file, answered from all of it.
+//! How likely it is that a scenario's requirements are met under its prior: estimated in batches, kept in one file,
+//! answered from all of them.
 //!
-//! A batch is a function of scenario, seed and number. So the file of an asking that was cut short, goes on, or was put
-//! together from pieces has the bytes of one that was made at once, whatever the number of threads.
+//! A batch is a function of scenario, seed and number. So a file that was interrupted and continued, or merged from
+//! pieces, has the same bytes as one made in one go, whatever the number of threads.
 
 mod answer;
 mod file;
@@ -24,10 +25,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Hits of the first batch of draws from which on counting is enough: some 6 % of error with 16 batches.
+/// From this many hits in the first batch of draws, counting is enough: about 6 % of error with 16 batches.
 const ENOUGH: u64 = 16;
 
-/// How it is asked.
+/// How to estimate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Asking {
@@ -35,16 +36,16 @@ pub struct Asking {
     pub seed: Seed,
     /// Batches of each method, at least 2.
     pub batches: u32,
-    /// Draws of the prior that a batch counts.
+    /// Draws from the prior in each batch of counting.
     pub draws: u64,
-    /// How particles are split.
+    /// Settings of splitting.
     pub splitting: Splitting,
-    /// How stones are laid.
+    /// Settings of stepping stones.
     pub stones: Stones,
 }
 
 impl Asking {
-    /// What is asked unless somebody says otherwise.
+    /// The default settings.
     #[must_use]
     pub fn new(seed: Seed) -> Self {
         let splitting = Splitting { particles: 100, steps: 20, least: 1e-15 };
@@ -53,26 +54,26 @@ impl Asking {
     }
 }
 
-/// What was asked, and what batches came to: the file.
+/// The question, and the results of batches: the content of the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Chance {
-    /// Version of plaus that asked.
+    /// Version of plaus that made it.
     pub plaus: String,
     /// The scene's name.
     pub scene: String,
-    /// Which of the batches it is to hold; not there where it is all.
+    /// Which of the batches it is to hold; absent for all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<Shard>,
     /// The scenario.
     pub scenario: StoredScenario,
-    /// How it is asked.
+    /// How to estimate.
     pub asking: Asking,
-    /// Which methods are used, and why.
+    /// Which methods are used.
     pub methods: Vec<Method>,
     /// Why these, in words.
     pub why: String,
-    /// Names of the parts of the demand.
+    /// Names of the parts of the requirements.
     pub parts: Vec<String>,
     /// Batches of draws that were counted, by number.
     pub counted: BTreeMap<u32, Counted>,
@@ -82,10 +83,10 @@ pub struct Chance {
     pub stones: BTreeMap<u32, Stoned>,
 }
 
-/// A batch that is to be made.
+/// A batch to make.
 type Task = (Method, u32);
 
-/// What came of one.
+/// The result of a batch.
 enum Made {
     Counted(Counted),
     Split(Split),
@@ -100,7 +101,7 @@ impl Chance {
         self.shard.map_or(0..all, |shard| shard.range(all).unwrap_or_default())
     }
 
-    /// Batches there are, and those there are to be.
+    /// Numbers of batches made, and of batches planned.
     #[must_use]
     pub fn done(&self) -> (usize, usize) {
         let made = self.counted.len() + self.split.len() + self.stones.len();
@@ -126,29 +127,29 @@ impl Chance {
     }
 }
 
-/// Who asks, beside what.
+/// What to estimate, and where.
 pub struct Inquiry<'a> {
-    /// The scenario. Its number of solutions plays no part.
+    /// The scenario. Its number of solutions does not matter.
     pub recipe: &'a Recipe,
-    /// How it is asked.
+    /// How to estimate.
     pub asking: Asking,
-    /// Methods to use; none: those that fit.
+    /// Methods to use; if empty, those that fit.
     pub methods: Vec<Method>,
-    /// Which piece of the batches; none: all.
+    /// Which piece of the batches; `None` for all.
     pub shard: Option<Shard>,
     /// The file to keep, and the disk it is on.
     pub place: Option<(&'a Path, &'a dyn Disk)>,
-    /// Threads; 0 is one a core. Never changes results.
+    /// Threads; 0 means one per core. Never changes results.
     pub threads: usize,
-    /// Who looks on, and may stop it.
+    /// Shows progress to others, who may stop it.
     pub pulse: &'a ChancePulse,
 }
 
-/// Asks, and gives what there is when it ends or is stopped; `shown` is told after each batch. Where the file is there
-/// already and holds this very asking, it goes on with it.
+/// Estimates, and returns the result so far when it ends or is stopped; `shown` is called after each batch. If the file
+/// already holds this same question, continues it.
 ///
 /// # Errors
-/// [`Error`] where the scenario makes no scene, the file holds something else, a batch fails, or the disk refuses.
+/// [`Error`] if the scenario makes no scene, the file holds something else, a batch fails, or the disk refuses.
 pub fn ask(inquiry: &Inquiry<'_>, shown: &(dyn Fn(&Chance) + Sync)) -> Result<Chance, Error> {
     let scenario = &inquiry.recipe.scenario;
     let scene = scenario.stage()?;
@@ -156,7 +157,7 @@ pub fn ask(inquiry: &Inquiry<'_>, shown: &(dyn Fn(&Chance) + Sync)) -> Result<Ch
     Asked { scene, moves, inquiry }.run(shown)
 }
 
-/// An inquiry into a scene.
+/// An estimate for a known scene.
 struct Asked<'a, 'b> {
     scene: Stage,
     moves: Arc<Mixture<Stage>>,
@@ -167,12 +168,12 @@ impl Asked<'_, '_> {
     fn run(&self, shown: &(dyn Fn(&Chance) + Sync)) -> Result<Chance, Error> {
         let Inquiry { asking, shard, place, threads, pulse, .. } = self.inquiry;
         if asking.batches < 2 {
-            return Err(Error::Request("one batch tells no error: ask for 2 or more".to_owned()));
+            return Err(Error::Request("one batch gives no error estimate: ask for 2 or more".to_owned()));
         }
         if let Some(shard) = shard {
             shard.range(asking.batches).map_err(|error| Error::Request(error.to_string()))?;
         }
-        // Held to the end.
+        // Held until the end.
         let _claim = place.map(|(path, _)| file::claim(path)).transpose()?;
         let found = self.methods()?;
         let knows_methods = found.is_some();
@@ -220,15 +221,15 @@ impl Asked<'_, '_> {
         })
     }
 
-    /// Which methods fit, and why. Every piece finds the same: from the first batch of draws, whoever's that is.
-    /// `None` where it was stopped before that is known: nothing more is made then.
+    /// Which methods fit, and why. Every piece comes to the same result, from the first batch of draws, even if that
+    /// belongs to another piece. `None` if it was stopped before that: then nothing more is made.
     fn methods(&self) -> Result<Option<(Vec<Method>, String)>, Error> {
         let Inquiry { recipe, asking, methods, pulse, .. } = self.inquiry;
         let exact = recipe.scenario.sampler.rules.is_exact();
         if !methods.is_empty() {
             if !exact && methods.iter().any(|&method| method != Method::Counting) {
-                let message = "splitting and stones rest on moves that are exact: set sampler.rules.preset = \"exact\", \
-                    or count";
+                let message =
+                    "splitting and stones need exact moves: set sampler.rules.preset = \"exact\", or use counting";
                 return Err(Error::Request(message.to_owned()));
             }
             let mut methods = methods.clone();
@@ -237,7 +238,7 @@ impl Asked<'_, '_> {
             return Ok(Some((methods, "as asked for".to_owned())));
         }
         if !exact {
-            let why = "moves are not exact, so only draws of the prior count";
+            let why = "moves are not exact, so only counting is possible";
             return Ok(Some((vec![Method::Counting], why.to_owned())));
         }
         let pilot = match count(&self.scene, Parts::NONE, asking.seed, 0, asking.draws, pulse) {
@@ -245,7 +246,7 @@ impl Asked<'_, '_> {
             pilot => pilot.map_err(|error| Error::Sampling(error.to_string()))?,
         };
         let (hits, draws) = (pilot.hits.first().copied().unwrap_or(0), pilot.draws);
-        let seen = format!("{hits} of the first {draws} draws of the prior reach it");
+        let seen = format!("{hits} of the first {draws} draws from the prior hit");
         if hits >= ENOUGH {
             return Ok(Some((vec![Method::Counting], format!("{seen}: counting is enough"))));
         }
@@ -253,13 +254,13 @@ impl Asked<'_, '_> {
         Ok(Some((all, format!("{seen}: too few to count alone"))))
     }
 
-    /// Names of what is demanded, where it is more than one thing.
+    /// Names of the things asked for, if there is more than one.
     fn names(&self) -> Vec<String> {
         let asked = self.scene.asked();
         if asked.len() > 1 { asked } else { Vec::new() }
     }
 
-    /// What of that a state meets.
+    /// Which of these a state meets.
     fn parts(&self) -> Parts<'_, Stage> {
         Parts { count: self.names().len(), met: &meets }
     }
@@ -283,7 +284,7 @@ impl Asked<'_, '_> {
     }
 }
 
-/// Says of each thing that is asked whether a state meets it.
+/// Sets, for each thing that is asked for, whether a state meets it.
 fn meets(scene: &Stage, state: StateRefOf<'_, Stage>, met: &mut [bool]) {
     met.iter_mut().zip(scene.answers(state)).for_each(|(met, mark)| *met = mark.met());
 }

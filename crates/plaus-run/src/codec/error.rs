@@ -8,7 +8,7 @@ use std::io;
 pub enum EncodeError {
     /// The payload is too long for one frame.
     #[error(
-        "{bytes} bytes in one frame, at most {LONGEST_PAYLOAD} are possible: a smaller `checkpoint_every` makes smaller frames"
+        "{bytes} bytes in one frame, but at most {LONGEST_PAYLOAD} are possible: a smaller `checkpoint_every` makes smaller frames"
     )]
     TooLong {
         /// Its length.
@@ -41,19 +41,19 @@ pub enum FrameProblem {
     /// It holds something else.
     #[error("expected {expected}, found a frame of kind `{found}`")]
     Kind {
-        /// What was asked for.
+        /// The expected kind.
         expected: &'static str,
-        /// The tag that is there.
+        /// The tag found.
         found: String,
     },
     /// Another version of plaus wrote it.
-    #[error("format version {found} of {name}; this plaus reads version {known}")]
+    #[error("format version {found} of {name}, but this plaus reads version {known}")]
     Version {
-        /// What it holds.
+        /// The kind of the frame.
         name: &'static str,
         /// The version this build reads.
         known: u32,
-        /// The version that is there.
+        /// The version found.
         found: u32,
     },
     /// The file ends inside the frame.
@@ -61,20 +61,20 @@ pub enum FrameProblem {
     Truncated {
         /// Length of the frame.
         needed: u64,
-        /// What is there of it.
+        /// Bytes present.
         present: u64,
     },
     /// The length is absurd.
-    #[error("a payload of {length} bytes is claimed, at most {LONGEST_PAYLOAD} are possible")]
+    #[error("its header says {length} bytes, but at most {LONGEST_PAYLOAD} are possible")]
     TooLong {
-        /// The claim.
+        /// The stated length.
         length: u64,
     },
-    /// Something changed since it was written.
+    /// The frame changed after it was written.
     #[error("the checksum does not match: bytes were changed after they were written")]
     Checksum,
-    /// The checksum is right, but the payload is no such value.
-    #[error("the payload is no {name}: {reason}")]
+    /// The checksum is right, but the payload is not a value of this kind.
+    #[error("the payload is not valid as {name}: {reason}")]
     Payload {
         /// What it should be.
         name: &'static str,
@@ -84,7 +84,7 @@ pub enum FrameProblem {
     /// Bytes follow where nothing should.
     #[error("{bytes} unexpected bytes follow")]
     Trailing {
-        /// How many.
+        /// Number of bytes.
         bytes: u64,
     },
 }

@@ -1,8 +1,8 @@
 //! A table of the sampling phase: one row per chain and draw.
 //!
-//! Columns: `chain`, `draw` (from 0), `log_p`, `satisfied` (`true` or `false`), then one a scalar of the scene, in the
-//! scene's units. Numbers are the shortest that read back as the same bits; rows are ordered by chain, then draw; lines
-//! end with `\n`.
+//! Columns: `chain`, `draw` (from 0), `log_p`, `satisfied` (`true` or `false`), then one for each scalar of the scene,
+//! in the scene's units. Numbers are the shortest that read back as the same bits; rows are ordered by chain, then
+//! draw; lines end with `\n`.
 
 use crate::error::Error;
 use crate::read::RunReader;
@@ -27,7 +27,7 @@ pub fn is_ours(path: &Path) -> bool {
 /// Writes the table.
 ///
 /// # Errors
-/// [`Error`] where the records are damaged or `out` refuses.
+/// [`Error`] if the records are damaged or `out` refuses.
 pub fn write(run: &RunReader<'_>, out: &mut dyn Write) -> Result<(), Error> {
     let scalars = run.scene().scalars();
     let names: Vec<&str> = scalars.iter().map(|scalar| scalar.name.as_str()).collect();

@@ -1,4 +1,4 @@
-//! Where an export goes: made under another name first, so that it exists wholly or not at all, and nothing is
+//! Where an export is written: first under another name, so that it exists wholly or not at all, and nothing is
 //! overwritten unasked.
 
 use crate::error::{RunFileError, RunFileProblem};
@@ -7,11 +7,11 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Makes the file `out` by `write`. Replaces a file there was only with `force`, and only where `is_ours` says that it
+/// Makes the file `out` with `write`. Replaces an existing file only with `force`, and only if `is_ours` says that it
 /// was made here.
 ///
 /// # Errors
-/// As `write`, or [`RunFileError`] where something stands in the way or the disk refuses.
+/// As `write`, or [`RunFileError`] if something stands in the way or the disk refuses.
 pub fn file<E: From<RunFileError>>(
     out: &Path,
     force: bool,
@@ -33,11 +33,11 @@ pub fn file<E: From<RunFileError>>(
     made
 }
 
-/// Makes the folder `out`, which `fill` fills. Replaces a folder there was only with `force`, and only where `is_ours`
-/// says that it was made here.
+/// Makes the folder `out`, and fills it with `fill`. Replaces an existing folder only with `force`, and only if
+/// `is_ours` says that it was made here.
 ///
 /// # Errors
-/// As `fill`, or [`RunFileError`] where something stands in the way or the disk refuses.
+/// As `fill`, or [`RunFileError`] if something stands in the way or the disk refuses.
 pub fn folder<E: From<RunFileError>>(
     out: &Path,
     force: bool,
@@ -64,7 +64,7 @@ fn refuse(out: &Path, force: bool, may_replace: impl Fn(&Path) -> bool) -> Resul
     Err(RunFileError::new(out, problem))
 }
 
-/// Gives the draft its name. What had the name before goes only once the new one is in place.
+/// Gives the draft its name. The previous one is removed only once the new one is in place.
 fn swap(draft: &Path, out: &Path) -> Result<(), RunFileError> {
     let old = draft.with_extension("old");
     let replaced = out.exists();

@@ -1,4 +1,4 @@
-//! Scalars as variables: those of several members of a kind are one, with a dimension of its own.
+//! Scalars as variables: those of several members of a kind become one, with a dimension of its own.
 
 use plaus_scenes::{Member, Role, Scene, Stage};
 use std::borrow::Cow;
@@ -11,9 +11,9 @@ pub(super) struct Variable {
     pub(super) role: Role,
     /// Whether its values are whole numbers.
     pub(super) whole: bool,
-    /// Places of its values among the scene's scalars.
+    /// Indices of its values among the scene's scalars.
     columns: Vec<usize>,
-    /// Whose the first is, where there is one for each member of a kind.
+    /// The member that the first belongs to, if there is one for each member of a kind.
     first: Option<Member>,
 }
 
@@ -33,8 +33,7 @@ impl Variable {
     }
 }
 
-/// The variables of a scene in the order of their first scalars: as they are declared, also where a kind has one member
-/// only.
+/// The variables of a scene in the order of their first scalars, as declared, even if a kind has only one member.
 pub(super) fn of(scene: &Stage) -> Vec<Variable> {
     let mut variables: Vec<Variable> = Vec::new();
     for (column, scalar) in scene.scalars().into_iter().enumerate() {

@@ -1,10 +1,10 @@
 //! A Zarr v3 folder that ArviZ reads: groups `posterior` and `sample_stats`, and `warmup_posterior` and
-//! `warmup_sample_stats` where there is a warm-up, all with dimensions (chain, draw). Scalars of one name that are
-//! numbered, `x_1`, `x_2` and so on, are one variable `x` with a third dimension, named after what is numbered, as the
-//! scene says: `x[die]`. Whole numbers are stored as such.
+//! `warmup_sample_stats` if there is a warm-up, all with dimensions (chain, draw). Numbered scalars of one name, `x_1`,
+//! `x_2` and so on, are one variable `x` with a third dimension, named after the numbered things: `x[die]`. Whole
+//! numbers are stored as such.
 //!
-//! Chunks are raw little-endian numbers, one chain each, so that any language reads them without a library. Metadata is
-//! consolidated: `zarr.json` at the root describes every array.
+//! Chunks are raw little-endian numbers, one for each chain, so that any language reads them without a library.
+//! Metadata is consolidated: `zarr.json` at the root describes every array.
 
 use super::variables::{self, Variable};
 use crate::error::{Error, RunFileError, RunFileProblem};
@@ -43,7 +43,7 @@ impl Array {
         }
     }
 
-    /// One chunk a chain; a coordinate is one chunk.
+    /// One chunk for each chain; a coordinate is one chunk.
     fn metadata(&self) -> Value {
         let mut chunk = self.shape.clone();
         if chunk.len() > 1 {
@@ -75,7 +75,7 @@ pub fn is_ours(path: &Path) -> bool {
 /// Fills the folder `out`, which exists and is empty.
 ///
 /// # Errors
-/// [`Error`] where the run has no draws, its records are damaged or the disk refuses.
+/// [`Error`] if the run has no draws, its records are damaged or the disk refuses.
 pub fn write(run: &RunReader<'_>, out: &Path) -> Result<(), Error> {
     if run.draws(Phase::Sampling) == 0 {
         return Err(RunFileError::new(run.run().folder().path(), RunFileProblem::Empty).into());
@@ -133,7 +133,7 @@ fn sample_stats(shape: &[u64]) -> Vec<Array> {
     ]
 }
 
-/// Where the draws come from. No time of day: equal runs give equal folders.
+/// Where the draws come from. It has no time of day: equal runs give equal folders.
 fn about(manifest: &Manifest) -> Value {
     json!({
         "inference_library": "plaus",
@@ -190,7 +190,7 @@ fn write_array(out: &Path, group: &str, array: &Array, nodes: &mut Map<String, V
     Ok(())
 }
 
-/// The chunks of one chain, written side by side as its records are read once.
+/// The chunks of one chain, all written while its records are read once.
 struct Chunks(Vec<BufWriter<File>>);
 
 impl Chunks {

@@ -1,9 +1,9 @@
 //! Pieces that look for distinct solutions together.
 //!
 //! A run that looks for K solutions ends at the first iteration by which its chains together have recorded K. No piece
-//! knows that iteration: each goes on until its own chains and those of the pieces beside it, as far as it knows, have
-//! K, which is never before it. So where the run ends follows from what all pieces recorded, not from who was faster.
-//! There they are cut: at the last end of a block before it that all have in their trails; what is left, less than a
+//! knows that iteration. Each continues until its own chains and those of the other pieces, as far as it knows, have K;
+//! this is never before that iteration. So the end of the run follows from what all pieces recorded, not from which was
+//! faster. The pieces are cut at the last end of a block before it that all have in their trails; the rest, less than a
 //! block, is sampled again.
 
 use super::pieces::{Piece, Pieces};
@@ -20,11 +20,12 @@ use plaus_mcmc::{Distinct, Ending, FirstOfClass, parallel};
 use rayon::ThreadPool;
 use std::collections::BTreeSet;
 
-/// The iteration that recorded the last demanded solution; `None` where none were demanded, or the pieces went to the
-/// end of the plan without.
+/// The iteration that recorded the last solution asked for; `None` if none were asked for, or if the pieces reached the
+/// end of the plan without it.
 ///
 /// # Errors
-/// [`Error`] where a piece has to go on before that is known.
+///
+/// [`Error`] if a piece has to be continued before that is known.
 pub(super) fn end(pieces: &Pieces, pool: &ThreadPool) -> Result<Option<u64>, Error> {
     let Some(wanted) = pieces.manifest.plan.solutions else { return Ok(None) };
     let ends = pieces.all.iter().map(|piece| done(pieces, piece)).collect::<Result<Vec<u64>, Error>>()?;
@@ -47,8 +48,8 @@ pub(super) fn end(pieces: &Pieces, pool: &ThreadPool) -> Result<Option<u64>, Err
             |(piece, _)| {
                 let found = distinct.count();
                 let what = format!(
-                    "by iteration {least}, as far as this piece is, all pieces together have {found} of the {wanted} distinct \
-                     solutions: `plaus resume` goes on with it"
+                    "by iteration {least}, where this piece ends, all pieces together have {found} of the {wanted} \
+                 distinct solutions: continue it with `plaus resume`"
                 );
                 refuse(&piece.folder, what)
             },
@@ -68,13 +69,13 @@ fn done(pieces: &Pieces, piece: &Piece) -> Result<u64, Error> {
     }
 }
 
-/// What each chain of a run found first where.
+/// The first iteration at which each chain of a run found each class.
 fn firsts_of(run: &RunReader<'_>) -> Result<Vec<FirstOfClass>, RunFileError> {
     let found = run.each_chain(|chain| tally::firsts(run, chain).map(|distinct| distinct.firsts().to_vec()))?;
     Ok(found.into_iter().flatten().collect())
 }
 
-/// Makes the run that ends once iteration `last` is recorded; gives the bytes of records that were copied.
+/// Makes the run that ends once iteration `last` is recorded; gives the number of bytes of records copied.
 pub(super) fn merge(
     pieces: &Pieces,
     last: u64,
@@ -94,15 +95,14 @@ pub(super) fn merge(
         match resume(draft, More::default(), sampling)? {
             Ending::EnoughSolutions => Ok(()),
             ending => Err(Error::Sampling(format!(
-                "the pieces' last block was sampled again, and ended otherwise: {ending:?}"
+                "the pieces' last block was sampled again, and ended differently: {ending:?}"
             ))),
         }
     })?;
     Ok(bytes)
 }
 
-/// The last round that ends at iteration `last` or before, and that all pieces have in their trails; 0 where there is
-/// none.
+/// The last round that ends at iteration `last` or before and that all pieces have in their trails; 0 if there is none.
 fn common_round(pieces: &Pieces, last: u64) -> Result<u64, Error> {
     let mut common: Option<BTreeSet<u64>> = None;
     for piece in &pieces.all {

@@ -1,8 +1,7 @@
-//! The run that one machine would have made, from pieces that several made.
+//! Makes the run that one machine would have made, from pieces that several made.
 //!
-//! The files of a chain have the same bytes in a piece and in the whole, so they are copied, each frame with its
-//! checksum found right; memory stays flat. Pieces that look for distinct solutions are cut where the run ends, see
-//! `hunt`.
+//! A chain's files have the same bytes in a piece and in the whole, so they are copied, with each frame's checksum
+//! verified; memory use stays constant. Pieces that look for distinct solutions are cut where the run ends: see `hunt`.
 
 mod hunt;
 mod pieces;
@@ -28,36 +27,36 @@ pub struct MergePulse {
 }
 
 impl MergePulse {
-    /// Pieces that were found.
+    /// Number of pieces found.
     pub fn pieces(&self) -> u64 {
         self.pieces.load(Relaxed)
     }
 
-    /// Bytes of records to copy, and those that were.
+    /// Bytes of records to copy, and those already copied.
     pub fn bytes(&self) -> (u64, u64) {
         (self.bytes.load(Relaxed), self.written.load(Relaxed))
     }
 
-    /// Asks the merge to give up. Nothing is left of it.
+    /// Asks the merge to give up. It then leaves nothing behind.
     pub fn stop(&self) {
         self.stopped.store(true, Relaxed);
     }
 
     fn go_on(&self) -> Result<(), Error> {
         if self.stopped.load(Relaxed) {
-            return Err(Error::Request("interrupted: nothing was made, and the pieces are as they were".to_owned()));
+            return Err(Error::Request("interrupted: nothing was made, and the pieces are unchanged".to_owned()));
         }
         Ok(())
     }
 }
 
-/// How to merge, beside what.
+/// How to merge.
 pub struct Merging<'a> {
-    /// Threads; 0 is one a core. Never changes results.
+    /// Threads; 0 means one per core. Never changes results.
     pub threads: usize,
     /// Where to write.
     pub disk: &'a dyn Disk,
-    /// Who looks on.
+    /// Shows progress to others, who may stop it.
     pub pulse: &'a MergePulse,
 }
 
@@ -72,11 +71,12 @@ pub struct Merged {
     pub bytes: u64,
 }
 
-/// Makes the run `out` from pieces: each path is one, or a folder of some. The pieces stay as they are.
+/// Makes the run `out` from pieces: each path is a piece, or a folder of pieces. The pieces do not change.
 ///
 /// # Errors
-/// [`Error`], naming the piece, where one is missing, there twice, unfinished, damaged, being written, or of another
-/// run; where `out` exists; or where the disk refuses. Nothing is made then.
+///
+/// [`Error`], naming the piece, if one is missing, there twice, unfinished, damaged, being written, or of another run;
+/// if `out` exists; or if the disk refuses. In these cases nothing is made.
 pub fn merge(paths: &[PathBuf], out: &Folder, merging: Merging<'_>) -> Result<Merged, Error> {
     out.refuse_to_replace()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(merging.threads).build();
@@ -89,7 +89,7 @@ pub fn merge(paths: &[PathBuf], out: &Folder, merging: Merging<'_>) -> Result<Me
     Ok(Merged { pieces: pieces.all.len(), chains: pieces.manifest.plan.chains, bytes })
 }
 
-/// Puts finished pieces side by side; gives the bytes of records.
+/// Puts finished pieces side by side; gives the number of bytes of records.
 fn copy(pieces: &Pieces, out: &Folder, merging: &Merging<'_>) -> Result<u64, Error> {
     let (end, pulse) = (pieces.manifest.plan.end(), merging.pulse);
     let chains: Vec<(&Piece, u32)> = pieces.chains().collect();
@@ -107,7 +107,7 @@ fn copy(pieces: &Pieces, out: &Folder, merging: &Merging<'_>) -> Result<u64, Err
             let path = draft.checkpoint(chain);
             Ok(merging.disk.append(&path, &bytes).map_err(RunFileError::io(&path, "write"))?)
         })?;
-        // Waited for at once: a run has two files a chain, and there may be many chains.
+        // All are waited for at once: a run has two files for each chain, and there may be many chains.
         let files = chains.iter().flat_map(|&(_, chain)| [draft.records(chain), draft.checkpoint(chain)]);
         let files: Vec<PathBuf> = files.collect();
         let synced = merging.disk.sync_within(draft.path(), &files);
@@ -117,7 +117,7 @@ fn copy(pieces: &Pieces, out: &Folder, merging: &Merging<'_>) -> Result<u64, Err
     Ok(total)
 }
 
-/// Copies a chain's records up to so many bytes, which end at that iteration.
+/// Copies the first bytes of a chain's records, which end at that iteration.
 fn copy_chain(
     pieces: &Pieces,
     piece: &Piece,
@@ -142,13 +142,13 @@ fn write(draft: &Folder, disk: &dyn Disk, chain: u32, checkpoint: &[u8]) -> Resu
     disk.write(&path, checkpoint).map_err(RunFileError::io(&path, "write"))
 }
 
-/// Writes what makes the folder a run.
+/// Writes the manifest, which makes the folder a run.
 fn seal(pieces: &Pieces, draft: &Folder, disk: &dyn Disk) -> Result<(), Error> {
     let json = pieces.manifest.to_json().map_err(|problem| RunFileError::new(draft.manifest(), problem))?;
     Ok(draft.fill(disk, &json, &pieces.manifest.contents)?)
 }
 
-/// Says that a piece is no part of the run.
+/// The error for a piece that is not part of the run.
 fn refuse(piece: &Folder, what: String) -> Error {
     RunFileError::new(piece.path(), RunFileProblem::Pieces(what)).into()
 }

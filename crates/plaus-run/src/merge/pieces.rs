@@ -1,4 +1,4 @@
-//! Which pieces there are, and whether they make a whole.
+//! Which pieces exist, and whether they make a whole.
 
 use super::{Merging, refuse};
 use crate::checkpoint::Stored;
@@ -20,16 +20,16 @@ pub(super) struct Piece {
 
 /// Pieces that hold each chain of a run once.
 pub(super) struct Pieces {
-    /// Of the whole run.
+    /// The manifest of the whole run.
     pub(super) manifest: Manifest,
-    /// The number that its files bear.
+    /// The number that its files carry.
     pub(super) run: u64,
-    /// In order of their chains.
+    /// The pieces in order of their chains.
     pub(super) all: Vec<Piece>,
 }
 
 impl Pieces {
-    /// Looks for the pieces at `paths`, each one or a folder of some.
+    /// Looks for the pieces at `paths`, each of which is a piece or a folder of pieces.
     pub(super) fn find(paths: &[PathBuf], merging: &Merging<'_>) -> Result<Self, Error> {
         let mut folders = Vec::new();
         for path in paths {
@@ -40,7 +40,7 @@ impl Pieces {
         };
         merging.pulse.pieces.store(folders.len() as u64, Relaxed);
         let manifest = Manifest { shard: None, ..Manifest::read(first)? };
-        manifest.scenario()?; // what follows believes its plan
+        manifest.scenario()?; // later code trusts its plan
         let read = |folder: &Folder| read(folder, first, &manifest);
         let mut all = folders.par_iter().map(read).collect::<Result<Vec<Piece>, Error>>()?;
         all.sort_by(|a, b| (a.chains.start, a.folder.path()).cmp(&(b.chains.start, b.folder.path())));
@@ -58,7 +58,7 @@ impl Pieces {
         Ok(Stored::read(&piece.folder.checkpoint(chain), self.run, chain)?)
     }
 
-    /// Bytes of a chain's records, which must have done the iterations `0 .. end`.
+    /// The number of bytes of a chain's records, which must cover the iterations `0 .. end`.
     pub(super) fn finished(&self, piece: &Piece, chain: u32, end: u64) -> Result<u64, Error> {
         match self.checkpoint(piece, chain)? {
             Some(stored) if stored.end_iteration == end => Ok(stored.records),
@@ -66,10 +66,10 @@ impl Pieces {
         }
     }
 
-    /// Says that a piece has to go on.
+    /// The error for a piece that has to be continued.
     pub(super) fn unfinished(&self, piece: &Piece, done: u64, end: u64) -> Error {
         let what = format!(
-            "{} has done {done} of {end} iterations: `plaus resume` goes on with it",
+            "{} has done {done} of {end} iterations: continue it with `plaus resume`",
             piece.shard.map_or("the run".to_owned(), |shard| format!("piece {shard}"))
         );
         refuse(&piece.folder, what)
@@ -79,11 +79,11 @@ impl Pieces {
 /// The runs at a path: itself, or those in it, in order of their names.
 ///
 /// # Errors
-/// [`Error`] where the path is a folder that is no run and holds none.
+/// [`Error`] if the path is a folder that is no run and holds none.
 pub fn folders_at(path: &Path) -> Result<Vec<Folder>, Error> {
     let folder = Folder::new(path);
     if folder.manifest().exists() || !path.is_dir() {
-        return Ok(vec![folder]); // what is no run says so when its manifest is read
+        return Ok(vec![folder]); // reading the manifest fails if it is not a run
     }
     let mut found = Vec::new();
     for entry in std::fs::read_dir(path).map_err(RunFileError::io(path, "read"))? {
@@ -95,18 +95,18 @@ pub fn folders_at(path: &Path) -> Result<Vec<Folder>, Error> {
         }
     }
     if found.is_empty() {
-        let what = "is no piece of a run, and holds none: there is no manifest.json in it or in its folders";
+        let what = "is not a piece of a run and holds none: there is no manifest.json in it or in its folders";
         return Err(refuse(&folder, what.to_owned()));
     }
     found.sort_by(|a, b| a.path().cmp(b.path()));
     Ok(found)
 }
 
-/// Reads what a piece is, and compares it with the run that the first is of.
+/// Reads what a piece is, and compares it with the run of the first piece.
 fn read(folder: &Folder, first: &Folder, whole: &Manifest) -> Result<Piece, Error> {
     let manifest = Manifest::read(folder)?;
     if let Some(difference) = (Manifest { shard: None, ..manifest.clone() }).differs_from(whole) {
-        let what = format!("is no piece of the run that {} is a piece of: {difference}", first.path().display());
+        let what = format!("does not belong to the same run as {}: {difference}", first.path().display());
         return Err(refuse(folder, what));
     }
     if folder.is_being_written() {
@@ -126,7 +126,7 @@ fn make_a_whole(pieces: &[Piece], chains: u32) -> Result<(), Error> {
         let Range { start, end } = piece.chains;
         if let Some(before) = index.checked_sub(1).map(|index| &pieces[index]).filter(|_| start < next) {
             let shown = piece.shard.map_or("the whole run".to_owned(), |shard| format!("piece {shard}"));
-            let what = format!("is {shown}, whose chain {start} {} holds as well", before.folder.path().display());
+            let what = format!("is {shown}: its chain {start} is also in {}", before.folder.path().display());
             return Err(refuse(&piece.folder, what));
         }
         missing(pieces, next..start, chains)?;
@@ -140,7 +140,7 @@ fn missing(pieces: &[Piece], chains: Range<u32>, total: u32) -> Result<(), Error
     if chains.is_empty() {
         return Ok(());
     }
-    // Where all were cut into equally many, the missing ones have names.
+    // If all were cut into equally many, the missing ones have names.
     let of = pieces[0].shard.map(Shard::of).filter(|of| pieces.iter().all(|p| p.shard.map(Shard::of) == Some(*of)));
     let inside =
         |shard: &Shard| shard.range(total).is_ok_and(|range| range.start >= chains.start && range.end <= chains.end);
@@ -155,5 +155,5 @@ fn missing(pieces: &[Piece], chains: Range<u32>, total: u32) -> Result<(), Error
         1 => format!("chain {}", chains.start),
         _ => format!("chains {} to {}", chains.start, chains.end - 1),
     };
-    Err(Error::Request(format!("{which}: none of the {} that were found holds {held}", pieces.len())))
+    Err(Error::Request(format!("{which}: none of the {} pieces found has {held}", pieces.len())))
 }

@@ -10,9 +10,9 @@ use plaus_mcmc::ModelError;
 const PLATE: DVec3 = DVec3::new(0.22, 0.02, 0.45);
 /// From face to face of the coin that shows the ball, in D.
 const THICK: f64 = 0.3;
-/// Density in kg/m³ of what the ball is shown as, rubber's: only the impulses of its impacts know of it.
+/// Density in kg/m³ of the ball as it is shown, that of rubber: only the impulses of its impacts depend on it.
 const DENSITY: f64 = 1100.0;
-/// The table reaches that far beyond drop and target, in D.
+/// How far the table reaches beyond drop and target, in D.
 const MARGIN: f64 = 4.0;
 
 pub(super) fn animate(config: &Config, table: &Table, draw: &Normals) -> Result<Animation, ModelError> {

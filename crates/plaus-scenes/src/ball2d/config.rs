@@ -15,14 +15,14 @@ pub const MAX_COLLISIONS: u32 = 64;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// How far the ball falls before its first bounce, in D. The paper's "height of 4.5 D" reads as 4.5 where the
-    /// height is the bottom's, or the ball a point, and as 4 where it is the centre's.
+    /// How far the ball falls before its first bounce, in D. The paper's "height of 4.5 D" means 4.5 if it is the
+    /// height of the ball's lowest point, or if the ball is a point, and 4 if it is that of the centre.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub drop_height: f64,
-    /// Number of bounces before the resting place; each has a random normal.
+    /// Number of bounces before the ball rests; each has a random normal.
     #[schemars(range(min = 1, max = 64))]
     pub collisions: u32,
-    /// Factor on the normal component of the velocity at a bounce; the paper's is 1/√2.
+    /// Factor on the normal component of the velocity at a bounce; 1/√2 in the paper.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub restitution: f64,
     /// Standard deviation of each normal's angle from the vertical, in degrees.
@@ -31,26 +31,26 @@ pub struct Config {
     /// Where the ball should come to rest, in D from where it is dropped.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "D"))]
     pub target: f64,
-    /// Standard deviation of the constraint on the resting place, in D: smaller is stricter.
+    /// Standard deviation of the constraint on where the ball rests, in D: smaller is stricter.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub sigma_d: f64,
-    /// A ball that rests closer than this to the target satisfies the constraint, in D.
+    /// A ball that rests closer to the target than this satisfies the constraint, in D.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub tolerance: f64,
-    /// What happens where a bounce would leave the ball moving into the table.
+    /// What happens if a bounce would leave the ball moving into the table.
     pub downward: Downward,
-    /// Which moves: "mixed", or the "paper"'s only one.
+    /// Which moves: "mixed", or "paper" for the paper's only one.
     pub moves: Moves,
-    /// Relative weights of the moves of "mixed".
+    /// Relative weights of the moves in "mixed".
     pub weights: Weights<Ball2dMoves>,
-    /// Half width of the paper's random step of an angle, in degrees.
+    /// Half width of the paper's random step in an angle, in degrees.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 180.0, "x-unit" = "degree"))]
     pub step_deg: f64,
-    /// Two solutions are the same where all their bounces fall into the same cells of this width, in D.
+    /// Two solutions are the same if all their bounces fall into the same cells of this width, in D.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "D"))]
     pub distinct_cell: f64,
-    /// The ball's diameter in metres: fixes the size and, with gravity, the time of exported animations. No influence
-    /// on what is sampled.
+    /// The ball's diameter in metres. It sets the size and, with gravity, the duration of exported animations. It has
+    /// no influence on what is sampled.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 1000.0, "x-unit" = "m"))]
     pub diameter_m: f64,
 }
@@ -75,18 +75,18 @@ impl Default for Config {
     }
 }
 
-/// What happens where the reflected velocity still points into the table, or along it: the normal leans so far that the
-/// reflection does not lift the ball.
+/// What happens if the reflected velocity still points into the table, or along it, because the normal leans so far
+/// that the reflection does not lift the ball.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Downward {
-    /// The leftover downward component is turned upwards.
+    /// The remaining downward component is turned upwards.
     Mirror,
     /// The draw has density 0.
     Reject,
     /// The vertical component is lost: the ball slides through its remaining bounces in place.
     Zero,
-    /// The ball bounces as from a level table.
+    /// The ball bounces as if the table were level.
     Level,
     /// The ball goes back the way it came, slowed by the restitution.
     #[default]

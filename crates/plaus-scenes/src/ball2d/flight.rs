@@ -52,7 +52,7 @@ pub(super) fn fallen(height: f64) -> DVec2 {
     DVec2::new(0.0, -(2.0 * height).sqrt())
 }
 
-/// How far a ball launched with `velocity` flies before it is back at the height of its launch.
+/// How far a ball launched with `velocity` flies until it is back at its starting height.
 #[inline]
 pub(super) fn range(velocity: DVec2) -> f64 {
     2.0 * velocity.x * velocity.y
@@ -64,8 +64,8 @@ pub(super) fn landing(velocity: DVec2) -> DVec2 {
     DVec2::new(velocity.x, -velocity.y)
 }
 
-/// Flies the ball over bounces about `normals`: the place of rest, or `None` where a bounce rejects the draw. `visit`
-/// sees each bounce's place, normal and velocity after it.
+/// Lets the ball bounce on `normals`: gives its resting place, or `None` if a bounce rejects the draw. `visit` gets
+/// each bounce's place, normal and velocity after it.
 #[inline]
 pub(super) fn fly(
     table: &Table,
@@ -87,7 +87,7 @@ pub(super) fn fly(
 /// Which bounces are downward: bit i for bounce i, counted from 0.
 pub(super) type Pattern = u64;
 
-/// Flies the ball: where it comes to rest, and which bounces were downward.
+/// Lets the ball bounce: gives its resting place, and which bounces were downward.
 #[inline]
 pub(super) fn rest(table: &Table, height: f64, normals: impl IntoIterator<Item = DVec2>) -> (Option<f64>, Pattern) {
     let (mut downward, mut bit) = (0, 1);

@@ -1,4 +1,4 @@
-//! The paper's 2D ball (sections 3 and 5.1): where it comes to rest is demanded, the table's normals are uncertain.
+//! The paper's 2D ball (sections 3 and 5.1): its resting place is asked for, the table's normals are uncertain.
 
 mod animate;
 mod config;
@@ -61,12 +61,12 @@ impl Clone for Normals {
     }
 }
 
-/// What became of the ball.
+/// The outcome for the ball.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rest {
-    /// Where it came to rest, in D; `None` where a downward normal rejected the draw.
+    /// Where it came to rest, in D; `None` if a downward normal rejected the draw.
     pub x: Option<f64>,
-    /// Which bounces the rule for downward normals decided: bit i for bounce i, counted from 0.
+    /// The bounces that were decided by the rule for downward normals: bit i for bounce i, counted from 0.
     pub downward: u64,
 }
 
@@ -74,7 +74,7 @@ impl Ball2d {
     /// The scene of a configuration whose keys are each in range.
     ///
     /// # Errors
-    /// [`ConfigError`] where a key is out of the range its documentation states.
+    /// [`ConfigError`] if a key is out of the range its documentation states.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let angle = Gaussian::new(0.0, config.sigma_theta_deg)
             .map_err(|error| ConfigError::new("world.ball2d.sigma_theta_deg", error))?;
@@ -115,7 +115,7 @@ impl Ball2d {
         &self.angle
     }
 
-    /// Places of the bounces and, last, of the rest, in D; empty where a downward normal rejects the draw.
+    /// Places of the bounces and finally the resting place, in D; empty if a downward normal rejects the draw.
     #[must_use]
     pub fn path(&self, draw: &Normals) -> Vec<f64> {
         let mut places = Vec::with_capacity(draw.0.len() + 1);
@@ -184,7 +184,7 @@ impl Variables for Ball2d {
     }
 }
 
-/// Solutions are told apart by the cells their bounces fall into.
+/// Solutions are distinguished by the cells of their bounces.
 impl Goal for Ball2d {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let x = state.outcome.x?;

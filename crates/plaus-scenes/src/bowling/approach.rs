@@ -1,4 +1,4 @@
-//! Where a delivery leads, were there neither pins nor gutters.
+//! Where a delivery would lead without pins and gutters.
 
 use super::draw::Shot;
 use super::lane::{LENGTH, Lane};
@@ -10,9 +10,9 @@ use plaus_sim::trace::Observer;
 use plaus_sim::{Scratch, State};
 
 impl Lane {
-    /// By how much the ball has come to the side when its centre is first at each of these distances beyond the head
-    /// pin's spot, in m, in ascending order; `None` where it does not get there while a shot lasts. It depends on
-    /// neither the place across the lane nor the pins.
+    /// How far the ball has moved to the side when its centre is first at each of these distances beyond the head pin's
+    /// spot, in m, in ascending order; `None` if it does not get there during a shot. It depends neither on its place
+    /// across the lane nor on the pins.
     pub(super) fn approach(&self, draw: &Shot, distances: &[f64]) -> Result<Option<Vec<f64>>, ModelError> {
         let mut draw = draw.clone();
         draw.ball[Quantity::Across as usize] = 0.0;
@@ -43,13 +43,13 @@ impl Way {
     }
 }
 
-/// How long after its begin a motion's y is first this, if ever.
+/// How long after its start a motion first has this y, if ever.
 fn first_at(piece: &Parabola, y: f64) -> Option<f64> {
     let (left, speed, half) = (y - piece.x.y, piece.v.y, 0.5 * piece.a.y);
     if left <= 0.0 {
         return Some(0.0);
     }
-    // left = speed t + half t²; of the forms of the root, that which does not cancel.
+    // left = speed t + half t²; this form of the root does not cancel.
     let root = (speed * speed + 4.0 * half * left).sqrt();
     let time = 2.0 * left / (speed + root);
     (time >= 0.0 && time.is_finite()).then_some(time)

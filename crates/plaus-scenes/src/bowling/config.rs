@@ -7,8 +7,8 @@ use crate::model::{Moves, Weights};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A ball is bowled at ten-pins, and those pins should be left standing that are asked for (Chenney & Forsyth 2000,
-/// section 5.2 and appendix A).
+/// A ball is bowled at ten-pins, and the chosen pins should be left standing (Chenney & Forsyth 2000, section 5.2 and
+/// appendix A).
 ///
 /// Pins have their usual numbers: 1 is the head pin, 7 to 10 the last row from the bowler's left. x runs across the
 /// lane to the bowler's right, y along it; the head pin's spot is the origin.
@@ -18,40 +18,40 @@ pub struct Config {
     /// Pins that stand at the start.
     #[schemars(length(min = 1, max = 10), inner(range(min = 1, max = 10)))]
     pub pins: Vec<u32>,
-    /// Pins, of those, that should stand at the end; none for a strike or a spare.
+    /// Those of `pins` that should stand at the end; none for a strike or a spare.
     #[schemars(length(min = 0, max = 10), inner(range(min = 1, max = 10)))]
     pub leave: Vec<u32>,
-    /// ln λ, the reward in nats for each pin that ends as it should, and for each that stands as it should and has not
-    /// moved far.
+    /// ln λ, the reward in nats for each pin that ends as it should, and again for each rewarded pin that stands as it
+    /// should and has not moved far.
     #[schemars(extend("minimum" = 0.0, "maximum" = 700.0, "x-unit" = "nat"))]
     pub ln_lambda: f64,
-    /// How far a pin may stand from where it was set to be rewarded for not having moved far. The default is the radius
-    /// of a pin's base.
+    /// How far a pin may end from its starting place and still count as not moved far. The default is the radius of a
+    /// pin's base.
     #[schemars(extend("minimum" = 0.0, "maximum" = 2000.0, "x-unit" = "mm"))]
     pub moved_far_mm: f64,
     /// Which pins are rewarded for not having moved far.
     pub rewarded: Rewarded,
-    /// Which laws the ball's delivery has: the paper's, or that of the real game.
+    /// Which laws the ball's delivery follows: the paper's, or those of the real game.
     pub delivery: Delivery,
-    /// Changes to the laws of the delivery.
+    /// Changes to these laws.
     pub release: Release,
-    /// Standard deviation of each coordinate of a pin's place about its spot.
+    /// Standard deviation of each coordinate of a pin's place from its spot.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 20.0, "x-unit" = "mm"))]
     pub pin_sigma_mm: f64,
     /// Mass of a pin. Regulation: 1.53 to 1.64.
     #[schemars(extend("minimum" = 0.1, "maximum" = 20.0, "x-unit" = "kg"))]
     pub pin_kg: f64,
-    /// What happens where things touch.
+    /// What happens when things touch.
     pub contact: Contact,
-    /// Time from the ball's release after which what still moves is taken as it is.
+    /// Time after the ball's release at which the simulation ends, even if things still move.
     #[schemars(extend("minimum" = 1.0, "maximum" = 60.0, "x-unit" = "s"))]
     pub duration_s: f64,
-    /// How much of the ball's way before the head pin an animation shows; it begins where that does.
+    /// Length of the ball's path before the head pin that an animation shows; the animation begins there.
     #[schemars(extend("minimum" = 0.5, "maximum" = 18.3, "x-unit" = "m"))]
     pub shown_m: f64,
     /// How exact the simulation is.
     pub accuracy: AccuracyPreset,
-    /// Which moves: "mixed", or the "paper"'s.
+    /// Which moves: "mixed", or "paper" for the paper's.
     pub moves: Moves,
     /// Relative weights of the moves.
     pub weights: Weights<BowlingMoves>,
@@ -89,20 +89,20 @@ pub enum Rewarded {
     /// Pins that should stand.
     #[default]
     MeantToStand,
-    /// Any pin that stands, as the paper's text can be read. It then rewards a ball in the gutter, which moves no pin,
-    /// as much as a strike.
+    /// Any standing pin, which is one reading of the paper's text. This rewards a gutter ball, which moves no pin, as
+    /// much as a strike.
     AnyStanding,
 }
 
-/// What happens where things touch. Between pins there are no published coefficients.
+/// What happens when things touch. There are no published coefficients for contact between pins.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contact {
-    /// Coulomb's coefficient of friction between the ball and the lane, where there is no oil. Unset: 0.12 for the
-    /// paper's delivery, 0.2 for regulation.
+    /// Coulomb's coefficient of friction between the ball and the lane, beyond the oil. Unset: 0.12 for the paper's
+    /// delivery, 0.2 for regulation.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub lane_friction: Option<f64>,
-    /// Length of the lane, from the foul line on, that is oiled. Unset: 0 for the paper's delivery, 12 for regulation.
+    /// Length of the oiled part of the lane, from the foul line. Unset: 0 for the paper's delivery, 12 for regulation.
     #[schemars(extend("minimum" = 0.0, "maximum" = 18.2, "x-unit" = "m"))]
     pub oil_m: Option<f64>,
     /// Coefficient of friction between the ball and the oiled lane.
@@ -123,17 +123,17 @@ pub struct Contact {
     /// Restitution between pins.
     #[schemars(range(min = 0.0, max = 0.95))]
     pub pin_pin_restitution: f64,
-    /// Friction between a pin and lane, gutters and walls.
+    /// Friction between a pin and the lane, gutters and walls.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub pin_lane_friction: f64,
-    /// Restitution between a pin and lane, gutters and walls.
+    /// Restitution between a pin and the lane, gutters and walls.
     #[schemars(range(min = 0.0, max = 0.95))]
     pub pin_lane_restitution: f64,
-    /// Resistance to rolling of a pin: torque over load times the distance from its centre of gravity to where it
-    /// touches. Without any, a nudged pin runs around on the rim of its foot for ever.
+    /// Rolling resistance of a pin: torque over load times the distance from its centre of gravity to the point of
+    /// contact. Without any, a nudged pin circles on the rim of its foot for ever.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub pin_rolling: f64,
-    /// Resistance to spinning about the vertical of a pin, likewise.
+    /// Resistance of a pin to spinning about the vertical, defined likewise.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub pin_spinning: f64,
 }
@@ -157,30 +157,31 @@ impl Default for Contact {
     }
 }
 
-/// Sizes of the moves' steps. The paper's are the defaults: each of its steps is a half of the standard deviation, or a
-/// fifth of the interval, of what it shifts.
+/// Sizes of the moves' steps. The defaults are the paper's: each step is half the standard deviation, or a fifth of the
+/// interval, of the quantity that it shifts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Steps {
-    /// Standard deviation of the shift of a quantity with a Gaussian law, over that law's.
+    /// Standard deviation of the shift of a quantity with a Gaussian law, relative to that law's.
     #[schemars(range(min = 1e-9, max = 10.0))]
     pub gaussian: f64,
-    /// Standard deviation of the shift of a quantity with a uniform law, over its interval's width.
+    /// Standard deviation of the shift of a quantity with a uniform law, relative to its interval's width.
     #[schemars(range(min = 1e-9, max = 10.0))]
     pub uniform: f64,
     /// Probability that `change_pins` shifts a pin.
     #[schemars(range(min = 0.000001, max = 1.0))]
     pub pin_chance: f64,
-    /// Standard deviation of the length of such a shift, in a random direction.
+    /// Standard deviation of the length of that shift, which has a random direction.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 100.0, "x-unit" = "mm"))]
     pub pin_mm: f64,
-    /// Probability that `redraw_pins` sets a pin anew.
+    /// Probability that `redraw_pins` draws a pin's place anew.
     #[schemars(range(min = 0.000001, max = 1.0))]
     pub redraw_chance: f64,
     /// Probability that `aim` draws everything else anew.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub aim_anew: f64,
-    /// The least factor on the steps of `refine`; the logarithm of the factor is uniform from this one's to 0.
+    /// The least factor on the steps of `refine`; the logarithm of the factor is uniform between the logarithm of this
+    /// one and 0.
     #[schemars(range(min = 1e-12, max = 0.99))]
     pub finest: f64,
 }

@@ -1,7 +1,7 @@
 //! What is random: the ball's delivery and where the pins are set.
 //!
-//! All of it is independent, but that the ball starts above the lane, whatever its radius. The paper prints a sum over
-//! the pins' factors, which is no density; its text says product, as it is here.
+//! Everything is independent, except that the ball starts above the lane, whatever its radius. The paper prints a sum
+//! over the pins' factors, which is not a density; its text says product, as here.
 
 use super::config::Config;
 use super::release::{self, Quantity};

@@ -26,7 +26,7 @@ pub(super) const WIDTH: f64 = Alley::WIDTH;
 /// From the foul line to the head pin's spot in m.
 pub(super) const LENGTH: f64 = Alley::LENGTH;
 
-/// Longest time in s that is shown of a shot.
+/// Longest time of a shot that is shown, in s.
 const LONGEST: f64 = 30.0;
 
 /// What all shots of a scenario have in common.
@@ -36,14 +36,14 @@ pub(super) struct Lane {
     pin: Arc<Revolution>,
     verdict: Verdict,
     pins: Vec<usize>,
-    /// How far in m a pin may be moved, for each that is rewarded for not having moved far.
+    /// How far a pin may be moved, in m, for each pin that is rewarded for not having moved far.
     far: Vec<Option<f64>>,
 }
 
-/// What a shot left.
+/// The outcome of a shot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rest {
-    /// What became of each pin that was set up, in ascending order of their numbers.
+    /// The fate of each pin that was set up, in ascending order of their numbers.
     pub pins: Vec<Fate>,
     /// Where and how the ball met the first pin, if it did.
     pub entry: Option<Entry>,
@@ -54,10 +54,10 @@ pub struct Rest {
     pub complete: bool,
 }
 
-/// What became of a pin.
+/// The fate of a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Fate {
-    /// It stands, so far in m from where it was set.
+    /// It stands, at this distance in m from where it was set.
     Standing(f64),
     /// It has fallen, or is gone.
     Down,
@@ -85,13 +85,13 @@ fn place(number: usize, offset: &[f64; 2]) -> DVec3 {
     Alley::spot(number) + DVec3::new(offset[0] / 1000.0, offset[1] / 1000.0, 0.0)
 }
 
-/// How far in m a pin's middle is from where it was set.
+/// The distance of a pin's middle from where it was set, in m.
 fn way(pin: &Turning, start: &Start, time: f64) -> f64 {
     (pin.path.at(time) - start.position).truncate().length()
 }
 
-/// Whether the ball has left the lane before its end. By the rules of the game it is dead then, whatever it may still
-/// do.
+/// Whether the ball has left the lane before the lane's end. By the rules of the game it is then dead, whatever it may
+/// still do.
 fn is_in_gutter(ball: &Turning) -> bool {
     ball.path.x.x.abs() >= 0.5 * WIDTH && ball.path.x.y < 0.0
 }
@@ -144,7 +144,7 @@ impl Lane {
         let counts = |leave: &bool| *leave || config.rewarded == Rewarded::AnyStanding;
         let far = rack.leave().iter().map(|leave| counts(leave).then_some(config.moved_far_mm / 1000.0)).collect();
         let lane = Self { verdict: Verdict::of(&alley, &pin), pin, alley, pins: rack.pins().to_vec(), far };
-        // What the configuration got wrong is said now, not in the middle of a run.
+        // Errors of the configuration are found now, not in the middle of a run.
         lane.alley.world_of(&lane.pin)?;
         Ok(lane)
     }
@@ -160,7 +160,7 @@ impl Lane {
         }
     }
 
-    /// How the ball starts, so far in m before the head pin's spot.
+    /// How the ball starts, `distance` m before the head pin's spot.
     pub(super) fn start(draw: &Shot, distance: f64) -> Start {
         Start {
             position: DVec3::new(draw.get(Quantity::Across), -distance, draw.get(Quantity::Height)),
@@ -171,7 +171,7 @@ impl Lane {
         }
     }
 
-    /// Where the pins that are nearest to the bowler stand, of those that are set up: one row.
+    /// The places of those pins set up that are nearest to the bowler: one row.
     pub(super) fn first_row(&self, draw: &Shot) -> Vec<DVec3> {
         let row = |pin: usize| Alley::spot(pin).y;
         let least = self.pins.iter().map(|pin| row(*pin)).fold(f64::INFINITY, f64::min);
@@ -189,7 +189,7 @@ impl Lane {
         Ok(PlainWorld { world: Physical::Rigid(Box::new(self.alley.world_of(&self.pin)?)), places })
     }
 
-    /// The world of a draw, and where everything starts: the ball so far in m before the head pin's spot.
+    /// The world of a draw, and where everything starts: the ball `distance` m before the head pin's spot.
     pub(super) fn world(&self, draw: &Shot, distance: f64) -> Result<(Rigid, Vec<Start>), WorldError> {
         let up = self.pin.balance();
         let pin =
@@ -200,7 +200,7 @@ impl Lane {
     }
 
     /// Bowls from `distance` m before the head pin's spot. Stops as soon as no pin's fate can change, or `hopeless`
-    /// says so of the pins that are down; then there is no answer.
+    /// returns true for the pins that are down; in that case there is no outcome.
     pub(super) fn bowl(
         &self,
         draw: &Shot,
@@ -245,8 +245,8 @@ impl Lane {
         Ok(Some(Rest { pins, entry: umpire.entry, struck, complete: outcome != Outcome::OutOfEvents }))
     }
 
-    /// Bowls and records it: the world, all motions, and when it ends. Unless it is said until when: all that the
-    /// scenario's `duration_s` holds.
+    /// Bowls and records the shot: the world, all motions, and when it ends. Without a given end, it lasts for the
+    /// scenario's `duration_s`.
     pub(super) fn record(
         &self,
         draw: &Shot,
@@ -279,7 +279,7 @@ impl Lane {
     }
 }
 
-/// Knows when the last event was.
+/// Notes the time of the last event.
 struct Clock(f64);
 
 impl Observer<Rigid> for Clock {
@@ -289,7 +289,7 @@ impl Observer<Rigid> for Clock {
     }
 }
 
-/// Watches a shot: what the ball strikes, and when it is decided.
+/// Watches a shot: what the ball strikes, and when the shot is decided.
 struct Umpire<'a, H> {
     world: &'a Rigid,
     verdict: Verdict,
@@ -298,7 +298,7 @@ struct Umpire<'a, H> {
     still: Still,
     hopeless: H,
     gave_up: bool,
-    /// Pins that have fallen, at whatever time: one that rises again is down all the same.
+    /// Pins that have fallen at any time: one that rises again still counts as down.
     down: Pins,
     /// The ball's latest motion.
     path: Option<plaus_sim::motion::Parabola>,
@@ -308,7 +308,7 @@ struct Umpire<'a, H> {
 }
 
 impl<H> Umpire<'_, H> {
-    /// Whether no pin's fate can change any more, nor whether it has moved far where that counts.
+    /// Whether no pin's fate can change any more, including whether it has moved far, if that counts.
     fn is_decided(&self, state: &State<Turning>) -> bool {
         let is_down = |body: usize| self.down.contains(body - 1);
         let Some(slack) = self.verdict.settled(self.world, state, &self.still, is_down) else { return false };

@@ -1,4 +1,4 @@
-//! Bowling (section 5.2, appendix A): which pins are left is demanded; the ball, its delivery and the places of the
+//! Bowling (section 5.2, appendix A): which pins are left is asked for; the ball, its delivery and the places of the
 //! pins are uncertain.
 
 mod animate;
@@ -35,8 +35,8 @@ use plaus_mcmc::{
 };
 use plaus_sim::rigid::{Rigid, Start};
 
-/// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, k the pins that end as they should, m those that stand as they
-/// should and have not moved far.
+/// Bowling: `p ∝ λ^(k+m) · p(ball) · Π p(pin's offset)`, where k counts the pins that end as they should, and m those
+/// that stand as they should and have not moved far.
 #[derive(Debug)]
 pub struct Bowling {
     config: Config,
@@ -50,7 +50,8 @@ impl Bowling {
     /// The scene of a configuration.
     ///
     /// # Errors
-    /// [`ConfigError`] where pins are asked for that there are not, or the numbers make no world.
+    ///
+    /// [`ConfigError`] if there are no such pins, or the numbers make no world.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let rack = Rack::new(config)?;
         let goal = Gibbs::from_ln_lambda(config.ln_lambda)
@@ -76,7 +77,7 @@ impl Bowling {
     /// ascending order of their numbers.
     ///
     /// # Errors
-    /// [`ModelError`] where the draw's numbers make no world.
+    /// [`ModelError`] if the draw's numbers make no world.
     pub fn world(&self, draw: &Shot) -> Result<(Rigid, Vec<Start>), ModelError> {
         self.lane.world(draw, lane::LENGTH).map_err(ModelError::new)
     }
@@ -94,22 +95,22 @@ impl Bowling {
         (k, m)
     }
 
-    /// What a shot leaves whose ball begins `distance` m before the head pin's spot, in the place and with the
-    /// velocities of the draw: for deliveries that are to meet the pins just so.
+    /// The outcome of a shot whose ball starts `distance` m before the head pin's spot, in the place and with the
+    /// velocities of the draw. It is for deliveries that must meet the pins in a given way.
     ///
     /// # Errors
-    /// [`ModelError`] where there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
+    /// [`ModelError`] if there is no such world: the ball reaches into a pin or the lane, or a number is not finite.
     pub fn bowl_from(&self, distance: f64, draw: &Shot, work: &mut Work) -> Result<Rest, ModelError> {
         let rest = self.lane.bowl(draw, distance, work, |_| false, &mut ())?;
-        rest.ok_or_else(|| ModelError::new("a shot was given up that nobody called hopeless"))
+        rest.ok_or_else(|| ModelError::new("a shot was stopped early although it was not hopeless: a bug"))
     }
 
-    /// The most that k + m can still become once these pins are down, by their places in the rack.
+    /// The largest possible final k + m once these pins are down, given by their places in the rack.
     fn reachable(&self, down: Pins) -> u64 {
         let one = |(place, leave): (usize, &bool)| match (down.contains(place), leave) {
             (true, true) => 0,
             (false, true) => 2,
-            // Down as it should, or, where any standing pin is rewarded, standing.
+            // Down as it should be; or standing, if any standing pin is rewarded.
             (_, false) => 1,
         };
         self.rack.leave().iter().enumerate().map(one).sum()
@@ -182,8 +183,8 @@ impl Variables for Bowling {
     }
 }
 
-/// Two solutions are the same where the ball met the first pin on the same board of the lane and struck the same pins
-/// in the same order.
+/// Two solutions are the same if the ball met the first pin on the same board of the lane and struck the same pins in
+/// the same order.
 impl Goal for Bowling {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let rest = &state.outcome;
@@ -195,8 +196,8 @@ impl Goal for Bowling {
 /// Boards of a lane.
 const BOARDS: f64 = 39.0;
 
-/// The board, counted from the bowler's right as bowlers do, over which the ball's centre was when it met the first
-/// pin; 0 where it met none.
+/// The board over which the ball's centre was when it met the first pin, counted from the bowler's right as bowlers do;
+/// 0 if it met none.
 fn board(rest: &Rest) -> f64 {
     rest.entry.map_or(0.0, |entry| ((0.5 - entry.across / lane::WIDTH) * BOARDS).floor() + 1.0)
 }
@@ -212,7 +213,7 @@ impl Scene for Bowling {
         columns::scalars(counts.into_iter().chain(results).map(|column| column.of(None)).collect(), &self.vars)
     }
 
-    /// Where the ball met no pin, the board and the angle are 0.
+    /// If the ball met no pin, the board and the angle are 0.
     fn write_scalars(&self, state: StateRefOf<'_, Self>, values: &mut [f64]) {
         if let [k, m, pinfall, at, angle, ball @ ..] = values {
             let rest = &state.outcome;

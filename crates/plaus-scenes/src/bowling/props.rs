@@ -1,4 +1,4 @@
-//! What is seen of the alley: lane, gutters, kickbacks and pit.
+//! The visible parts of the alley: lane, gutters, kickbacks and pit.
 
 use crate::animation::upright;
 use crate::animation::{Look, Material, Prop};
@@ -23,7 +23,7 @@ pub(super) fn deck() -> [DVec3; 2] {
     [DVec3::new(-WALL, -0.6, 0.0), DVec3::new(WALL, END, 0.4)]
 }
 
-/// All that stands still.
+/// All scenery.
 pub(super) fn props() -> Vec<Prop> {
     let half = 0.5 * Alley::WIDTH;
     let block = |name: &str, look, low: [f64; 3], high: [f64; 3]| {
@@ -58,7 +58,7 @@ pub(super) fn props() -> Vec<Prop> {
     props
 }
 
-/// Names of what can be hit that stands still.
+/// Names of the scenery that can be hit.
 pub(super) const PARTS: [&str; 9] = [
     "lane",
     "pit",
@@ -71,7 +71,7 @@ pub(super) const PARTS: [&str; 9] = [
     "kickback_right",
 ];
 
-/// Name of what is hit at a point with this normal.
+/// Name of the scenery that is hit at a point with this normal.
 pub(super) fn part(point: DVec3, normal: DVec3) -> &'static str {
     if normal.z > 0.5 {
         let on_lane = point.x.abs() <= 0.5 * Alley::WIDTH && point.y <= END;

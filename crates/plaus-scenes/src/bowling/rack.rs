@@ -10,7 +10,7 @@ pub struct Rack {
     pins: Vec<usize>,
     /// Whether each of them should stand at the end.
     leave: Vec<bool>,
-    /// The place in `pins` of each one's mirror image, where all that is asked is the same in the mirror.
+    /// The index in `pins` of each one's mirror image, if the task is symmetric.
     mirrored: Option<Vec<usize>>,
 }
 
@@ -18,15 +18,16 @@ impl Rack {
     /// The pins of a configuration.
     ///
     /// # Errors
-    /// [`ConfigError`] where there is no such pin, one is named twice, or one should be left that is not set up.
+    ///
+    /// [`ConfigError`] if there is no such pin, one is named twice, or one that is not set up should be left.
     pub(super) fn new(config: &Config) -> Result<Self, ConfigError> {
         let pins = numbers("pins", &config.pins)?;
         if pins.is_empty() {
-            return Err(ConfigError::new("world.bowling.pins", "no pin is set up: at least one"));
+            return Err(ConfigError::new("world.bowling.pins", "no pin is set up: at least one must be"));
         }
         let left = numbers("leave", &config.leave)?;
         if let Some(absent) = left.iter().find(|pin| !pins.contains(pin)) {
-            let message = format!("pin {absent} can't be left, since it is not set up: of the pins {pins:?}");
+            let message = format!("pin {absent} cannot be left standing: it is not among the pins {pins:?}");
             return Err(ConfigError::new("world.bowling.leave", message));
         }
         let leave: Vec<bool> = pins.iter().map(|pin| left.contains(pin)).collect();
@@ -51,15 +52,14 @@ impl Rack {
         &self.leave
     }
 
-    /// The place in [`Rack::pins`] of each one's mirror image; `None` where what is asked is not the same in the
-    /// mirror.
+    /// The index in [`Rack::pins`] of each one's mirror image; `None` if the task is not symmetric.
     #[must_use]
     pub fn mirrored(&self) -> Option<&[usize]> {
         self.mirrored.as_deref()
     }
 }
 
-/// The pin in whose place a pin is seen in a mirror along the middle of the lane.
+/// The pin that is the mirror image of a pin, in a mirror along the middle of the lane.
 fn mirror_image(pin: usize) -> usize {
     // Each row's first and last number add up to the same.
     match pin {
@@ -109,7 +109,7 @@ mod tests {
     fn pins_that_are_not_there_are_named() {
         assert!(rack(&[1, 11], &[]).unwrap_err().contains("no pin 11"));
         assert!(rack(&[1, 0], &[]).unwrap_err().contains("no pin 0"));
-        assert!(rack(&[6, 7], &[10]).unwrap_err().contains("pin 10 can't be left"));
+        assert!(rack(&[6, 7], &[10]).unwrap_err().contains("pin 10 cannot be left"));
         assert!(rack(&[6, 6], &[]).unwrap_err().contains("pin 6 is named twice"));
         assert!(rack(&[], &[]).unwrap_err().contains("at least one"));
     }

@@ -10,17 +10,18 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Delivery {
-    /// The paper's appendix A.1: a solid ball of 176 to 220 mm, released anywhere across the lane without spin but a
-    /// little about the vertical, on a lane with the same friction everywhere. Its largest ball is larger than the
+    /// The paper's appendix A.1: a solid ball of 176 to 220 mm, released anywhere across the lane, with no spin except
+    /// a little about the vertical, on a lane with the same friction everywhere. Its largest ball is larger than the
     /// rules allow.
     #[default]
     Paper,
-    /// Balls within the rules, at speeds and with the spin of good players, on a lane that is oiled for its first 12 m.
+    /// Balls within the rules, with the speed and spin that good players give them, on a lane oiled over its first 12
+    /// m.
     Regulation,
 }
 
-/// What differs from the chosen delivery's laws. Unset keys are the delivery's own; a standard deviation of 0, or an
-/// interval of one value, means that the quantity is not uncertain.
+/// Changes to the laws of the chosen delivery. Unset keys keep that delivery's values. A standard deviation of 0, or an
+/// interval of one value, makes a quantity certain.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Release {
@@ -36,19 +37,20 @@ pub struct Release {
     /// Largest density of the ball. Regulation: 1331, so that the largest ball has no more than 7.26 kg.
     #[schemars(extend("minimum" = 10.0, "maximum" = 25000.0, "x-unit" = "kg/m³", "x-example" = 1440.0))]
     pub density_max: Option<f64>,
-    /// Least radius of gyration over the ball's radius; a solid ball has 0.6325.
+    /// Least radius of gyration, relative to the ball's radius; a solid ball has 0.6325.
     #[schemars(range(min = 0.1, max = 1.0))]
     pub gyration_min: Option<f64>,
-    /// Largest radius of gyration over the ball's radius.
+    /// Largest radius of gyration, relative to the ball's radius.
     #[schemars(extend("minimum" = 0.1, "maximum" = 1.0, "x-example" = 0.7))]
     pub gyration_max: Option<f64>,
-    /// How far from the middle of the lane the ball's centre may be when it is released.
+    /// How far the ball's centre may be from the middle of the lane when it is released.
     #[schemars(extend("minimum" = 0.0, "maximum" = 0.6, "x-unit" = "m"))]
     pub across_m: Option<f64>,
-    /// Mean height of the ball's centre above the lane, over its largest radius. It never starts inside the lane.
+    /// Mean height of the ball's centre above the lane, relative to its largest radius. The ball never starts inside
+    /// the lane.
     #[schemars(range(min = 0.0, max = 20.0))]
     pub height_mean: Option<f64>,
-    /// Standard deviation of that height, over the largest radius.
+    /// Standard deviation of that height, relative to the largest radius.
     #[schemars(range(min = 0.0, max = 20.0))]
     pub height_sd: Option<f64>,
     /// Mean speed along the lane.
@@ -63,15 +65,14 @@ pub struct Release {
     /// Standard deviation of the speed across the lane.
     #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "m/s"))]
     pub drift_sd: Option<f64>,
-    /// Mean angular velocity about the axis across the lane, of forward roll: a ball that rolls has its speed over its
+    /// Mean angular velocity of forward roll, about the axis across the lane. A ball that rolls has its speed over its
     /// radius.
     #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
     pub roll_mean: Option<f64>,
     /// Standard deviation of the forward roll.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
     pub roll_sd: Option<f64>,
-    /// Mean angular velocity about the axis along the lane: what makes the ball hook, to the bowler's right where
-    /// positive.
+    /// Mean angular velocity about the axis along the lane. It makes the ball hook, to the bowler's right if positive.
     #[schemars(extend("minimum" = -1000.0, "maximum" = 1000.0, "x-unit" = "rad/s"))]
     pub hook_mean: Option<f64>,
     /// Standard deviation of the hook.
@@ -155,7 +156,7 @@ impl Quantity {
 /// The laws of all quantities that a configuration asks for.
 ///
 /// # Errors
-/// [`ConfigError`] where an interval ends before it begins, or a ball is too large for its place.
+/// [`ConfigError`] if an interval ends before it begins, or a ball is too large for its place.
 pub(super) fn laws(delivery: Delivery, release: &Release) -> Result<[Law; 10], ConfigError> {
     let base = preset(delivery);
     let bad = |key: &str, message: String| ConfigError::new(format!("world.bowling.release.{key}"), message);
@@ -188,7 +189,7 @@ pub(super) fn laws(delivery: Delivery, release: &Release) -> Result<[Law; 10], C
     } else {
         return Err(bad(
             "height_mean",
-            "without uncertainty at least 1, or the largest ball starts inside the lane".into(),
+            "if it is certain, it must be at least 1, or the largest ball starts inside the lane".into(),
         ));
     };
     Ok([

@@ -1,4 +1,4 @@
-//! A number of a scenario that may be uncertain: fixed, of a law, that of a quantity with a name, or worked out.
+//! A number of a scenario that may be uncertain: fixed, given by a law, the value of a named quantity, or computed.
 
 use super::domain::Domain;
 use super::laws::LawOf;
@@ -39,7 +39,7 @@ measures! {
     Place: "mm", -1e6 to 1e6, Any;
     /// A length of a body.
     Length: "mm", 1e-3 to 1e6, NotNegative;
-    /// A length that may be none.
+    /// A length that may be zero.
     Rounding: "mm", 0.0 to 1e6, NotNegative;
     /// An angle.
     Angle: "degree", -36000.0 to 36000.0, Turn;
@@ -57,18 +57,18 @@ measures! {
     Restitution: "", 0.0 to 1.0, Share;
     /// A density over another.
     Factor: "", 1e-6 to 1e6, NotNegative;
-    /// Of no unit known here.
+    /// A number whose unit is not known here.
     Plain: "", -1e9 to 1e9, Any;
 }
 
-/// A number: fixed, uncertain, named elsewhere, or worked out.
+/// A number: fixed, uncertain, named elsewhere, or computed.
 #[derive(Debug)]
 pub enum Amount<M> {
     /// Always this.
     Fixed(f64),
-    /// The quantity of this name, or what this formula comes to.
+    /// The quantity with this name, or the value of this formula.
     Said(String),
-    /// Of a law of its own.
+    /// Drawn from a law of its own.
     Law(Box<LawOf>, PhantomData<fn() -> M>),
 }
 

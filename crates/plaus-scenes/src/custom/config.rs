@@ -15,16 +15,17 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A world of your own: bodies and scenery, what they are made of, and what is uncertain about them. What must happen
-/// in it is said by `[[require]]`.
+/// A world of your own: bodies and scenery, what they are made of, and what is uncertain about them. `[[require]]` says
+/// what must happen in it.
 ///
-/// Places are in millimetres, x and y level, z up. Any number that a body, a material or a piece of scenery has may be
-/// a law instead, as in `{ normal = [0, 20] }`, the name of one of the `quantities`, which then is the same wherever it
-/// is named, or arithmetic: `"0.5 * width + normal(0, 2)"`. A law that is written out is drawn for this number alone.
+/// Places are in millimetres, with x and y level and z up. Any number of a body, a material or a piece of scenery may
+/// instead be a law, such as `{ normal = [0, 20] }`; the name of one of the `quantities`, which has the same value
+/// wherever it is named; or arithmetic: `"0.5 * width + normal(0, 2)"`. A law written in place is drawn for that number
+/// alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Config {
-    /// How long a motion lasts at most. It ends before where everything is at rest.
+    /// Longest duration of a motion. It ends earlier if everything is at rest.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 600.0, "x-unit" = "s"))]
     pub duration_s: f64,
     /// How exact the simulation is.
@@ -32,26 +33,26 @@ pub struct Config {
     /// Gravity, straight down.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s²"))]
     pub gravity: f64,
-    /// Two solutions are the same where every body ends in the same cell of this width, with the same of its axes
-    /// uppermost, and the same things first met in the same order.
+    /// Two solutions are the same if every body ends in the same cell of this width, with the same of its axes
+    /// uppermost, and if the same things met for the first time in the same order.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
     pub distinct_mm: f64,
-    /// What things are made of. What names no material is of one with all values at their defaults.
+    /// What things are made of. A thing without a material has one with all values at their defaults.
     #[schemars(length(max = 256))]
     pub materials: Vec<Material>,
-    /// What happens between two materials, where that does not follow from what each is.
+    /// What happens between two materials, where it does not follow from the two.
     #[schemars(length(max = 4096))]
     pub pairs: Vec<Pair>,
-    /// Numbers with names, which several others can be.
+    /// Numbers with names, which other numbers can refer to.
     #[schemars(length(max = 4096))]
     pub quantities: Vec<Quantity>,
-    /// What stands still. Where the key is missing: a level plane at height 0, called `floor`.
+    /// Scenery, which stands still. Unset: a level plane at height 0, called `floor`.
     #[schemars(length(max = 4096))]
     pub fixed: Vec<Fixed>,
     /// What moves.
     #[schemars(length(min = 1, max = 4096))]
     pub bodies: Vec<Body>,
-    /// What goes its own way by keyframes: a paddle, a tray, a foot.
+    /// Bodies that follow keyframes: a paddle, a tray, a foot.
     #[schemars(length(max = 4096))]
     pub driven: Vec<Driven>,
     /// Relative weights of the moves.
@@ -98,7 +99,7 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Reads the files that shapes are in.
+    /// Reads the files that contain the shapes.
     pub(crate) fn load(&mut self, files: &dyn Files) -> Result<(), ConfigError> {
         let mut known = Known::new();
         self.for_files(&mut |key, wanted, file| file.load(key, wanted, files, &mut known))
@@ -113,12 +114,12 @@ impl Config {
             }
             Ok(())
         };
-        // Only looked at: what goes through files to read them does so mutably.
+        // Nothing is changed: the function is mutable because reading files also goes through it.
         let _ = self.clone().for_files(add); // adding cannot fail
         assets
     }
 
-    /// Goes through all files that shapes are in, each with its key from the scenario's root.
+    /// Visits all files that contain shapes, each with its key from the scenario's root.
     fn for_files(&mut self, each: EachFile<'_>) -> Result<(), ConfigError> {
         let at = |list: &str, index: usize, key: &str| format!("world.custom.{list}[{index}].shape.{key}");
         for (index, fixed) in self.fixed.iter_mut().enumerate() {
@@ -134,8 +135,8 @@ impl Config {
     }
 }
 
-/// What things are made of. Between two materials friction and restitution are the geometric means of theirs, the
-/// resistances the means, unless `pairs` says otherwise.
+/// What things are made of. Between two materials, friction and restitution are the geometric means of their values,
+/// and the resistances are the arithmetic means, unless `pairs` says otherwise.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
@@ -147,19 +148,19 @@ pub struct Material {
     /// Coulomb's coefficient of friction.
     #[serde(default = "half::<amount::Friction>")]
     pub friction: Amount<amount::Friction>,
-    /// How much of the speed an impact gives back.
+    /// Restitution: rebound speed over approach speed.
     #[serde(default = "half::<amount::Restitution>")]
     pub restitution: Amount<amount::Restitution>,
-    /// Resistance to rolling: the torque over force and radius. Wood 0.001 to 0.02.
+    /// Resistance to rolling: torque over force and radius. Wood: 0.001 to 0.02.
     #[serde(default)]
     pub rolling: Amount<amount::Friction>,
-    /// Resistance to spinning on one spot, likewise.
+    /// Resistance to spinning on the spot, defined likewise.
     #[serde(default)]
     pub spinning: Amount<amount::Friction>,
-    /// Colour as on the web, `#c04030`. Unset: bodies have one each, scenery is grey.
+    /// Colour as on the web, `#c04030`. Unset: each body has its own colour, scenery is grey.
     #[serde(default)]
     pub colour: String,
-    /// What it looks like it is made of.
+    /// How its surface looks.
     #[serde(default)]
     pub finish: Finish,
 }
@@ -187,7 +188,7 @@ fn half<M>() -> Amount<M> {
     0.5.into()
 }
 
-/// What things look like they are made of; without influence on how they move.
+/// How a surface looks; it has no influence on motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Finish {
@@ -196,7 +197,7 @@ pub enum Finish {
     /// Lacquer, plastic, marbles.
     #[default]
     Glossy,
-    /// Lets light through.
+    /// Transparent.
     Glass,
     /// Steel.
     Metal,
@@ -219,22 +220,22 @@ impl Finish {
     }
 }
 
-/// What happens between two materials, or within one.
+/// What happens between two materials, or between two things of one material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pair {
-    /// Names of the two materials; the same twice for one material on itself.
+    /// Names of the two materials; the same name twice for one material.
     pub between: [String; 2],
-    /// Coulomb's coefficient of friction. Unset: the geometric mean of theirs.
+    /// Coulomb's coefficient of friction. Unset: the geometric mean of the two.
     #[serde(default)]
     pub friction: Option<Amount<amount::Friction>>,
-    /// How much of the speed an impact gives back. Unset: the geometric mean of theirs.
+    /// Restitution. Unset: the geometric mean of the two.
     #[serde(default)]
     pub restitution: Option<Amount<amount::Restitution>>,
-    /// Resistance to rolling. Unset: the mean of theirs.
+    /// Resistance to rolling. Unset: the mean of the two.
     #[serde(default)]
     pub rolling: Option<Amount<amount::Friction>>,
-    /// Resistance to spinning on one spot. Unset: the mean of theirs.
+    /// Resistance to spinning on the spot. Unset: the mean of the two.
     #[serde(default)]
     pub spinning: Option<Amount<amount::Friction>>,
 }
@@ -245,8 +246,8 @@ pub struct Pair {
 pub struct Fixed {
     /// Its name.
     pub name: String,
-    /// How many there are of it: an array. They are called `peg_1`, `peg_2` and so on; in the arithmetic of its numbers
-    /// `i` is 0 for the first, 1 for the next, and `n` is how many there are. Unset: one, called `peg`.
+    /// Makes an array of this many. They are called `peg_1`, `peg_2` and so on. In the arithmetic of its numbers, `i`
+    /// is 0 for the first and 1 for the next, and `n` is the count. Unset: only one, called `peg`.
     #[serde(default)]
     #[schemars(range(min = 1, max = 4096))]
     pub count: Option<u32>,
@@ -255,10 +256,10 @@ pub struct Fixed {
     /// The name of its material.
     #[serde(default)]
     pub material: String,
-    /// Colour as on the web, `#c04030`. Unset: that of its material.
+    /// Colour as on the web, `#c04030`. Unset: the material's.
     #[serde(default)]
     pub colour: String,
-    /// Where its middle is; of a plane any point of it.
+    /// Where its middle is. For a plane, any point on it.
     #[serde(default)]
     pub at_mm: [Amount<amount::Place>; 3],
     /// How it is turned: about the world's x axis, then about y, then about z.
@@ -272,8 +273,8 @@ pub struct Fixed {
 pub struct Body {
     /// Its name, for requirements, tables and exports.
     pub name: String,
-    /// How many there are of it: an array. They are called `ball_1`, `ball_2` and so on; in the arithmetic of its
-    /// numbers `i` is 0 for the first, 1 for the next, and `n` is how many there are. Unset: one, called `ball`.
+    /// Makes an array of this many. They are called `ball_1`, `ball_2` and so on. In the arithmetic of its numbers, `i`
+    /// is 0 for the first and 1 for the next, and `n` is the count. Unset: only one, called `ball`.
     #[serde(default)]
     #[schemars(range(min = 1, max = 4096))]
     pub count: Option<u32>,
@@ -282,25 +283,25 @@ pub struct Body {
     /// The name of its material.
     #[serde(default)]
     pub material: String,
-    /// Colour as on the web, `#c04030`. Unset: that of its material.
+    /// Colour as on the web, `#c04030`. Unset: the material's.
     #[serde(default)]
     pub colour: String,
-    /// Where its middle starts; of a hull the origin of its points.
+    /// Where its middle starts. For a hull, the origin of its points.
     #[serde(default)]
     pub at_mm: [Amount<amount::Place>; 3],
     /// How it is turned at the start: about the world's x axis, then about y, then about z.
     #[serde(default)]
     pub turn_deg: [Amount<amount::Angle>; 3],
-    /// Turned at random instead, all orientations alike.
+    /// Whether it starts in a random orientation instead, with all orientations equally likely.
     #[serde(default)]
     pub any_turn: bool,
-    /// Its velocity at the start: that of its centre of gravity.
+    /// Velocity of its centre of gravity at the start.
     #[serde(default)]
     pub velocity_m_s: [Amount<amount::Velocity>; 3],
     /// How fast it turns at the start, about the world's x, y and z axes.
     #[serde(default)]
     pub spin_deg_s: [Amount<amount::Turning>; 3],
-    /// When it appears; until then nothing can touch it.
+    /// When it appears. Before that, nothing can touch it.
     #[serde(default)]
     pub release_s: Amount<amount::Moment>,
 }

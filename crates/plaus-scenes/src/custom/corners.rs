@@ -1,4 +1,4 @@
-//! The convex hull of many points, by as few of them as the simulator serves.
+//! The convex hull of many points, approximated by as few of them as the simulator allows.
 
 use glam::DVec3;
 use plaus_sim::WorldError;

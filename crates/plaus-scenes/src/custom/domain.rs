@@ -1,13 +1,13 @@
-//! What a number may be, whatever its law.
+//! The allowed values of a number, for any law.
 
 /// What a number may be, whatever its law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Domain {
     /// Any number.
     Any,
-    /// An angle: any number, and all that differ by whole turns are the same.
+    /// An angle: any number; values that differ by whole turns are the same.
     Turn,
-    /// From 0 on.
+    /// At least 0.
     NotNegative,
     /// From 0 to 1.
     Share,

@@ -1,4 +1,4 @@
-//! Bodies that go their own way by keyframes: a paddle, a tray, a foot.
+//! Bodies that follow keyframes: a paddle, a tray, a foot.
 
 use super::amount::{self, Amount};
 use super::forms::Shape;
@@ -12,13 +12,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, Mul, Sub};
 
-/// A body that goes its own way, whatever it meets: what it hits is moved, and it goes on.
+/// A body that follows its keyframes, whatever it meets: what it hits is moved, and it goes on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Driven {
     /// Its name, for requirements, tables and exports.
     pub name: String,
-    /// How many there are of it: an array, as of bodies. Unset: one.
+    /// Makes an array of this many, as for bodies. Unset: only one.
     #[serde(default)]
     #[schemars(range(min = 1, max = 4096))]
     pub count: Option<u32>,
@@ -27,13 +27,13 @@ pub struct Driven {
     /// The name of its material.
     #[serde(default)]
     pub material: String,
-    /// Colour as on the web, `#c04030`. Unset: that of its material.
+    /// Colour as on the web, `#c04030`. Unset: the material's.
     #[serde(default)]
     pub colour: String,
-    /// How it goes from key to key.
+    /// How it moves between keys.
     #[serde(default)]
     pub between: Going,
-    /// Where it is when, in the order of time. Before the first key and after the last it stands still.
+    /// Where it is at which times, in order of time. Before the first key and after the last it stands still.
     #[schemars(length(min = 1, max = 10_000))]
     pub keys: Vec<At>,
 }
@@ -42,26 +42,26 @@ pub struct Driven {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct At {
-    /// When. It must come after the key before, whatever is uncertain about both.
+    /// When. It must come after the previous key, whatever is uncertain about the two.
     pub at_s: Amount<amount::Moment>,
-    /// Where its middle is; of a hull the origin of its points.
+    /// Where its middle is. For a hull, the origin of its points.
     pub at_mm: [Amount<amount::Place>; 3],
     /// How it is turned: about the world's x axis, then about y, then about z.
     #[serde(default)]
     pub turn_deg: [Amount<amount::Angle>; 3],
 }
 
-/// How something goes from key to key.
+/// How something moves between keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Going {
-    /// It stays, and is at the next key at once. The jump itself hits nothing.
+    /// It stays where it is, and jumps to the next key at its time. The jump itself hits nothing.
     Step,
-    /// Its centre of gravity goes straight, at a steady speed, and it turns the shorter way.
+    /// Its centre of gravity moves in a straight line at a steady speed, and it turns the shorter way.
     #[default]
     Linear,
-    /// In a curve without corners that begins and ends slowly: at a key it has the mean velocity from the key before to
-    /// the key after.
+    /// It moves along a curve without corners, and starts and stops gently. At a key it has the mean velocity between
+    /// the previous key and the next.
     Smooth,
 }
 

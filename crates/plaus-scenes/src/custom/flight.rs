@@ -127,7 +127,7 @@ pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Ending, 
     work.last = None;
     work.world(plan, draw).map_err(ModelError::new)?;
     let Work { scratch, built: Some(built), last: record } = work else {
-        return Err(ModelError::new("a world was made and is not there: a bug"));
+        return Err(ModelError::new("a world was made but is missing: a bug"));
     };
     let starts = plan.starts(&plan.works.numbers(Some(draw)), &built.shapes);
     let mut state = match built.rigid.state(&starts) {

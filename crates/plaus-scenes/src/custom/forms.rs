@@ -1,4 +1,4 @@
-//! Shapes of bodies and of scenery, as scenario files have them.
+//! Shapes of bodies and of scenery, as in scenario files.
 
 use super::amount::{Amount, Angle, Factor, Length, Place, Rounding};
 use super::from_file::{FromFile, Wanted};
@@ -22,9 +22,9 @@ pub enum Shape {
     Capsule(Capsule),
     /// The convex hull of points.
     Hull(Hull),
-    /// Several shapes that are one body.
+    /// Several shapes joined into one body.
     Compound(Compound),
-    /// The convex hull of what a file of triangles holds: hollows are filled.
+    /// The convex hull of the triangles in a file: hollows are filled.
     HullOf(FromFile),
 }
 
@@ -44,11 +44,11 @@ pub enum Convex {
     Capsule(Capsule),
     /// The convex hull of points.
     Hull(Hull),
-    /// The convex hull of what a file of triangles holds.
+    /// The convex hull of the triangles in a file.
     HullOf(FromFile),
 }
 
-/// The shape of what stands still.
+/// The shape of a piece of scenery.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Still {
@@ -66,15 +66,15 @@ pub enum Still {
     Capsule(Capsule),
     /// The convex hull of points.
     Hull(Hull),
-    /// Several shapes that are one.
+    /// Several shapes joined into one.
     Compound(Compound),
-    /// The convex hull of what a file of triangles holds: hollows are filled.
+    /// The convex hull of the triangles in a file: hollows are filled.
     HullOf(FromFile),
-    /// The triangles of a file as they are, solid behind their faces.
+    /// The triangles of a file unchanged, solid behind their faces.
     Mesh(FromFile),
 }
 
-/// A plane without end.
+/// An infinite plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Plane {}
@@ -93,7 +93,7 @@ pub struct Ball {
 pub struct Cuboid {
     /// Its edges along x, y and z.
     pub size_mm: [Amount<Length>; 3],
-    /// Radius of its edges and corners; 0 is sharp. Faces stay where they are.
+    /// Radius of its edges and corners; 0 is sharp. The faces do not move.
     #[serde(default)]
     pub rounding_mm: Amount<Rounding>,
 }
@@ -104,7 +104,7 @@ pub struct Cuboid {
 pub struct Cylinder {
     /// Its radius.
     pub radius_mm: Amount<Length>,
-    /// From face to face.
+    /// Distance between its faces.
     pub height_mm: Amount<Length>,
 }
 
@@ -112,9 +112,9 @@ pub struct Cylinder {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cone {
-    /// Radius of its foot.
+    /// Radius of its base.
     pub radius_mm: Amount<Length>,
-    /// From foot to tip; `at_mm` is half way between them.
+    /// Distance from base to tip; `at_mm` is half way between them.
     pub height_mm: Amount<Length>,
 }
 
@@ -124,7 +124,7 @@ pub struct Cone {
 pub struct Capsule {
     /// Its radius.
     pub radius_mm: Amount<Length>,
-    /// Between the middles of its round ends.
+    /// Distance between the centres of its round ends.
     pub length_mm: Amount<Length>,
 }
 
@@ -132,19 +132,19 @@ pub struct Capsule {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hull {
-    /// Its corners; points inside do no harm.
+    /// Its corners; points inside the hull are allowed.
     #[schemars(length(min = 4, max = 1000))]
     pub points_mm: Vec<[Amount<Place>; 3]>,
-    /// How far the body reaches beyond the hull, all around; 0 is sharp.
+    /// How far the body reaches beyond the hull, on all sides; 0 is sharp.
     #[serde(default)]
     pub rounding_mm: Amount<Rounding>,
 }
 
-/// Several shapes that are one body.
+/// Several shapes joined into one body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Compound {
-    /// What it is put together of. Where pieces overlap their masses add up.
+    /// Its pieces. Where they overlap, their masses add up.
     #[schemars(length(min = 1, max = 256))]
     pub pieces: Vec<Piece>,
 }
@@ -161,7 +161,7 @@ pub struct Piece {
     /// How it is turned in the compound: about the x axis, then about y, then about z.
     #[serde(default)]
     pub turn_deg: [Amount<Angle>; 3],
-    /// Its density over that of the material.
+    /// Its density, relative to that of the material.
     #[serde(default = "one")]
     pub density: Amount<Factor>,
 }
@@ -184,7 +184,7 @@ impl From<Convex> for Shape {
     }
 }
 
-/// What is done to a file that a shape names, at a key from that shape on.
+/// A function that is called for each file of a shape, with its key relative to that shape.
 pub(super) type EachFile<'a> = &'a mut dyn FnMut(&str, Wanted, &mut FromFile) -> Result<(), ConfigError>;
 
 impl Compound {
@@ -199,7 +199,7 @@ impl Compound {
 }
 
 impl Shape {
-    /// What stands in the file for it.
+    /// Its name in scenario files.
     pub(super) fn name(&self) -> &'static str {
         match self {
             Self::Ball(_) => "ball",
@@ -213,7 +213,7 @@ impl Shape {
         }
     }
 
-    /// Goes through the files that it names.
+    /// Visits the files that it names.
     pub(super) fn for_files(&mut self, each: EachFile<'_>) -> Result<(), ConfigError> {
         match self {
             Self::HullOf(file) => each("hull_of", Wanted::Hull, file),
@@ -239,7 +239,7 @@ impl Still {
         })
     }
 
-    /// Goes through the files that it names.
+    /// Visits the files that it names.
     pub(super) fn for_files(&mut self, each: EachFile<'_>) -> Result<(), ConfigError> {
         match self {
             Self::Mesh(file) => each("mesh", Wanted::Triangles, file),

@@ -1,7 +1,7 @@
 //! Arithmetic in scenarios: `"30 * i + normal(0, 2)"`.
 //!
-//! The text is read by `syn`, as an expression of Rust; of those only numbers, names, `+ - * / %`, brackets and the
-//! functions below mean something here. Nothing is ever run: what was read is a tree of numbers.
+//! `syn` reads the text as an expression of Rust. Only numbers, names, `+ - * / %`, brackets and the functions below
+//! are allowed. Nothing is ever run: the result is a tree of numbers.
 
 use super::laws::{Factor, LawOf, Several, Truncated};
 use super::range::Range;
@@ -14,7 +14,7 @@ const LONGEST: usize = 400;
 const DEEPEST: usize = 32;
 
 /// What may stand in one.
-const OTHER: &str = "arithmetic is of numbers, names, + - * / %, brackets and functions";
+const OTHER: &str = "arithmetic may use numbers, names, + - * / %, brackets and functions";
 
 /// What functions there are, with how many numbers each takes.
 const FUNCTIONS: &[(&str, usize, Function)] = &[
@@ -73,7 +73,7 @@ impl Formula {
             deepest = deepest.max(depth + signs);
         }
         if deepest > DEEPEST {
-            return Err(format!("nested too deep: at most {DEEPEST} brackets in one another"));
+            return Err(format!("nested too deeply: at most {DEEPEST} levels of brackets"));
         }
         let read = syn::parse_str::<Expr>(text).map_err(|error| {
             let hint = match error.to_string() {
@@ -156,7 +156,7 @@ impl Formula {
             Expr::Path(path) => {
                 let name = path.path.get_ident().map(ToString::to_string);
                 let place = name.and_then(|name| self.names.iter().position(|known| *known == name));
-                place.map(Node::Value).ok_or_else(|| "a name is letters, digits and `_`".into())
+                place.map(Node::Value).ok_or_else(|| "a name has letters, digits and `_`".into())
             }
             Expr::Call(call) => {
                 let name = match &*call.func {
@@ -175,7 +175,7 @@ impl Formula {
     }
 
     fn call(&mut self, name: &str, nodes: Vec<Node>) -> Result<Node, String> {
-        let count = |wanted: usize| format!("{name}(…) takes {wanted} numbers, and is given {}", nodes.len());
+        let count = |wanted: usize| format!("{name}(…) takes {wanted} numbers, but has {}", nodes.len());
         if let Some(&(law, wanted)) = LAWS.iter().find(|(known, _)| *known == name) {
             if (wanted > 0 && nodes.len() != wanted) || nodes.is_empty() {
                 return Err(count(wanted.max(1)));
@@ -201,19 +201,19 @@ impl Formula {
 }
 
 fn uncertain(law: &str) -> String {
-    format!("the numbers of {law}(…) must be certain: they say what is uncertain, and how")
+    format!("the numbers in {law}(…) must be certain: they define an uncertain number")
 }
 
 fn number(literal: &Lit) -> Result<f64, String> {
     let (digits, suffix) = match literal {
         Lit::Int(int) => (int.base10_digits(), int.suffix()),
         Lit::Float(float) => (float.base10_digits(), float.suffix()),
-        _ => return Err("arithmetic is of numbers".into()),
+        _ => return Err("arithmetic may only use numbers".into()),
     };
     if !suffix.is_empty() {
-        return Err(format!("{digits}{suffix}: a number has no unit here, it is in that of its key"));
+        return Err(format!("{digits}{suffix}: write numbers without units; they are in the unit of the key"));
     }
-    digits.parse().map_err(|_| format!("{digits} is no number"))
+    digits.parse().map_err(|_| format!("{digits} is not a number"))
 }
 
 fn operator(op: &BinOp) -> Result<fn(Range, Range) -> Range, String> {
@@ -224,7 +224,7 @@ fn operator(op: &BinOp) -> Result<fn(Range, Range) -> Range, String> {
         BinOp::Div(_) => Range::over,
         BinOp::Rem(_) => Range::modulo,
         BinOp::BitXor(_) => return Err("for a power write pow(a, b)".into()),
-        _ => return Err("of signs there are + - * / %".into()),
+        _ => return Err("the operators are + - * / %".into()),
     })
 }
 
@@ -268,14 +268,14 @@ mod tests {
             ("", "it is empty"),
             ("1 +", "cannot be read"),
             ("2 ^ 3", "pow(a, b)"),
-            ("20mm", "no unit"),
+            ("20mm", "without units"),
             ("normal(0, 1 + uniform(1, 2))", "must be certain"),
             ("sine(3)", "did you mean \"sin\"?"),
-            ("min(3)", "takes 2 numbers, and is given 1"),
+            ("min(3)", "takes 2 numbers, but has 1"),
             ("normal(3)", "takes 2 numbers"),
             ("std::process::exit(1)", "no function"),
-            ("a.b()", "arithmetic is of"),
-            ("{ loop {} }", "arithmetic is of"),
+            ("a.b()", "arithmetic may"),
+            ("{ loop {} }", "arithmetic may"),
             ("\"a\"", "numbers"),
             (&deep, "nested too deep"),
             (&long, "at most 400 characters"),

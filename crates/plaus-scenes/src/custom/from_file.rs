@@ -11,26 +11,27 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What a file of shapes holds.
+/// A file of shapes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FromFile {
-    /// The file, `.glb`, `.obj` or `.stl`: its path from the folder of the scenario, with `/` between folders.
+    /// The file, `.glb`, `.obj` or `.stl`: its path from the scenario's folder, with `/` between folders.
     pub file: String,
-    /// Only the object of this name, about its own origin and along its own axes. Unset: all that is in the file, as it
-    /// lies there.
+    /// Only the object with this name, about its own origin and along its own axes. Unset: everything in the file, as
+    /// placed there.
     #[serde(default)]
     pub object: Option<String>,
-    /// How many millimetres the file's unit of length is. Unset: 1000 for `.glb`, 1 for `.obj` and `.stl`.
+    /// Length of the file's unit in millimetres. Unset: 1000 for `.glb`, 1 for `.obj` and `.stl`.
     #[serde(default)]
     pub unit_mm: Option<Amount<Length>>,
-    /// Which axis of the file points up. Unset: y of `.glb` and `.obj`, z of `.stl`.
+    /// Which axis of the file points up. Unset: y for `.glb` and `.obj`, z for `.stl`.
     #[serde(default)]
     pub up: Option<Up>,
     /// Whether the file may lie outside the scenario's folder.
     #[serde(default)]
     pub anywhere: bool,
-    /// BLAKE3 of the file: one with another is refused. A run writes down which it was. Unset: whatever it holds.
+    /// BLAKE3 hash of the file; a file with a different hash is refused. A run records the hash of the file it used.
+    /// Unset: any content is accepted.
     #[serde(default)]
     pub hash: Option<String>,
     /// What was read; not there before.
@@ -105,7 +106,7 @@ impl FromFile {
             }
         };
         if let Some(given) = self.hash.as_ref().filter(|given| **given != asset.hash) {
-            let message = format!("{} was changed: its hash is {}, not {given}", self.file, asset.hash);
+            let message = format!("{} has changed: its hash is {}, not {given}", self.file, asset.hash);
             return Err(wrong("hash", message));
         }
         let format = asset.content.format;
@@ -143,7 +144,7 @@ impl FromFile {
     /// What was read, for the shape at `key`.
     pub(super) fn loaded(&self, key: &str) -> Result<Arc<Loaded>, ConfigError> {
         self.loaded.clone().ok_or_else(|| {
-            let message = format!("{} was not read: a scenario is read with its files", self.file);
+            let message = format!("{} has not been read: the scenario was read without its files", self.file);
             ConfigError::new(format!("{key}.file"), message)
         })
     }

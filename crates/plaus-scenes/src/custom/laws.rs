@@ -1,4 +1,4 @@
-//! The laws that a number of a scenario may have. A new one: its file in `plaus-dist`, a variant here, and a line in
+//! The laws that a number of a scenario may have. A new one needs a file in `plaus-dist`, a variant here, and a line in
 //! [`LawOf::law`].
 
 use super::domain::Domain;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LawOf {
-    /// All values from the first number to the second alike.
+    /// All values from the first number to the second are equally likely.
     Uniform(#[schemars(inner(range(min = -1e9, max = 1e9)))] [f64; 2]),
     /// The bell curve: mean and standard deviation.
     Normal(#[schemars(inner(range(min = -1e9, max = 1e9)))] [f64; 2]),
@@ -21,9 +21,9 @@ pub enum LawOf {
     Truncated(Truncated),
     /// A positive number that is uncertain by a factor.
     LogNormal(Factor),
-    /// The least, the likeliest and the largest value; the density is straight in between.
+    /// The least, the likeliest and the largest value; the density is a straight line in between.
     Triangular(#[schemars(inner(range(min = -1e9, max = 1e9)))] [f64; 3]),
-    /// The bell curve of an angle in degrees, whole turns apart being the same.
+    /// The bell curve of an angle in degrees; angles that differ by whole turns are the same.
     VonMises(Heading),
     /// One of several values.
     Choice(Several),
@@ -33,16 +33,16 @@ pub enum LawOf {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Truncated {
-    /// The mean before it is cut off.
+    /// The mean before the ends are cut off.
     #[schemars(range(min = -1e9, max = 1e9))]
     pub mean: f64,
-    /// The standard deviation before it is cut off.
+    /// The standard deviation before the ends are cut off.
     #[schemars(range(min = 1e-9, max = 1e9))]
     pub sd: f64,
     /// The least value.
     #[schemars(range(min = -1e9, max = 1e9))]
     pub from: f64,
-    /// The largest.
+    /// The largest value.
     #[schemars(range(min = -1e9, max = 1e9))]
     pub to: f64,
 }
@@ -51,10 +51,10 @@ pub struct Truncated {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Factor {
-    /// Half of all values are above it.
+    /// The median: half of all values are above it.
     #[schemars(range(min = 1e-9, max = 1e9))]
     pub median: f64,
-    /// Standard deviation of the logarithm: with 0.1 two thirds of all values are within about 10 % of the median.
+    /// Standard deviation of the logarithm. With 0.1, two thirds of all values are within about 10 % of the median.
     #[schemars(range(min = 1e-6, max = 3.0))]
     pub spread: f64,
 }
@@ -66,7 +66,7 @@ pub struct Heading {
     /// The likeliest angle.
     #[schemars(extend("minimum" = -36000.0, "maximum" = 36000.0, "x-unit" = "degree"))]
     pub mean: f64,
-    /// How concentrated it is: 0 is not at all; a large κ means a standard deviation of 57.3°/√κ.
+    /// The concentration κ. 0: all angles are equally likely. If it is large, the standard deviation is 57.3°/√κ.
     #[schemars(range(min = 0.0, max = 1e6))]
     pub concentration: f64,
 }
@@ -75,10 +75,10 @@ pub struct Heading {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Several {
-    /// The values, each once.
+    /// The values, all different.
     #[schemars(length(min = 1, max = 1000), inner(range(min = -1e9, max = 1e9)))]
     pub of: Vec<f64>,
-    /// A weight each; none: all alike.
+    /// A weight for each value. Empty: all are equally likely.
     #[serde(default)]
     #[schemars(length(min = 0, max = 1000), inner(range(min = 1e-9, max = 1e9)))]
     pub weights: Vec<f64>,
@@ -118,7 +118,7 @@ impl LawOf {
                 number(Arc::new(Triangular::new(*low, *peak, *high).map_err(words)?))
             }
             Self::VonMises(_) if domain != Domain::Turn => {
-                return Err("von_mises is a law of angles, and this is none".into());
+                return Err("von_mises is a law for angles, and this is not an angle".into());
             }
             Self::VonMises(Heading { mean, concentration }) => {
                 number(Arc::new(VonMises::new(*mean, *concentration, TURN).map_err(words)?))
@@ -130,8 +130,8 @@ impl LawOf {
     /// What a law of this kind that stays in bounds is called.
     pub(super) fn bounded(&self) -> &'static str {
         match self {
-            Self::Normal(_) => "`truncated` is a normal law with ends",
-            _ => "choose ends that are inside",
+            Self::Normal(_) => "use `truncated`, a normal law with ends",
+            _ => "choose ends inside that range",
         }
     }
 

@@ -1,5 +1,5 @@
-//! Worlds that users describe: bodies, scenery and materials, any number of which may be uncertain. What must happen is
-//! said by requirements alone.
+//! Worlds that users describe: bodies, scenery and materials, any number of which may be uncertain. Only requirements
+//! say what must happen.
 
 mod amount;
 mod animate;
@@ -129,7 +129,7 @@ impl Custom {
         match fly(&self.plan, draw, &mut work)? {
             Ending::Done(_) => Ok(work),
             Ending::Overlap(overlap) => Err(ModelError::new(self.in_words(&overlap))),
-            Ending::Unfinished => Err(ModelError::new("the simulator's budget of events was spent")),
+            Ending::Unfinished => Err(ModelError::new("the simulator used up its budget of events")),
         }
     }
 }

@@ -13,8 +13,8 @@ impl Menu for CustomMoves {
     type Scene = Custom;
     const SCENE: &'static str = "custom";
     const ROWS: &'static [Row] = &[
-        Row::own("redraw_all", 0.1, "Everything is drawn anew from its law."),
-        Row::own("redraw_body", 0.15, "All that is uncertain of one body, material or quantity is drawn anew."),
+        Row::own("redraw_all", 0.1, "Draw everything anew from its law."),
+        Row::own("redraw_body", 0.15, "Draw all uncertain numbers of one body, material or quantity anew."),
     ];
     const OFFERED: &'static [(&'static str, f64)] = &[("redraw_any", 0.2), ("step_any", 0.3), ("step_all", 0.25)];
 }

@@ -48,7 +48,7 @@ pub(super) fn members<'a>(
             let name = if count.is_some() { format!("{name}_{}", nth + 1) } else { name.to_owned() };
             let member = Member { entry, name, key: key.clone(), nth: count.map(|count| [nth, count]) };
             if !names.insert(member.name.clone()) {
-                let message = format!("there is something called {:?} already", member.name);
+                let message = format!("the name {:?} is already used", member.name);
                 return Err(member.owner().wrong("name", message));
             }
             members.push(member);
@@ -61,7 +61,7 @@ pub(super) fn members<'a>(
 pub(super) fn check_name(owner: &Owner<'_>) -> Result<(), ConfigError> {
     let letter = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if owner.name.is_empty() || owner.name.len() > LONGEST || !owner.name.chars().all(letter) {
-        let must = format!("a name is from 1 to {LONGEST} letters a–z, A–Z, digits, `_` and `-`");
+        let must = format!("a name has from 1 to {LONGEST} letters a–z, A–Z, digits, `_` and `-`");
         return Err(owner.wrong("name", format!("{:?}: {must}", owner.name)));
     }
     Ok(())
@@ -76,6 +76,6 @@ pub(super) fn colour(owner: &Owner<'_>, text: &str) -> Result<Option<[u8; 3]>, C
     let part = |k: usize| u8::from_str_radix(digits?.get(2 * k..2 * k + 2)?, 16).ok();
     match (part(0), part(1), part(2)) {
         (Some(red), Some(green), Some(blue)) => Ok(Some([red, green, blue])),
-        _ => Err(owner.wrong("colour", format!("{text:?} is no colour: write one like \"#c04030\""))),
+        _ => Err(owner.wrong("colour", format!("{text:?} is not a colour: write one like \"#c04030\""))),
     }
 }

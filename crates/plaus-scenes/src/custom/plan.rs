@@ -116,7 +116,7 @@ impl Plan {
             let owner = Owner::new(&material.name, &key);
             check_name(&owner)?;
             if kinds.contains(&material.name) {
-                return Err(owner.wrong("name", format!("a second material called {:?}", material.name)));
+                return Err(owner.wrong("name", format!("there is already a material called {:?}", material.name)));
             }
             collector.begin();
             substances.push(Substance::new(collector, &owner, material)?);
@@ -131,7 +131,7 @@ impl Plan {
             let [a, b] = [0, 1].map(|k| substance(&owner, &format!("between[{k}]"), &kinds, &pair.between[k]));
             let two = [a?, b?];
             if pairs.iter().any(|(known, _): &([usize; 2], _)| *known == two || *known == [two[1], two[0]]) {
-                return Err(owner.wrong("between", "these two stand in another table of `pairs` already"));
+                return Err(owner.wrong("between", "these two are already in another table of `pairs`"));
             }
             let friction =
                 pair.friction.as_ref().map(|amount| collector.number(&owner, "friction", "friction", amount));
@@ -271,7 +271,7 @@ impl Moving {
         let angles = collector.three(&owner, "turn_deg", ["turn_x", "turn_y", "turn_z"], &body.turn_deg)?;
         let turn = if body.any_turn {
             if angles != [Value::Fixed(0.0); 3] {
-                return Err(owner.wrong("any_turn", "turned at random it has no angles: leave `turn_deg` out"));
+                return Err(owner.wrong("any_turn", "a random orientation needs no angles: leave out `turn_deg`"));
             }
             Turned::Any(collector.turn(&owner))
         } else {

@@ -1,4 +1,4 @@
-//! Quantities are worked out first, each after those that it names.
+//! Quantities are computed first, each after those that it names.
 
 use super::amount::Amount;
 use super::quantity::Quantity;
@@ -44,10 +44,10 @@ fn in_order(quantities: &[Quantity], collector: &mut Collector) -> Result<Vec<us
     for (index, quantity) in quantities.iter().enumerate() {
         let name = quantity.name.as_str();
         if TAKEN.contains(&name) {
-            return Err(owner(index).wrong("name", format!("{name:?} means something else in arithmetic")));
+            return Err(owner(index).wrong("name", format!("{name:?} has another meaning in arithmetic")));
         }
         if places.insert(name, index).is_some() {
-            return Err(owner(index).wrong("name", format!("a second quantity called {name:?}")));
+            return Err(owner(index).wrong("name", format!("there is already a quantity called {name:?}")));
         }
     }
     let mut names = Vec::with_capacity(quantities.len());
@@ -63,7 +63,7 @@ fn in_order(quantities: &[Quantity], collector: &mut Collector) -> Result<Vec<us
     }
     sorted(&names).map_err(|circle| {
         let words: Vec<&str> = circle.iter().map(|index| quantities[*index].name.as_str()).collect();
-        owner(circle[0]).wrong("value", format!("depends on itself: {}", words.join(" → ")))
+        owner(circle[0]).wrong("value", format!("it depends on itself: {}", words.join(" → ")))
     })
 }
 

@@ -1,7 +1,7 @@
-//! Arithmetic with ranges: from what its numbers may be it follows what a sum may be. A certain number is a range of
+//! Arithmetic with ranges: the range of a result follows from the ranges of its numbers. A certain number is a range of
 //! one point, and stays one.
 //!
-//! Every operation gives a range that holds all results; it may hold more where one number stands twice in a formula.
+//! Every operation gives a range that holds all results. It may be too wide if a number occurs twice in a formula.
 
 use plaus_dist::math;
 

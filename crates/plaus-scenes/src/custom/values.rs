@@ -197,7 +197,7 @@ impl Collector {
         let is_worked_out = matches!((amount, value), (Amount::Said(_), Value::Fixed(_)));
         if is_worked_out && !(M::LEAST..=M::MOST).contains(&low) {
             let [least, most] = [M::LEAST, M::MOST];
-            return Err(owner.wrong(key, format!("comes to {low}: it must be from {least} to {most}")));
+            return Err(owner.wrong(key, format!("its value is {low}: it must be from {least} to {most}")));
         }
         if M::DOMAIN.holds([low, high]) {
             return Ok(value);
@@ -294,7 +294,7 @@ impl Collector {
         let range = formula.of(&ranges);
         if !range.is_number() {
             return Err("may come to no number: it divides by what may be 0, or takes a root or power of what may be \
-                        below 0"
+                        negative"
                 .into());
         }
         if values.iter().all(|value| value.is_fixed()) {

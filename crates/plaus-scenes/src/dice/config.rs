@@ -12,8 +12,8 @@ use crate::model::{Moves, Weights};
 /// Most dice.
 pub const MOST_DICE: u32 = 24;
 
-/// Dice are thrown onto a table whose height, restitution and friction are random, and should end where and as
-/// `constraints` demand (Chenney & Forsyth 2000, section 5.4).
+/// Dice are thrown onto a table whose height, restitution and friction are random, and should end as `constraints` ask
+/// (Chenney & Forsyth 2000, section 5.4).
 ///
 /// The table lies at z = 0 with its middle at x = y = 0; z points up. Lengths are in millimetres, speeds in metres per
 /// second.
@@ -23,21 +23,21 @@ pub struct Config {
     /// How many dice are thrown.
     #[schemars(range(min = 1, max = 24))]
     pub dice: u32,
-    /// Whether the dice are thrown onto one table, where they meet. Without it each is thrown alone, onto a random
-    /// table of its own, and the animations are laid over each other, as in the paper's figure 9.
+    /// Whether the dice are thrown onto one table, where they can meet. If not, each is thrown alone onto a random
+    /// table of its own, and the animations are overlaid, as in the paper's figure 9.
     pub together: bool,
-    /// What is demanded: a list of tables, of which each holds one of `rest_at`, `face_up`, `pose_at`, `passes` and
-    /// `first_impact`. Their log densities add up. An animation is a solution where all are met.
+    /// What should happen: a list of tables, each with one of `rest_at`, `face_up`, `pose_at`, `passes` and
+    /// `first_impact`. Their log densities add up. An animation that meets all of them is a solution.
     #[schemars(length(max = 256))]
     pub constraints: Vec<Constraint>,
-    /// Two solutions are the same where every die, looked at every `distinct_every_s` until it is at rest, lies in the
-    /// same cell of this width with the same face uppermost.
+    /// Two solutions are the same if every die, observed every `distinct_every_s` until it is at rest, lies in the same
+    /// cell of this width with the same face uppermost.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1e6, "x-unit" = "mm"))]
     pub distinct_cell_mm: f64,
-    /// Time between two looks at the dice, for telling solutions apart.
+    /// Time between two observations of the dice, for telling solutions apart.
     #[schemars(extend("minimum" = 0.001, "maximum" = 60.0, "x-unit" = "s"))]
     pub distinct_every_s: f64,
-    /// Time at which a die that still moves counts as one that does not come to rest: such a throw has density 0.
+    /// Time by which every die must be at rest: a throw that takes longer has density 0.
     #[schemars(extend("minimum" = 0.1, "maximum" = 60.0, "x-unit" = "s"))]
     pub longest_s: f64,
     /// How exact the simulation is.
@@ -50,7 +50,7 @@ pub struct Config {
     pub table: Table,
     /// A part of the table that differs from the rest, such as a puddle.
     pub spilt: Spilt,
-    /// Which moves: "mixed", or the "paper"'s three.
+    /// Which moves: "mixed", or "paper" for the paper's three.
     pub moves: Moves,
     /// Relative weights of the moves.
     pub weights: Weights<DiceMoves>,
@@ -79,8 +79,8 @@ impl Default for Config {
     }
 }
 
-/// A die. Its faces 1, 2 and 3 lie along its third, second and first axis, and opposite faces add up to seven. Edges
-/// that differ make it a cuboid.
+/// A die. Its faces 1, 2 and 3 lie along its third, second and first axis, and opposite faces add up to seven. With
+/// different edges it is a cuboid.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Die {
@@ -93,10 +93,10 @@ pub struct Die {
     /// Length along its third axis, from face 6 to face 1.
     #[schemars(extend("minimum" = 0.5, "maximum" = 500.0, "x-unit" = "mm"))]
     pub edge_z_mm: f64,
-    /// Radius of its edges and corners; 0 for sharp ones. Less than half its shortest edge.
+    /// Radius of its edges and corners, less than half its shortest edge; 0 for sharp ones.
     #[schemars(extend("minimum" = 0.0, "maximum" = 250.0, "x-unit" = "mm"))]
     pub rounding_mm: f64,
-    /// Density; celluloid has about 1400, acrylic glass 1180. Without influence where dice do not meet.
+    /// Density; celluloid has about 1400, acrylic glass 1180. It has no influence if dice do not meet.
     #[schemars(extend("minimum" = 1.0, "maximum" = 25000.0, "x-unit" = "kg/m³"))]
     pub density: f64,
 }
@@ -107,7 +107,7 @@ impl Default for Die {
     }
 }
 
-/// Law of the initial conditions: each number Gaussian and independent of the others, the orientation uniform.
+/// The law of the initial conditions: each number is Gaussian and independent of the others, the orientation uniform.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Throwing {
@@ -117,10 +117,10 @@ pub struct Throwing {
     /// Mean place of release along y.
     #[schemars(extend("minimum" = -1e4, "maximum" = 1e4, "x-unit" = "mm"))]
     pub y_mm: f64,
-    /// Mean height of the die's middle at its release, before it is cut off where the die would reach into the table.
+    /// Mean height of the die's middle at its release. The law is cut off where the die would reach into the table.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1e4, "x-unit" = "mm"))]
     pub z_mm: f64,
-    /// Standard deviation of the place of release along x and along y.
+    /// Standard deviation of the place of release, along x and along y.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub place_sd_mm: f64,
     /// Standard deviation of the height.
@@ -141,8 +141,7 @@ pub struct Throwing {
     /// Standard deviation of each component of the angular velocity; its mean is 0.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 500.0, "x-unit" = "rad/s"))]
     pub spin_sd: f64,
-    /// How far the mean places of release of two dice that follow each other are apart along y; the middle of the row
-    /// is at `y_mm`.
+    /// Distance along y between the mean places of release of neighbouring dice; the middle of the row is at `y_mm`.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub apart_mm: f64,
 }
@@ -165,8 +164,8 @@ impl Default for Throwing {
     }
 }
 
-/// The table: its height, restitution and friction are uniform cubic b-splines over control points on a square grid,
-/// each control point random and independent of the others. A die that leaves the table makes the draw impossible.
+/// The table. Its height, restitution and friction are uniform cubic b-splines over control points on a square grid;
+/// each control point is random and independent of the others. A draw in which a die leaves the table is impossible.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Table {
@@ -176,23 +175,23 @@ pub struct Table {
     /// Width along y.
     #[schemars(extend("minimum" = 10.0, "maximum" = 1e5, "x-unit" = "mm"))]
     pub width_mm: f64,
-    /// Distance between neighbouring control points; the paper leaves it open. The default is half a die's edge.
+    /// Distance between neighbouring control points; the paper does not give one. The default is half a die's edge.
     #[schemars(extend("minimum" = 0.1, "maximum" = 1e4, "x-unit" = "mm"))]
     pub grid_mm: f64,
-    /// Standard deviation of the height of a control point about 0; 0 for a flat table. Heights beyond six of it have
-    /// density 0.
+    /// Standard deviation of the height of a control point about 0; 0 for a flat table. Heights beyond six standard
+    /// deviations have density 0.
     #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "x-unit" = "mm"))]
     pub bumps_mm: f64,
-    /// Mean of a control point's restitution (Stronge's, of energy), before it is cut off at 0 and at 1.
+    /// Mean restitution of a control point (Stronge's, of energy), before the law is cut off at 0 and 1.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub bounce: f64,
-    /// Its standard deviation; 0 where restitution is not random. No more than a twentieth of the law may be cut off.
+    /// Its standard deviation; 0 if restitution is not random. At most a twentieth of the law may be cut off.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub bounce_sd: f64,
-    /// Mean of a control point's coefficient of friction, before it is cut off at 0.
+    /// Mean coefficient of friction of a control point, before the law is cut off at 0.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub grip: f64,
-    /// Its standard deviation; 0 where friction is not random. No more than a twentieth of the law may be cut off.
+    /// Its standard deviation; 0 if friction is not random. At most a twentieth of the law may be cut off.
     #[schemars(range(min = 0.0, max = 10.0))]
     pub grip_sd: f64,
 }
@@ -212,7 +211,7 @@ impl Default for Table {
     }
 }
 
-/// A round part of the table where the means of restitution and friction are others: beer was spilt there.
+/// A round part of the table with other means of restitution and friction: beer was spilt there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Spilt {
@@ -222,7 +221,7 @@ pub struct Spilt {
     /// Its middle along y.
     #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
     pub y_mm: f64,
-    /// Its radius; 0: nothing was spilt.
+    /// Its radius; 0 if nothing was spilt.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1e5, "x-unit" = "mm"))]
     pub radius_mm: f64,
     /// Mean restitution of the control points in it; the spread is the table's.

@@ -1,4 +1,4 @@
-//! What can be demanded of a die, and how well an animation meets it.
+//! What can be asked of a die, and how well an animation meets it.
 
 use super::Rotation;
 use super::flight::Trip;
@@ -9,7 +9,7 @@ use plaus_dist::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One demand. Its log density is 0 where it is met perfectly and negative elsewhere.
+/// One demand. Its log density is 0 if it is met perfectly, and negative otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Constraint {
@@ -17,9 +17,9 @@ pub enum Constraint {
     RestAt(RestAt),
     /// Which face comes up.
     FaceUp(FaceUp),
-    /// Where a die is at a time, how it is turned, and how fast it is.
+    /// Where a die is at a given time, how it is turned, and how fast it is.
     PoseAt(PoseAt),
-    /// A point that a die's middle passes.
+    /// A point that a die's middle passes near.
     Passes(Passes),
     /// When a die first touches the table.
     FirstImpact(FirstImpact),
@@ -29,7 +29,7 @@ pub enum Constraint {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RestAt {
-    /// Which die, from 1 on.
+    /// Which die, counted from 1.
     #[schemars(range(min = 1, max = 24))]
     pub die: u32,
     /// Place along x.
@@ -41,7 +41,7 @@ pub struct RestAt {
     /// Standard deviation along each axis: smaller is stricter.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
     pub sigma_mm: f64,
-    /// A die closer than this meets it.
+    /// A die that rests closer than this meets the demand.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
     pub within_mm: f64,
 }
@@ -52,12 +52,12 @@ impl Default for RestAt {
     }
 }
 
-/// A die comes to rest with a face up: `−ln_lambda` where it does not, `−½ (angle/angle_sd_deg)²` besides where that is
-/// given.
+/// A die comes to rest with a given face up. Another face costs `−ln_lambda`; if `angle_sd_deg` is given, the angle
+/// adds `−½ (angle/angle_sd_deg)²`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FaceUp {
-    /// Which die, from 1 on.
+    /// Which die, counted from 1.
     #[schemars(range(min = 1, max = 24))]
     pub die: u32,
     /// The face.
@@ -69,7 +69,7 @@ pub struct FaceUp {
     /// Standard deviation of the angle between the face's normal and the vertical; 0: the angle does not count.
     #[schemars(extend("minimum" = 0.0, "maximum" = 180.0, "x-unit" = "degree"))]
     pub angle_sd_deg: f64,
-    /// A die whose face is farther from level than this leans on something: no face is up.
+    /// If a die's face is farther from level than this, the die leans on something, and no face is up.
     #[schemars(extend("minimum" = 0.1, "maximum" = 45.0, "x-unit" = "degree"))]
     pub within_deg: f64,
 }
@@ -80,15 +80,15 @@ impl Default for FaceUp {
     }
 }
 
-/// A die's state at a time: minus half the sum of squares of its distance, its angle and its difference in velocity,
-/// each over its spread.
+/// A die's state at a given time: minus half the sum of squares of its distance, its angle and its difference in
+/// velocity, each divided by its spread.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PoseAt {
-    /// Which die, from 1 on.
+    /// Which die, counted from 1.
     #[schemars(range(min = 1, max = 24))]
     pub die: u32,
-    /// When. After it has come to rest a die stays where it is.
+    /// When. A die that has come to rest stays where it is.
     #[schemars(extend("minimum" = 0.0, "maximum" = 60.0, "x-unit" = "s"))]
     pub time_s: f64,
     /// Place of its middle along x.
@@ -103,23 +103,23 @@ pub struct PoseAt {
     /// Standard deviation along each axis; 0: the place does not count.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1e5, "x-unit" = "mm"))]
     pub sigma_mm: f64,
-    /// A die closer than this meets it.
+    /// A die closer than this meets the demand.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
     pub within_mm: f64,
-    /// How its pips are turned from face 1 up, face 2 along y and face 3 along x: a rotation vector, whose direction is
-    /// the axis and whose length the angle; this is its part along x.
+    /// How its pips are turned, starting from face 1 up, face 2 along y and face 3 along x. This is a rotation vector,
+    /// whose direction is the axis and whose length is the angle; here its component along x.
     #[schemars(extend("minimum" = -360.0, "maximum" = 360.0, "x-unit" = "degree"))]
     pub turn_x_deg: f64,
-    /// Its part along y.
+    /// Its component along y.
     #[schemars(extend("minimum" = -360.0, "maximum" = 360.0, "x-unit" = "degree"))]
     pub turn_y_deg: f64,
-    /// Its part along z.
+    /// Its component along z.
     #[schemars(extend("minimum" = -360.0, "maximum" = 360.0, "x-unit" = "degree"))]
     pub turn_z_deg: f64,
-    /// Standard deviation of the angle from there; 0: the orientation does not count.
+    /// Standard deviation of the angle from that orientation; 0: the orientation does not count.
     #[schemars(extend("minimum" = 0.0, "maximum" = 180.0, "x-unit" = "degree"))]
     pub angle_sd_deg: f64,
-    /// A die turned less far from there meets it.
+    /// A die turned less far from that orientation meets the demand.
     #[schemars(extend("minimum" = 0.1, "maximum" = 180.0, "x-unit" = "degree"))]
     pub within_deg: f64,
     /// Velocity along x.
@@ -159,11 +159,11 @@ impl Default for PoseAt {
     }
 }
 
-/// A die's middle passes a point at any time: `−½ (least distance/sigma)²`.
+/// A die's middle passes near a point at any time: `−½ (least distance/sigma)²`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Passes {
-    /// Which die, from 1 on.
+    /// Which die, counted from 1.
     #[schemars(range(min = 1, max = 24))]
     pub die: u32,
     /// The point along x.
@@ -172,13 +172,13 @@ pub struct Passes {
     /// The point along y.
     #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
     pub y_mm: f64,
-    /// Its height.
+    /// The point's height.
     #[schemars(extend("minimum" = -1e5, "maximum" = 1e5, "x-unit" = "mm"))]
     pub z_mm: f64,
     /// Standard deviation of the least distance.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
     pub sigma_mm: f64,
-    /// A die that comes closer than this meets it.
+    /// A die that comes closer than this meets the demand.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1e5, "x-unit" = "mm"))]
     pub within_mm: f64,
 }
@@ -189,11 +189,11 @@ impl Default for Passes {
     }
 }
 
-/// A die first touches the table at a time: `−½ (difference/sigma)²`.
+/// A die first touches the table at a given time: `−½ (difference/sigma)²`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FirstImpact {
-    /// Which die, from 1 on.
+    /// Which die, counted from 1.
     #[schemars(range(min = 1, max = 24))]
     pub die: u32,
     /// When.
@@ -202,7 +202,7 @@ pub struct FirstImpact {
     /// Standard deviation.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 60.0, "x-unit" = "s"))]
     pub sigma_s: f64,
-    /// A first touch closer than this meets it.
+    /// A first touch within this time meets the demand.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 60.0, "x-unit" = "s"))]
     pub within_s: f64,
 }
@@ -241,7 +241,7 @@ impl Constraint {
         }
     }
 
-    /// The same in the words that all scenes share; `None` where they have none for it.
+    /// The same demand in the vocabulary that all scenes share; `None` if that has no words for it.
     #[must_use]
     pub fn as_requirement(&self) -> Option<Require> {
         let body = format!("die_{}", self.die());
@@ -263,7 +263,7 @@ impl Constraint {
         })
     }
 
-    /// Which die it is about, from 1 on.
+    /// Which die it is about, counted from 1.
     #[must_use]
     pub fn die(&self) -> u32 {
         match self {
@@ -275,8 +275,8 @@ impl Constraint {
         }
     }
 
-    /// How well a die's trip, moved by `offset`, meets it. `slot` is the place of what it asked for in the trip's
-    /// `frames` or `nearest`.
+    /// How well a die's trip, moved by `offset`, meets it. `slot` is the index of its answer in the trip's `frames` or
+    /// `nearest`.
     pub(super) fn mark(&self, trip: &Trip, pips: &Rotation, slot: usize, offset: DVec3) -> Mark {
         match self {
             Self::RestAt(at) => {
@@ -320,14 +320,14 @@ impl PoseAt {
         let slip = frame.velocity.distance(DVec3::new(self.vx, self.vy, self.vz));
         let near = self.sigma_mm == 0.0 || off < self.within_mm;
         let like = self.angle_sd_deg == 0.0 || angle < self.within_deg;
-        // Within two standard deviations a velocity is as demanded.
+        // A velocity within two standard deviations is as asked for.
         let quick = self.velocity_sd == 0.0 || slip < 2.0 * self.velocity_sd;
         let log = gauss(off, self.sigma_mm) + gauss(angle, self.angle_sd_deg) + gauss(slip, self.velocity_sd);
         Mark { log, met: near && like && quick }
     }
 }
 
-/// `−½ (x/sd)²`; 0 where `sd` is.
+/// `−½ (x/sd)²`; 0 if `sd` is 0.
 fn gauss(x: f64, sd: f64) -> f64 {
     if sd == 0.0 { 0.0 } else { -0.5 * math::square(x / sd) }
 }

@@ -1,5 +1,5 @@
-//! What is random: how each die is thrown, and the tables' control points, which are made only where they are looked
-//! at.
+//! What is random: how each die is thrown, and the tables' control points, which are made only where something looks at
+//! them.
 //!
 //! A control point is held as its *score*, a standard normal number that the law of its place turns into a height, a
 //! restitution or a friction. The score of a point that no move has changed is a pure function of the table's key, the
@@ -12,13 +12,13 @@ use plaus_dist::{Purpose, Seed, Stream, standard_normal};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-/// Scores beyond this have density 0: one in 5·10⁸ is, before the cut.
+/// Scores beyond this have density 0. Without the cut, one in 5·10⁸ would be beyond it.
 pub const LARGEST_SCORE: f64 = 6.0;
 
 /// How one die is thrown: SI units, world axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Throw {
-    /// Its middle at time 0, in m; where its table has been shifted, it stands that much farther on.
+    /// Its middle at time 0, in m; if its table has been shifted, its place is shifted by as much.
     pub position: DVec3,
     /// Turns the body's axes into the world's.
     pub orientation: DQuat,
@@ -31,7 +31,7 @@ pub struct Throw {
 }
 
 impl Throw {
-    /// Whether the body moves alike, whatever its pips.
+    /// Whether the body moves in the same way, whatever its pips.
     #[must_use]
     pub fn moves_like(&self, other: &Self) -> bool {
         Self { turn: other.turn, ..*self } == *other
@@ -73,10 +73,10 @@ pub struct Site {
 /// A whole table: the scores of all its control points.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Realisation {
-    /// From which the scores of unchanged points follow.
+    /// The scores of unchanged points follow from it.
     pub key: u64,
     /// By how many cells the table, with the die thrown onto it, has been shifted along x and y. Indices of points and
-    /// positions of throws are those without the shift, so that it changes no bit of a motion.
+    /// positions of throws do not include the shift, so that it changes no bit of a motion.
     pub shifted: [i32; 2],
     /// Points that moves have changed, with their scores, in order.
     changed: Vec<(Site, f64)>,
@@ -95,9 +95,9 @@ impl Clone for Realisation {
 /// The values of all random variables.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct Draw {
-    /// One a die.
+    /// One for each die.
     pub throws: Vec<Throw>,
-    /// One a die where each is thrown alone, else one for all.
+    /// One for each die if each is thrown alone, otherwise one for all.
     pub tables: Vec<Realisation>,
 }
 
@@ -118,7 +118,8 @@ impl Draw {
         die.min(self.tables.len().saturating_sub(1))
     }
 
-    /// By how much a die stands farther on than its throw and its trip say, in m; `spacing` is that of control points.
+    /// By how much a die's place is shifted from what its throw and its trip say, in m; `spacing` is that of control
+    /// points.
     #[must_use]
     pub fn offset(&self, die: usize, spacing: f64) -> DVec3 {
         let [x, y] = self.tables[self.table_of(die)].shifted.map(|cells| f64::from(cells) * spacing);
@@ -131,8 +132,8 @@ fn streams(key: u64) -> ChainStreams {
     Seed(key).chain(0)
 }
 
-/// The score that a point has at first: a standard normal number within [`LARGEST_SCORE`], whose stream's address are
-/// field and indices.
+/// The initial score of a point: a standard normal number within [`LARGEST_SCORE`], from a stream addressed by field
+/// and indices.
 fn fresh(streams: &ChainStreams, site: Site) -> f64 {
     // Indices repeat after 2²⁴ cells, farther than any table is large.
     let index = |k: i32| u64::from(k.cast_unsigned() & 0x00ff_ffff);
@@ -156,13 +157,13 @@ impl Realisation {
         Self { key: stream.next_u64(), shifted: [0; 2], changed: Vec::new() }
     }
 
-    /// Draws anew, keeping allocations.
+    /// Draws everything anew, keeping allocations.
     pub fn renew(&mut self, stream: &mut Stream) {
         (self.key, self.shifted) = (stream.next_u64(), [0; 2]);
         self.changed.clear();
     }
 
-    /// The score of a point. Many are asked for by [`Realisation::source`].
+    /// The score of a point. For many points, use [`Realisation::source`].
     #[must_use]
     pub fn score(&self, site: Site) -> f64 {
         self.look(&streams(self.key), site)
@@ -195,7 +196,7 @@ impl Realisation {
         self.key == other.key && self.changed == other.changed
     }
 
-    /// The points whose scores differ from another table's; `None` where that can be all of them.
+    /// The points whose scores differ from another table's; `None` if that can be all of them.
     pub(super) fn differing(&self, other: &Self) -> Option<Vec<Site>> {
         if self.key != other.key || self.shifted != other.shifted {
             return None;
@@ -225,15 +226,15 @@ impl Realisation {
         self.changed.len()
     }
 
-    /// The scores as a function that owns all it needs.
+    /// The scores as a function that owns everything it needs.
     pub fn source(&self) -> impl Fn(Site) -> f64 + Send + Sync + 'static {
         let (table, streams) = (self.clone(), streams(self.key));
         move |site| table.look(&streams, site)
     }
 }
 
-/// How many numbers the initial conditions of a die have besides its orientation: place, velocity and angular velocity
-/// along three axes.
+/// The number of numbers in the initial conditions of a die, besides its orientation: place, velocity and angular
+/// velocity along three axes.
 pub const NUMBERS: usize = 9;
 
 /// How many variables a die has: its numbers, its orientation, which of its symmetries its pips are turned by.

@@ -16,7 +16,7 @@ pub(super) struct Fall {
     pub(super) ways: Vec<Way>,
     /// The control points that were looked at: nothing else of the table had any influence.
     pub(super) touched: Touched,
-    /// The motions, where they are kept.
+    /// The motions, if they are kept.
     pub(super) recorded: Option<Recorded>,
 }
 

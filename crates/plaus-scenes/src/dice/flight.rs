@@ -1,5 +1,5 @@
-//! What a throw leaves behind: where its die comes to rest, where it touched the table, and what the constraints ask
-//! about the way.
+//! The results of a throw: where its die comes to rest, where it touched the table, and what the constraints ask about
+//! its path.
 
 use super::Rotation;
 use crate::way::{Way, follow};
@@ -19,11 +19,11 @@ pub enum End {
     AtRest,
     /// It left the table.
     Left,
-    /// It still moved when the time, or the simulator's budget of events, was over.
+    /// It still moved when its time, or the simulator's budget of events, was used up.
     Unfinished,
 }
 
-/// A die at a time.
+/// A die at some time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     /// Its middle, in m.
@@ -34,17 +34,17 @@ pub struct Frame {
     pub velocity: DVec3,
 }
 
-/// The way of one die.
+/// The path of one die.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Trip {
     /// How it ended.
     pub end: End,
     /// When, in s.
     pub time: f64,
-    /// Where its middle was then, in m; it stands farther on where its table has been shifted, as do all places of this
-    /// trip.
+    /// Where its middle was then, in m. If its table has been shifted, this and all other places of the trip are
+    /// shifted by as much.
     pub position: DVec3,
-    /// How its body was turned.
+    /// Its body's orientation then.
     pub orientation: DQuat,
     /// Time in s and place in m of every impact on the table.
     pub impacts: Vec<[f64; 3]>,
@@ -56,12 +56,11 @@ pub struct Trip {
     pub met: bool,
     /// Cells and uppermost axes at regular times, for telling solutions apart.
     looks: Vec<Look>,
-    /// The least and the greatest x and y of its middle.
+    /// The least and the largest x and y of its middle.
     extent: [[f64; 2]; 2],
 }
 
-/// Where a die is, and its body's orientation to the nearest of those with a face uppermost: the face that would show
-/// with the pips along the body's axes.
+/// Where a die is, and which face would be uppermost if the pips lay along the body's axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Look {
     at: [f64; 2],
@@ -69,7 +68,7 @@ struct Look {
 }
 
 impl Trip {
-    /// A trip that ends at rest, of which only where it touched the table is known.
+    /// A trip that ends at rest, of which only the places where it touched the table are known.
     #[must_use]
     pub fn resting(position: DVec3, orientation: DQuat, impacts: Vec<[f64; 3]>) -> Self {
         let time = impacts.last().map_or(0.0, |last| last[0]);
@@ -78,13 +77,13 @@ impl Trip {
         Self { end: End::AtRest, time, position, orientation, impacts, frames, nearest, met: false, looks, extent }
     }
 
-    /// Whether its middle stays on a table with these half sides where the trip is moved by `offset`.
+    /// Whether its middle stays on a table with these half sides when the trip is moved by `offset`.
     pub(super) fn stays_on(&self, edge: &[f64; 2], offset: DVec3) -> bool {
         self.extent.iter().all(|[x, y]| is_on(edge, DVec3::new(*x, *y, 0.0) + offset))
     }
 
-    /// The class that this trip, moved by `offset`, continues another's by, with the pips as given and cells of a
-    /// width.
+    /// The class that continues another trip's class by this trip, moved by `offset`, with the given pips and cells of
+    /// this width.
     pub(super) fn class(&self, class: SolutionClass, pips: &Rotation, cell: f64, offset: DVec3) -> SolutionClass {
         // Which face shows where the body's own face `f` is uppermost.
         let shown = |face: u8| i64::from(pips.uppermost(super::symmetry::facing(face)).0);
@@ -97,7 +96,7 @@ impl Trip {
     }
 }
 
-/// What is asked about a die's way.
+/// What is asked about a die's path.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Asked {
     /// Times in s.
@@ -106,7 +105,7 @@ pub(super) struct Asked {
     pub(super) points: Vec<DVec3>,
 }
 
-/// What is the same for all trips.
+/// Settings that are the same for all trips.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Looking {
     /// Half the table's length and width, in m.
@@ -124,7 +123,7 @@ pub(super) struct Watch<'a> {
     rigid: &'a Rigid,
     asked: Vec<&'a Asked>,
     looking: Looking,
-    /// By how much the dice stand farther on.
+    /// By how much the places of the dice are shifted.
     offset: DVec3,
     /// Each die's motion before the current one's begin.
     last: Vec<Option<Turning>>,
@@ -154,8 +153,8 @@ impl<'a> Watch<'a> {
         Self { rigid, last: vec![None; trips.len()], asked, looking, trips, paths, offset, left: false }
     }
 
-    /// The trips, after a run that ended with the bodies as given; and the ways, on which a die at rest lies there
-    /// until the time `longest`.
+    /// The trips, after a run that ended with the given bodies; and the paths, in which a die at rest stays there until
+    /// the time `longest`.
     pub(super) fn finish(mut self, bodies: &[Turning], longest: f64) -> (Vec<Trip>, Vec<Way>) {
         let mut ways = Vec::with_capacity(bodies.len());
         for (k, body) in bodies.iter().enumerate() {
@@ -173,7 +172,7 @@ impl<'a> Watch<'a> {
         (self.trips, ways)
     }
 
-    /// Answers what is asked about a motion until it ends.
+    /// Answers everything that is asked about a motion until it ends.
     fn cover(&mut self, k: usize, piece: &Turning, until: f64) {
         let (rigid, from) = (self.rigid, piece.path.t);
         let (trip, asked) = (&mut self.trips[k], self.asked[k]);

@@ -1,14 +1,14 @@
-//! Dice on a random table (section 5.4): where they come to rest and which face comes up are demanded; how they are
-//! thrown and the table's height, restitution and friction are uncertain.
+//! Dice on a random table (section 5.4): their resting places and faces are asked for; how they are thrown and the
+//! table's height, restitution and friction are uncertain.
 //!
-//! **A table of any size.** Control points are made where a die comes near them and nowhere else. The value of a point
-//! that no move has changed is a pure function of its address (the table's key, which the seed, the chain and the
-//! iteration that drew it give; the field; the indices), so it does not matter when, or whether, it is looked at. The
+//! **A table of any size.** Control points are made where a die comes near them, and nowhere else. The value of a point
+//! that no move has changed is a pure function of its address: the table's key (from the seed, the chain and the
+//! iteration that drew it), the field and the indices. So it does not matter when, or whether, it is looked at. The
 //! target's density is taken with respect to the law of the whole table: a point that no die touches drops out of every
-//! ratio, and a chain that holds all points from the start makes the same states.
+//! ratio, and a chain that holds all points from the start would have the same states.
 //!
-//! **What makes two solutions distinct.** Every tenth of a second each die is looked at: in which square of 20 mm it
-//! is, and which face is uppermost. Where that agrees at all times, two solutions count as one.
+//! **When two solutions are distinct.** Every tenth of a second, each die is observed: in which square of 20 mm it is,
+//! and which face is uppermost. If these agree at all times, two solutions count as one.
 
 mod animate;
 mod config;
@@ -64,25 +64,25 @@ pub struct Dice {
     vars: Vars,
 }
 
-/// What became of the dice.
+/// The outcome of a draw.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rest {
-    /// The way of each die.
+    /// The path of each die.
     pub trips: Vec<Trip>,
-    /// The face that each die shows; 0 where it does not lie at rest on the table.
+    /// The face that each die shows; 0 if it does not lie at rest on the table.
     pub faces: Vec<u8>,
     /// How well each constraint is met.
     pub marks: Vec<Mark>,
 }
 
 impl Rest {
-    /// Whether every die lies at rest on the table. Where one does not, the draw has probability 0.
+    /// Whether every die lies at rest on the table. If one does not, the draw has probability 0.
     #[must_use]
     pub fn complete(&self) -> bool {
         self.trips.iter().all(|trip| trip.end == End::AtRest)
     }
 
-    /// Whether that is so, and every constraint is met.
+    /// Whether that is so and, in addition, every constraint is met.
     #[must_use]
     pub fn satisfied(&self) -> bool {
         self.complete() && self.marks.iter().all(|mark| mark.met)
@@ -93,8 +93,9 @@ impl Dice {
     /// The scene of a configuration.
     ///
     /// # Errors
-    /// [`ConfigError`] where what is demanded lies off the table or is about a die there is not, or the numbers make no
-    /// world.
+    ///
+    /// [`ConfigError`] if a constraint asks for something off the table or about a die that does not exist, or if the
+    /// numbers make no world.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let plan = Plan::new(config)?;
         let prior = plan.prior(config)?;
@@ -113,10 +114,10 @@ impl Dice {
         &self.prior
     }
 
-    /// Which dice are simulated together, as they come near each other.
+    /// Which dice are simulated together, because they come near each other.
     ///
     /// # Errors
-    /// [`ModelError`] where the simulation fails.
+    /// [`ModelError`] if the simulation fails.
     pub fn groups(&self, draw: &Draw) -> Result<Vec<Vec<usize>>, ModelError> {
         if self.plan.together {
             Work::default().groups(&self.plan, draw)
@@ -125,7 +126,7 @@ impl Dice {
         }
     }
 
-    /// By how much a die stands farther on than its trip says, in m.
+    /// By how much a die's place is shifted from what its trip says, in m.
     #[must_use]
     pub fn offset(&self, draw: &Draw, die: usize) -> glam::DVec3 {
         draw.offset(die, self.plan.surface.spacing())
@@ -143,11 +144,11 @@ impl Dice {
         self.plan.surface.value(table.shifted, site, table.score(site))
     }
 
-    /// How many control points the dice of a draw came near, over all tables and fields, and the memory that all they
-    /// made takes, in bytes.
+    /// How many control points the dice of a draw came near, over all tables and fields, and the memory in bytes of all
+    /// points that were made for that.
     ///
     /// # Errors
-    /// [`ModelError`] where the simulation fails.
+    /// [`ModelError`] if the simulation fails.
     pub fn touched(&self, draw: &Draw) -> Result<(usize, usize), ModelError> {
         let (mut sites, mut bytes) = (BTreeSet::new(), 0);
         for members in self.groups(draw)? {
@@ -159,8 +160,8 @@ impl Dice {
         Ok((sites.len(), bytes))
     }
 
-    /// The same scene, whose move [`Turn`] takes every die for a cube: wrong for any other cuboid, where it no longer
-    /// leaves the target as it is. For tests of whether a test sees that.
+    /// The same scene with a move [`Turn`] that takes every die for a cube. This is wrong for any other cuboid: the
+    /// move then no longer leaves the target invariant. It is for tests that must detect this.
     #[doc(hidden)]
     #[must_use]
     pub fn taken_for_cubes(mut self) -> Self {
@@ -168,16 +169,17 @@ impl Dice {
         self
     }
 
-    /// The dice alone, simulated for so many seconds at most.
+    /// The dice alone, simulated for at most this many seconds.
     fn moving(&self, draw: &Draw, longest: f64) -> Result<Animation, ModelError> {
         let recorded = Work::default().record(&self.plan, draw, longest)?;
         Ok(animate::motion(self, draw, &recorded)?.0)
     }
 
-    /// What follows from the ways of all dice: faces, and how well each constraint is met.
+    /// The outcome that follows from the paths of all dice: faces, and how well each constraint is met.
     ///
     /// # Panics
-    /// Where there are fewer trips than dice.
+    ///
+    /// If there are fewer trips than dice.
     #[must_use]
     pub fn judge(&self, draw: &Draw, trips: Vec<Trip>) -> Rest {
         let pips = |die: usize| &self.plan.rotations[usize::from(draw.throws[die].turn)];
@@ -223,7 +225,7 @@ impl Target for Dice {
         if !rest.complete() {
             return Ok(LogPotential::ZERO);
         }
-        // Summed in the order of the constraints: what a bound is summed like.
+        // Summed in the order of the constraints, like the bound.
         Ok(LogPotential::new(rest.marks.iter().fold(0.0, |sum, mark| sum + mark.log))?)
     }
 
@@ -259,7 +261,7 @@ impl Variables for Dice {
         draw.throws.get_mut(var / EACH).map(|throw| std::slice::from_mut(draw::number_mut(throw, number)))
     }
 
-    /// A die stands farther on where its table has been shifted.
+    /// A die's place is shifted with its table.
     fn shift(&self, draw: &Draw, var: usize) -> f64 {
         if var % EACH < 2 && var / EACH < draw.throws.len() { self.offset(draw, var / EACH)[var % EACH] } else { 0.0 }
     }
@@ -288,7 +290,7 @@ impl Variables for Dice {
         draw.tables.iter_mut().for_each(|table| table.renew(stream));
     }
 
-    /// A die's throw, and its table where it has one of its own.
+    /// A die's throw, and its table if it has its own.
     fn renew_group(&self, draw: &mut Draw, die: usize, stream: &mut Stream) {
         draw.throws[die] = self.prior.throw(die, stream);
         if draw.tables.len() == draw.throws.len() {
@@ -297,7 +299,7 @@ impl Variables for Dice {
     }
 }
 
-/// A die's results: where it lies, what it shows, and how often it touched the table.
+/// A die's outcomes: where it lies, what it shows, and how often it touched the table.
 const RESULTS: [Column; 4] =
     [Column::result("rest_x", "mm"), Column::result("rest_y", "mm"), Column::count("face"), Column::count("impacts")];
 
@@ -334,14 +336,14 @@ impl Scene for Dice {
         self.config.constraints.iter().enumerate().filter_map(key).collect()
     }
 
-    /// Dice that meet are simulated to their end before it is known which do; bodies that wobble are drawn in parts
-    /// that end with the next event.
+    /// Dice that meet are simulated to their end before it is known which ones meet; bodies that wobble are drawn in
+    /// parts that end with the next event.
     fn motion_to(&self, draw: &Draw, time: f64) -> Result<Option<Animation>, ModelError> {
         let exact = !self.plan.together && self.plan.rotations.len() == 24 && time < self.plan.longest;
         exact.then(|| self.moving(draw, time)).transpose()
     }
 
-    /// Each constraint, and that all come to rest.
+    /// Each constraint, and that all dice come to rest.
     fn asked(&self) -> Vec<String> {
         let name = |one: &Constraint| format!("{} of die {}", one.name(), one.die());
         self.config.constraints.iter().map(name).chain(["all dice come to rest".to_owned()]).collect()

@@ -1,4 +1,4 @@
-//! What follows from a configuration once and for all.
+//! What follows from a configuration, computed once.
 
 use super::config::{Config, MOST_DICE};
 use super::constraint::{Constraint, Mark};
@@ -11,7 +11,7 @@ use glam::DVec3;
 use plaus_sim::Accuracy;
 use plaus_sim::shape::{Cuboid, Shape};
 
-/// A constraint with the die it is about, and where what it asked for is kept.
+/// A constraint with its die, and the index of its answer.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Demand {
     pub(super) constraint: Constraint,
@@ -32,9 +32,9 @@ pub(super) struct Plan {
     pub(super) cuboid: Cuboid,
     pub(super) rotations: Vec<Rotation>,
     pub(super) demands: Vec<Demand>,
-    /// What is asked about each die's way.
+    /// What is asked about each die's path.
     pub(super) asked: Vec<Asked>,
-    /// Where each die should come to rest, in m, and which constraint says so first.
+    /// Where each die should come to rest, in m, according to the first constraint that says so.
     pub(super) places: Vec<Option<[f64; 2]>>,
     pub(super) looking: Looking,
     pub(super) accuracy: Accuracy,
@@ -128,7 +128,7 @@ impl Plan {
     }
 }
 
-/// Appends a value; its place.
+/// Appends a value; gives its index.
 fn push<T>(list: &mut Vec<T>, value: T) -> usize {
     list.push(value);
     list.len() - 1

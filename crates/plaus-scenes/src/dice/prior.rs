@@ -21,18 +21,18 @@ const COLUMNS: [(&str, &str, f64); NUMBERS] = [
     ("wz", "rad/s", 1.0),
 ];
 
-/// The prior of a draw. Its density is taken with respect to the law of the tables themselves, so that these count 1
-/// whatever they are: a control point that no die touches drops out by itself, and the ratio of a move that changes one
-/// is taken with respect to its law, too.
+/// The prior of a draw. Its density is taken with respect to the law of the tables themselves, so that tables count 1
+/// whatever they are. A control point that no die touches drops out by itself, and the ratio of a move that changes one
+/// is also taken with respect to its law.
 #[derive(Debug, Clone)]
 pub struct Prior {
     /// Of each die: place, velocity, angular velocity.
     numbers: Vec<[Gaussian; NUMBERS]>,
-    /// The height of release, cut off where a die would reach into the table.
+    /// The height of release; its law is cut off where a die would reach into the table.
     height: TruncatedGaussian,
     turns: usize,
     tables: usize,
-    /// Dice thrown onto one table begin at least this far apart, in m; else the draw has density 0.
+    /// Dice thrown onto one table begin at least this far apart, in m; otherwise the draw has density 0.
     clear: f64,
     /// Distance of control points, in m.
     spacing: f64,
@@ -69,8 +69,8 @@ impl Prior {
         })
     }
 
-    /// The variables: each die's numbers, its orientation and the turn of its pips, and then the tables, each of which
-    /// belongs to its die where each is thrown alone.
+    /// The variables: each die's numbers, its orientation and the turn of its pips; then the tables, each of which
+    /// belongs to its die if dice are thrown alone.
     pub(super) fn vars(&self) -> Vars {
         let mut all = Vec::new();
         for (die, laws) in self.numbers.iter().enumerate() {
@@ -95,23 +95,23 @@ impl Prior {
         &self.numbers[die][number]
     }
 
-    /// One number of a die's initial conditions as they are, its table's shift included.
+    /// The value of one number of a die's initial conditions, including its table's shift.
     #[must_use]
     pub fn value(&self, draw: &Draw, die: usize, which: usize) -> f64 {
         let value = *number(&draw.throws[die], which);
         if which < 2 { value + draw.offset(die, self.spacing)[which] } else { value }
     }
 
-    /// Log density of one die's throw but for its place along the table and the cut of heights.
+    /// Log density of one die's throw, except for its place along the table and the cut of heights.
     ///
     /// # Errors
-    /// [`NotANumber`] where the throw holds a NaN.
+    /// [`NotANumber`] if the throw holds a NaN.
     pub fn log_density_elsewhere(&self, throw: &Throw, die: usize) -> Result<LogDensity, NotANumber> {
         let density = |k: usize| self.numbers[die][k].log_density(number(throw, k));
         (2..NUMBERS).try_fold(LogDensity::ONE, |sum, k| Ok(sum + density(k)?))
     }
 
-    /// How many orientations its symmetry makes equal.
+    /// How many orientations its symmetry makes equivalent.
     #[must_use]
     pub fn turns(&self) -> usize {
         self.turns
@@ -136,7 +136,7 @@ impl Prior {
     /// Log density of a draw, where the orientations' law and that of the tables have density 1.
     ///
     /// # Errors
-    /// [`NotANumber`] where the draw holds a NaN.
+    /// [`NotANumber`] if the draw holds a NaN.
     pub fn log_density(&self, draw: &Draw) -> Result<LogDensity, NotANumber> {
         let mut sum = LogDensity::ONE;
         for (die, laws) in self.numbers.iter().enumerate() {

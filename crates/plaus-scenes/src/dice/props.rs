@@ -1,4 +1,4 @@
-//! What is seen of the table: its bumps where the dice are, what was spilt, and marks where dice should come to rest.
+//! The visible parts of the table: its bumps where the dice are, the spill, and marks where dice should come to rest.
 
 use super::constraint::Constraint;
 use super::{Dice, Draw, Field};
@@ -16,8 +16,8 @@ const MOST: usize = 160;
 /// Corners around a puddle.
 const CORNERS: u32 = 48;
 
-/// All that stands still, in metres. The table is drawn with its bumps between two corners of a box; where every die
-/// has a table of its own, each place shows that of the die that lies nearest.
+/// All scenery, in metres. The table is drawn with its bumps between two corners of a box; if every die has its own
+/// table, each place shows the table of the nearest die.
 pub(super) fn props(scene: &Dice, draw: &Draw, [low, high]: [DVec3; 2]) -> Result<Vec<Prop>, WorldError> {
     let plan = &scene.plan;
     let mut props = Vec::new();

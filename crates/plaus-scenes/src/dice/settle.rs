@@ -1,5 +1,5 @@
-//! Dice on one table, group by group, see [`crate::model::groups`]. What a candidate leaves as it is need not be
-//! simulated again: groups of the same dice, thrown alike, that came near no control point that has changed.
+//! Dice on one table, simulated group by group: see [`crate::model::groups`]. A group need not be simulated again if
+//! its dice are the same, thrown alike, and came near no control point that has changed.
 
 use super::draw::{Draw, Site};
 use super::fall::Fall;
@@ -9,11 +9,11 @@ use super::throwing::Work;
 use crate::model::groups::Groups;
 use plaus_mcmc::ModelError;
 
-/// Centres nearer than this many times the reach of a die are simulated together: 2, and more than the gap at which
-/// bodies touch.
+/// Dice whose centres are nearer than this many times the reach of a die are simulated together: 2, and more than the
+/// gap at which bodies touch.
 const NEAR: f64 = 2.0 * 1.01;
 
-/// What differs between two draws; `None` where that is all.
+/// What differs between two draws; `None` if that is all.
 struct Differing<'a> {
     draws: [&'a Draw; 2],
     sites: Vec<Site>,
@@ -25,7 +25,7 @@ impl<'a> Differing<'a> {
         Some(Self { draws: [old, new], sites })
     }
 
-    /// Whether a simulation of the old draw has the bits of one of the new.
+    /// Whether a simulation for the old draw has the same bits for the new one.
     fn leaves(&self, fall: &Fall) -> bool {
         let [old, new] = self.draws;
         fall.members.iter().all(|&die| old.throws[die].moves_like(&new.throws[die]))
@@ -34,8 +34,8 @@ impl<'a> Differing<'a> {
 }
 
 impl Work {
-    /// The trips of dice thrown onto one table. `known`: a draw from whose simulation, made now unless it is
-    /// remembered, parts may be taken.
+    /// The trips of dice thrown onto one table. `known` is a draw whose simulation can be reused in part; it is
+    /// simulated now unless it is remembered.
     pub(super) fn throw_together(
         &mut self,
         plan: &Plan,
@@ -64,7 +64,7 @@ impl Work {
         Ok(falls.last().iter().map(|group| group.members.clone()).collect())
     }
 
-    /// Simulates `draw` into `next`, taking from `known` what stays as it is.
+    /// Simulates `draw` into `next`, reusing parts of `known` that do not change.
     fn falls(
         &mut self,
         plan: &Plan,

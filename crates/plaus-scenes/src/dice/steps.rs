@@ -3,33 +3,33 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Sizes of the moves' steps. A change leaves the prior as it is: a number at z standard deviations from its mean goes
-/// to `√(1 − s²) z + s ξ`, with ξ a standard normal number, and s drawn anew for each change between the two ends given
-/// here, uniformly in its logarithm.
+/// Sizes of the moves' steps. A step preserves the prior: a number at z standard deviations from its mean goes to `√(1
+/// − s²) z + s ξ`, where ξ is a standard normal number. For each step, s is drawn between the two ends given here,
+/// uniformly in its logarithm.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Steps {
     /// The smallest s for initial conditions.
     #[schemars(range(min = 1e-9, max = 1.0))]
     pub component_least: f64,
-    /// The largest.
+    /// The largest s for initial conditions.
     #[schemars(range(min = 1e-9, max = 1.0))]
     pub component_most: f64,
     /// The smallest s for control points.
     #[schemars(range(min = 1e-9, max = 1.0))]
     pub point_least: f64,
-    /// The largest. 1 draws a value anew.
+    /// The largest s for control points. 1 draws a value anew.
     #[schemars(range(min = 1e-9, max = 1.0))]
     pub point_most: f64,
-    /// Standard deviation, about the target, of the place that a shift aims at.
+    /// Standard deviation, around the target, of the place that a shift aims at.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub shift_sd_mm: f64,
-    /// The same for a recast. Where dice meet, or bumps are large, it should be about as large as what these make of
-    /// where a die comes to rest.
+    /// The same for a recast. If dice meet, or bumps are large, it should be about as large as their effect on where a
+    /// die comes to rest.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub recast_sd_mm: f64,
     /// How near its target a die must come to rest, alone on its table, for a throw to be picked: the standard
-    /// deviation of the chance that it is.
+    /// deviation of the probability that it is picked.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1000.0, "x-unit" = "mm"))]
     pub pick_sd_mm: f64,
 }

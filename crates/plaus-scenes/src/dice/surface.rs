@@ -10,7 +10,7 @@ use plaus_sim::rigid::{Part, Table as Uneven};
 use plaus_sim::scenery::Plane;
 use plaus_sim::{Law, Laws, Material, WorldError};
 
-/// What touches what: dice and table are of one material.
+/// Dice and table are made of one material.
 pub(super) const MATERIAL: Material = Material(0);
 
 /// Largest share of a law that may be cut off.
@@ -23,7 +23,7 @@ struct Values {
     sd: f64,
     low: f64,
     high: f64,
-    /// Below the cuts: the share of the Gaussian below `low`, and between the cuts. `None` where no score within
+    /// The share of the Gaussian below `low`, and the share between the cuts. `None` if no score within
     /// [`LARGEST_SCORE`] reaches a cut.
     cut: Option<[f64; 2]>,
 }
@@ -59,7 +59,7 @@ impl Values {
     }
 }
 
-/// A field whose mean is another one where something was spilt.
+/// A field with another mean in the spill.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Patched {
     dry: Values,
@@ -81,7 +81,8 @@ impl Surface {
     /// The laws of a configuration.
     ///
     /// # Errors
-    /// [`ConfigError`] where a law would be cut off too much.
+    ///
+    /// [`ConfigError`] if too much of a law would be cut off.
     pub(super) fn new(config: &Config) -> Result<Self, ConfigError> {
         let (Table { grid_mm, bumps_mm, bounce, bounce_sd, grip, grip_sd, .. }, spilt) = (config.table, config.spilt);
         let is_spilt = spilt.radius_mm > 0.0;
@@ -95,7 +96,7 @@ impl Surface {
             let beyond = if sd > 0.0 { Values::beyond(mean, sd, 0.0, high) } else { 0.0 };
             if beyond > MOST_CUT {
                 let message = format!(
-                    "a mean {name} of {mean} with a spread of {sd} leaves {range} with probability {beyond:.3}; at most {MOST_CUT} of the law may be cut off: a smaller {name}_sd, or a mean farther inside"
+                    "a mean {name} of {mean} with a spread of {sd} leaves {range} with probability {beyond:.3}; at most {MOST_CUT} of the law may be cut off: use a smaller {name}_sd, or a mean farther inside"
                 );
                 return Err(ConfigError::new(format!("world.dice.{table}.{name}"), message));
             }
@@ -155,8 +156,7 @@ impl Surface {
         })
     }
 
-    /// The value of a control point of a table that has been shifted by so many cells: metres for heights, else a pure
-    /// number.
+    /// The value of a control point of a table shifted by `shifted` cells: metres for heights, otherwise a pure number.
     pub(super) fn value(&self, shifted: [i32; 2], site: Site, score: f64) -> f64 {
         let patched = match site.field {
             Field::Height => return self.height.at(score),
@@ -166,7 +166,7 @@ impl Surface {
         if self.is_wet(shifted, site) { patched.wet.at(score) } else { patched.dry.at(score) }
     }
 
-    /// The sites on which a field at a point depends, but for which field.
+    /// The sites on which any field at a point depends.
     pub(super) fn support(&self, x: f64, y: f64) -> impl Iterator<Item = [i32; 2]> {
         let [i, j] = [x, y].map(|at| (at / self.grid.spacing).floor() as i32);
         (0..16).map(move |k| [i - 1 + k / 4, j - 1 + k % 4])
@@ -191,7 +191,7 @@ impl Surface {
         Ok(Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, MATERIAL)?))
     }
 
-    /// The table as a part of a world. What is not random is no field.
+    /// The table as a part of a world. Properties that are not random are not fields.
     pub(super) fn part(&self, table: &Realisation) -> Result<Part, WorldError> {
         let is_field = |field| self.random.contains(&field) || (field != Field::Height && self.spilt.is_some());
         if !Field::ALL.into_iter().any(is_field) {
@@ -207,7 +207,7 @@ impl Surface {
         Ok(Part::Table(Box::new(uneven)))
     }
 
-    /// What holds where the table has no fields, and between dice.
+    /// The laws where the table has no fields, and between dice.
     pub(super) fn laws(&self) -> Result<Laws, WorldError> {
         Laws::uniform(Law::new(self.friction.dry.mean, self.restitution.dry.mean))
     }
@@ -226,7 +226,7 @@ fn splines(part: &mut Part) -> impl Iterator<Item = (Field, &mut Spline)> {
     })
 }
 
-/// Memory of what was made of the fields of parts, in bytes.
+/// Memory used by the parts' fields so far, in bytes.
 pub(super) fn bytes(parts: &mut [Part]) -> usize {
     parts.iter_mut().flat_map(splines).map(|(_, spline)| spline.bytes()).sum()
 }

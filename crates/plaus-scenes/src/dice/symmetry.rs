@@ -1,7 +1,7 @@
-//! The rotations that leave a cuboid as it is, and the faces of a die.
+//! The rotations that map a cuboid to itself, and the faces of a die.
 //!
-//! A draw holds, besides the orientation of a die's body, which of these rotations its pips are turned by. The body
-//! moves as if it had no pips, so that another rotation changes which face comes up and no bit of the motion.
+//! Besides the orientation of a die's body, a draw holds which of these rotations its pips are turned by. The body
+//! moves as if it had no pips, so another rotation changes which face comes up, and no bit of the motion.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -25,7 +25,7 @@ fn axis_of(face: u8) -> (usize, f64) {
     (3 - usize::from(front), if face == front { 1.0 } else { -1.0 })
 }
 
-/// An orientation in which this face is uppermost, with pips along the body's own axes.
+/// An orientation in which this face is uppermost, for pips along the body's own axes.
 pub(super) fn facing(face: u8) -> DQuat {
     let (axis, sign) = axis_of(face);
     // The rotation from the face's normal to the vertical.
@@ -36,8 +36,8 @@ impl Rotation {
     /// Pips along the body's own axes.
     pub const IDENTITY: Self = Self { axis: [0, 1, 2], sign: [1.0; 3] };
 
-    /// The proper rotations that map a cuboid of these edges onto itself, the identity first: 24 for a cube, 8 where
-    /// two edges are equal, else 4.
+    /// The proper rotations that map a cuboid with these edges to itself, the identity first: 24 for a cube, 8 if two
+    /// edges are equal, otherwise 4.
     #[must_use]
     pub fn of_cuboid(edges: DVec3) -> Vec<Self> {
         let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];

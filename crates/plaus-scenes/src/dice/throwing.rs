@@ -20,10 +20,10 @@ use plaus_sim::{Outcome, Scratch, WorldError};
 /// Standard gravity, m/s².
 pub(super) const GRAVITY: f64 = 9.806_65;
 
-/// Height in m of a hand that throws.
+/// Height in m of the throwing hand.
 const HAND: f64 = 0.1;
 
-/// Points of a die's skin that are looked at over bumps are this far apart, over the grid's spacing.
+/// Distance of the points of a die's skin that are checked over bumps, relative to the grid's spacing.
 const SKIN: f64 = 1.0;
 
 /// Working memory of one chain.
@@ -32,17 +32,16 @@ pub struct Work {
     scratch: Scratch<RigidScratch>,
     runs: u64,
     dice: u64,
-    /// Of dice thrown onto one table: what is known about the chain's state, and about the candidate that was simulated
-    /// last.
+    /// For dice thrown onto one table: what is known about the chain's state, and about the candidate simulated last.
     pub(super) memory: Memory<Draw, Fall>,
-    /// Whether the motions of what is simulated are kept.
+    /// Whether the motions of simulations are kept.
     pub(super) records: bool,
-    /// Of dice thrown each onto a table of its own: the draw that was simulated last, and its motions.
+    /// For dice thrown onto tables of their own: the draw simulated last, and its motions.
     last: Option<(Draw, Vec<Recorded>)>,
 }
 
 impl Work {
-    /// How many runs of the simulator it took; trips that a candidate leaves as they are take none.
+    /// How many runs of the simulator were made; trips that a candidate does not change take none.
     #[must_use]
     pub fn runs(&self) -> u64 {
         self.runs
@@ -85,13 +84,13 @@ impl Work {
         Ok(Simulated::Complete(scene.judge(draw, trips.into_iter().flatten().collect())))
     }
 
-    /// Whether the motions of a draw are kept: it was simulated last, and all its dice came to rest.
+    /// Whether the motions of a draw are kept, because it was simulated last and all its dice came to rest.
     #[must_use]
     pub fn keeps_motions_of(&self, draw: &Draw) -> bool {
         self.recorded(draw).is_some()
     }
 
-    /// The motions of a draw, where they are kept.
+    /// The motions of a draw, if they are kept.
     pub(super) fn recorded(&self, draw: &Draw) -> Option<Vec<&Recorded>> {
         let together = self.memory.candidate();
         if together.draw() == Some(draw) {
@@ -131,14 +130,14 @@ impl Work {
         let bodies = self.run((&world, plan.longest), &throws, (Some(&mut watch), trace.as_mut()))?;
         let (trips, ways) = watch.finish(&bodies, plan.longest);
         let touched = Touched::take(world.parts_mut());
-        // Where a die leaves the table its run ends early.
+        // If a die leaves the table, its run ends early.
         let recorded = trace
             .filter(|_| trips.iter().all(|trip| trip.end == End::AtRest))
             .map(|trace| Recorded::new(members.clone(), trace, bodies));
         Ok(Fall { members, trips, ways, touched, recorded })
     }
 
-    /// Runs a world for so many seconds at most, watched and recorded where that is asked for.
+    /// Runs a world for at most this many seconds, watched and recorded if asked for.
     fn run(
         &mut self,
         (world, longest): (&Rigid, f64),
@@ -163,7 +162,7 @@ impl Work {
         Ok(state.bodies().to_vec())
     }
 
-    /// Simulates a draw with all motions and impacts, group by group, for so many seconds at most.
+    /// Simulates a draw with all motions and impacts, group by group, for at most this many seconds.
     pub(super) fn record(&mut self, plan: &Plan, draw: &Draw, longest: f64) -> Result<Vec<Recorded>, ModelError> {
         let alone = || (0..draw.throws.len()).map(|die| vec![die]).collect();
         let groups = if plan.together { self.groups(plan, draw)? } else { alone() };
@@ -221,14 +220,14 @@ impl Plan {
     }
 }
 
-/// The trip of a die of the current state, where that of another draw has the same bits.
+/// The trip of a die of the current state, if that of another draw has the same bits.
 fn known<'a>(plan: &Plan, state: StateRefOf<'a, Dice>, draw: &Draw, die: usize) -> Option<&'a Trip> {
     let (trip, table) = (&state.outcome.trips[die], draw.table_of(die));
     let (old, new) = (&state.draw.tables[table], &draw.tables[table]);
     if !state.draw.throws[die].moves_like(&draw.throws[die]) || !old.has_points_of(new) {
         return None;
     }
-    // A shift moves all there is, but for what was spilt, points that are to be passed, and the edges of the table.
+    // A shift moves everything, except for the spill, points to be passed, and the edges of the table.
     let moved = || {
         let offset = draw.offset(die, plan.surface.spacing());
         let anywhere = plan.carries() && !plan.surface.is_patched() && plan.asked[die].points.is_empty();
@@ -237,8 +236,8 @@ fn known<'a>(plan: &Plan, state: StateRefOf<'a, Dice>, draw: &Draw, die: usize) 
     (old.shifted == new.shifted || moved()).then_some(trip)
 }
 
-/// Whether no outcome of the trips still to be made can lift the constraints above `floor`. Unknown terms are at most
-/// 0, and sums round monotonically.
+/// Whether the outcomes of the remaining trips cannot lift the constraints above `floor`. Unknown terms are at most 0,
+/// and sums round monotonically.
 fn cannot_exceed(plan: &Plan, draw: &Draw, trips: &[Option<Trip>], floor: LogPotential) -> Result<bool, ModelError> {
     if floor.is_zero() {
         return Ok(false);

@@ -1,4 +1,4 @@
-//! What the nodes of a GLB are in a world.
+//! What the nodes of a GLB become in a world.
 
 use super::physics::{Physics, Said};
 use super::write::{Role, Shape, Thing, Things, angles, number, place, rotation};
@@ -8,12 +8,12 @@ use plaus_asset::{AssetError, Content};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What a node is to be.
+/// What a node becomes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
-    /// A thing of its own, with all that hangs on it.
+    /// A thing of its own, with everything attached to it.
     Own(Role),
-    /// Scenery, or a piece of what it hangs on.
+    /// Scenery, or a piece of the thing it is attached to.
     Plain,
     Ignored,
 }
@@ -54,7 +54,7 @@ pub(super) fn things(content: &Content, bytes: &[u8]) -> Result<Things, AssetErr
     for node in &nodes {
         let Part::Own(role @ (Role::Body | Role::Driven)) = parts[&node.index] else { continue };
         let Some(pieces) = pieces.remove(&node.index) else {
-            things.left_out.push(format!("{}: it is said to move, and has no shape", node.name));
+            things.left_out.push(format!("{}: it should move, but has no shape", node.name));
             continue;
         };
         let shape = match &pieces[..] {
@@ -77,7 +77,7 @@ fn thing(node: &Node, name: &str, role: Role, shape: Shape, content: &Content, s
     Thing { at, turn: rotation(node.turn), colour, mass, contact, ..Thing::new(name, role, shape) }
 }
 
-/// What a node is to be: as its `extras` say, else the extension, else its keys.
+/// What a node becomes: according to its `extras`, or else the extension, or else its keys.
 fn part(node: &Node, said: &Said, left_out: &mut Vec<String>) -> Part {
     let asked = node.extras.get("plaus").map(|asked| (asked, asked.as_str()));
     match asked {
@@ -86,8 +86,8 @@ fn part(node: &Node, said: &Said, left_out: &mut Vec<String>) -> Part {
         Some((_, Some("fixed"))) => return Part::Own(Role::Fixed),
         Some((_, Some("ignore"))) => return Part::Ignored,
         Some((other, _)) => {
-            let why = "`plaus` may be body, fixed, ignore, and where there are keys driven";
-            left_out.push(format!("{}: its extras: {other} means nothing: {why}", node.name));
+            let why = "`plaus` may be body, fixed, ignore or, if there are keys, driven";
+            left_out.push(format!("{}: its extras: {other} is unknown: {why}", node.name));
         }
         None => {}
     }
@@ -99,7 +99,7 @@ fn part(node: &Node, said: &Said, left_out: &mut Vec<String>) -> Part {
     }
 }
 
-/// The shape of a node alone, where it has one.
+/// The shape of a node alone, if it has one.
 fn shape(
     node: &Node,
     said: &Said,
@@ -114,18 +114,18 @@ fn shape(
         return None;
     }
     if has_colliders && !said.collides && node.extras.get("plaus").is_none() {
-        left_out.push(format!("{}: it has a mesh and no collider, so that nothing meets it", node.name));
+        left_out.push(format!("{}: it has a mesh but no collider, so nothing can touch it", node.name));
         return None;
     }
     if !names.insert(node.name.clone()) {
-        left_out.push(format!("a second {:?}: give it a name of its own", node.name));
+        left_out.push(format!("a second {:?}: give it another name", node.name));
         return None;
     }
     let object = Some(node.name.clone());
     Some(if said.is_hull { Shape::Hull { object } } else { Shape::File { object } })
 }
 
-/// The keys of what goes its own way.
+/// The keys of a body that follows keyframes.
 fn keys(node: &Node) -> Vec<String> {
     let between = match node.between {
         Between::Step => "step",
@@ -141,11 +141,11 @@ fn keys(node: &Node) -> Vec<String> {
     vec![format!("between = \"{between}\""), format!("keys = [\n{keys}]")]
 }
 
-/// What else a node has that a scenario has no words for.
+/// Other properties of a node that a scenario cannot express.
 fn others(node: &Node, file: &Glb, left_out: &mut Vec<String>) {
     let said = file.said("nodes", node.index);
     for (key, what) in
-        [("camera", "its camera"), ("skin", "its skin: it stays as it is"), ("weights", "its morph targets")]
+        [("camera", "its camera"), ("skin", "its skin: it does not change"), ("weights", "its morph targets")]
     {
         if !said[key].is_null() {
             left_out.push(format!("{}: {what}", node.name));

@@ -1,5 +1,5 @@
-//! Scenarios of files of shapes: what moves in them, what stands still, what goes its own way, and what could not be
-//! taken over.
+//! Scenarios made from files of shapes: what moves in them, what stands still, what follows keyframes, and what could
+//! not be taken over.
 
 mod glb;
 mod physics;
@@ -11,41 +11,43 @@ use plaus_asset::{AssetError, Content, Format};
 use std::collections::BTreeSet;
 use write::{Role, Shape, Thing, Things};
 
-/// A scenario of a file.
+/// A scenario made from a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Imported {
-    /// Its text: a scenario that is valid beside the file.
+    /// Its text: a valid scenario if it is beside the file.
     pub text: String,
-    /// What of the file is not in it, one sentence each; they stand in the text too, as comments.
+    /// What could not be taken over, one sentence each; these are also in the text, as comments.
     pub left_out: Vec<String>,
 }
 
-/// Why there is no scenario of a file.
+/// Why no scenario can be made from a file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImportError {
     /// The file cannot be read.
     #[error(transparent)]
     Asset(#[from] AssetError),
-    /// What it says makes no world.
-    #[error("what was made of it is no scenario, which it should be: {0}")]
+    /// Its content does not make a world.
+    #[error("the scenario made from it is not valid, which is a bug: {0}")]
     Scenario(ScenarioError),
 }
 
-/// Times that what begins inside something is lifted, each time twice as far: from a tenth of a millimetre to farther
-/// than a scenario reaches.
+/// How often a thing that begins inside another is lifted, each time twice as far: from a tenth of a millimetre to
+/// farther than a scenario reaches.
 const LIFTS: u32 = 24;
 
 /// Least lift, in mm.
 const LIFT: f64 = 0.1;
 
-/// The scenario of the file at `path`, as a scenario beside it names it; `anywhere` where that is outside its folder.
+/// The scenario of the file at `path`, as a scenario beside it would name it; with `anywhere` if that is outside its
+/// folder.
 ///
-/// Of a GLB nodes with a mesh are scenery, but those that say otherwise: by `extras` (`plaus`: `body`, `driven`,
-/// `fixed`, `ignore`), by the extension `KHR_physics_rigid_bodies`, or by being animated. What a file of one object
-/// holds in another format is a body that falls; of several all are scenery.
+/// In a GLB, nodes with a mesh are scenery unless something else is said: by `extras` (`plaus`: `body`, `driven`,
+/// `fixed`, `ignore`), by the extension `KHR_physics_rigid_bodies`, or by an animation. In other formats, a single
+/// object is a body that falls, and several are scenery.
 ///
 /// # Errors
-/// [`ImportError`] where the file cannot be read, or things begin inside each other wherever they are lifted to.
+///
+/// [`ImportError`] if the file cannot be read, or things begin inside each other however far they are lifted.
 pub fn scenario(path: &str, anywhere: bool, bytes: &[u8]) -> Result<Imported, ImportError> {
     let content = plaus_asset::read(path, bytes)?;
     let mut things = match content.format {
@@ -78,7 +80,7 @@ fn lifted(key: &str, message: &str) -> Option<usize> {
     message.starts_with("things begin inside each other").then(|| place.parse().ok())?
 }
 
-/// What a file holds that knows no nodes.
+/// The contents of a file without nodes.
 fn plain(path: &str, content: &Content) -> Things {
     let stem = path.rsplit(['/', '\\']).next().and_then(|name| name.rsplit_once('.')).map_or("shape", |(stem, _)| stem);
     let mut things = Things::new(content);
@@ -93,7 +95,7 @@ fn plain(path: &str, content: &Content) -> Things {
         things.all.push(Thing::new(name, role, shape));
     }
     if several {
-        things.left_out.push("which of the objects move: the file does not say, so that all stand still".into());
+        things.left_out.push("which objects move: the file does not say, so all stand still".into());
     }
     things
 }

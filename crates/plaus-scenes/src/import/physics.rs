@@ -1,7 +1,7 @@
 //! The extension `KHR_physics_rigid_bodies`, a draft whose spelling has changed: both are read.
 //!
-//! Shapes stand in `KHR_implicit_shapes`, before that in `KHR_collision_shapes`; a collider names one by
-//! `geometry.shape`, before that by `shape`.
+//! Shapes are in `KHR_implicit_shapes`, formerly `KHR_collision_shapes`; a collider names one by `geometry.shape`,
+//! formerly `shape`.
 
 use super::write::{Role, Shape, number, place, rotation};
 use glam::DVec3;
@@ -80,7 +80,7 @@ impl Physics {
             let known = ["isKinematic", "mass", "linearVelocity", "angularVelocity"];
             for (key, value) in motion.iter().filter(|(key, _)| !known.contains(&key.as_str())) {
                 if !(key == "gravityFactor" && value.as_f64() == Some(1.0)) {
-                    leave(format!("{key} of its motion: it follows from shape and density"));
+                    leave(format!("{key} of its motion: computed from shape and density instead"));
                 }
             }
         }
@@ -90,7 +90,7 @@ impl Physics {
         }
         said.collides = true;
         if !collider["collisionFilter"].is_null() {
-            leave("the filter of its collider: everything meets everything".into());
+            leave("the filter of its collider: here everything can touch everything".into());
         }
         let geometry = if collider["geometry"].is_object() { &collider["geometry"] } else { collider };
         said.is_hull = geometry["convexHull"].as_bool().unwrap_or(false);
@@ -100,12 +100,12 @@ impl Physics {
                 Some((shape, None)) if matches!(shape["type"].as_str(), Some("convex")) => said.is_hull = true,
                 Some((shape, None)) if matches!(shape["type"].as_str(), Some("trimesh" | "mesh")) => {}
                 Some((shape, None)) => {
-                    leave(format!("the shape {} of its collider: its mesh stands for it", shape["type"]))
+                    leave(format!("the shape {} of its collider: its mesh is used instead", shape["type"]))
                 }
-                None => leave(format!("the shape {index} of its collider, which the file lacks")),
+                None => leave(format!("the shape {index} of its collider: the file does not contain it")),
             }
         } else if !geometry["node"].is_null() || !geometry["mesh"].is_null() {
-            leave("which mesh its collider names: its own stands for it".into());
+            leave("the mesh that its collider names: its own is used instead".into());
         }
         if let Some(index) = collider["physicsMaterial"].as_u64() {
             let material = self.materials.get(index as usize).unwrap_or(&Value::Null);
@@ -114,11 +114,11 @@ impl Physics {
             let friction = value("dynamicFriction", 0.6);
             said.contact = Some([friction.clamp(0.0, 1e3), value("restitution", 0.0).clamp(0.0, 1.0)]);
             if value("staticFriction", friction) != friction {
-                leave("its static friction: friction at rest is that of sliding".into());
+                leave("its static friction: the coefficient for sliding is used for both".into());
             }
             for key in ["frictionCombine", "restitutionCombine"] {
                 if !material[key].is_null() {
-                    leave(format!("{key} of its material: geometric means are taken"));
+                    leave(format!("{key} of its material: geometric means are used"));
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! Things of a file, and the text of the scenario that has them.
+//! Things of a file, and the text of a scenario with them.
 
 use glam::{DQuat, DVec3};
 use plaus_asset::{Content, Format, Triangles, upright, upright_turn};
@@ -10,10 +10,10 @@ use std::fmt::Write;
 /// Longest name of a thing in a scenario.
 const LONGEST: usize = 40;
 
-/// How far below the lowest thing the floor is of a file without scenery, in mm.
+/// How far below the lowest thing the floor is, in a world without scenery, in mm.
 const DROP: f64 = 100.0;
 
-/// How uncertain places are written to be, in mm: so that there is something to sample.
+/// The uncertainty of places, in mm, so that there is something to sample.
 const SPREAD: f64 = 5.0;
 
 /// What a thing does.
@@ -27,11 +27,11 @@ pub(super) enum Role {
 /// The shape of a thing, or of a piece of it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Shape {
-    /// The file's triangles: of what moves their convex hull.
+    /// The file's triangles; for things that move, their convex hull.
     File { object: Option<String> },
-    /// The same, as a convex hull whatever it does.
+    /// The same, always as a convex hull.
     Hull { object: Option<String> },
-    /// A solid as a scenario has it, with its volume in m³.
+    /// A solid as written in a scenario, with its volume in m³.
     Solid { said: String, volume: f64 },
     /// Pieces about the thing's origin, in m.
     Pieces(Vec<(Shape, DVec3, DQuat)>),
@@ -47,9 +47,9 @@ pub(super) struct Thing {
     pub(super) at: DVec3,
     pub(super) turn: DQuat,
     pub(super) colour: Option<[u8; 3]>,
-    /// In kg, where the file says it.
+    /// In kg, if the file gives it.
     pub(super) mass: Option<f64>,
-    /// Friction and restitution, where the file says them.
+    /// Friction and restitution, if the file gives them.
     pub(super) contact: Option<[f64; 2]>,
     /// Other keys, as lines of TOML.
     pub(super) lines: Vec<String>,
@@ -88,7 +88,7 @@ impl Things {
         self.all[index].lifted += by;
     }
 
-    /// The triangles of an object, in mm, z up, about its own origin; of all where none is named.
+    /// The triangles of an object, in mm, z up, about its own origin; of all objects if none is named.
     fn triangles(&self, content: &Content, object: Option<&str>) -> Triangles {
         let found = object.and_then(|name| content.object(name));
         let triangles = found.map_or_else(|| content.whole(), |object| object.triangles.clone());
@@ -96,7 +96,8 @@ impl Things {
         triangles.moved(|corner| unit * upright(corner, self.format.up()))
     }
 
-    /// Makes scenery a hull, and leaves out what is no hull either, where the simulator does not take the triangles.
+    /// Replaces scenery by its hull if the simulator does not accept its triangles, and leaves out things without a
+    /// hull.
     pub(super) fn try_shapes(&mut self, content: &Content) {
         let mut kept = Vec::new();
         for mut thing in std::mem::take(&mut self.all) {
@@ -115,7 +116,7 @@ impl Things {
             let faces: Vec<_> = triangles.faces.iter().map(|&face| (face, plaus_sim::Material(0))).collect();
             let Err(error) = Mesh::new(triangles.corners, &faces, 0.0) else { return Ok(()) };
             thing.shape = Shape::Hull { object: object.clone() };
-            self.left_out.push(format!("{}: its triangles, of which it is the convex hull: {error}", thing.name));
+            self.left_out.push(format!("{}: its triangles, replaced by their convex hull: {error}", thing.name));
         }
         self.volume(&thing.shape, content).map(drop)
     }
@@ -133,7 +134,7 @@ impl Things {
         }
     }
 
-    /// Gives all things names that a scenario can have, each its own.
+    /// Gives every thing a unique name that is valid in a scenario.
     pub(super) fn name_all(&mut self) {
         let mut names = BTreeSet::from(["floor".to_owned()]);
         for thing in &mut self.all {
@@ -163,13 +164,12 @@ impl Things {
         let [low, high] = self.ends(content);
         let named = quoted(path);
         let file = if anywhere { format!("{named}, anywhere = true") } else { named };
-        let mut text =
-            format!("# A world of {path}. `plaus explain bodies[].shape` and its like say what keys mean.\n");
+        let mut text = format!("# A world of {path}. `plaus explain bodies[].shape`, for example, explains a key.\n");
         if !self.left_out.is_empty() {
-            text += "#\n# What of the file is not here:\n";
+            text += "#\n# Not taken over from the file:\n";
             self.left_out.iter().for_each(|what| text += &format!("# - {}\n", what.replace('\n', " ")));
         }
-        text += "#\n# What must happen is for you to say, for instance:\n# [[require]]\n";
+        text += "#\n# Say here what must happen, for example:\n# [[require]]\n";
         text += "# rests_at = { x_mm = 0, y_mm = 0, within_mm = 50 }\n\n[world.custom]\nduration_s = 10\n";
         let (materials, names) = self.materials(content);
         text += &materials;
@@ -189,7 +189,7 @@ impl Things {
             let middle = 0.5 * (low + high);
             let radius = (0.03 * (high - low).max_element()).clamp(1.0, 1e5);
             let [x, y, z] = [middle.x, middle.y, high.z + 4.0 * radius].map(number);
-            text += "\n# Nothing in the file moves: what falls here is for you to replace.\n[[world.custom.bodies]]\n";
+            text += "\n# Nothing in the file moves. Replace this falling ball with your own body.\n[[world.custom.bodies]]\n";
             let _ = write!(text, "name = \"ball\"\nshape = {{ ball = {{ radius_mm = {} }} }}\n", number(radius));
             let _ = writeln!(text, "at_mm = [{}, {}, {z}]", uncertain(&x), uncertain(&y));
         }
@@ -289,11 +289,11 @@ pub(super) fn rotation(turn: DQuat) -> DQuat {
     upright_turn(turn, Format::Glb.up())
 }
 
-/// Angles in degrees about the world's x, then y, then z, that turn so.
+/// Angles in degrees about the world's x, then y, then z, that give this rotation.
 pub(super) fn angles(turn: DQuat) -> [f64; 3] {
     let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| turn * axis);
     let level = (x.x * x.x + x.y * x.y).sqrt();
-    // Where x points up or down, z and x turn about one axis: all is given to x.
+    // If x points up or down, z and x turn about one axis: the whole angle is given to x.
     let radians = if level > 1e-9 {
         [atan2(y.z, z.z), atan2(-x.z, level), atan2(x.y, x.x)]
     } else {

@@ -1,4 +1,4 @@
-//! What of a state is a column of tables: its random variables, as they are declared, and results.
+//! The columns of a state in tables: its random variables, as declared, and outcomes.
 
 pub use plaus_mcmc::Member;
 use plaus_mcmc::{Variables, Vars};
@@ -9,7 +9,7 @@ use std::borrow::Cow;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// A random variable of the draw: its mixing says whether solutions really differ.
+    /// A random variable of the draw: its mixing shows whether solutions really differ.
     Draw,
     /// A result of the simulation.
     Outcome,
@@ -18,8 +18,8 @@ pub enum Role {
 /// A number that every state of a scene has: a column of a table, a variable of the diagnostics.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Scalar {
-    /// Column name, `snake_case`: with the member's number, where it belongs to one; behind a body's own name and a dot
-    /// where a scenario names bodies.
+    /// Column name, `snake_case`, with the member's number if it belongs to one. If a scenario names bodies, it follows
+    /// the body's name and a dot.
     pub name: String,
     /// Unit, for readers; empty for pure numbers.
     pub unit: &'static str,
@@ -28,7 +28,7 @@ pub struct Scalar {
     /// Its name without a number.
     #[serde(skip)]
     pub base: Cow<'static, str>,
-    /// Whose it is: the `die` 2 of `x_2`; `None` where there is one only.
+    /// The member it belongs to: the `die` 2 of `x_2`; `None` if there is only one.
     #[serde(skip)]
     pub member: Option<Member>,
     /// Whether its values are whole numbers.
@@ -36,7 +36,7 @@ pub struct Scalar {
     pub whole: bool,
 }
 
-/// A column that is no variable: its declaration, for all members of a kind.
+/// A column that is not a variable: its declaration, for all members of a kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column {
     name: &'static str,
@@ -58,7 +58,7 @@ impl Column {
         Self { name, unit: "", role: Role::Outcome, whole: true }
     }
 
-    /// The same, of the draw alone: what sums up variables that are no columns themselves.
+    /// The same for the draw alone: a summary of variables that are not columns themselves.
     #[must_use]
     pub const fn of_the_draw(self) -> Self {
         Self { role: Role::Draw, ..self }
@@ -82,7 +82,7 @@ impl Scalar {
     }
 }
 
-/// The scalars of a scene: results, then variables; those of one member together, after those of none.
+/// The scalars of a scene: outcomes, then variables; first those of no member, then those of each member together.
 #[must_use]
 pub fn scalars(results: Vec<Scalar>, vars: &Vars) -> Vec<Scalar> {
     let shown = vars.iter().filter(|var| var.column.is_some());

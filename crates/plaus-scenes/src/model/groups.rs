@@ -1,10 +1,10 @@
-//! Bodies that meet only now and then, simulated group by group: every body alone; those that would meet together,
-//! until no two groups meet.
+//! Bodies that meet only now and then, simulated group by group: first every body alone, then together those that would
+//! meet, until no two groups meet.
 //!
-//! Bodies that never touch do not influence each other, so this is the simulation of all of them at once, up to
-//! rounding; and by this procedure, which knows nothing of the chain, it is defined to the last bit. What a candidate
-//! leaves as it is need not be simulated again: groups of the same bodies of which the scene says that they are the
-//! same in both draws.
+//! Bodies that never touch do not influence each other, so this equals the simulation of all of them at once, up to
+//! rounding. To the last bit, the result is defined by this procedure, which knows nothing of the chain. Some groups
+//! need not be simulated again for a candidate: those of the same bodies that, according to the scene, are the same in
+//! both draws.
 
 use crate::way::{Way, merge};
 use plaus_mcmc::ModelError;
@@ -15,7 +15,7 @@ pub(crate) trait Group {
     /// Which bodies, in ascending order.
     fn members(&self) -> &[usize];
 
-    /// The way of each.
+    /// The path of each.
     fn ways(&self) -> &[Way];
 
     /// Whether a body of this group comes nearer than `reach` to one of another group.
@@ -30,7 +30,7 @@ pub(crate) struct Groups<D, G> {
     draw: Option<D>,
     /// Each body alone.
     alone: Vec<Option<Arc<G>>>,
-    /// Groups that were simulated together, on the way to the final ones.
+    /// Groups that were simulated together on the way to the final ones.
     together: Vec<Arc<G>>,
     /// The final groups.
     last: Vec<Arc<G>>,
@@ -53,9 +53,9 @@ impl<D: Clone, G: Group> Groups<D, G> {
         &self.last
     }
 
-    /// Makes these the simulations of `draw`. `present` says of each body whether it is there; centres nearer than
-    /// `reach` are simulated together, none where bodies do not touch. Groups of `known` that are the `same` in both
-    /// draws are taken over, all others `run`.
+    /// Makes these the simulations of `draw`. `present` tells for each body whether it is there. Bodies with centres
+    /// nearer than `reach` are simulated together; without `reach`, bodies do not touch. Groups of `known` that are the
+    /// `same` in both draws are reused, all others are `run`.
     pub(crate) fn simulate(
         &mut self,
         draw: &D,
@@ -64,7 +64,7 @@ impl<D: Clone, G: Group> Groups<D, G> {
         (known, same): (&Self, impl Fn(&G) -> bool),
         mut run: impl FnMut(Vec<usize>) -> Result<G, ModelError>,
     ) -> Result<(), ModelError> {
-        // Only a draw that was simulated to the end is known.
+        // Only a draw that was simulated to the end is remembered.
         let kept = self.draw.take();
         self.alone.clear();
         self.together.clear();
@@ -94,7 +94,7 @@ impl<D: Clone, G: Group> Groups<D, G> {
         Ok(())
     }
 
-    /// Puts groups together that meet, until none do.
+    /// Joins groups that meet, until none do.
     fn join(
         &mut self,
         reach: f64,
@@ -123,7 +123,7 @@ impl<D: Clone, G: Group> Groups<D, G> {
     }
 }
 
-/// What a chain knows: the simulations of its current state, and of the candidate that was simulated last.
+/// What a chain remembers: the simulations of its current state, and of the candidate simulated last.
 #[derive(Debug)]
 pub(crate) struct Memory<D, G> {
     current: Groups<D, G>,
@@ -137,20 +137,20 @@ impl<D, G> Default for Memory<D, G> {
 }
 
 impl<D: Clone + PartialEq, G: Group> Memory<D, G> {
-    /// The simulations of the candidate that was simulated last, until it is settled.
+    /// The simulations of the candidate simulated last, until it is settled.
     pub(crate) fn candidate(&self) -> &Groups<D, G> {
         &self.candidate
     }
 
-    /// Keeps what is known about that candidate, if it became the current state.
+    /// Keeps what is known about that candidate if it became the current state.
     pub(crate) fn settle(&mut self, accepted: bool) {
         if accepted {
             std::mem::swap(&mut self.current, &mut self.candidate);
         }
     }
 
-    /// Simulates `draw`, by a function that is given what is known and fills in what is new. `known`: a draw from whose
-    /// simulation, made now unless it is remembered, parts may be taken.
+    /// Simulates `draw` by a function that gets what is known and fills in what is new. `known` is a draw whose
+    /// simulation can be reused in part; it is simulated now unless it is remembered.
     pub(crate) fn simulate(
         &mut self,
         draw: &D,

@@ -1,5 +1,5 @@
-//! What all scenes have in common: weights of moves by their names, columns by their declaration, bodies simulated
-//! group by group.
+//! What all scenes have in common: weights of moves by name, columns from declared variables, bodies simulated group by
+//! group.
 
 pub mod columns;
 pub(crate) mod groups;

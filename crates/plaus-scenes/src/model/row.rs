@@ -1,13 +1,13 @@
-//! What is said of a move where a scene lists it.
+//! A move's entry in a scene's list.
 
-/// What a move is to the paper.
+/// A move's role in the paper.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Printed {
-    /// It is none of the paper's.
+    /// It is not one of the paper's.
     Not,
-    /// It is one of the paper's, which gives it this weight.
+    /// It is one of the paper's, with this weight.
     Weight(f64),
-    /// It is one of the paper's, which leaves its weight to the user.
+    /// It is one of the paper's, but its weight is left to the user.
     Free,
 }
 
@@ -18,9 +18,9 @@ pub struct Row {
     pub name: &'static str,
     /// What it does.
     pub meaning: &'static str,
-    /// Its weight where a scenario does not say.
+    /// Its weight if a scenario does not give one.
     pub weight: f64,
-    /// What it is to the paper.
+    /// Its role in the paper.
     pub printed: Printed,
 }
 

@@ -19,10 +19,11 @@ use std::marker::PhantomData;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Moves {
-    /// All moves, by `weights`.
+    /// All moves, weighted by `weights`.
     #[default]
     Mixed,
-    /// The paper's moves alone, by the paper's weights; by `weights` where the paper leaves them to the user.
+    /// Only the paper's moves, with the paper's weights; if the paper leaves a weight to the user, it is taken from
+    /// `weights`.
     Paper,
 }
 
@@ -32,9 +33,9 @@ pub trait Menu {
     type Scene: Variables + 'static;
     /// The scene's name.
     const SCENE: &'static str;
-    /// One row a move of its own.
+    /// One row for each move of its own.
     const ROWS: &'static [Row];
-    /// Weights of moves that every scene offers, where they are not 0.
+    /// Weights of moves that every scene offers, if they are not 0.
     const OFFERED: &'static [(&'static str, f64)] = &[];
 }
 
@@ -58,13 +59,13 @@ pub struct Weights<M: Menu> {
 const MOST: f64 = 1e6;
 
 impl<M: Menu> Weights<M> {
-    /// The paper's weights; those that it leaves to the user as they are by default.
+    /// The paper's weights; those that it leaves to the user have their default values.
     #[must_use]
     pub fn paper() -> Self {
         Self::default().printed()
     }
 
-    /// What is left of them where only the paper's moves are made.
+    /// The weights that remain if only the paper's moves are made.
     fn printed(&self) -> Self {
         let one = |(row, &set): (Row, &f64)| match row.printed {
             Printed::Not => 0.0,
@@ -74,10 +75,11 @@ impl<M: Menu> Weights<M> {
         Self { values: rows::<M>().zip(&self.values).map(one).collect(), menu: PhantomData }
     }
 
-    /// The same with another weight for a move.
+    /// The same weights with another one for a move.
     ///
     /// # Panics
-    /// Where the scene has no such move.
+    ///
+    /// If the scene has no such move.
     #[must_use]
     pub fn with(mut self, name: &str, weight: f64) -> Self {
         self.set(name, weight);
@@ -87,7 +89,8 @@ impl<M: Menu> Weights<M> {
     /// Gives a move another weight.
     ///
     /// # Panics
-    /// Where the scene has no such move.
+    ///
+    /// If the scene has no such move.
     pub fn set(&mut self, name: &str, weight: f64) {
         let place = Self::place(name);
         self.values[place] = weight;
@@ -96,7 +99,8 @@ impl<M: Menu> Weights<M> {
     /// The weight of a move.
     ///
     /// # Panics
-    /// Where the scene has no such move.
+    ///
+    /// If the scene has no such move.
     #[must_use]
     pub fn get(&self, name: &str) -> f64 {
         self.values[Self::place(name)]
@@ -107,13 +111,15 @@ impl<M: Menu> Weights<M> {
         place.unwrap_or_else(|| panic!("{} has no move `{name}`", M::SCENE))
     }
 
-    /// The mixture of moves, each weighed by its name. Those that are left out have no weight.
+    /// The mixture of moves, each with the weight for its name. Moves that are left out have no weight.
     ///
     /// # Errors
-    /// [`ConfigError`] where no weight is positive, or one is none.
+    ///
+    /// [`ConfigError`] if no weight is positive, or a weight is invalid.
     ///
     /// # Panics
-    /// Where a move is not in the scene's table.
+    ///
+    /// If a move is not in the scene's table.
     pub fn mix(
         &self,
         which: Moves,

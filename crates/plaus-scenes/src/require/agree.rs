@@ -1,11 +1,11 @@
-//! Contradictions that can be known before anything is simulated.
+//! Contradictions between requirements that are known before anything is simulated.
 
 use super::cast::Cast;
 use super::claim::Claim;
 use super::kinds::Require;
 use crate::scene::ConfigError;
 
-/// Refuses requirements, each with the key that says it, of which two contradict each other.
+/// Refuses requirements if two of them contradict each other. Each comes with its key.
 pub(crate) fn agree(all: &[(String, Require)], cast: &Cast) -> Result<(), ConfigError> {
     let claims: Vec<(usize, Claim)> = all
         .iter()

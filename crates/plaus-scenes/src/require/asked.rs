@@ -1,4 +1,4 @@
-//! A scene of which more is required than what it demands itself.
+//! A scene with requirements beyond its own.
 
 use super::agree::agree;
 use super::cast::Cast;
@@ -27,12 +27,12 @@ pub struct Asked<S> {
     asks: Arc<Asks>,
 }
 
-/// What is required, and of whom.
+/// The requirements, and the cast that they are about.
 #[derive(Debug)]
 struct Asks {
     requirements: Vec<Require>,
     cast: Cast,
-    /// The most that all requirements together can bring.
+    /// The most that all requirements together can contribute.
     most: f64,
     /// The earliest time at which a motion may show that it is hopeless.
     moment: Option<f64>,
@@ -52,20 +52,20 @@ pub struct Answer<O> {
 pub struct Judged {
     /// The scene's own log constraint.
     pub own: LogPotential,
-    /// A mark a requirement, in their order.
+    /// A mark for each requirement, in order.
     pub marks: Vec<Mark>,
 }
 
 impl<O> Answer<O> {
-    /// A mark a requirement, in their order.
+    /// A mark for each requirement, in order.
     #[must_use]
     pub fn marks(&self) -> &[Mark] {
         self.judged.as_ref().map_or(&[], |judged| &judged.marks)
     }
 }
 
-/// A bound is taken for smaller than a floor only where it is by more than this part of it: sums in another order may
-/// be off by some units in the last place.
+/// A bound counts as less than a floor only if it is less by more than this part: sums in another order may differ by
+/// some units in the last place.
 const ROUNDING: f64 = 1e-9;
 
 /// The key of a requirement.
@@ -77,7 +77,8 @@ impl<S: Scene> Asked<S> {
     /// `scene` under `requirements`.
     ///
     /// # Errors
-    /// [`ConfigError`] where a requirement is about what there is not, can never be met, or contradicts another.
+    ///
+    /// [`ConfigError`] if a requirement names something that does not exist, can never be met, or contradicts another.
     pub fn new(scene: S, requirements: &[Require]) -> Result<Self, ConfigError> {
         let cast = scene.cast();
         for (index, one) in requirements.iter().enumerate() {
@@ -97,13 +98,13 @@ impl<S: Scene> Asked<S> {
         &self.scene
     }
 
-    /// What is required.
+    /// The requirements.
     #[must_use]
     pub fn requirements(&self) -> &[Require] {
         &self.asks.requirements
     }
 
-    /// The most that requirements can still bring.
+    /// The most that requirements can still contribute.
     fn bound(requirements: &[Require], probe: &Probe<'_>) -> f64 {
         requirements.iter().fold(0.0, |sum, one| sum + one.reach(probe).most.log)
     }
@@ -115,23 +116,23 @@ impl<S: Scene> Asked<S> {
         self.asks.requirements.iter().map(|one| one.reach(&probe).most).collect()
     }
 
-    /// The most, in nats, that all requirements together can still bring, where a motion is known until `known`.
+    /// The most, in nats, that all requirements together can still contribute to a motion that is known until `known`.
     #[must_use]
     pub fn most_after(&self, motion: &Animation, known: f64) -> f64 {
         Self::bound(&self.asks.requirements, &Probe::until(motion, &self.asks.cast, known))
     }
 
-    /// Whether the beginning of a motion shows already that it cannot exceed `floor`.
+    /// Whether the beginning of a motion already shows that it cannot exceed `floor`.
     fn is_hopeless(&self, draw: &S::Draw, floor: LogPotential) -> Result<bool, ModelError> {
         let (Some(moment), Some(own)) = (self.asks.moment, self.scene.most()) else { return Ok(false) };
-        // The window's end itself is to be known.
+        // The end of the window must be included.
         let until = moment.next_up();
         let Some(begun) = self.scene.motion_to(draw, until)? else { return Ok(false) };
         let most = own.value() + self.most_after(&begun, until);
         Ok(most + ROUNDING * (1.0 + most.abs()) <= floor.value())
     }
 
-    /// What the scene's own constraint must exceed where the whole must exceed `floor`.
+    /// What the scene's own constraint must exceed so that the whole can exceed `floor`.
     fn own_floor(&self, floor: LogPotential) -> Result<LogPotential, ModelError> {
         if self.asks.most == 0.0 || floor.is_zero() {
             return Ok(floor);
@@ -140,10 +141,10 @@ impl<S: Scene> Asked<S> {
         Ok(LogPotential::new((floor.value() - self.asks.most).next_down().min(f64::MAX))?)
     }
 
-    /// The marks of a draw that the scene itself does not forbid.
+    /// The marks of a draw that the scene itself allows.
     fn marks(&self, draw: &S::Draw, own: LogPotential, scratch: &S::Scratch) -> Result<Vec<Mark>, ModelError> {
         if own.is_zero() {
-            // What the scene forbids may have no motion; nothing that is asked of it counts.
+            // A draw that the scene forbids may have no motion; its marks do not matter.
             return Ok(vec![Mark { margin: -FAR, log: -FAR }; self.asks.requirements.len()]);
         }
         Ok(self.judge(&self.scene.motion_simulated(draw, scratch)?))

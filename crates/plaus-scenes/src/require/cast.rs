@@ -1,15 +1,15 @@
-//! Who is in a scene, and what names stand for.
+//! The bodies and scenery of a scene, and what names refer to.
 
-/// Who is in a scene.
+/// The bodies and scenery of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cast {
     /// Names of bodies, as in animations.
     pub bodies: Vec<String>,
-    /// Names of what stands still and can be touched.
+    /// Names of the scenery that can be touched.
     pub fixed: Vec<String>,
-    /// When the simulation ends at the latest, in s.
+    /// The latest end of a simulation, in s.
     pub longest: f64,
-    /// Whether bodies are dice, whose faces have pips.
+    /// Whether the bodies are dice, whose faces have pips.
     pub faces: bool,
 }
 
@@ -22,13 +22,13 @@ impl Cast {
         }
     }
 
-    /// The bodies that a pattern stands for.
+    /// The bodies that match a pattern.
     pub(super) fn matching<'a>(&'a self, pattern: &'a str) -> impl Iterator<Item = &'a str> {
         self.bodies.iter().map(String::as_str).filter(move |name| matches(pattern, name))
     }
 }
 
-/// Whether `pattern`, in which each `*` stands for any letters, is `name`.
+/// Whether `name` matches `pattern`, in which each `*` stands for any characters.
 pub(super) fn matches(pattern: &str, name: &str) -> bool {
     let Some((head, rest)) = pattern.split_once('*') else { return pattern == name };
     let Some(name) = name.strip_prefix(head) else { return false };

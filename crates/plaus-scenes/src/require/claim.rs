@@ -1,4 +1,4 @@
-//! What requirements claim that others may contradict.
+//! Claims of requirements, which others may contradict.
 
 use super::cast::Cast;
 use super::event::Event;
@@ -7,10 +7,10 @@ use super::when::Window;
 use glam::DVec3;
 use plaus_dist::math;
 
-/// What a requirement claims of a thing that can be only one way.
+/// A claim about something that can be only one way.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Claim {
-    /// An axis of a body, in its own frame, is up to so many degrees, at the end or at a time.
+    /// An axis of a body, in its own frame, points up to within some degrees, at the end or at a time.
     Up {
         /// Which body.
         body: String,
@@ -25,7 +25,7 @@ pub(super) enum Claim {
     Place {
         /// Which body.
         body: String,
-        /// x, y and z in mm, where they count.
+        /// x, y and z in mm, if they matter.
         at: [Option<f64>; 3],
         /// How far off it may be, in mm.
         within: f64,
@@ -57,7 +57,7 @@ impl Claim {
         Self::Number { what, from: band.from, to: band.to }
     }
 
-    /// Why both cannot be met; `None` where they may.
+    /// Why the two cannot both be met; `None` if they may.
     pub(super) fn contradicts(&self, other: &Self, cast: &Cast) -> Option<String> {
         let only = cast.only().unwrap_or_default();
         match (self, other) {
@@ -68,7 +68,7 @@ impl Claim {
                 let [a, b] = named(only, [a, b]);
                 let between = math::acos(axis.dot(*another).clamp(-1.0, 1.0)).to_degrees();
                 let apart = a == b && when == then && between > within_deg + besides;
-                apart.then(|| format!("two sides of {a} that lie {between:.0}° apart cannot both be up"))
+                apart.then(|| format!("two sides of {a}, {between:.0}° apart, cannot both be up"))
             }
             (Self::Place { body: a, at: one, within }, Self::Place { body: b, at: two, within: besides }) => {
                 let [a, b] = named(only, [a, b]);
@@ -83,17 +83,17 @@ impl Claim {
                 let alike =
                     Event { body: x.into(), ..(**a).clone() }.is_same(&Event { body: y.into(), ..(**b).clone() });
                 let apart = alike && (one.to < two.from || two.to < one.from);
-                apart.then(|| "one event cannot happen in two windows that lie apart".to_owned())
+                apart.then(|| "one event cannot happen in two windows that do not overlap".to_owned())
             }
             (Self::Number { what: a, from, to }, Self::Number { what: b, from: low, to: high }) => (a == b
                 && (to < low || high < from))
-                .then(|| "a number cannot lie in two ranges that lie apart".to_owned()),
+                .then(|| "a number cannot lie in two ranges that do not overlap".to_owned()),
             _ => None,
         }
     }
 }
 
-/// Names of bodies; one that is left out means the only one there is.
+/// Names of bodies; a name that is left out means the only body there is.
 fn named<'a>(only: &'a str, names: [&'a str; 2]) -> [&'a str; 2] {
     names.map(|name| if name.is_empty() { only } else { name })
 }

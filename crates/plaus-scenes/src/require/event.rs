@@ -12,17 +12,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Event {
-    /// Name of a body as in exports, or a pattern such as `ball_*`, which stands for all it fits. May be left out
-    /// where there is one body alone.
+    /// Name of a body as in exports, or a pattern such as `ball_*` for all matching bodies. May be left out if there is
+    /// only one body.
     pub body: String,
     /// What happens.
     pub what: What,
-    /// Of impacts: with whom, a body or a part of the scenery; empty: with anything.
+    /// For impacts: with what, a body or a part of the scenery; empty: with anything.
     pub with: String,
-    /// Of impacts: which of them, from 1; −1 is the last, −2 the last but one.
+    /// For impacts: which of them, counted from 1; −1 is the last, −2 the last but one.
     #[schemars(range(min = -10_000, max = 10_000))]
     pub nth: i32,
-    /// Of impacts: only those count at which the two meet at this speed or faster.
+    /// For impacts: only count those at which the two meet at this speed or faster.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
     pub faster_than: f64,
 }
@@ -34,7 +34,7 @@ pub enum What {
     /// It hits something.
     #[default]
     Impact,
-    /// It comes to rest: of several bodies, the last of them does.
+    /// It comes to rest; for several bodies, the last of them does.
     Rest,
 }
 
@@ -49,7 +49,7 @@ impl Event {
         place.body("body", &self.body)?;
         place.partner("with", &self.with)?;
         if self.nth == 0 {
-            return Err(place.at("nth").wrong("there is no impact 0: they count from 1, or from −1 backwards"));
+            return Err(place.at("nth").wrong("there is no impact 0: count from 1 forwards, or from −1 backwards"));
         }
         Ok(())
     }
@@ -65,7 +65,7 @@ impl Event {
             What::Impact => match (self.found(probe), probe.is_whole()) {
                 (Some(hit), true) => Span::at(hit.time),
                 (Some(hit), false) if self.nth > 0 => Span::at(hit.time),
-                // Later ones may take its place among the last.
+                // A later impact may still become the n-th last.
                 (Some(hit), false) => Span::from(hit.time),
                 (None, true) => Span::NEVER,
                 (None, false) => Span::from(if self.nth > 0 { probe.known() } else { 0.0 }),
@@ -80,7 +80,7 @@ impl Event {
         if self.nth > 0 { hits.get(nth).copied() } else { hits.iter().rev().nth(nth).copied() }
     }
 
-    /// Where a number of the impact, none where it is not known, may still lie in `band`.
+    /// Where a number of the impact may still lie relative to `band`; it is unknown while the impact is.
     pub(super) fn measured(
         &self,
         probe: &Probe<'_>,
@@ -95,7 +95,7 @@ impl Event {
         }
     }
 
-    /// Whether the same is meant, whenever it happens.
+    /// Whether both mean the same event, apart from when it happens.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         let of_impact = self.what == What::Rest
             || (self.with == other.with && self.nth == other.nth && self.faster_than == other.faster_than);

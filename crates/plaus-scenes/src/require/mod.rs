@@ -1,4 +1,4 @@
-//! What can be required of a motion, in any scene: one vocabulary, `[[require]]` in scenario files.
+//! Requirements on a motion, in any scene: one vocabulary, `[[require]]` in scenario files.
 //!
 //! ```
 //! use plaus_scenes::Scenario;
@@ -15,13 +15,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Each kind is one file in `kinds` and one row there. It gives a **margin**, in nats by a stated scale, which is at
-//! least 0 where it is met; what the margin lacks is what the state loses in log density. All kinds look at a motion
-//! through one [`Probe`], on its closed-form pieces, never on samples in time. Of a motion that is known in part only,
-//! the same function says between which margins it will end up: so what stops a hopeless simulation early cannot
-//! disagree with what judges a whole one.
+//! Each kind is one file in `kinds` and one row there. It gives a **margin**, in nats on a stated scale, which is at
+//! least 0 if the requirement is met. The state loses as much log density as the margin lacks. All kinds look at a
+//! motion through one [`Probe`], at its closed-form pieces, never at samples in time. For a motion known only in part,
+//! the same function gives the range in which the margin will end up. So stopping a hopeless simulation early cannot
+//! disagree with judging a whole one.
 //!
-//! Places are in millimetres in the axes of the scenario files, z up; times in seconds of the animation.
+//! Places are in millimetres along the axes of the scenario files, z up; times are in seconds of the animation.
 
 mod agree;
 mod asked;
@@ -48,5 +48,5 @@ pub use tally::{Clause, Tally};
 pub use timed::Timed;
 pub use when::{When, Window};
 
-/// Most requirements in one another.
+/// How deep requirements may be nested.
 pub const DEEPEST: usize = 8;

@@ -1,15 +1,15 @@
-//! Where a requirement stands in a scenario, to blame it there.
+//! The place of a requirement in a scenario, for error messages.
 
 use super::cast::{Cast, matches};
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
 
-/// A table of a scenario that asks for something.
+/// A table of a scenario that contains a requirement.
 #[derive(Debug, Clone)]
 pub(super) struct Place<'a> {
     key: String,
     cast: &'a Cast,
-    /// Whether a body need not be named, because each of several is asked in turn.
+    /// Whether a body need not be named, because several are asked about in turn.
     counted: bool,
 }
 
@@ -19,17 +19,17 @@ impl<'a> Place<'a> {
         Self { key: format!("require[{index}]"), cast, counted: false }
     }
 
-    /// A key of it.
+    /// The place of one of its keys.
     pub(super) fn at(&self, key: &str) -> Self {
         Self { key: format!("{}.{key}", self.key), ..self.clone() }
     }
 
-    /// An entry of the list that it is.
+    /// The place of an entry, if it is a list.
     pub(super) fn entry(&self, index: usize) -> Self {
         Self { key: format!("{}[{index}]", self.key), ..self.clone() }
     }
 
-    /// The same, in which bodies need not be named.
+    /// The same place, where bodies need not be named.
     pub(super) fn counted(&self) -> Self {
         Self { counted: true, ..self.clone() }
     }
@@ -38,17 +38,17 @@ impl<'a> Place<'a> {
         self.cast
     }
 
-    /// What is wrong here.
+    /// An error at this place.
     pub(super) fn wrong(&self, message: &str) -> ConfigError {
         ConfigError::new(self.key.clone(), message)
     }
 
-    /// Refuses a name, or pattern, that no body has.
+    /// Refuses a name, or pattern, that no body matches.
     pub(super) fn body(&self, key: &str, name: &str) -> Result<(), ConfigError> {
         let place = self.at(key);
         if name.is_empty() {
             let one = self.counted || self.cast.only().is_some();
-            return if one { Ok(()) } else { Err(place.wrong(&format!("which body? There are {}", self.bodies()))) };
+            return if one { Ok(()) } else { Err(place.wrong(&format!("name a body: there are {}", self.bodies()))) };
         }
         if self.cast.matching(name).next().is_some() {
             return Ok(());
@@ -56,13 +56,17 @@ impl<'a> Place<'a> {
         Err(place.wrong(&self.unknown(name, &self.cast.bodies)))
     }
 
-    /// The same, of one body alone.
+    /// The same for a name that must be one body.
     pub(super) fn one_body(&self, key: &str, name: &str) -> Result<(), ConfigError> {
         self.body(key, name)?;
-        if name.contains('*') { Err(self.at(key).wrong("one body is asked for here, not a pattern")) } else { Ok(()) }
+        if name.contains('*') {
+            Err(self.at(key).wrong("give the name of one body here, not a pattern"))
+        } else {
+            Ok(())
+        }
     }
 
-    /// Refuses a name of what nothing can touch; empty is anything.
+    /// Refuses a name that matches nothing that can be touched; empty means anything.
     pub(super) fn partner(&self, key: &str, name: &str) -> Result<(), ConfigError> {
         let all: Vec<String> = self.cast.bodies.iter().chain(&self.cast.fixed).cloned().collect();
         if name.is_empty() || all.iter().any(|known| matches(name, known)) {
@@ -71,12 +75,12 @@ impl<'a> Place<'a> {
         Err(self.at(key).wrong(&self.unknown(name, &all)))
     }
 
-    /// Refuses limits that leave nothing, or ask for nothing.
+    /// Refuses limits that exclude everything, or nothing.
     pub(super) fn limits(&self, at_least: Option<f64>, at_most: Option<f64>) -> Result<(), ConfigError> {
         match (at_least, at_most) {
-            (None, None) => Err(self.wrong("it asks for nothing: say what is the least, or the most")),
+            (None, None) => Err(self.wrong("it asks for nothing: give a lower limit, an upper limit, or both")),
             (Some(least), Some(most)) if least > most => {
-                Err(self.wrong(&format!("at least {least} and at most {most}: nothing is both")))
+                Err(self.wrong(&format!("at least {least} and at most {most}: no value is both")))
             }
             _ => Ok(()),
         }
@@ -93,7 +97,7 @@ impl<'a> Place<'a> {
     }
 }
 
-/// Names in a sentence, the first few of many.
+/// Lists names in a sentence: the first few, if there are many.
 fn listed(names: &[String]) -> String {
     const SHOWN: usize = 12;
     let more = names.len().saturating_sub(SHOWN);

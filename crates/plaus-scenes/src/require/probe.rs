@@ -1,4 +1,4 @@
-//! One way to ask a motion: bodies by name, events by time. All kinds of requirements ask through it.
+//! One interface to a motion: bodies by name, events by time. All kinds of requirements use it.
 
 use super::cast::{Cast, matches};
 use super::score::Span;
@@ -16,14 +16,14 @@ pub(super) struct Moving {
     pub(super) spin: DVec3,
 }
 
-/// A motion as far as it is known.
+/// A motion, as far as it is known.
 #[derive(Debug, Clone, Copy)]
 pub struct Probe<'a> {
     motion: &'a Animation,
     cast: &'a Cast,
-    /// Until when all is known; infinite where the motion is known to its end.
+    /// Until when everything is known; infinite if the motion is known to its end.
     known: f64,
-    /// Whom a requirement that names no body is about.
+    /// The body that a requirement is about if it names none.
     whom: Option<&'a str>,
 }
 
@@ -34,13 +34,13 @@ impl<'a> Probe<'a> {
         Self { motion, cast, known: f64::INFINITY, whom: cast.only() }
     }
 
-    /// A motion of which everything before `known` s is there, and of what comes later some, or nothing.
+    /// A motion that is complete before `known` s; later parts may be missing.
     #[must_use]
     pub fn until(motion: &'a Animation, cast: &'a Cast, known: f64) -> Self {
         Self { known, ..Self::whole(motion, cast) }
     }
 
-    /// The same, about `whom` where no body is named.
+    /// The same, about `whom` if no body is named.
     pub(super) fn about(self, whom: &'a str) -> Self {
         Self { whom: Some(whom), ..self }
     }
@@ -56,12 +56,12 @@ impl<'a> Probe<'a> {
         self.known
     }
 
-    /// Who there is.
+    /// The bodies and scenery.
     pub(super) fn cast(&self) -> &'a Cast {
         self.cast
     }
 
-    /// The body that is named, or that the requirement is about.
+    /// The body that is named, or else the one that the requirement is about.
     pub(super) fn name<'b>(&self, name: &'b str) -> &'b str
     where
         'a: 'b,
@@ -69,18 +69,19 @@ impl<'a> Probe<'a> {
         if name.is_empty() { self.whom.unwrap_or_default() } else { name }
     }
 
-    /// A body's motion; `None` where it has none, as a ball that is not dropped.
+    /// A body's motion; `None` if it has none, like a ball that is not dropped.
     pub(super) fn track(&self, name: &str) -> Option<&'a Track> {
         let name = self.name(name);
         self.motion.tracks.iter().find(|track| track.name == name)
     }
 
-    /// When the motion ends, or how far it is known.
+    /// The end of the motion, or of its known part.
     pub(super) fn end(&self) -> f64 {
         if self.is_whole() { self.motion.duration } else { self.known }
     }
 
-    /// The part of a window that is known; `None` where none of it is. What comes after the end is as at the end.
+    /// The known part of a window; `None` if none of it is known. After the end of the motion, everything stays as at
+    /// the end.
     pub(super) fn seen(&self, window: Window) -> Option<[f64; 2]> {
         let end = self.end();
         match self.is_whole() {
@@ -99,8 +100,8 @@ impl<'a> Probe<'a> {
         Window { from: self.end(), to: self.end() }
     }
 
-    /// A time at which a body is looked at, no later than the end; `None` where it is not known yet. Without a time:
-    /// the end.
+    /// A time at which a body is observed, no later than the end; `None` if it is not known yet. Without a time: the
+    /// end.
     pub(super) fn moment(&self, time: Option<f64>) -> Option<f64> {
         match time {
             Some(time) if time < self.known => Some(time.min(self.end())),
@@ -108,7 +109,7 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// Of the two that meet, the one that `body` stands for.
+    /// The body of the two in an impact that matches `body`.
     pub(super) fn party(&self, hit: &Impact, body: &str) -> Option<&'a Track> {
         let name = if matches(self.name(body), &hit.body) { &hit.body } else { &hit.other };
         self.motion.tracks.iter().find(|track| track.name == *name)
@@ -132,8 +133,8 @@ impl<'a> Probe<'a> {
         ways::legs(track, from, to)
     }
 
-    /// Impacts of bodies that `body` stands for with what `with` does (anything, where it is empty), at which they
-    /// met at `faster` m/s or more, in order of time, as far as they are known.
+    /// Impacts of bodies that match `body` with those that match `with` (anything, if it is empty) at `faster` m/s or
+    /// more, in order of time, as far as they are known.
     pub(super) fn hits<'b>(&self, body: &'b str, with: &'b str, faster: f64) -> impl Iterator<Item = &'a Impact> + 'b
     where
         'a: 'b,
@@ -157,7 +158,7 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// All that is known of the motion.
+    /// Everything that is known of the motion.
     pub(super) fn motion(&self) -> &'a Animation {
         self.motion
     }

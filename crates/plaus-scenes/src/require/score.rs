@@ -2,20 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
-/// No margin is larger or smaller, in nats: what never happens has this much below 0.
+/// The largest absolute value of a margin, in nats. An event that never happens has a margin this far below 0.
 pub const FAR: f64 = 1e6;
 
 /// How well a requirement is met.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Mark {
-    /// By how much, in nats: at least 0 where it is met.
+    /// The margin in nats: at least 0 if it is met.
     pub margin: f64,
-    /// What it brings to the log density, in nats; mostly the margin where that is negative, else 0.
+    /// Its contribution to the log density, in nats: usually the margin if that is negative, else 0.
     pub log: f64,
 }
 
 impl Mark {
-    /// A margin, which costs what it lacks.
+    /// A margin; if it is negative, the state loses as much.
     #[must_use]
     pub fn of(margin: f64) -> Self {
         let margin = margin.clamp(-FAR, FAR);
@@ -29,13 +29,13 @@ impl Mark {
     }
 }
 
-/// Between which marks a requirement ends up, whatever the part of a motion does that is not known yet. Of a motion
-/// that is known to its end both are the same.
+/// The range of marks that a requirement may end up with, whatever the unknown part of a motion does. If the motion is
+/// known to its end, both ends are the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// The worst that may come of it.
+    /// The worst possible mark.
     pub least: Mark,
-    /// The best.
+    /// The best possible mark.
     pub most: Mark,
 }
 
@@ -46,13 +46,13 @@ impl Reach {
         Self { least: Mark::of(least), most: Mark::of(most) }
     }
 
-    /// What never happens.
+    /// The mark of an event that never happens.
     pub const NEVER: Self = {
         let mark = Mark { margin: -FAR, log: -FAR };
         Self { least: mark, most: mark }
     };
 
-    /// Nothing is known but the best margin there is.
+    /// Only the best possible margin is known.
     #[must_use]
     pub fn up_to(most: f64) -> Self {
         Self::between(-FAR, most)
@@ -64,7 +64,7 @@ impl Reach {
         Self::between(margin, margin)
     }
 
-    /// The opposite: met where this is not, strictly.
+    /// The opposite: met exactly if this is not.
     #[must_use]
     pub fn opposite(self) -> Self {
         // The next smaller number, so that of a margin of 0 and its opposite only one is met.
@@ -73,7 +73,7 @@ impl Reach {
     }
 }
 
-/// From one value to another; infinite where there is no end, or, of times, where it may never come.
+/// A range of values. An end is infinite if there is none; for times, also if the event may never happen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
     /// Not below.
@@ -99,25 +99,25 @@ impl Span {
     pub const NEVER: Self = Self { low: f64::INFINITY, high: f64::INFINITY };
 }
 
-/// An allowed range, and what lies a nat beyond its ends.
+/// An allowed range, and how far outside it costs a nat.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
-    /// Where it begins; −∞: it has no beginning.
+    /// Lower end; −∞ if there is none.
     pub from: f64,
-    /// Where it ends; ∞: it has no end.
+    /// Upper end; ∞ if there is none.
     pub to: f64,
-    /// What is worth a nat.
+    /// The distance that costs one nat.
     pub scale: f64,
 }
 
 impl Band {
-    /// From one limit to another; what is missing is no limit.
+    /// A band between two limits; `None` is no limit.
     #[must_use]
     pub fn of_limits(at_least: Option<f64>, at_most: Option<f64>, scale: f64) -> Self {
         Self { from: at_least.unwrap_or(f64::NEG_INFINITY), to: at_most.unwrap_or(f64::INFINITY), scale }
     }
 
-    /// How far inside a value lies, in nats. Infinity is what never came: as far out as can be.
+    /// How far inside a value lies, in nats. Infinity means an event that never happened: as far outside as possible.
     #[must_use]
     pub fn margin(&self, value: f64) -> f64 {
         if value == f64::INFINITY {
@@ -127,7 +127,7 @@ impl Band {
         if inside == f64::INFINITY { 1.0 } else { (inside / self.scale).clamp(-FAR, FAR) }
     }
 
-    /// The same of a value that is not known yet.
+    /// The same for a value that is not known yet.
     #[must_use]
     pub fn reach(&self, span: Span) -> Reach {
         let (low, high) = (self.margin(span.low), self.margin(span.high));

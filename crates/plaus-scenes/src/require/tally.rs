@@ -1,39 +1,39 @@
-//! Why not: how often each requirement was met, and which never together.
+//! Why nothing was found: how often each requirement was met, and which were never met together.
 
 use super::score::Mark;
 use crate::scene::Scene;
 use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::{ModelError, State};
 
-/// Tries of a draw that the prior allows.
+/// How often a draw that the prior allows is tried for.
 const TRIES: u64 = 1000;
 
-/// What was seen of one thing that is asked.
+/// Counts for one thing that is asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clause {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// How many states met it.
     pub met: u64,
-    /// The best margin of all, in nats; −∞ where there was no state.
+    /// The best of all margins, in nats; −∞ if there was no state.
     pub best: f64,
 }
 
-/// What was seen of all that is asked.
+/// Counts for everything that is asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tally {
-    /// States that were looked at.
+    /// Number of states.
     pub states: u64,
-    /// States that met everything.
+    /// Number of states that met everything.
     pub all: u64,
-    /// One a thing that is asked.
+    /// One clause for each thing that is asked for.
     pub clauses: Vec<Clause>,
-    /// How many states met both of two: that of `a < b` at `b (b − 1) / 2 + a`.
+    /// How many states met both of two clauses; the pair `a < b` is at `b (b − 1) / 2 + a`.
     both: Vec<u64>,
 }
 
 impl Tally {
-    /// Nothing seen yet of what goes by these names.
+    /// An empty tally for clauses with these names.
     #[must_use]
     pub fn new(names: Vec<String>) -> Self {
         let clauses: Vec<Clause> =
@@ -42,11 +42,11 @@ impl Tally {
         Self { states: 0, all: 0, clauses, both: vec![0; pairs] }
     }
 
-    /// What draws from a scene's prior come to: so many of those that the prior allows, by streams of `seed`. `go_on`
-    /// is told how many are done, and says whether there are to be more.
+    /// Tallies draws from a scene's prior: `draws` of those that the prior allows, from streams of `seed`. `go_on` gets
+    /// the number done so far, and says whether to continue.
     ///
     /// # Errors
-    /// [`ModelError`] where a simulation fails.
+    /// [`ModelError`] if a simulation fails.
     pub fn of_prior<S: Scene>(
         scene: &S,
         seed: u64,
@@ -72,7 +72,7 @@ impl Tally {
         Ok(tally)
     }
 
-    /// One state more, with a mark for each thing that is asked.
+    /// Adds a state, given a mark for each thing that is asked for.
     pub fn add(&mut self, marks: &[Mark]) {
         self.states += 1;
         self.all += u64::from(marks.iter().all(Mark::met));
@@ -85,7 +85,7 @@ impl Tally {
         }
     }
 
-    /// Pairs that were each met, and never in one state.
+    /// Pairs whose members were each met, but never in one state.
     #[must_use]
     pub fn never_together(&self) -> Vec<[&str; 2]> {
         let pairs = (1..self.clauses.len()).flat_map(|b| (0..b).map(move |a| (a, b)));

@@ -1,4 +1,4 @@
-//! Times that are asked for, and what came of them: for plots and marks on a time line, not for decisions.
+//! The times asked for and the times found: for plots and marks on a time line, not for decisions.
 
 use super::event::{Event, What};
 use super::probe::Probe;
@@ -7,11 +7,11 @@ use super::when::{When, Window};
 /// A time that is asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timed {
-    /// What is to happen then, in words: `first impact of ball with bell`, `beat 2`.
+    /// The event in words: `first impact of ball with bell`, `beat 2`.
     pub what: String,
     /// When it may be.
     pub wanted: Window,
-    /// When it was, in s; `None` where it never was.
+    /// When it happened, in s; `None` if it never did.
     pub found: Option<f64>,
 }
 
@@ -22,7 +22,7 @@ impl Timed {
     }
 }
 
-/// When an event happens, where it does.
+/// When an event happens, if it does.
 pub(super) fn known(event: &Event, probe: &Probe<'_>) -> Option<f64> {
     Some(event.time(probe).low).filter(|time| time.is_finite())
 }

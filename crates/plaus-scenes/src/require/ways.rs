@@ -1,10 +1,10 @@
-//! Exact questions to motions in closed form: extremes of distances over pieces, without samples in time.
+//! Exact answers about motions in closed form: extremes of distances over pieces, without samples in time.
 
 use glam::DVec3;
 use plaus_animation::{Piece, Track};
 use plaus_sim::roots::{refine, roots_of_quadratic};
 
-/// Standard gravity, m/s²: that of all scenes, to a part in a thousand.
+/// Standard gravity, m/s², which is the gravity of all scenes to a part in a thousand.
 const GRAVITY: f64 = 9.806_65;
 
 /// A part of a piece: position `p + v t + ½ a t²` for `t` from 0 to `length`, in m and s, z up.
@@ -36,12 +36,12 @@ impl Leg {
         }
     }
 
-    /// The motion of this leg as seen from another that begins with it and lasts as long.
+    /// The motion of this leg relative to another that begins with it and lasts as long.
     pub(super) fn seen_from(&self, other: &Self) -> Self {
         Self { p: self.p - other.p, v: self.v - other.v, a: self.a - other.a, ..*self }
     }
 
-    /// Times at which the distance from `point` may be least or most: the ends, and where it neither grows nor shrinks.
+    /// Times at which the distance from `point` may be least or largest: the ends, and where its derivative is 0.
     fn turning_points(&self, point: DVec3) -> Vec<f64> {
         let p = self.p - point;
         // Half the derivative of the squared distance.
@@ -67,12 +67,12 @@ impl Leg {
         distances.fold([f64::INFINITY, 0.0], |[low, high], d| [low.min(d), high.max(d)])
     }
 
-    /// Whether gravity is all that changes its velocity.
+    /// Whether only gravity changes its velocity.
     pub(super) fn is_flight(&self) -> bool {
         self.a.x == 0.0 && self.a.y == 0.0 && (self.a.z + GRAVITY).abs() < 1e-3 * GRAVITY
     }
 
-    /// How long its way is, in m.
+    /// The length of its path, in m.
     pub(super) fn path_length(&self) -> f64 {
         let (a, along) = (self.a.length(), self.a.normalize_or_zero());
         if a == 0.0 {
@@ -103,8 +103,8 @@ fn value(c: &Quadratic, t: f64) -> f64 {
     c[0] + t * (c[1] + t * c[2])
 }
 
-/// Least and largest value, over `0 ≤ t ≤ length`, of the smallest of some quadratics. Where the smallest of them is
-/// least or largest is an end, a vertex of one or a crossing of two.
+/// Least and largest value, over `0 ≤ t ≤ length`, of the smallest of some quadratics. Each is at an end, at a vertex
+/// of one quadratic, or at a crossing of two.
 pub(super) fn extremes_of_smallest(all: &[Quadratic], length: f64) -> [f64; 2] {
     let mut times = vec![0.0, length];
     times.extend(all.iter().filter(|c| c[2] != 0.0).map(|c| -0.5 * c[1] / c[2]));
@@ -119,7 +119,7 @@ pub(super) fn extremes_of_smallest(all: &[Quadratic], length: f64) -> [f64; 2] {
     smallest.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], f| [low.min(f), high.max(f)])
 }
 
-/// The legs of a body between two times; one without length where both are the same.
+/// The legs of a body between two times; one leg of length 0 if both are the same.
 pub(super) fn legs(track: &Track, from: f64, to: f64) -> Vec<Leg> {
     let first = track.pieces.partition_point(|piece| piece.start <= from).saturating_sub(1);
     let mut legs = Vec::new();
@@ -141,7 +141,7 @@ pub(super) fn legs(track: &Track, from: f64, to: f64) -> Vec<Leg> {
     legs
 }
 
-/// The motion of one body as seen from another between two times, leg by leg.
+/// The motion of one body relative to another between two times, leg by leg.
 pub(super) fn relative(one: &Track, other: &Track, from: f64, to: f64) -> Vec<Leg> {
     let mut cuts: Vec<f64> = [one, other].iter().flat_map(|track| &track.pieces).map(|piece| piece.start).collect();
     cuts.retain(|time| *time > from && *time < to);

@@ -6,11 +6,11 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// When: a time with what it may be off, a window, or a frame. Without any of them: at any time.
+/// When: a time with a tolerance, a window, or a frame. Without any of them: at any time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct When {
-    /// About this time; see `within_ms`.
+    /// About this time; `within_ms` says how near.
     #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.2))]
     pub at_s: Option<f64>,
     /// How far from `at_s` it may be.
@@ -22,14 +22,14 @@ pub struct When {
     /// Not after.
     #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 2.5))]
     pub to_s: Option<f64>,
-    /// In this frame, counted from 0: half a frame off at most.
+    /// In this frame, counted from 0: within half a frame of its time.
     #[schemars(extend("minimum" = 0, "maximum" = 1_000_000))]
     pub frame: Option<u32>,
-    /// Frames a second, for `frame`.
+    /// Frames per second, for `frame`.
     #[schemars(extend("minimum" = 1.0, "maximum" = 1000.0, "x-unit" = "1/s"))]
     pub fps: f64,
-    /// What lies outside loses one nat each so many milliseconds. Unset: half of what it may be off, or 50 ms where
-    /// the window has an open end.
+    /// How many milliseconds outside the window cost one nat. Unset: half of the tolerance, or 50 ms for a window with
+    /// an open end.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms", "x-example" = 5.0))]
     pub scale_ms: Option<f64>,
 }
@@ -61,7 +61,7 @@ impl When {
         }
     }
 
-    /// The window with what lies a nat outside.
+    /// The window, and how far outside it costs a nat.
     #[must_use]
     pub fn band(&self) -> Band {
         let Window { from, to } = self.window();
@@ -70,18 +70,18 @@ impl When {
         Band { from, to, scale: self.scale_ms.map_or(usual, |scale| 1e-3 * scale) }
     }
 
-    /// The one time that is meant, for what holds at a time; `None`: at the end.
+    /// The one time that is meant, for a condition at a time; `None`: at the end.
     #[must_use]
     pub fn instant(&self) -> Option<f64> {
         self.at_s.or_else(|| self.frame.map(|frame| f64::from(frame) / self.fps)).or(self.from_s)
     }
 
-    /// Refuses what is no window.
+    /// Refuses an invalid window.
     pub(super) fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         let place = place.at("when");
         let ways = [self.at_s.is_some(), self.frame.is_some(), self.from_s.is_some() || self.to_s.is_some()];
         if ways.iter().filter(|way| **way).count() > 1 {
-            return Err(place.wrong("say it in one way: `at_s`, `frame`, or `from_s` and `to_s`"));
+            return Err(place.wrong("give the time in one way: `at_s`, `frame`, or `from_s` and `to_s`"));
         }
         let Window { from, to } = self.window();
         if from > to {
@@ -89,7 +89,7 @@ impl When {
         }
         if from > place.cast().longest {
             let longest = place.cast().longest;
-            return Err(place.wrong(&format!("it begins at {from} s, after the end: nothing moves beyond {longest} s")));
+            return Err(place.wrong(&format!("it begins at {from} s, but every motion ends by {longest} s")));
         }
         Ok(())
     }

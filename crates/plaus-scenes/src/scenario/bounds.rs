@@ -1,4 +1,4 @@
-//! Ranges of numbers, and how they are said.
+//! Ranges of numbers, and how they are worded.
 
 use serde_json::{Map, Value};
 use std::fmt::Display;
@@ -22,7 +22,7 @@ pub(super) struct End<T> {
 pub(super) trait Bounded: Copy + PartialOrd + Display {
     /// The bound a schema states.
     fn of_json(value: &Value) -> Option<Self>;
-    /// As it may be written in TOML, and is easily read.
+    /// As it may be written in TOML, in a form that is easy to read.
     fn written(self) -> String;
 }
 
@@ -60,7 +60,8 @@ impl Bounded for i128 {
 }
 
 impl<T: Bounded> Bounds<T> {
-    /// The range a schema states by `minimum`, `maximum` and their exclusive kin; the tighter counts where both stand.
+    /// The range that a schema states by `minimum`, `maximum` and their exclusive variants; if both are present, the
+    /// tighter one counts.
     pub(super) fn of_schema(schema: &Map<String, Value>) -> Self {
         let end = |key: &str, closed| schema.get(key).and_then(T::of_json).map(|value| End { value, closed });
         let tighter = |closed: Option<End<T>>, open: Option<End<T>>, is_tighter: fn(T, T) -> bool| match (closed, open)
@@ -80,7 +81,7 @@ impl<T: Bounded> Bounds<T> {
             && self.upper.is_none_or(|end| value < end.value || (end.closed && value == end.value))
     }
 
-    /// E.g. "from 1 to 64", "above 0 and at most 90"; empty where there is no bound.
+    /// E.g. "from 1 to 64", "above 0 and at most 90"; empty if there is no bound.
     pub(super) fn words(&self) -> String {
         let lower = self.lower.map(|end| (if end.closed { "at least" } else { "above" }, end));
         let upper = self.upper.map(|end| (if end.closed { "at most" } else { "below" }, end));

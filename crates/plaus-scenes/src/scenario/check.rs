@@ -1,4 +1,4 @@
-//! Checks a tree against the shape of scenarios, and finds all that is wrong at once.
+//! Checks a tree against the shape of scenarios, and finds all errors at once.
 
 use super::bounds::Bounds;
 use super::nearest::{any_of, nearest, shown};
@@ -10,17 +10,17 @@ use crate::require::DEEPEST;
 use std::collections::BTreeMap;
 use toml::Value;
 
-/// The values of `tree` as serde should read them, without what is wrong; and what is wrong.
+/// The values of `tree` in the form that serde should read, without those in error; and the errors.
 pub(super) fn check(shape: &Shape, tree: &Tree) -> (Option<Value>, Vec<Problem>) {
     let mut check = Check { paths: shape.paths(Some(tree)), problems: Vec::new(), depth: 0 };
     let value = check.value(shape, tree, "");
     (value, check.problems)
 }
 
-/// Syntax errors reported of one file: those after are mostly the echo of the first.
+/// Most syntax errors reported for one file: later ones usually follow from the first.
 const MAX_SYNTAX_PROBLEMS: usize = 10;
 
-/// What cannot be read of the file `text`.
+/// The syntax errors of the file `text`.
 pub(super) fn syntax_problems(text: &str, errors: &[toml::de::Error]) -> Vec<Problem> {
     errors.iter().take(MAX_SYNTAX_PROBLEMS).map(|error| syntax_problem(text, error)).collect()
 }
@@ -39,15 +39,15 @@ fn syntax_problem(text: &str, error: &toml::de::Error) -> Problem {
 }
 
 struct Check {
-    /// All keys there are, given which scene the tree chose.
+    /// All keys that exist, given the scene that the tree chose.
     paths: Vec<String>,
     problems: Vec<Problem>,
-    /// How many shapes that stand in themselves are open.
+    /// How many recursive shapes are open.
     depth: usize,
 }
 
 impl Check {
-    /// The value of `tree`, or `None` where it is wrong as a whole.
+    /// The value of `tree`, or `None` if it is wrong as a whole.
     fn value(&mut self, shape: &Shape, tree: &Tree, key: &str) -> Option<Value> {
         match (&shape.kind, &tree.data) {
             (Kind::Table(keys), Data::Table(entries)) => Some(self.table(keys, entries, tree, key)),
@@ -68,10 +68,10 @@ impl Check {
         }
     }
 
-    /// What stands in itself, to a depth that people still understand.
+    /// A recursive shape, to a depth that people can still understand.
     fn again(&mut self, reference: &str, tree: &Tree, key: &str) -> Option<Value> {
         if self.depth + 1 >= DEEPEST {
-            let message = format!("nested too deep: at most {DEEPEST} in one another");
+            let message = format!("nested too deeply: at most {DEEPEST} levels");
             self.problems.push(tree.place.blame_value(Problem::new(key, message)));
             return None;
         }
@@ -94,7 +94,7 @@ impl Check {
         for (name, inner) in entries {
             if !keys.iter().any(|(known, _)| known == name) {
                 let problem = Problem::new(join(path, &shown(name)), format!("unknown key `{}`", shown(name)));
-                // Comparing a name with all others takes time, and nobody reads so much advice.
+                // Comparing a name with all others takes time, and nobody reads that much advice.
                 let advice = if self.problems.len() < SHOWN { self.advice(keys, name, path) } else { None };
                 self.problems.push(inner.place.blame_key(problem.with_help(advice)));
             }
@@ -102,7 +102,7 @@ impl Check {
         Value::Table(table)
     }
 
-    /// Where the unknown `name` belongs, or what was meant by it, or what is known in its place.
+    /// Where the unknown `name` belongs, or which name was probably meant, or which names are known here.
     fn advice(&self, keys: &[(String, Shape)], name: &str, path: &str) -> Option<String> {
         let leaf = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
         let elsewhere: Vec<_> = self.paths.iter().filter(|known| leaf(known) == name).collect();
@@ -160,7 +160,7 @@ impl Check {
             }
             [(first, ..), ..] => {
                 for (name, _, inner) in &chosen[1..] {
-                    let message = format!("a second {path} besides `{first}`: exactly one must be chosen");
+                    let message = format!("a second {path}, in addition to `{first}`: exactly one must be chosen");
                     let help = format!("remove [{path}.{first}] or [{path}.{name}]");
                     let problem = Problem::new(join(path, name), message).with_help(Some(help));
                     self.problems.push(inner.place.blame_key(problem));
@@ -181,7 +181,7 @@ impl Check {
     }
 }
 
-/// `key` must be given and is not.
+/// The error for a required key that is missing.
 fn missing(shape: &Shape, key: &str) -> Problem {
     match &shape.kind {
         Kind::OneOf(keys) => {
@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn exactly_one_world() {
-        let second = "world.dice: a second world besides `ball`: exactly one must be chosen; remove [world.ball] or [world.dice]";
+        let second = "world.dice: a second world, in addition to `ball`: exactly one must be chosen; remove [world.ball] or [world.dice]";
         assert_eq!(problems("[world.ball]\n[world.dice]\nlabel = \"d6\""), [second]);
         let none = "world: no world: exactly one must be chosen; add a table [world.ball] or [world.dice]";
         assert_eq!(problems(""), [none]);

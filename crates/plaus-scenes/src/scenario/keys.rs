@@ -1,4 +1,4 @@
-//! What each key means: for `plaus explain`, and as the comments of a new file.
+//! The meaning of each key: for `plaus explain`, and for the comments of a new file.
 
 use super::Scenario;
 use super::overrides::{NoKey, key_of};
@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// Columns of a template's comments.
 const WIDTH: usize = 100;
 
-/// Most choices whose meanings a template holds; of more it says where they are explained.
+/// Most choices whose meanings a template lists. If there are more, it says where they are explained.
 const MOST_MEANINGS: usize = 12;
 
 /// What a key means.
@@ -18,14 +18,13 @@ pub struct KeyDoc {
     pub key: String,
     /// The kind of value, with its article: "a number", "an integer", "a boolean", "a word", "a table".
     pub kind: String,
-    /// The default, as TOML; "unset" for a key that may be left out and then means something of its own; empty for
-    /// tables.
+    /// The default, as TOML; "unset" for a key that may be left out and then has a special meaning; empty for tables.
     pub default: String,
-    /// Allowed values, in words, e.g. "above 0 and at most 90"; empty where anything of the kind goes.
+    /// Allowed values, in words, e.g. "above 0 and at most 90"; empty if all values of the kind are allowed.
     pub range: String,
     /// Unit, where the value has one.
     pub unit: Option<String>,
-    /// Meaning. Words are followed by what each means.
+    /// Meaning. If the value is a word, the meaning of each word follows.
     pub description: String,
 }
 
@@ -36,11 +35,12 @@ pub fn keys() -> Vec<KeyDoc> {
     all.filter(|(shape, _)| !shape.is_table()).map(|(shape, key)| doc(shape, key)).collect()
 }
 
-/// What a key means, or a table. `key` is its full dotted name, or an end of it that no other key has: `sigma_d`,
-/// `weights.aim`, `rest_at`. Any place of a list stands for all: `constraints[0].rest_at` is `constraints[].rest_at`.
+/// The meaning of a key, or of a table. `key` is its full dotted name, or a unique ending of it: `sigma_d`,
+/// `weights.aim`, `rest_at`. Any index into a list stands for all: `constraints[0].rest_at` is `constraints[].rest_at`.
 ///
 /// # Errors
-/// [`NoKey`]: the nearest known key, if any is near, or all keys that end so.
+///
+/// [`NoKey`]: the nearest known key, if one is near; or all keys with this ending.
 pub fn explain(key: &str) -> Result<KeyDoc, NoKey> {
     let (found, _) = key_of(key.trim(), scenario(), None)?;
     scenario().at(&found).map(|shape| doc(shape, found)).ok_or(NoKey::Unknown(None))
@@ -61,7 +61,7 @@ fn doc(shape: &Shape, key: String) -> KeyDoc {
     }
 }
 
-/// What words mean that have a meaning of their own; of a list of tables, what each may hold. One line each.
+/// The meanings of words that have one; for a list of tables, what each table may hold. One line each.
 fn meanings(shape: &Shape) -> Vec<String> {
     match &shape.kind {
         Kind::Words(words) => {
@@ -69,7 +69,7 @@ fn meanings(shape: &Shape) -> Vec<String> {
             with_meaning.map(|(word, meaning)| format!("\"{word}\": {meaning}")).collect()
         }
         Kind::List(item, _) if matches!(item.kind, Kind::Any(_)) => meanings(item),
-        // What each alternative is.
+        // The meaning of each alternative.
         Kind::Any(all) => all.iter().flat_map(|one| if one.is_table() { choices(one) } else { Vec::new() }).collect(),
         Kind::List(item, _) => {
             let key = |(name, shape): &(String, Shape)| match default(shape) {
@@ -102,7 +102,7 @@ fn default(shape: &Shape) -> Option<String> {
     let number = default.as_f64().filter(|_| matches!(shape.kind, Kind::Number(_))).map(toml::Value::Float);
     let given = number.or_else(|| toml::Value::try_from(without_defaults(shape, default)).ok());
     Some(match given? {
-        // A table a line.
+        // One line for each table.
         toml::Value::Array(items) if items.iter().any(toml::Value::is_table) => {
             let lines: Vec<String> = items.iter().map(|item| format!("    {item},\n")).collect();
             format!("[\n{}]", lines.concat())
@@ -111,7 +111,7 @@ fn default(shape: &Shape) -> Option<String> {
     })
 }
 
-/// A list of tables of known keys without those that are at their defaults.
+/// A list of tables of known keys, without the keys that have their default values.
 fn without_defaults(shape: &Shape, value: &serde_json::Value) -> serde_json::Value {
     let item = shape.item().filter(|item| matches!(item.kind, Kind::Table(_)));
     let (Some(item), Some(items)) = (item, value.as_array()) else { return value.clone() };
@@ -123,13 +123,13 @@ fn without_defaults(shape: &Shape, value: &serde_json::Value) -> serde_json::Val
     items.iter().map(said).collect::<Vec<serde_json::Value>>().into()
 }
 
-/// A commented scenario file: every key with its default, its meaning, unit and range. Reading it gives the scene's
-/// default scenario.
+/// A commented scenario file: every key with its default, meaning, unit and range. Reading it gives the scene's default
+/// scenario.
 #[must_use]
 pub fn template(scene: &str) -> Option<String> {
     let given = Scenario::default_of(scene)?;
     let (tree, _) = super::tree::Tree::parse(&given.to_toml());
-    let mut text = format!("# A scenario of `{scene}`. Every key stands here with its default, and may be left out.\n");
+    let mut text = format!("# A scenario of `{scene}`. Every key has its default value here, and may be left out.\n");
     for key in scenario().paths(Some(&tree)) {
         let Some(shape) = scenario().at(&key) else { continue };
         if shape.is_table() {
@@ -141,7 +141,7 @@ pub fn template(scene: &str) -> Option<String> {
     Some(text)
 }
 
-/// A table's meaning and, unless it only holds a choice of tables, its head.
+/// A table's meaning, and its heading unless it only holds a choice of tables.
 fn header(text: &mut String, shape: &Shape, key: &str) {
     text.push('\n');
     comment(text, &shape.description);
@@ -192,7 +192,7 @@ fn example(shape: &Shape) -> String {
     match &shape.kind {
         Kind::Boolean => "true".into(),
         Kind::Words(words) => words.first().map(|(word, _)| format!("\"{word}\"")).unwrap_or_default(),
-        // The end that lies nearer 0 is never an odd value.
+        // Of the two ends, the one nearer 0 is always a sensible value.
         Kind::Number(bounds) => {
             let ends = [&bounds.lower, &bounds.upper].map(|end| end.as_ref().map(|end| end.value));
             let nearest = ends.into_iter().flatten().min_by(|a, b| a.abs().total_cmp(&b.abs()));

@@ -34,8 +34,8 @@ pub struct Scenario {
     /// How to sample.
     #[serde(default)]
     pub sampler: Sampler,
-    /// What is required besides what the world demands itself: a list of tables, each with one requirement. What a
-    /// state lacks of one it loses in log density; an animation is a solution where all are met.
+    /// Requirements beyond those of the world itself: a list of tables, each with one requirement. A state loses as
+    /// much log density as each of them lacks; an animation that meets all of them is a solution.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 256), extend("default" = []))]
     pub require: Vec<Require>,
@@ -47,13 +47,13 @@ pub struct Scenario {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Sampler {
-    /// Seed of all randomness. The same scenario, seed and version give the same bits.
-    /// Seeds end at 2⁶³ − 1, the largest integer that TOML promises to hold.
+    /// Seed of all randomness. The same scenario, seed and version give the same bits. The largest seed is 2⁶³ − 1, the
+    /// largest integer that every TOML reader supports.
     pub seed: u64,
     /// Number of independent chains.
     #[schemars(range(min = 1, max = 100_000))]
     pub chains: u32,
-    /// Iterations before sampling begins: recorded, but kept out of tables and diagnostics.
+    /// Iterations before sampling begins; they are recorded, but tables and diagnostics leave them out.
     #[schemars(range(min = 0, max = 1_000_000_000_000_u64))]
     pub warmup: u64,
     /// Iterations of each chain after the warm-up.
@@ -62,15 +62,15 @@ pub struct Sampler {
     /// Record every `thin`-th iteration.
     #[schemars(range(min = 1, max = 1_000_000_000_u64))]
     pub thin: u64,
-    /// Most iterations between two points at which a run can be stopped and gone on with; it begins with fewer, about
-    /// an eighth of those done.
+    /// Most iterations between two points at which a run can be stopped and resumed. At first there are fewer: about an
+    /// eighth of those done.
     #[schemars(range(min = 1, max = 1_000_000_000_u64))]
     pub checkpoint_every: u64,
-    /// Whether the sizes of moves' steps are adapted in the warm-up, each until a good share of its proposals is
-    /// accepted, and kept from then on. Unset: as measurement says is better for the scene (dice: yes; others: no).
-    /// Without a warm-up, and where steps are hardly tried in it, they are as configured.
+    /// Whether step sizes are adapted during the warm-up, until a good share of each move's proposals is accepted, and
+    /// then kept. Unset: whichever measured better for the scene (dice: yes; others: no). Without a warm-up, or for
+    /// moves that are rarely tried in it, the configured sizes stay.
     pub adapt: Option<bool>,
-    /// How draws are made; unset: as `chain`. The law of what comes out is the same whichever it is.
+    /// How draws are made. Every method samples the same law. Unset: `chain`.
     pub method: Option<Method>,
     /// Exact acceptance, or the paper's as printed.
     pub rules: Rules,
@@ -82,26 +82,26 @@ pub struct Sampler {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// By chains that walk from state to state with the scene's moves.
+    /// Chains that walk from state to state with the scene's moves.
     #[default]
     Chain,
-    /// By plain draws of the prior, of which each is kept with the probability that its constraint gives it, so that
-    /// solutions are independent of each other. An iteration is one draw of the prior, and in between a chain stands
-    /// still. Best where the prior reaches the goal now and then.
+    /// Plain draws from the prior, each kept with the probability that its constraint gives it, so that solutions are
+    /// independent of each other. An iteration is one draw from the prior; between kept draws a chain stands still.
+    /// Best if the prior reaches the goal now and then.
     Independent,
-    /// As a trial finds out before the run begins: by draws of the prior where these make independent solutions faster
-    /// than chains do, else by chains. The trial counts simulations, not seconds, so that the same seed decides alike
-    /// on every machine; the run says what was decided, and why.
+    /// Decided by a trial before the run begins: draws from the prior if they give independent solutions faster than
+    /// chains do, else chains. The trial counts simulations, not seconds, so that one seed decides alike on every
+    /// machine; the run says what was decided, and why.
     Auto,
 }
 
-/// Parallel tempering: each chain climbs and descends a ladder of constraints that count less and less, down to none,
-/// where everything is drawn anew. What comes up again shares nothing with what went down, and the chain stays exact.
+/// Parallel tempering: each chain moves along a ladder of constraints that count less and less, down to none, where
+/// everything is drawn anew. What comes back up shares nothing with what went down, and the chain remains exact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Tempering {
-    /// Rungs of the ladder, each as much work as a chain; 1: no tempering. About twice the barrier that a run reports,
-    /// and one more, serve best. The rungs are spaced during the warm-up, and stay from then on.
+    /// Rungs of the ladder, each of which takes as much work as a chain; 1: no tempering. About twice the barrier that
+    /// a run reports, plus one, works best. The rungs are spaced during the warm-up, and then stay.
     #[schemars(range(min = 1, max = 256))]
     pub rungs: u32,
     /// Iterations between two swaps of neighbouring rungs.
@@ -133,26 +133,27 @@ impl Default for Sampler {
 }
 
 impl Scenario {
-    /// Reads a scenario: a file called `name` with the contents `text`, and `key=value` strings that override it, in
-    /// order.
+    /// Reads a scenario: the text of a file called `name`, and `key=value` strings that override it, in order.
     ///
-    /// An override's key is a full dotted name (`world.ball2d.sigma_d`) or an end of it that no other key of the file's
-    /// world has (`sigma_d`, `weights.aim`). Places in lists are counted from 0: `constraints[0].rest_at.x_mm`; where
-    /// only one table of the list has the key, the place may be left out: `rest_at.x_mm`. The value is TOML, else a
-    /// bare string: `moves=paper`. Tables that the file lacks are made.
+    /// The key of an override is a full dotted name (`world.ball2d.sigma_d`), or an ending of it that no other key of
+    /// the file's world has (`sigma_d`, `weights.aim`). Indices into lists count from 0: `constraints[0].rest_at.x_mm`.
+    /// If only one table of the list has the key, the index may be left out: `rest_at.x_mm`. The value is TOML, or else
+    /// a bare string: `moves=paper`. Missing tables are created.
     ///
     /// # Errors
-    /// [`ScenarioError`] with all that is wrong, each in its place. Only where the text is no TOML is nothing else
-    /// looked at, and what one key alone does not show (weights that are all zero) is found where each key by itself is
-    /// right.
+    ///
+    /// [`ScenarioError`] with everything that is wrong, each in its place. There are two exceptions. If the text is not
+    /// TOML, nothing else is checked. Errors that involve several keys (weights that are all zero) are found only if
+    /// each key by itself is right.
     pub fn read(name: &str, text: &str, overrides: &[String]) -> Result<Self, ScenarioError> {
         Self::read_with(name, text, overrides, &NoFiles)
     }
 
-    /// The same of a scenario that may name files: shapes of its own.
+    /// The same for a scenario that may name files of its own, such as shapes.
     ///
     /// # Errors
-    /// As [`Scenario::read`], and where a file cannot be read, or is not what the scenario says.
+    ///
+    /// Those of [`Scenario::read`]; also if a file cannot be read, or is not what the scenario says.
     pub fn read_with(name: &str, text: &str, overrides: &[String], files: &dyn Files) -> Result<Self, ScenarioError> {
         let fail = |problems| Err(ScenarioError::new(name, text, problems));
         let (mut tree, syntax) = Tree::parse(text);
@@ -193,7 +194,7 @@ impl Scenario {
         self.sampler.adapt.unwrap_or_else(|| self.world.adapts())
     }
 
-    /// How draws are made, or that a trial is to find out.
+    /// How draws are made, or that a trial decides it.
     #[must_use]
     pub fn method(&self) -> Method {
         self.sampler.method.unwrap_or_default()
@@ -202,7 +203,8 @@ impl Scenario {
     /// The scene, under what is required besides.
     ///
     /// # Errors
-    /// [`ConfigError`] where the settings make no scene, or a requirement can mean nothing in it.
+    ///
+    /// [`ConfigError`] if the settings make no scene, or a requirement has no meaning in it.
     pub fn stage(&self) -> Result<Stage, ConfigError> {
         Asked::new(self.world.scene()?, &self.require)
     }
@@ -210,11 +212,11 @@ impl Scenario {
     /// Whether the scene can be built and sampled.
     fn try_building(&self) -> Result<(), ConfigError> {
         if self.sampler.tempering.rungs > 1 && !self.sampler.rules.is_exact() {
-            let message = "tempering needs exact acceptance, as its swaps rest on the law of every rung: set sampler.rules.preset = \"exact\", or rungs = 1";
+            let message = "tempering needs exact acceptance, because its swaps use the law of every rung: set sampler.rules.preset = \"exact\", or rungs = 1";
             return Err(ConfigError::new("sampler.tempering.rungs", message));
         }
         if self.sampler.tempering.rungs > 1 && self.method() != Method::Chain {
-            let message = "tempering is for chains: set sampler.method = \"chain\", or rungs = 1";
+            let message = "tempering is only for chains: set sampler.method = \"chain\", or rungs = 1";
             return Err(ConfigError::new("sampler.tempering.rungs", message));
         }
         let scene = self.stage()?;
@@ -231,7 +233,7 @@ impl Scenario {
         toml::to_string(self).unwrap_or_default()
     }
 
-    /// The scenario of a scene with all settings at their defaults; `None` where there is no such scene.
+    /// The scenario of a scene with all settings at their defaults; `None` if there is no such scene.
     #[must_use]
     pub fn default_of(scene: &str) -> Option<Self> {
         World::default_of(scene).map(|world| Self { sampler: Sampler::default(), require: Vec::new(), world })

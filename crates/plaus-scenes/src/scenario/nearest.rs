@@ -1,11 +1,10 @@
-//! Names near a misspelt one, and lists of names in a sentence.
+//! The nearest names to a misspelt one, and lists of names in a sentence.
 
-/// Names longer than this are not compared: nobody misspells that far, and comparing takes time in the square of the
-/// length.
+/// Longer names are not compared: nobody makes such misspellings, and the time grows with the square of the length.
 const LONGEST: usize = 64;
 
-/// The candidate nearest to `name`: at most a third of its letters differ (swapped neighbours count once, case and
-/// hyphens not at all), or it is the only one that contains `name`.
+/// The candidate nearest to `name`, if at most a third of its letters differ (swapped neighbours count once, case and
+/// hyphens do not count), or if it is the only one that contains `name`.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> Option<&'a str> {
     let plain = |name: &str| name.to_lowercase().replace('-', "_");
     let sought = plain(name);
@@ -33,7 +32,7 @@ pub(super) fn any_of(names: impl IntoIterator<Item = String>) -> String {
     }
 }
 
-/// A name from a file as it may be shown: at most 60 characters, quoted and escaped unless it is a bare key.
+/// A name from a file in a form that can be shown: at most 60 characters, quoted and escaped unless it is a bare key.
 pub(super) fn shown(name: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     let short: String = name.chars().take(60).collect();

@@ -1,4 +1,4 @@
-//! Overrides: `key=value`, laid over a file's tree before it is checked.
+//! Overrides: `key=value`, applied to a file's tree before it is checked.
 
 use super::nearest::{any_of, nearest, shown};
 use super::problem::{Problem, Source};
@@ -7,23 +7,24 @@ use super::tree::{Data, Place, Tree, join};
 use std::collections::BTreeMap;
 use toml::de::DeValue;
 
-/// Why a name stands for no key.
+/// Why a name does not refer to one key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NoKey {
-    /// No key is called so; perhaps this one was meant.
+    /// No key has this name; perhaps this one was meant.
     Unknown(Option<String>),
-    /// All keys that end so: at least two.
+    /// All keys with this ending: at least two.
     Ambiguous(Vec<String>),
 }
 
-/// Lays `said`, as in `sigma_d=0.05`, over `tree`. Tables on the way are made where they are missing.
+/// Applies `said`, such as `sigma_d=0.05`, to `tree`. Missing tables on the way are created.
 ///
 /// # Errors
-/// The problem with `said` itself; whether the value fits its key is checked later, with the whole tree.
+///
+/// The problem with `said` itself. Whether the value fits its key is checked later, with the whole tree.
 pub(super) fn apply(said: &str, shape: &Shape, tree: &mut Tree) -> Result<(), Box<Problem>> {
     let blame = |problem: Problem| Box::new(problem.at(&Source::Override(said.into()), None));
     let Some((name, value)) = said.split_once('=') else {
-        return Err(blame(Problem::new(shown(said), "an override is `key=value`, and this has no `=`")));
+        return Err(blame(Problem::new(shown(said), "an override has the form `key=value`, but this has no `=`")));
     };
     let name = name.trim();
     let (key, places) = key_of(name, shape, Some(tree)).map_err(|error| blame(error.problem(name, shape)))?;
@@ -31,7 +32,7 @@ pub(super) fn apply(said: &str, shape: &Shape, tree: &mut Tree) -> Result<(), Bo
     insert(tree, shape, &key, "", value_of(value.trim(), said), said).map_err(|problem| blame(*problem))
 }
 
-/// The key that `name` stands for, with `[]` for each place in a list, and the places that `name` gives.
+/// The key that `name` refers to, with `[]` for each index into a list, and the indices that `name` gives.
 ///
 /// # Errors
 /// [`NoKey`].
@@ -40,7 +41,7 @@ pub(super) fn key_of(name: &str, shape: &Shape, tree: Option<&Tree>) -> Result<(
     let found = resolve(&plain, &shape.paths(tree), &shape.paths(None));
     let found = match found {
         Err(NoKey::Unknown(near)) => {
-            // What is required has so many keys that an end of one says little: those are written in full.
+            // Requirements have so many keys that an ending of one says little: they are written in full.
             let mut ends = shape.paths_in_lists(tree);
             ends.retain(|key| !key.starts_with("require[]"));
             let inside = resolve(&plain, &ends, &shape.paths_in_lists(None));
@@ -71,7 +72,8 @@ fn without_places(name: &str) -> (String, Vec<usize>) {
     (plain, places)
 }
 
-/// `key` with a place for each `[]`. Those that `places` lacks are where the tree has the only table with what follows.
+/// `key` with an index for each `[]`. Missing indices are those of the only table in the tree that has the rest of the
+/// key.
 fn with_places(key: &str, places: &[usize], shape: &Shape, tree: &Tree) -> Result<String, Box<Problem>> {
     let lists = key.matches("[]").count();
     let Some((before, after)) = key.split_once("[]").filter(|_| lists > places.len()) else {
@@ -97,13 +99,13 @@ fn with_places(key: &str, places: &[usize], shape: &Shape, tree: &Tree) -> Resul
         }
         several => {
             let several = any_of(several.iter().map(|key| format!("`{key}`")));
-            let message = "several places of the list may be meant";
+            let message = "more than one entry of the list may be meant";
             Err(Box::new(Problem::new(key, message).with_help(Some(format!("write {several}")))))
         }
     }
 }
 
-/// What stands in the list at `key` where a scenario does not say.
+/// The contents of the list at `key` if a scenario does not give it.
 fn default_items(shape: &Shape, key: &str) -> Vec<Tree> {
     let default = shape.at(key).and_then(|shape| shape.default.as_ref());
     let text = default.and_then(|value| toml::Value::try_from(value).ok()).map(|value| value.to_string());
@@ -113,8 +115,8 @@ fn default_items(shape: &Shape, key: &str) -> Vec<Tree> {
     }
 }
 
-/// The key that `name` stands for: its full dotted name, or an end of it that no other of `keys` has. Full names may be
-/// any of `all`.
+/// The key that `name` refers to: its full dotted name, or an ending of it that no other of `keys` has. Full names may
+/// be any of `all`.
 ///
 /// # Errors
 /// [`NoKey`].
@@ -131,7 +133,7 @@ pub(super) fn resolve(name: &str, keys: &[String], all: &[String]) -> Result<Str
     }
 }
 
-/// The key nearest to `name`, compared as a whole and by their last parts.
+/// The key nearest to `name`, comparing whole names and last parts.
 fn nearest_key(name: &str, keys: &[String]) -> Option<String> {
     if let Some(key) = nearest(name, keys.iter().map(String::as_str)) {
         return Some(key.into());
@@ -151,13 +153,13 @@ impl NoKey {
             }
             Self::Ambiguous(keys) => {
                 let keys = any_of(keys.into_iter().map(|key| format!("`{key}`")));
-                Problem::new(name, "several keys end so").with_help(Some(format!("write {keys}")))
+                Problem::new(name, "several keys have this ending").with_help(Some(format!("write {keys}")))
             }
         }
     }
 }
 
-/// What the last known table on the way to `name` holds.
+/// The keys of the last known table on the way to `name`.
 fn known_beside(name: &str, shape: &Shape) -> Option<String> {
     let (mut table, mut rest) = (shape, name);
     while let Some((first, after)) = rest.split_once('.') {
@@ -169,7 +171,7 @@ fn known_beside(name: &str, shape: &Shape) -> Option<String> {
     if known.is_empty() || path.is_empty() { None } else { Some(format!("known in [{path}]: {known}")) }
 }
 
-/// The value as TOML, else as a bare string.
+/// The value as TOML, or else as a bare string.
 fn value_of(value: &str, said: &str) -> Tree {
     match DeValue::parse(value) {
         Ok(value) => Tree::of_override(value.get_ref(), said),
@@ -177,8 +179,8 @@ fn value_of(value: &str, said: &str) -> Tree {
     }
 }
 
-/// Puts `value` at the dotted `key` of `tree`, which stands at `path`. Something other than a table in the way stays:
-/// it is wrong itself, and will be reported.
+/// Puts `value` at the dotted `key` of `tree`, whose own key is `path`. If something other than a table is in the way,
+/// it stays: it is wrong itself, and will be reported.
 fn insert(tree: &mut Tree, shape: &Shape, key: &str, path: &str, value: Tree, said: &str) -> Result<(), Box<Problem>> {
     let Data::Table(entries) = &mut tree.data else { return Ok(()) };
     let (first, rest) = key.split_once('.').map_or((key, None), |(first, rest)| (first, Some(rest)));
@@ -219,19 +221,19 @@ fn insert(tree: &mut Tree, shape: &Shape, key: &str, path: &str, value: Tree, sa
         let other = inner.first_key().filter(|_| is_choice && inner.get(wanted).is_none());
         if let Some(other) = other {
             let message = format!("`{here}` is `{other}`, not `{wanted}`");
-            let help = "`plaus check` shows what stands where in the scenario".to_owned();
+            let help = "`plaus check` shows the whole scenario".to_owned();
             return Err(Box::new(Problem::new(here, message).with_help(Some(help))));
         }
     }
     insert(inner, shape, rest, &here, value, said)
 }
 
-/// A place beyond the end of a list.
+/// An index beyond the end of a list.
 fn beyond(key: &str, name: &str, count: usize) -> Problem {
     let help = match count {
         0 => format!("`{name}` is empty"),
         1 => format!("`{name}` has one entry, `{name}[0]`"),
         _ => format!("`{name}` has {count} entries, `{name}[0]` to `{name}[{}]`", count - 1),
     };
-    Problem::new(key, "there is no such place in the list").with_help(Some(help))
+    Problem::new(key, "the list has no such entry").with_help(Some(help))
 }

@@ -3,18 +3,18 @@
 use std::fmt;
 use std::ops::Range;
 
-/// Problems of one scenario that are shown, and given advice; more are counted.
+/// Most problems of one scenario that are shown and get advice; further ones are counted.
 pub const SHOWN: usize = 20;
 
-/// A scenario that cannot be sampled: every problem found in it, in the order of the file.
+/// A scenario that cannot be sampled, with every problem found in it, in the order of the file.
 ///
-/// [`Display`](fmt::Display) gives one line a problem: `file:line:column: key: message; help`; after [`SHOWN`] of them
-/// it says how many more there are.
+/// [`Display`](fmt::Display) gives one line for each problem: `file:line:column: key: message; help`. After [`SHOWN`]
+/// of them it says how many more there are.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScenarioError {
-    /// What the file is called.
+    /// The name of the file.
     pub name: String,
-    /// Its text, into which the spans point.
+    /// Its text, which the spans refer to.
     pub text: String,
     /// At least one.
     pub problems: Vec<Problem>,
@@ -23,19 +23,19 @@ pub struct ScenarioError {
 /// One thing that is wrong.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
-    /// The key to blame, dotted from the root, e.g. `world.ball2d.sigma_d`; empty where the text is no TOML.
+    /// The key at fault, dotted from the root, e.g. `world.ball2d.sigma_d`; empty if the text is not TOML.
     pub key: String,
-    /// What is wrong, with the allowed range where there is one.
+    /// What is wrong, with the allowed range if there is one.
     pub message: String,
-    /// What would mend it: the nearest known name, or the place where the key belongs.
+    /// How to mend it: the nearest known name, or the place where the key belongs.
     pub help: Option<String>,
-    /// Bytes of the text; `None` for `--set`, and for tables the file lacks.
+    /// Bytes of the text; `None` for `--set`, and for tables that the file lacks.
     pub span: Option<Range<usize>>,
     /// Line of the span's start, from 1.
     pub line: Option<usize>,
-    /// Column of the span's start in characters, from 1; a byte order mark takes none.
+    /// Column of the span's start in characters, from 1; a byte order mark does not count.
     pub column: Option<usize>,
-    /// Who said so.
+    /// Where the value comes from.
     pub source: Source,
 }
 
@@ -85,7 +85,7 @@ impl fmt::Display for Problem {
 }
 
 impl Problem {
-    /// A problem without a place.
+    /// A problem without a place in the text.
     pub(super) fn new(key: impl Into<String>, message: impl Into<String>) -> Self {
         Self {
             key: key.into(),
@@ -103,7 +103,7 @@ impl Problem {
         Self { help, ..self }
     }
 
-    /// The same at a place of the text. Lines and columns are filled in by [`ScenarioError::new`].
+    /// The same, with a place in the text. [`ScenarioError::new`] fills in lines and columns.
     pub(super) fn at(self, source: &Source, span: Option<Range<usize>>) -> Self {
         let span = span.filter(|_| *source == Source::File);
         Self { source: source.clone(), span, ..self }
@@ -111,8 +111,8 @@ impl Problem {
 }
 
 impl ScenarioError {
-    /// Gives each problem its line and column, and puts them in order: those of the file, those of what it lacks, those
-    /// of overrides.
+    /// Gives each problem its line and column, and sorts them: those in the file, those about what it lacks, those of
+    /// overrides.
     pub(super) fn new(name: &str, text: &str, mut problems: Vec<Problem>) -> Self {
         let start = |problem: &Problem| problem.span.as_ref().map_or(usize::MAX, |span| span.start);
         problems.sort_by(|a, b| a.source.cmp(&b.source).then(start(a).cmp(&start(b))));
@@ -131,12 +131,13 @@ impl ScenarioError {
     /// The text of a file called `name`, for [`Scenario::read`](super::Scenario::read).
     ///
     /// # Errors
-    /// [`ScenarioError`] where `bytes` are no UTF-8; its text is then what can be read of them.
+    ///
+    /// [`ScenarioError`] if `bytes` are not UTF-8; its text is then as much of them as can be read.
     pub fn decode(name: &str, bytes: Vec<u8>) -> Result<String, Self> {
         String::from_utf8(bytes).map_err(|error| {
             let start = error.utf8_error().valid_up_to();
             let byte = error.as_bytes().get(start).copied().unwrap_or_default();
-            let problem = Problem::new("", format!("byte {start} (0x{byte:02x}) is no UTF-8 text"))
+            let problem = Problem::new("", format!("byte {start} (0x{byte:02x}) is not UTF-8 text"))
                 .with_help(Some("a scenario is a TOML file".into()))
                 .at(&Source::File, Some(start..start + 1));
             Self::new(name, &String::from_utf8_lossy(error.as_bytes()), vec![problem])
@@ -150,8 +151,8 @@ fn inside(text: &str, span: Range<usize>) -> Range<usize> {
     start..text.ceil_char_boundary(span.end.max(start))
 }
 
-/// Goes through a text once, and says where it is: lines and columns, both from 1. Columns count characters, and a byte
-/// order mark is none.
+/// Goes through a text once and keeps track of the position: lines and columns, both from 1. Columns count characters;
+/// a byte order mark does not count.
 struct Cursor<'a> {
     text: &'a str,
     offset: usize,

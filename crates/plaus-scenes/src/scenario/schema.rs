@@ -7,10 +7,10 @@ use serde_json::{Map, Value, json};
 /// The JSON Schema of scenario files, draft 2020-12, for editors and for [`Scenario::read`](super::Scenario::read)
 /// alike.
 ///
-/// What an enum of scenes makes by itself, a `oneOf` of objects, lets an editor say no more than "matches none"; here
-/// it is one object with an optional property a scene and `minProperties = maxProperties = 1`. Units stand in `x-unit`.
-/// Whole numbers have the bounds of their type, and never exceed 9,223,372,036,854,775,807, the largest that TOML
-/// promises to hold.
+/// An enum of scenes would by itself make a `oneOf` of objects, about which an editor can only say "matches none". Here
+/// it is one object with an optional property for each scene and `minProperties = maxProperties = 1`. Units are in
+/// `x-unit`. Whole numbers have the bounds of their type, and never exceed 9,223,372,036,854,775,807, the largest that
+/// every TOML reader supports.
 #[must_use]
 pub fn schema() -> Value {
     let mut schema = schema_for!(super::Scenario);
@@ -18,14 +18,13 @@ pub fn schema() -> Value {
     schema.to_value()
 }
 
-/// Name of the schema of this version's scenario files, and of the file that `plaus new` writes it to.
+/// Name of the schema for this version's scenario files, and of the file to which `plaus new` writes it.
 pub const SCHEMA_ID: &str = concat!("urn:plaus:scenario:", env!("CARGO_PKG_VERSION"));
 /// See [`SCHEMA_ID`].
 pub const SCHEMA_FILE: &str = "plaus.schema.json";
 
-/// [`schema`] as editors and validators get it: with its name, and with nothing that JSON Schema does not define,
-/// which strict validators refuse. Units are
-/// said in words.
+/// [`schema`] in the form for editors and validators: with its name, and without anything that JSON Schema does not
+/// define, which strict validators refuse. Units are given in words.
 #[must_use]
 pub fn published_schema() -> Value {
     let mut schema = schema();
@@ -36,11 +35,11 @@ pub fn published_schema() -> Value {
     schema
 }
 
-/// Leaves out formats and keywords that only we know.
+/// Leaves out formats and keywords that only this program knows.
 fn plain(value: &mut Value) {
     match value {
         Value::Object(object) => {
-            // Of a schema, not of a property that happens to be called so.
+            // The `format` of a schema, not a property that happens to have that name.
             if object.get("format").is_some_and(Value::is_string) {
                 object.remove("format");
             }
@@ -59,7 +58,7 @@ fn plain(value: &mut Value) {
     }
 }
 
-/// Makes every part of a schema as [`schema`] says.
+/// Changes every part of a schema as described at [`schema`].
 struct ForEditors;
 
 impl Transform for ForEditors {
@@ -95,7 +94,7 @@ fn only_property(variant: &Value) -> Option<(String, Value)> {
     Some((name.clone(), schema.into()))
 }
 
-/// Writes down the bounds that an integer's Rust type, and TOML, imply.
+/// Adds the bounds that follow from an integer's Rust type, and from TOML.
 fn bound_by_type(schema: &mut Map<String, Value>) {
     let (least, most) = match schema.get("format").and_then(Value::as_str) {
         Some("uint8") => (json!(0), json!(u8::MAX)),

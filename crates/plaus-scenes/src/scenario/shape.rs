@@ -1,5 +1,5 @@
-//! The schema as the rest of this folder uses it: typed, its references resolved, its keys in the order of their
-//! definition.
+//! The schema in the form that the rest of this folder uses: typed, with references resolved, and with keys in the
+//! order of their definition.
 
 use super::bounds::Bounds;
 use super::schema::schema;
@@ -10,16 +10,16 @@ use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-/// What may stand at a place of a scenario.
+/// What is allowed at a place of a scenario.
 #[derive(Debug, Clone)]
 pub(super) struct Shape {
     /// Meaning.
     pub(super) description: String,
     /// Unit, where the value has one.
     pub(super) unit: Option<String>,
-    /// A value to show where there is no default.
+    /// A value to show if there is no default.
     pub(super) example: Option<Value>,
-    /// `None`: must be given. `Null`: may be left out, and then means something of its own.
+    /// `None`: must be given. `Null`: may be left out, and then has a special meaning.
     pub(super) default: Option<Value>,
     pub(super) kind: Kind,
 }
@@ -37,13 +37,13 @@ pub(super) enum Kind {
     Number(Bounds<f64>),
     Boolean,
     Text,
-    /// Values of one shape, so many from first to last.
+    /// A list of values of one shape, with bounds on its length.
     List(Box<Shape>, Bounds<i128>),
-    /// Any of these, told apart by the kind of value.
+    /// Any of these, distinguished by the kind of value.
     Any(Vec<Shape>),
-    /// The same as what stands around it: what the reference names, in which it stands itself.
+    /// The same shape as one around it, which contains itself: the one that the reference names.
     Again(String),
-    /// The schema says it in words this module does not know; left to serde.
+    /// The schema uses words that this module does not know; serde checks the value.
     Unknown,
 }
 
@@ -60,7 +60,7 @@ pub(super) fn scenario() -> &'static Shape {
     })
 }
 
-/// The shape of what a reference names that stands in itself.
+/// The recursive shape that a reference names.
 pub(super) fn again(reference: &str) -> Option<&'static Shape> {
     static SHAPES: OnceLock<BTreeMap<String, Shape>> = OnceLock::new();
     let shapes = SHAPES.get_or_init(|| {
@@ -77,7 +77,7 @@ pub(super) fn again(reference: &str) -> Option<&'static Shape> {
 }
 
 impl Shape {
-    /// The shape a part of the schema `root` describes, within what the references `open` name.
+    /// The shape that a part of the schema `root` describes, inside the shapes that the references `open` name.
     pub(super) fn of_schema(part: &Value, root: &Value, open: &[&str]) -> Self {
         let empty = Map::new();
         let part = part.as_object().unwrap_or(&empty);
@@ -123,7 +123,7 @@ impl Shape {
         self.keys().iter().find(|(name, _)| name == key).map(|(_, shape)| shape)
     }
 
-    /// Of several alternatives that which is for this kind of value.
+    /// Of several alternatives, the one for this kind of value.
     pub(super) fn alternative(&self, data: &Data) -> Option<&Self> {
         let Kind::Any(all) = &self.kind else { return None };
         all.iter().find(|one| match data {
@@ -136,7 +136,7 @@ impl Shape {
         })
     }
 
-    /// What stands in a list.
+    /// The shape of a list's entries.
     pub(super) fn item(&self) -> Option<&Self> {
         match &self.kind {
             Kind::List(item, _) => Some(item),
@@ -144,7 +144,7 @@ impl Shape {
         }
     }
 
-    /// The shape at a dotted key; `name[]` is what stands in the list `name`.
+    /// The shape at a dotted key; `name[]` means the entries of the list `name`.
     pub(super) fn at(&self, key: &str) -> Option<&Self> {
         key.split('.').try_fold(self, |shape, name| match name.strip_suffix("[]") {
             Some(list) => shape.get(list)?.item(),
@@ -152,14 +152,14 @@ impl Shape {
         })
     }
 
-    /// All dotted keys in lists: `constraints[]`, `constraints[].rest_at`, …. Of a choice that `tree` has made, only
-    /// what it chose.
+    /// All dotted keys in lists: `constraints[]`, `constraints[].rest_at`, …. Where `tree` has made a choice, only the
+    /// chosen ones.
     pub(super) fn paths_in_lists(&self, tree: Option<&Tree>) -> Vec<String> {
         let lists = self.paths(tree).into_iter().filter_map(|key| Some((self.at(&key)?.item()?, key)));
         lists.flat_map(|(item, key)| item.paths_of_item(&key)).collect()
     }
 
-    /// The same of what stands in the list `key`, and in lists of numbers in it.
+    /// The same for the entries of the list `key`, and for lists of numbers in them.
     fn paths_of_item(&self, key: &str) -> Vec<String> {
         let mut paths = vec![format!("{key}[]")];
         for inner in self.paths(None) {
@@ -173,7 +173,7 @@ impl Shape {
         paths
     }
 
-    /// All dotted keys, tables before what they hold, in order. Of a choice that `tree` has made, only what it chose.
+    /// All dotted keys in order, tables before their contents. Where `tree` has made a choice, only the chosen ones.
     pub(super) fn paths(&self, tree: Option<&Tree>) -> Vec<String> {
         let chosen = match (&self.kind, tree.map(|tree| &tree.data)) {
             (Kind::OneOf(keys), Some(Data::Table(given))) => {
@@ -191,8 +191,8 @@ impl Shape {
         paths
     }
 
-    /// The allowed values in words, without the unit: "above 0 and at most 90", "\"mixed\" or \"paper\""; empty where
-    /// anything goes.
+    /// The allowed values in words, without the unit: "above 0 and at most 90", "\"mixed\" or \"paper\""; empty if
+    /// everything is allowed.
     pub(super) fn range(&self) -> String {
         match &self.kind {
             Kind::Integer(bounds) => bounds.words(),
@@ -234,7 +234,7 @@ impl Shape {
         }
     }
 
-    /// Sorts keys as `order` has them: plain values first, as TOML must; those it lacks last.
+    /// Sorts keys in the order of `order`: plain values first, as TOML requires; keys that it lacks last.
     fn sort(&mut self, path: &str, order: &[String]) {
         let (Kind::Table(keys) | Kind::OneOf(keys)) = &mut self.kind else { return };
         let position = |name: &str| order.iter().position(|key| *key == join(path, name)).unwrap_or(usize::MAX);
@@ -276,7 +276,7 @@ impl Kind {
         }
     }
 
-    /// The alternatives of an `anyOf`, but null.
+    /// The alternatives of an `anyOf`, without null.
     fn any(part: &Map<String, Value>, root: &Value, open: &[&str]) -> Self {
         let all = part.get("anyOf").and_then(Value::as_array).into_iter().flatten();
         let all = all.filter(|one| one.get("type").and_then(Value::as_str) != Some("null"));
@@ -309,7 +309,7 @@ fn words(part: &Map<String, Value>) -> Option<Vec<(String, String)>> {
     lists.map(|lists| lists.concat())
 }
 
-/// The other of an `anyOf` of something and null: an optional value.
+/// The other alternative of an `anyOf` with null: an optional value.
 fn nullable(part: &Map<String, Value>) -> Option<&Value> {
     let (mut null, mut rest): (Vec<_>, Vec<_>) =
         part.get("anyOf")?.as_array()?.iter().partition(|one| one.get("type").and_then(Value::as_str) == Some("null"));

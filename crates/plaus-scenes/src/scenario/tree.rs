@@ -1,4 +1,4 @@
-//! TOML as a tree in which every value knows where it comes from.
+//! TOML as a tree in which every value knows its origin.
 
 use super::problem::{Problem, ScenarioError, Source};
 use crate::scene::ConfigError;
@@ -13,7 +13,7 @@ pub(super) struct Tree {
     pub(super) data: Data,
 }
 
-/// Where a value stands.
+/// Where a value is.
 #[derive(Debug, Clone)]
 pub(super) struct Place {
     pub(super) source: Source,
@@ -37,7 +37,7 @@ pub(super) enum Data {
 }
 
 impl Place {
-    /// Said by an override, or implied by one.
+    /// Given by an override, or implied by one.
     pub(super) fn of_override(said: &str) -> Self {
         Self { source: Source::Override(said.into()), key: None, value: None }
     }
@@ -47,7 +47,7 @@ impl Place {
         problem.at(&self.source, self.key.clone())
     }
 
-    /// `problem`, blamed on the key, or on all of it where it stands in a list.
+    /// `problem`, blamed on the key; for an entry of a list, on the whole entry.
     pub(super) fn blame(&self, problem: Problem) -> Problem {
         problem.at(&self.source, self.key.clone().or_else(|| self.value.clone()))
     }
@@ -59,7 +59,7 @@ impl Place {
 }
 
 impl Tree {
-    /// The tree of a file, as far as it can be read, and what cannot.
+    /// The tree of a file, as far as it can be read, and the errors.
     pub(super) fn parse(text: &str) -> (Self, Vec<toml::de::Error>) {
         let (table, errors) = DeTable::parse_recoverable(text);
         let place = Place { source: Source::File, key: None, value: None };
@@ -72,7 +72,7 @@ impl Tree {
         Self { data: Data::of_toml(value, &place), place }
     }
 
-    /// The value of a key, where this is a table that has it.
+    /// The value of a key, if this is a table that has it.
     pub(super) fn get(&self, key: &str) -> Option<&Self> {
         match &self.data {
             Data::Table(entries) => entries.get(key),
@@ -80,7 +80,7 @@ impl Tree {
         }
     }
 
-    /// The key that comes first, where this is a table with any.
+    /// The key that comes first, if this is a table that is not empty.
     pub(super) fn first_key(&self) -> Option<&str> {
         match &self.data {
             Data::Table(entries) => entries.keys().next().map(String::as_str),
@@ -88,7 +88,7 @@ impl Tree {
         }
     }
 
-    /// The value of a key, or of a place in a list as in `name[2]`.
+    /// The value of a key, or of an entry of a list, as in `name[2]`.
     fn get_indexed(&self, name: &str) -> Option<&Self> {
         let Some((list, place)) = name.strip_suffix(']').and_then(|name| name.split_once('[')) else {
             return self.get(name);
@@ -99,7 +99,7 @@ impl Tree {
         }
     }
 
-    /// The value at a dotted key, or the last on the way there, with its own dotted key.
+    /// The value at a dotted key, or the last one on the way there, with its own dotted key.
     pub(super) fn nearest(&self, key: &str) -> (String, &Self) {
         let (mut path, mut tree) = (String::new(), self);
         for name in key.split('.') {
@@ -111,7 +111,7 @@ impl Tree {
         (path, tree)
     }
 
-    /// All dotted keys in the order of the file, tables before what they hold.
+    /// All dotted keys in the order of the file, tables before their contents.
     pub(super) fn keys(&self) -> Vec<String> {
         let Data::Table(entries) = &self.data else { return Vec::new() };
         let mut entries: Vec<_> = entries.iter().collect();
@@ -125,7 +125,7 @@ impl Tree {
 }
 
 impl Data {
-    /// What lists and tables hold stands where their own source says. Depth is bounded: the parser allows 80 levels.
+    /// The contents of lists and tables have places in their own source. Depth is bounded: the parser allows 80 levels.
     fn of_toml(value: &DeValue<'_>, place: &Place) -> Self {
         match value {
             DeValue::String(text) => Self::Text(text.to_string()),
@@ -154,7 +154,7 @@ impl Data {
 }
 
 impl Place {
-    /// The place of something inside: spans of an override's value do not point into the file.
+    /// The place of something inside: spans of an override's value do not refer to the file.
     fn inner(&self, key: Option<Range<usize>>, value: Range<usize>) -> Self {
         match self.source {
             Source::File => Self { source: Source::File, key, value: Some(value) },
@@ -164,7 +164,7 @@ impl Place {
 }
 
 impl ScenarioError {
-    /// An error that a scene found later, blamed on its key's place in the file, or on the table that lacks the key.
+    /// An error that a scene found later, blamed on its key in the file, or on the table that lacks the key.
     #[must_use]
     pub fn locate(name: &str, text: &str, error: &ConfigError) -> Self {
         let (tree, _) = Tree::parse(text);
@@ -172,12 +172,12 @@ impl ScenarioError {
     }
 }
 
-/// A scene's complaint about a key of `tree`.
+/// A scene's error about a key of `tree`.
 pub(super) fn located(tree: &Tree, error: &ConfigError) -> Problem {
     let (found, value) = tree.nearest(&error.key);
     let problem = Problem::new(error.key.clone(), error.message.clone());
     let is_value = found == error.key && !matches!(value.data, Data::Table(_));
-    // What stands in a list has no key of its own.
+    // An entry of a list has no key of its own.
     if is_value || value.place.key.is_none() {
         value.place.blame_value(problem)
     } else {

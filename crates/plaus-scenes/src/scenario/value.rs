@@ -1,4 +1,4 @@
-//! Single values: whether one fits its shape, and how to say that it does not.
+//! Single values: whether one fits its shape, and the message if it does not.
 
 use super::bounds::{Bounded, Bounds};
 use super::nearest::nearest;
@@ -6,7 +6,7 @@ use super::shape::{Kind, Shape};
 use super::tree::Data;
 use toml::Value;
 
-/// What is wrong with a value, wherever it stands.
+/// What is wrong with a value, wherever it is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Wrong {
     pub(super) message: String,
@@ -19,10 +19,11 @@ impl Wrong {
     }
 }
 
-/// The value as serde should read it.
+/// The value in the form that serde should read.
 ///
 /// # Errors
-/// [`Wrong`] where its type or size is not the shape's.
+///
+/// [`Wrong`] if its type or size does not match the shape.
 pub(super) fn read(shape: &Shape, data: &Data) -> Result<Value, Wrong> {
     match (&shape.kind, data) {
         (Kind::Words(words), Data::Text(text)) => word(words, text, shape),
@@ -51,7 +52,7 @@ fn integer(bounds: &Bounds<i128>, digits: &str, radix: u32, shape: &Shape) -> Re
     value.map(Value::Integer).ok_or_else(|| out_of_range(&written(digits, radix), shape))
 }
 
-/// Integers stand for numbers too.
+/// An integer is also a number.
 fn number_of_integer(bounds: &Bounds<f64>, digits: &str, radix: u32, shape: &Shape) -> Result<Value, Wrong> {
     let exact = i128::from_str_radix(digits, radix).ok().map(|value| value as f64);
     let value = exact.or_else(|| digits.parse().ok().filter(|_| radix == 10));
@@ -70,7 +71,7 @@ fn out_of_range(value: &str, shape: &Shape) -> Wrong {
     let range = shape.range_with_unit();
     let value = clipped(value);
     if range.is_empty() {
-        return Wrong::new(format!("{value} is no finite number"));
+        return Wrong::new(format!("{value} is not a finite number"));
     }
     Wrong::new(format!("{value} is out of range: it must be {range}"))
 }
@@ -111,9 +112,9 @@ impl Data {
         }
     }
 
-    /// As it stands, for serde to judge.
+    /// The value unchanged, for serde to judge.
     fn to_toml(&self) -> Result<Value, Wrong> {
-        let wrong = || Wrong::new(format!("{} cannot stand here", self.in_words()));
+        let wrong = || Wrong::new(format!("{} is not allowed here", self.in_words()));
         Ok(match self {
             Self::Table(entries) => {
                 let entries = entries.iter().map(|(name, tree)| Ok((name.clone(), tree.data.to_toml()?)));
@@ -129,7 +130,7 @@ impl Data {
     }
 }
 
-/// An integer as TOML has it.
+/// An integer in TOML's form.
 fn written(digits: &str, radix: u32) -> String {
     let prefix = match radix {
         2 => "0b",
@@ -140,7 +141,7 @@ fn written(digits: &str, radix: u32) -> String {
     format!("{prefix}{digits}")
 }
 
-/// A string as it may be shown.
+/// A string in a form that can be shown.
 fn quoted(text: &str) -> String {
     format!("{:?}", clipped(text))
 }

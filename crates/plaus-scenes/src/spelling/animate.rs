@@ -12,10 +12,10 @@ use plaus_mcmc::ModelError;
 use plaus_sim::mechanics::Other;
 use plaus_sim::scenery::Surface;
 
-/// Names of what a ball can hit that stands still.
+/// Names of the scenery that a ball can hit.
 pub(super) const FIXED: [&str; 6] = ["floor", "partitions", "wall_left", "wall_right", "wall_front", "wall_back"];
 
-/// Name of the wall whose normal points so.
+/// Name of the wall with this normal.
 fn wall(normal: DVec3) -> &'static str {
     match (normal.x.abs() > normal.y.abs(), normal.x > 0.0, normal.y > 0.0) {
         (true, true, _) => "wall_left",
@@ -25,8 +25,8 @@ fn wall(normal: DVec3) -> &'static str {
     }
 }
 
-/// What a marble touches during a piece: where gravity is not all that changes its velocity, what it hit last, and the
-/// floor where that is another marble.
+/// What a marble touches during a piece: if gravity is not all that changes its velocity, the thing that it hit last,
+/// or the floor if that is another marble.
 fn touches(piece: &Piece, name: &str, hits: &[Impact]) -> Option<String> {
     let free = (piece.acceleration - DVec3::NEG_Y * GRAVITY).length() < 1e-6 * GRAVITY;
     let before = hits.partition_point(|hit| hit.time <= piece.start);

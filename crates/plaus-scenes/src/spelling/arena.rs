@@ -1,4 +1,4 @@
-//! The box as the simulator knows it, in metres, and what of a configuration makes no box.
+//! The box in the simulator's terms, in metres, and errors of configurations that make no box.
 
 use super::config::{Config, Order, Vertices};
 use super::draw::Drops;
@@ -12,25 +12,25 @@ use plaus_sim::scenery::Scenery;
 use plaus_sim::worlds::Bins;
 use plaus_sim::{Accuracy, Law, Laws, Material, WorldError};
 
-/// Standard deviations of an offset's coordinate beyond which an offset has density 0: its length exceeds 8 with
-/// probability 8e-14.
+/// Offsets whose length exceeds this many standard deviations of a coordinate have density 0; without the cut, the
+/// probability of that is 8e-14.
 const LONGEST: f64 = 8.0;
 
-/// Largest share of the partitions' thickness that an offset can be: less than half, so that no vertex leaves its
+/// Largest length of an offset, as a share of the partitions' thickness: less than half, so that no vertex leaves its
 /// partition.
 const SHARE: f64 = 0.45;
 
 /// Metres in a millimetre.
 pub(super) const MM: f64 = 1e-3;
 
-/// What does not change from draw to draw.
+/// Everything that is the same for all draws.
 #[derive(Debug)]
 pub(super) struct Arena {
     bins: Bins,
-    /// Made once: its broad phase costs more than some thousand drops.
+    /// Made once: its broad phase costs more than a few thousand drops.
     scenery: Scenery,
     laws: Laws,
-    /// Of the simulator's mesh, the vertices that are random, and where they are without offset.
+    /// The random vertices of the simulator's mesh, and their places without an offset.
     vertices: Vec<(u32, DVec3)>,
     interval: f64,
     order: Order,
@@ -83,7 +83,7 @@ impl Arena {
         Ok(arena)
     }
 
-    /// A world of `count` balls with all vertices where they are without offset.
+    /// A world of `count` balls with all vertices in their regular places.
     pub(super) fn world(&self, count: usize) -> Result<Marbles, WorldError> {
         let volume = 4.0 / 3.0 * std::f64::consts::PI * math::powi(self.bins.marble, 3);
         let ball = MarbleSpec::solid(self.bins.marble, volume * self.bins.density, BALL);
@@ -130,7 +130,7 @@ impl Arena {
         self.duration
     }
 
-    /// Where the random vertex `index` is with an offset in mm.
+    /// Where the random vertex `index` is, given an offset in mm.
     pub(super) fn moved(&self, index: usize, offset: &[f64; 3]) -> (u32, DVec3) {
         let (vertex, home) = self.vertices[index];
         (vertex, home + DVec3::from_array(*offset) * MM)
@@ -149,7 +149,7 @@ impl Arena {
         })
     }
 
-    /// The bin in which a ball lies, once everything has come to rest: its lowest point is less than halfway up the
+    /// The bin in which a ball lies once everything is at rest: its lowest point is less than halfway up the
     /// partitions.
     pub(super) fn bin_of(&self, ball: &Marble) -> Option<u16> {
         let x = ball.path.x;
@@ -169,8 +169,7 @@ const BOX: Material = Material(1);
 fn laws(config: &Config) -> Result<Laws, WorldError> {
     let contact = &config.contact;
     let mut laws = Laws::new(2, Law::new(contact.ball_friction, contact.ball_restitution))?;
-    // Spinning about the normal dies by the same resistance, half as strong: a ball that only spins is at rest for the
-    // eye.
+    // The same resistance, half as strong, stops spinning about the normal: a ball that only spins looks as if at rest.
     let on_box = Law::new(contact.box_friction, contact.box_restitution);
     laws.set(BALL, BOX, on_box.with_resistance(contact.rolling_resistance, 0.5 * contact.rolling_resistance))?;
     Ok(laws)
@@ -181,14 +180,14 @@ pub(super) fn longest_offset(config: &Config) -> f64 {
     (LONGEST * config.sigma_mm).min(SHARE * config.dimensions.partition_mm)
 }
 
-/// Most balls there can be.
+/// The largest number of balls.
 pub(super) fn balls(config: &Config, word: &Word) -> Result<usize, ConfigError> {
     let (bins, needed) = (word.columns() * word.rows(), word.designated().len());
     let fail = |message: String| Err(ConfigError::new("world.spelling.balls", message));
     match config.balls as usize {
         0 => Ok(needed),
         given if given > bins => fail(format!("{given} balls are more than the {bins} bins of the box")),
-        given if given < needed => fail(format!("{given} balls cannot fill the {needed} designated bins")),
+        given if given < needed => fail(format!("{given} balls cannot fill {needed} bins")),
         given => Ok(given),
     }
 }
@@ -204,11 +203,11 @@ pub(super) fn rectangle(config: &Config, word: &Word) -> Result<[[f64; 2]; 2], C
         return Ok(sides);
     }
     let most = config.drop_inset_mm + 0.5 * short;
-    let message = format!("nothing is left of the drop rectangle: it must be less than {most:.3} mm in this box");
+    let message = format!("the drop rectangle is empty: the inset must be less than {most:.3} mm in this box");
     Err(ConfigError::new("world.spelling.drop_inset_mm", message))
 }
 
-/// What is wrong between keys that are each in range.
+/// Checks conditions between keys that are each in range.
 fn check(config: &Config) -> Result<(), ConfigError> {
     let (size, radius) = (&config.dimensions, config.ball_radius_mm);
     let fail = |key: &str, message: String| Err(ConfigError::new(format!("world.spelling.{key}"), message));
@@ -229,8 +228,10 @@ fn check(config: &Config) -> Result<(), ConfigError> {
     let half = 0.5 * size.bin_mm;
     if size.floor_radius_mm <= radius.max(half * std::f64::consts::SQRT_2) {
         let least = radius.max(half * std::f64::consts::SQRT_2);
-        let message =
-            format!("{} mm is no bowl under a whole bin: it must be more than {least:.3} mm", size.floor_radius_mm);
+        let message = format!(
+            "a bowl of {} mm does not span a whole bin: it must be more than {least:.3} mm",
+            size.floor_radius_mm
+        );
         return fail("box.floor_radius_mm", message);
     }
     let rim = size.floor_radius_mm - (size.floor_radius_mm * size.floor_radius_mm - 2.0 * half * half).sqrt();
@@ -251,8 +252,10 @@ fn check(config: &Config) -> Result<(), ConfigError> {
         // Time to fall by a diameter, 2r = g t²/2: the next ball finds its place free.
         let least = (4.0 * radius * MM / GRAVITY).sqrt();
         if config.drop_interval_s < least {
-            let message =
-                format!("{} s is too short: a ball needs {least:.4} s to fall by its diameter", config.drop_interval_s);
+            let message = format!(
+                "{} s is too short: a ball needs {least:.4} s to fall by its own diameter",
+                config.drop_interval_s
+            );
             return fail("drop_interval_s", message);
         }
     }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct Drops {
     /// Offset of each random partition vertex.
     pub offsets: Vec<[f64; 3]>,
-    /// Where each ball is dropped; `None`: it is not.
+    /// Where each ball is dropped; `None` if it is not.
     pub balls: Vec<Option<[f64; 2]>>,
 }
 

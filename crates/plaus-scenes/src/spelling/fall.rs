@@ -1,4 +1,4 @@
-//! Some balls simulated by themselves: their ways, where they end, and which vertices that can depend on.
+//! Some balls simulated by themselves: their paths, where they end, and the vertices that this can depend on.
 
 use super::arena::Arena;
 use crate::model::groups::Group;
@@ -23,11 +23,11 @@ pub(super) struct Fall {
     pub(super) bins: Vec<Option<u16>>,
     /// Whether the simulation came to its end.
     pub(super) complete: bool,
-    /// Bit k: what became of a ball alone can depend on random vertex k.
+    /// Bit k: the outcome of a ball alone can depend on random vertex k.
     touched: Vec<u64>,
 }
 
-/// Records ways, and impacts where wanted.
+/// Records paths, and impacts if wanted.
 #[derive(Default)]
 pub(super) struct Recorder {
     ways: Vec<Vec<Parabola>>,
@@ -52,7 +52,7 @@ impl Observer<Marbles> for Recorder {
 }
 
 impl Fall {
-    /// Simulates `members` with their `starts` in a world of as many balls.
+    /// Simulates `members` with their `starts` in a world with as many balls.
     pub(super) fn simulate(
         arena: &Arena,
         world: &Marbles,
@@ -66,7 +66,7 @@ impl Fall {
         let complete = match world.run(&mut state, scratch, arena.duration(), recorder) {
             Outcome::AllAtRest | Outcome::TimeReached => true,
             Outcome::OutOfEvents => false,
-            Outcome::Stopped => return Err(ModelError::new("a simulation stopped although nobody asked it to")),
+            Outcome::Stopped => return Err(ModelError::new("a simulation stopped without being asked to: a bug")),
             Outcome::NotFinite { body } => {
                 let message = format!(
                     "the motion of ball {} is not finite; it was dropped at {}",
@@ -86,8 +86,8 @@ impl Fall {
 
     /// Whether the simulation could have other bits once the vertices `moved` have moved.
     ///
-    /// A ball alone depends on the vertices near its way. What several do can also depend on features that they were
-    /// deflected from before they came there, wherever those are.
+    /// A ball alone depends on the vertices near its path. Several balls can also depend on features that they were
+    /// deflected from before they got there, wherever those are.
     pub(super) fn depends_on(&self, moved: &[usize]) -> bool {
         match self.members.len() {
             1 => moved.iter().any(|&k| (self.touched[k / 64] >> (k % 64)) & 1 == 1),
@@ -106,14 +106,15 @@ impl Group for Fall {
     }
 }
 
-/// Which vertices a way can depend on.
+/// The vertices that a path can depend on.
 ///
 /// Moving a vertex changes the tops of the partitions that meet in it, up to the next crossings. Their features are
-/// looked at where a ball's way, as far as the cell of the broad phase in which a motion ends, passes within its radius
-/// of where they can be.
+/// looked at if a ball's path, up to the cell of the broad phase in which a motion ends, passes within its radius of
+/// where they can be.
 struct Footprint {
     side: f64,
-    /// How far from the middle of a partition's top, along and across it, a ball's centre can be to see a change.
+    /// The largest distance of a ball's centre from the middle of a partition's top, along and across it, at which it
+    /// can notice a change.
     near: f64,
     columns: usize,
     rows: usize,

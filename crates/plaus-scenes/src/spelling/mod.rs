@@ -1,5 +1,5 @@
-//! Balls that spell a word (section 5.3, appendix B): which bins are filled is demanded; the shape of the partitions
-//! and the drops are uncertain.
+//! Balls that spell a word (section 5.3, appendix B): the bins to fill are asked for; the shape of the partitions and
+//! the drops are uncertain.
 
 mod animate;
 mod arena;
@@ -38,8 +38,8 @@ use plaus_mcmc::{
 };
 use serde::{Deserialize, Serialize};
 
-/// The balls that spell: `p ∝ λ^k · Π exp(−½‖offset‖²/σ²) · Π 1/a`, the first product over vertices, the second over
-/// the balls that are dropped.
+/// The balls that spell: `p ∝ λ^k · Π exp(−½‖offset‖²/σ²) · Π 1/a`, with the first product over vertices and the second
+/// over the balls that are dropped.
 #[derive(Debug)]
 pub struct Spelling {
     config: Config,
@@ -55,10 +55,10 @@ pub struct Spelling {
 /// Where the balls came to rest.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Rest {
-    /// Each ball's bin; `None` where it was not dropped, lies on a partition or on another ball above it, or still
+    /// Each ball's bin; `None` if it was not dropped, lies on a partition or on another ball above it, or still
     /// moves.
     pub bins: Vec<Option<u16>>,
-    /// Whether the simulation came to its end within the simulator's budget of events. Where it did not, the draw has
+    /// Whether the simulation came to its end within the simulator's budget of events. If it did not, the draw has
     /// probability 0.
     pub complete: bool,
 }
@@ -67,7 +67,8 @@ impl Spelling {
     /// The scene of a configuration.
     ///
     /// # Errors
-    /// [`ConfigError`] where the word does not fit its box, the balls not their bins, or the numbers make no world.
+    ///
+    /// [`ConfigError`] if the word does not fit its box, the balls do not fit their bins, or the numbers make no world.
     pub fn new(config: &Config) -> Result<Self, ConfigError> {
         let blame = |key: &'static str| {
             move |error: &dyn std::error::Error| ConfigError::new(format!("world.spelling.{key}"), error)
@@ -86,7 +87,7 @@ impl Spelling {
         Ok(Self { config: config.clone(), word, vars, rectangle, balls, goal, arena, savings })
     }
 
-    /// The same scene with some of the work that its simulation saves switched off or on. It has no influence on any
+    /// The same scene with some optimisations of its simulation switched off or on. They have no influence on any
     /// state.
     #[must_use]
     pub fn with_savings(mut self, savings: Savings) -> Self {
@@ -100,7 +101,7 @@ impl Spelling {
         &self.config
     }
 
-    /// ln λ: the configuration's, or what is usual for so many bins.
+    /// ln λ: the configuration's, or the usual value for this many bins.
     #[must_use]
     pub fn ln_lambda(&self) -> f64 {
         self.goal.ln_lambda()
@@ -118,14 +119,14 @@ impl Spelling {
         &self.rectangle
     }
 
-    /// Most balls there can be.
+    /// The largest number of balls.
     #[must_use]
     pub fn balls(&self) -> usize {
         self.balls
     }
 
-    /// Lower and upper ends, along x and y, of the part of the drop rectangle that lies over a bin, in mm; `None` where
-    /// none does.
+    /// Lower and upper ends, along x and y, of the part of the drop rectangle that lies over a bin, in mm; `None` if no
+    /// part does.
     #[must_use]
     pub fn over(&self, bin: u16) -> Option<[[f64; 2]; 2]> {
         let side = self.config.dimensions.bin_mm;
@@ -138,7 +139,7 @@ impl Spelling {
         ends.iter().all(|[low, high]| low < high).then_some(ends)
     }
 
-    /// k: what λ rewards.
+    /// k: the number that λ rewards.
     #[must_use]
     pub fn reward(&self, rest: &Rest) -> u64 {
         let wanted = rest.bins.iter().flatten().filter(|&&bin| self.word.wants(bin));
@@ -177,7 +178,7 @@ impl Target for Spelling {
         floor: LogPotential,
         work: &mut Work,
     ) -> Result<Simulated<Rest>, ModelError> {
-        // Each ball fills one bin at most.
+        // Each ball fills at most one bin.
         let most = draw.active().min(match self.config.count {
             Count::Bins => self.word.designated().len(),
             Count::Balls => usize::MAX,
@@ -210,7 +211,7 @@ impl Target for Spelling {
     }
 }
 
-/// Two solutions are the same where every ball lies in the same bin.
+/// Two solutions are the same if every ball lies in the same bin.
 impl Goal for Spelling {
     fn class(&self, state: StateRefOf<'_, Self>) -> Option<SolutionClass> {
         let rest = &state.outcome;

@@ -1,5 +1,5 @@
-//! What is seen of the box: partitions with their vertices where the draw has them, bowls, glass walls, and marks in
-//! the bins to fill.
+//! The visible parts of the box: partitions with the draw's vertices, bowls, glass walls, and marks in the bins to
+//! fill.
 
 use super::Word;
 use super::arena::Arena;
@@ -14,7 +14,7 @@ use plaus_sim::worlds::Bins;
 /// Heights of the bowls along the side of a bin.
 const HEIGHTS: usize = 8;
 
-/// All that stands still, in metres.
+/// All scenery, in metres.
 pub(super) fn props(arena: &Arena, word: &Word, draw: &Drops) -> Result<Vec<Prop>, WorldError> {
     let bins = arena.bins();
     let mut props = vec![Prop::new("partitions", Look::WOOD, partitions(arena, draw)?), floor(bins)];
@@ -63,7 +63,7 @@ fn walls(bins: &Bins) -> [Prop; 4] {
     ]
 }
 
-/// A plate on the bottom of a bin that is to be filled.
+/// A plate on the bottom of a bin to fill.
 fn mark(bins: &Bins, word: &Word, bin: u16) -> Prop {
     let (row, column) = (usize::from(bin) / word.columns(), usize::from(bin) % word.columns());
     let middle = |k: usize| (k as f64 + 0.5) * bins.side;

@@ -1,6 +1,5 @@
-//! What becomes of a draw: the balls are simulated group by group, see [`crate::model::groups`]. What a candidate
-//! leaves
-//! as it is need not be simulated again: groups of the same balls with the same starts among the same vertices.
+//! The outcome of a draw: the balls are simulated group by group, see [`crate::model::groups`]. A group need not be
+//! simulated again if its balls are the same, with the same starts, among the same vertices.
 
 use super::Rest;
 use super::arena::Arena;
@@ -13,12 +12,12 @@ use plaus_sim::marbles::{MarbleScratch, Marbles, Start};
 use plaus_sim::mechanics::Impact;
 use plaus_sim::motion::Parabola;
 
-/// What a simulation may save. None of it has any influence on a state.
+/// Optimisations of a simulation. They have no influence on a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Savings {
     /// Candidates with too few balls to be accepted are not simulated.
     pub bound: bool,
-    /// Balls that a candidate leaves as they are, and that nothing else touches, are not simulated again.
+    /// Balls that a candidate does not change, and that nothing else touches, are not simulated again.
     pub reuse: bool,
 }
 
@@ -71,8 +70,8 @@ impl Work {
         self.counts
     }
 
-    /// The ways of the balls of the draw that was simulated last, until it is settled: each piece with its ball and the
-    /// time at which it ends, in m and s.
+    /// The paths of the balls of the draw simulated last, until it is settled: each piece with its ball and the time at
+    /// which it ends, in m and s.
     pub fn ways(&self) -> impl Iterator<Item = (usize, &Parabola, f64)> {
         let groups = self.memory.candidate().last().iter();
         let balls = groups.flat_map(|group| group.members.iter().zip(&group.ways));
@@ -84,13 +83,13 @@ impl Work {
         self.counts.skipped += 1;
     }
 
-    /// Keeps what is known about the candidate that was simulated last, if it became the current state.
+    /// Keeps what is known about the candidate simulated last if it became the current state.
     pub(super) fn settle(&mut self, accepted: bool) {
         self.memory.settle(accepted);
     }
 
-    /// Where the balls of `draw` come to rest. `known`: a draw from whose simulation, made now unless it is remembered,
-    /// parts may be taken.
+    /// Where the balls of `draw` come to rest. `known` is a draw whose simulation can be reused in part; it is
+    /// simulated now unless it is remembered.
     pub(super) fn simulate(&mut self, arena: &Arena, draw: &Drops, known: Option<&Drops>) -> Result<Rest, ModelError> {
         let mut memory = std::mem::take(&mut self.memory);
         let made = memory.simulate(draw, known, |draw, known, next| self.simulate_after(arena, draw, known, next));
@@ -121,7 +120,7 @@ impl Work {
         groups.into_iter().map(record).collect()
     }
 
-    /// Simulates `draw` into `next`, taking from `known` what stays as it is.
+    /// Simulates `draw` into `next`, reusing parts of `known` that do not change.
     fn simulate_after(
         &mut self,
         arena: &Arena,
@@ -175,7 +174,7 @@ impl Room {
         Ok(Self { world, offsets: vec![[0.0; 3]; arena.vertices().len()] })
     }
 
-    /// Moves the vertices to where the draw has them.
+    /// Moves the vertices to the draw's places.
     fn place(&mut self, arena: &Arena, draw: &Drops) -> Result<(), ModelError> {
         let differing = (0..draw.offsets.len()).filter(|&k| self.offsets[k] != draw.offsets[k]);
         let moved: Vec<_> = differing.map(|k| arena.moved(k, &draw.offsets[k])).collect();

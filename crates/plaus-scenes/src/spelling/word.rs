@@ -1,4 +1,4 @@
-//! Which bins the word designates.
+//! The bins that the word designates.
 
 use super::config::{Config, Letters, MOST_COLUMNS, MOST_ROWS};
 use crate::scene::ConfigError;
@@ -24,13 +24,13 @@ impl Word {
         let blame = |key: &str, message: String| Err(ConfigError::new(format!("world.spelling.{key}"), message));
         let (key, picture) = match (&config.text, config.bitmap.as_str()) {
             (Some(text), bitmap) if !text.is_empty() && !bitmap.is_empty() => {
-                return blame("text", "there is a `bitmap` besides: leave one of them out, or set it to \"\"".into());
+                return blame("text", "there is a `bitmap` too: leave one of them out, or set it to \"\"".into());
             }
             (text, "") => ("text", write(text.as_deref().unwrap_or("HI"), config.letters)?),
             (_, bitmap) => ("bitmap", read(bitmap)?),
         };
         if !picture.iter().flatten().any(|&fill| fill) {
-            return blame(key, "no bin is to be filled: at least one must be".into());
+            return blame(key, "there is no bin to fill: there must be at least one".into());
         }
         let (height, width) = (picture.len(), picture.first().map_or(0, Vec::len));
         let columns = fit(width, config.columns, MOST_COLUMNS, ["columns", key], "wide")?;
@@ -80,7 +80,7 @@ fn write(text: &str, letters: Letters) -> Result<Picture, ConfigError> {
     for (index, letter) in text.chars().enumerate() {
         let glyph = letters.glyph(letter).ok_or_else(|| {
             let known = "A to Z, 0 to 9, space and . - + ! ? = *";
-            ConfigError::new("world.spelling.text", format!("the font has no {letter:?}: it has {known}"))
+            ConfigError::new("world.spelling.text", format!("the font lacks {letter:?}: it has {known}"))
         })?;
         for (line, row) in picture.iter_mut().zip(glyph) {
             line.extend((index > 0).then_some(false));
@@ -96,7 +96,9 @@ fn read(bitmap: &str) -> Result<Picture, ConfigError> {
     let pixel = |c| match c {
         '#' | 'X' | 'x' | '1' | '*' => Ok(true),
         '.' | '_' | '0' | '-' | ' ' => Ok(false),
-        other => Err(fail(format!("{other:?} is no bin: # X x 1 * fill it, . _ 0 - and a space leave it empty"))),
+        other => Err(fail(format!(
+            "{other:?} is not allowed: # X x 1 * is a bin to fill, . _ 0 - or a space one to leave empty"
+        ))),
     };
     let lines: Picture =
         bitmap.lines().map(|line| line.chars().map(pixel).collect::<Result<_, _>>()).collect::<Result<_, _>>()?;
@@ -112,7 +114,7 @@ fn read(bitmap: &str) -> Result<Picture, ConfigError> {
 fn fit(needed: usize, given: u32, most: u32, [key, blamed]: [&str; 2], size: &str) -> Result<usize, ConfigError> {
     let most = most as usize;
     if needed > most {
-        let message = format!("{needed} bins {size}, but the box has {most} {key} at most");
+        let message = format!("{needed} bins {size}, but the box has at most {most} {key}");
         return Err(ConfigError::new(format!("world.spelling.{blamed}"), message));
     }
     match given as usize {
@@ -179,18 +181,18 @@ mod tests {
         assert_eq!(said(|config| config.columns = 4), too_few);
         assert_eq!(
             said(|config| config.text = Some("HELLO, HELLO".into())),
-            "world.spelling.text: the font has no ',': it has A to Z, 0 to 9, space and . - + ! ? = *"
+            "world.spelling.text: the font lacks ',': it has A to Z, 0 to 9, space and . - + ! ? = *"
         );
-        let long = "world.spelling.text: 79 bins wide, but the box has 64 columns at most";
+        let long = "world.spelling.text: 79 bins wide, but the box has at most 64 columns";
         assert_eq!(said(|config| config.text = Some("H".repeat(20))), long);
         assert_eq!(
             said(|config| config.text = Some("  ".into())),
-            "world.spelling.text: no bin is to be filled: at least one must be"
+            "world.spelling.text: there is no bin to fill: there must be at least one"
         );
         assert_eq!(
             said(|config| config.text = Some(String::new())),
-            "world.spelling.text: no bin is to be filled: at least one must be"
+            "world.spelling.text: there is no bin to fill: there must be at least one"
         );
-        assert!(said(|config| config.bitmap = "#?".into()).starts_with("world.spelling.bitmap: '?' is no bin"));
+        assert!(said(|config| config.bitmap = "#?".into()).starts_with("world.spelling.bitmap: '?' is not allowed"));
     }
 }

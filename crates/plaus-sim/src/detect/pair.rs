@@ -6,9 +6,9 @@ use crate::roots::{first_fall_of_quartic, squared_distance};
 /// First time in `[from, until]` (absolute; both motions valid there, and until `horizon`) at which two spheres touch
 /// while approaching; `reach` is the sum of their radii.
 ///
-/// The time depends on nothing but the two motions: it is sought from the later of their clocks, and over all of the
-/// time in which both are valid. So a pair that is looked at again, because something else that was expected did not
-/// happen, is found to meet at the same time to the last bit.
+/// The time depends only on the two motions: the search begins at the later of their clocks, and covers all of the time
+/// in which both are valid. So if a pair is looked at again, because something else that was expected did not happen,
+/// the time found is the same to the last bit.
 #[inline]
 pub(crate) fn sphere_pair(a: &Parabola, b: &Parabola, reach: f64, [from, until, horizon]: [f64; 3]) -> Option<f64> {
     let start = a.t.max(b.t);

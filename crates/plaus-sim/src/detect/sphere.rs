@@ -5,15 +5,15 @@ use crate::roots::{fall_of_quadratic, falls_of_quartic, squared_distance};
 use crate::scenery::{Scenery, Surface};
 use glam::DVec3;
 
-/// How far a contact point may lie outside a feature of the mesh and still count as on it, in radii. Closes the cracks
-/// that rounding leaves between neighbours. Default 1e-9; danger: much larger values catch balls on the invisible
-/// continuation of a face.
+/// How far a contact point may lie outside a feature of the mesh and still count as on it, in radii. It closes the
+/// cracks that rounding leaves between neighbours. Default 1e-9; danger: much larger values catch balls on the
+/// invisible continuation of a face.
 const SEAM: f64 = 1e-9;
 
-/// A stretch of a motion of which the begin is looked at again and again.
+/// A part of a motion whose beginning is needed again and again.
 pub(crate) struct Stretch<'p> {
     pub(crate) path: &'p Parabola,
-    /// Seconds after the motion's clock at which it begins, and centre and velocity then.
+    /// Its start, in seconds after the motion's clock, and centre and velocity then.
     pub(crate) from: f64,
     pub(crate) x: DVec3,
     pub(crate) v: DVec3,

@@ -1,4 +1,4 @@
-//! A ball's way through the broad phase, cell by cell, until it touches something.
+//! A ball's path through the broad phase, cell by cell, until it touches something.
 
 use super::sphere::{Stretch, sphere_surface};
 use crate::motion::{Course, Parabola};
@@ -64,13 +64,13 @@ struct Search<'s> {
     radius: f64,
     skip: &'s [Surface],
     stretch: Stretch<'s>,
-    /// Seconds after the motion's clock after which a touch does not count.
+    /// A touch later than this many seconds after the motion's clock does not count.
     limit: f64,
     best: Option<(f64, Surface)>,
 }
 
 impl Search<'_> {
-    /// Takes note of a surface if it is touched first. Not inlined: the scan over what is near keeps its numbers in
+    /// Notes a surface if it is touched first. Not inlined, so that the scan over nearby things keeps its numbers in
     /// registers.
     #[inline(never)]
     fn consider(&mut self, surface: Surface) {
@@ -86,8 +86,8 @@ impl Search<'_> {
     }
 }
 
-/// When a centre leaves a cell in a stretch, along which axis and which way; infinite and none where it stays until
-/// `limit`. `way` holds the centre until then.
+/// When a centre leaves a cell during a stretch, along which axis and in which direction; infinite and none if it stays
+/// until `limit`. `way` holds the centre until then.
 #[inline]
 fn exit(
     (low, high): (DVec3, DVec3),

@@ -1,4 +1,4 @@
-//! One cell of a spline: its polynomial and what bounds it.
+//! One cell of a spline: its polynomial, and bounds on it.
 
 /// Value and derivatives of a field at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -11,7 +11,7 @@ pub struct Sample {
     pub bend: [f64; 3],
 }
 
-/// What holds all over a region.
+/// Bounds over a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     /// No value is lower.
@@ -25,10 +25,10 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// What holds in no region.
+    /// The bounds of an empty region.
     pub const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY, slope: 0.0, bend: 0.0 };
 
-    /// What holds in both regions.
+    /// Bounds that hold in both regions.
     #[inline]
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
@@ -44,17 +44,17 @@ impl Bounds {
 /// Control values over a cell, the second index along y.
 pub(super) type Values = [[f64; 4]; 4];
 
-/// A cell: its bounds at once, its polynomial from the first time that somebody looks into it. Most cells are only
+/// A cell: its bounds are computed at once, its polynomial when something first looks into it. Most cells are only
 /// passed over.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cell {
-    /// Control values; once it is ready, coefficients: those of `vᵇ` in row `b`, from that of `u⁰` to that of `u³`.
+    /// Control values; once it is prepared, coefficients: those of `vᵇ` in row `b`, from `u⁰` to `u³`.
     numbers: [Lanes; 4],
     is_ready: bool,
     pub(super) bounds: Bounds,
 }
 
-/// Four numbers that undergo the same.
+/// Four numbers processed together.
 type Lanes = [f64; 4];
 
 #[inline]
@@ -104,7 +104,7 @@ impl Cell {
         Self { numbers: *points, is_ready: false, bounds: bounds(&along_y, spacing) }
     }
 
-    /// Makes the polynomial; to be called before the first look.
+    /// Computes the polynomial; to be called before the first look.
     #[inline]
     pub(super) fn prepare(&mut self) {
         if !self.is_ready {
@@ -165,7 +165,7 @@ fn horner(c: &[f64; 4], x: f64) -> [f64; 3] {
     ]
 }
 
-/// What follows from Bernstein coefficients, the first index along y.
+/// Bounds from Bernstein coefficients, with the first index along y.
 fn bounds(b: &[Lanes; 4], spacing: f64) -> Bounds {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut x, mut y, mut xx, mut yy, mut xy) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);

@@ -1,5 +1,5 @@
-//! A hash table from cell or point indices to places in a list. What iterates over it sorts what comes, so results
-//! cannot depend on its order.
+//! A hash table from indices of cells or points to places in a list. Code that iterates over it sorts what it gets, so
+//! results cannot depend on its order.
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lookup {

@@ -16,8 +16,8 @@ pub struct Grid {
     pub spacing: f64,
 }
 
-/// A field over the plane. It can be sent to another thread, but not be looked at by two at once: each chain has its
-/// own.
+/// A field over the plane. It can be sent to another thread, but two threads cannot look at it at once: each chain has
+/// its own.
 #[derive(Clone)]
 pub struct Spline {
     name: &'static str,
@@ -47,16 +47,16 @@ impl Points {
     }
 }
 
-/// What has been asked for so far.
+/// Everything computed so far.
 #[derive(Clone, Default)]
 struct Made {
     point_places: Lookup,
     points: Vec<([i64; 2], f64)>,
     cell_places: Lookup,
     cells: Vec<Cell>,
-    /// Cells that were looked into last, by the low bits of their indices.
+    /// The cells last looked into, by the low bits of their indices.
     recent: [Option<([i64; 2], u32)>; RECENT],
-    /// The last rectangle of cells that bounds were asked for.
+    /// The last rectangle of cells for which bounds were asked.
     window: Option<([[i64; 2]; 2], Bounds)>,
     fault: Option<([i64; 2], f64)>,
 }
@@ -72,7 +72,7 @@ impl Spline {
     /// checked whenever a point is made; tight ranges make detection faster, ±8σ is fine for a Gaussian).
     ///
     /// # Errors
-    /// [`WorldError::BadNumber`] where the spacing is not positive or a number is not finite.
+    /// [`WorldError::BadNumber`] if the spacing is not positive or a number is not finite.
     pub fn new(
         name: &'static str,
         grid: Grid,
@@ -107,14 +107,14 @@ impl Spline {
         &self.grid
     }
 
-    /// The range that all control values keep, and so the field.
+    /// The range of all control values, and therefore of the field.
     #[must_use]
     pub fn range(&self) -> [f64; 2] {
         self.range
     }
 
-    /// The first control value that was not finite or out of range, if there was one. It counts as the nearer end of
-    /// the range (or the middle, for NaN).
+    /// The first control value that was not finite or out of range, if any. The nearer end of the range was used in its
+    /// place (or the middle, for NaN).
     #[must_use]
     pub fn fault(&self) -> Option<WorldError> {
         let (key, value) = self.made.borrow().fault?;
@@ -216,13 +216,13 @@ impl Spline {
         self.made.borrow().points.len()
     }
 
-    /// Forgets all that has been made, and says which control points that were: nothing else of the field had any
+    /// Forgets everything computed so far, and says which control points it used: nothing else of the field had any
     /// influence on what was looked at.
     pub fn take_touched(&mut self) -> Points {
         Points(std::mem::take(self.made.get_mut()).point_places)
     }
 
-    /// Memory of what has been made, in bytes.
+    /// Memory used so far, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
         let made = self.made.borrow();
@@ -232,8 +232,8 @@ impl Spline {
             + size_of_val(&made.cells[..])
     }
 
-    /// Gives one control point another value; cells that were made are made anew where it matters. The source is not
-    /// asked for it again.
+    /// Gives one control point another value; computed cells that depend on it are computed again. The source is not
+    /// asked for this point again.
     pub fn set(&mut self, key: [i64; 2], value: f64) {
         let made = &mut *self.made.borrow_mut();
         let value = checked(self.range, made, key, value);
@@ -265,8 +265,8 @@ impl Spline {
         }
     }
 
-    /// Makes a cell. `near` holds the control values of the last cell that was made here: its neighbours have three
-    /// rows of them.
+    /// Makes a cell. `near` holds the control values of the last cell made here, of which a neighbour shares three
+    /// rows.
     #[cold]
     fn add(&self, made: &mut Made, key: [i64; 2], near: &mut Option<([i64; 2], Values)>) -> u32 {
         let points = self.points(made, key, near.take());
@@ -324,7 +324,7 @@ fn floor(x: f64) -> i64 {
     if i as f64 > x { i.saturating_sub(1) } else { i }
 }
 
-/// The value, or what stands for one that breaks the promise, which is noted.
+/// The value, or a replacement for one that breaks the promise, which is noted.
 fn checked([low, high]: [f64; 2], made: &mut Made, key: [i64; 2], value: f64) -> f64 {
     if value >= low && value <= high {
         return value;

@@ -1,6 +1,6 @@
-//! A step of one marble on one surface: what most steps are, without the bookkeeping of a group.
+//! A step of one marble on one surface: most steps are of this kind, and need no bookkeeping of a group.
 //!
-//! It does what [`group`](super::group) does with a group of one contact.
+//! It does the same as [`group`](super::group) does for a group with one contact.
 
 use super::Marbles;
 use super::body::{Marble, Phase};
@@ -11,7 +11,7 @@ use crate::material::Law;
 use crate::scenery::{Foot, Surface};
 use glam::DVec3;
 
-/// Gives the marble its next step, or rest. Its only contact must be `surface`, which stands to it as `foot` says.
+/// Gives the marble its next step, or rest. Its only contact must be `surface`, with the position in `foot`.
 pub(super) fn settle(world: &Marbles, index: usize, body: &mut Marble, surface: Surface, foot: Foot) {
     let (ball, law, scale) = (&world.balls[index], world.surface_law(index, surface), world.speed_scale(index));
     let alone = Alone { world, ball, law, scale, surface, foot };
@@ -46,7 +46,7 @@ impl Alone<'_> {
         respond(self.ball, self.law, push, v, w)
     }
 
-    /// Takes away what slow approach is left, so that no step starts into the surface.
+    /// Removes the remaining slow approach, so that no step starts into the surface.
     fn stop_approach(&self, body: &mut Marble) {
         let n = self.foot.normal;
         if -body.path.v.dot(n) > APPROACH * self.world.accuracy.settle * self.scale {
@@ -113,9 +113,9 @@ impl Alone<'_> {
         End { x, v, w }
     }
 
-    /// Takes back what discretisation has added to the energy, as [`guard`](super::guard) does: from the motion
-    /// downhill and from slip, not from rolling or gliding across the slope. `fallen` is the work of gravity per unit
-    /// mass. False where there was not enough to take it from.
+    /// Takes back the energy that discretisation has added, like [`guard`](super::guard): from the motion downhill and
+    /// from slip, not from rolling or gliding across the slope. `fallen` is the work of gravity per unit mass. False if
+    /// there was not enough to take it from.
     fn guard(&self, start: (DVec3, DVec3), fallen: f64, end: &mut End) -> bool {
         let (n, gravity, End { v, w, .. }) = (self.foot.normal, self.world.gravity, *end);
         let inertia = self.ball.inertia() * self.ball.inverse_mass;
@@ -153,5 +153,5 @@ struct End {
     w: DVec3,
 }
 
-/// Tangential gravity over gravity up to which a surface counts as level. Default 1e-9.
+/// Largest tangential gravity over gravity at which a surface counts as level. Default 1e-9.
 const LEVEL: f64 = 1e-9;

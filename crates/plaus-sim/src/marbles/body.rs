@@ -7,7 +7,7 @@ use crate::scenery::Surface;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// What a marble is. Immutable.
+/// The constant properties of a marble.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MarbleSpec {
     /// Radius in m.
@@ -95,7 +95,7 @@ pub enum Phase {
     Rest,
 }
 
-/// What the end of a closed form means.
+/// What happens at the end of a closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Ending {
     /// Nothing in particular.
@@ -108,7 +108,7 @@ pub(crate) enum Ending {
     Leaves(u8),
 }
 
-/// Most surfaces that one marble can be in lasting contact with; further ones it bounces off.
+/// Most surfaces that one marble can be in lasting contact with; it bounces off further ones.
 pub(crate) const MOST_CONTACTS: usize = 8;
 
 /// A marble's state: a parabola, a spin that changes linearly, and its lasting contacts.
@@ -131,7 +131,7 @@ pub struct Marble {
     pub(crate) drill: f64,
     /// Velocity at the end of a step.
     pub(crate) end_velocity: DVec3,
-    /// When it last hit something, and how many impacts in a row came each hard upon the other.
+    /// When it last hit something, and how many impacts came in quick succession.
     last_impact: f64,
     rattles: u8,
     contacts: [Surface; MOST_CONTACTS],
@@ -141,9 +141,9 @@ pub struct Marble {
 /// An expiry that never comes; finite, so that every format can hold a state.
 const NEVER: f64 = f64::MAX;
 
-/// Impacts in a row, each within [`Accuracy::rattle`](crate::Accuracy) of the one before, from which further ones are
-/// plastic. Default 40: more than a row of touching balls makes at once, so that only a collapse of infinitely many
-/// impacts in finite time is cut short.
+/// After this many impacts in a row, each within [`Accuracy::rattle`](crate::Accuracy) of the previous one, further
+/// ones are plastic. Default 40: more than a row of touching balls makes at once, so that only a collapse with
+/// infinitely many impacts in finite time is cut short.
 const RATTLES: u8 = 40;
 
 impl Marble {
@@ -174,12 +174,12 @@ impl Marble {
         &self.contacts[..usize::from(self.count)]
     }
 
-    /// The room for contacts, of which the first are valid.
+    /// All room for contacts; only the first ones are valid.
     pub(super) fn contacts_in_full(&self) -> &[Surface; MOST_CONTACTS] {
         &self.contacts
     }
 
-    /// Adds a lasting contact; false where there is no room left.
+    /// Adds a lasting contact; false if there is no room left.
     pub(crate) fn add_contact(&mut self, surface: Surface) -> bool {
         if self.contacts().contains(&surface) {
             return true;
@@ -204,19 +204,19 @@ impl Marble {
         }
     }
 
-    /// Notes an impact now; `rattle` is the time within which it counts as hard upon the last.
+    /// Notes an impact now; it counts as in quick succession if the last one was at most `rattle` ago.
     pub(crate) fn note_impact(&mut self, rattle: f64) {
         self.rattles = if self.path.t - self.last_impact <= rattle { self.rattles.saturating_add(1) } else { 0 };
         self.last_impact = self.path.t;
     }
 
-    /// Whether it was hit at the instant at which it stands.
+    /// Whether it was hit at its present time.
     #[inline]
     pub(crate) fn was_hit(&self) -> bool {
         self.path.t == self.last_impact
     }
 
-    /// Whether it rattles: further impacts of a law that takes energy are plastic.
+    /// Whether it rattles: further impacts whose law takes energy are plastic.
     #[inline]
     pub(crate) fn rattles(&self) -> bool {
         self.rattles >= RATTLES
@@ -259,7 +259,7 @@ impl Marble {
         }
     }
 
-    /// Makes exact what the end of a closed form promises.
+    /// Sets exactly what holds at the end of a closed form.
     fn finish(&mut self) {
         if self.ending == Ending::Stops {
             self.path.v = DVec3::ZERO;

@@ -1,14 +1,14 @@
 //! One marble on one plane: sliding, rolling, spinning and rest in closed form.
 //!
 //! With normal load g_n = −g·n and k = I/(m r²), the slip `u = v − r ω × n` obeys `u' = g_t − (1 + 1/k) μ g_n û`. It
-//! keeps its direction where the tangential gravity g_t vanishes or is parallel to it; then the path is a parabola
-//! until `|u| = 0` (on a level plane with k = 2/5 at `t = 2|u|/(7 μ g)`). Rolling has `v' = g_t/(1+k)`, against rolling
-//! resistance c less `c g_n/(1+k)` along the motion, which stops it. Everything else (a curved way on an incline)
-//! belongs to `step`.
+//! keeps its direction if the tangential gravity g_t vanishes or is parallel to it; then the path is a parabola until
+//! `|u| = 0` (on a level plane with k = 2/5 at `t = 2|u|/(7 μ g)`). Rolling obeys `v' = g_t/(1+k)`, minus `c g_n/(1+k)`
+//! along the motion for a rolling resistance c, which stops it. Everything else (a curved path on an incline) is left
+//! to `step`.
 //!
 //! Deviation: rolling resistance acts only while rolling, not while sliding, as is usual in billiards models (Leckie &
-//! Greenspan 2006), save that a ball that slides without turning is not made to turn where the resistance c is at least
-//! µ: friction's torque µ g_n r is then within what resists.
+//! Greenspan 2006). One exception: if the resistance c is at least µ, a ball that slides without turning does not begin
+//! to turn, because friction's torque µ g_n r does not exceed the resistance.
 
 use super::Marbles;
 use super::body::{Ending, Marble, Phase};
@@ -16,8 +16,8 @@ use crate::roots::fall_of_quadratic;
 use crate::scenery::Surface;
 use glam::DVec3;
 
-/// Directions count as parallel, and slip or tangential gravity as zero, up to this part. Dimensionless; 1e-12: a few
-/// thousand rounding errors.
+/// Directions count as parallel, and slip or tangential gravity as zero, up to this fraction. Dimensionless; 1e-12: a
+/// few thousand rounding errors.
 const PARALLEL: f64 = 1e-12;
 
 /// The forces of one marble on one plane, per unit mass.
@@ -30,11 +30,11 @@ struct Plane {
     spinning: f64,
     gyration: f64,
     radius: f64,
-    /// Whether friction cannot turn a ball that does not turn.
+    /// Whether friction cannot make the ball turn if it does not turn yet.
     holds: bool,
 }
 
-/// Gives the marble a closed form if there is one; false where it needs steps. Its only contact must be `surface`.
+/// Gives the marble a closed form if there is one; false if it needs steps. Its only contact must be `surface`.
 pub(crate) fn begin(world: &Marbles, index: usize, body: &mut Marble, surface: Surface) -> bool {
     let normal = match surface {
         Surface::Plane(k) => world.scenery.planes()[k as usize].normal,
@@ -227,7 +227,7 @@ impl Plane {
     }
 }
 
-/// Ends the motion where the contact point comes to a side of its triangle.
+/// Ends the motion where the contact point reaches a side of its triangle.
 fn leave_face(world: &Marbles, k: u32, body: &mut Marble, radius: f64) {
     if matches!(body.phase, Phase::Rest | Phase::Spin) {
         return;

@@ -1,16 +1,16 @@
 //! Lasting contact without a closed form: a group of marbles on its own adaptive clock.
 //!
-//! Each step solves the contacts' impulses together (block Gauss–Seidel with exact Coulomb blocks, which [`relax`]
-//! makes converge whatever the masses, until no contact is left approaching by more than `sweep_tolerance · g · step`),
-//! moves every centre along the parabola that joins the two ends, and puts the centres back onto the surfaces they
+//! Each step solves the contacts' impulses together: block Gauss–Seidel with exact Coulomb blocks, which [`relax`]
+//! makes converge for any masses, until no contact is left approaching by more than `sweep_tolerance · g · step`. It
+//! moves every centre along the parabola that joins the two ends, and puts the centres back onto the surfaces that they
 //! touch ([`lift`]). Between its ends a step is a parabola like any other motion, so collisions with others are found
-//! exactly on the path that is really taken. Energy never grows, and what takes back what discretisation adds leaves
-//! every momentum that the laws keep ([`guard`]).
+//! exactly on the path actually taken. Energy never grows; when the energy that discretisation added is taken back,
+//! every momentum that the laws conserve is kept ([`guard`]).
 //!
-//! What that costs, and where it is not exact: an impact on one member ends the step of the whole group, so a pile of n
-//! balls that collapses costs n times its impacts, and where impacts come faster than steps, a step's correction of
-//! positions takes effect only in part. Balls then reach into each other by what sweeps leave of approach,
-//! `sweep_tolerance · g · step²` per step (`cargo run --release -p plaus-sim --example pile -- 1.5`).
+//! What this costs, and where it is not exact: an impact on one member ends the step of the whole group, so a
+//! collapsing pile of n balls costs n times its impacts. If impacts come faster than steps, a step's correction of
+//! positions takes effect only in part. Then balls overlap by the approach that sweeps leave, `sweep_tolerance · g ·
+//! step²` per step (`cargo run --release -p plaus-sim --example pile -- 1.5`).
 
 use super::Marbles;
 use super::body::{Marble, Phase};
@@ -31,19 +31,19 @@ pub struct MarbleScratch {
     memory: Memory,
 }
 
-/// Change of a sweep over what rest may leave, at which no rest is in sight. Default 0.03: sweeps shrink by about half,
-/// so that little is still to come.
+/// If a sweep changes more than this, relative to what rest may leave, rest is not near. Default 0.03: sweeps shrink by
+/// about half, so little is still to come.
 const CREEP: f64 = 0.03;
 
-/// How many times its own size the change of a sweep is believed to have still to come, at least, since sweeps that are
-/// combined do not shrink evenly. Default 20; danger: less takes groups that could rest for moving ones, and they step
-/// on.
+/// The remaining change is assumed to be at least this many times the change of a sweep, because combined sweeps do not
+/// shrink evenly. Default 20; danger: with less, groups that could rest are taken for moving ones, and continue
+/// stepping.
 const DOUBT: f64 = 20.0;
 
-/// How much larger a change ends the sweeps that only predict where a step ends. Default 10.
+/// Sweeps that only predict the end of a step may stop at a change larger by this factor. Default 10.
 const PREDICT: f64 = 10.0;
 
-/// How often a step is halved at most that would lift its members more than their motion can pay for. Default 3.
+/// How often a step is halved, at most, if it would lift its members more than their motion can pay for. Default 3.
 pub(super) const HALVINGS: u32 = 3;
 
 /// Overlap over the radius that rest may keep. Default 2e-5.
@@ -53,13 +53,12 @@ pub(super) const OVERLAP: f64 = 2e-5;
 /// a path then dips into the surface by less than 1e-4 radii at the standard preset.
 pub(super) const APPROACH: f64 = 0.02;
 
-/// Slip of the touching points over the centre's speed up to which a ball counts as rolling where the length of a step
-/// is chosen. Default 0.01; danger: where it still slips, steps are longer by up to `√(1 + gyration)` than its sliding
-/// asks for.
+/// Largest slip of the touching points, over the centre's speed, at which a ball counts as rolling for the length of a
+/// step. Default 0.01; danger: if it still slips, steps are longer than its sliding requires, by up to `√(1 +
+/// gyration)`.
 const ROLLS: f64 = 0.01;
 
-/// Gravity as it moves the centre of a ball over a surface with this normal: one that rolls turns a part of it into
-/// spin.
+/// Gravity's effect on the centre of a ball over a surface with this normal: rolling turns a part of it into spin.
 #[inline]
 pub(super) fn moving_strength(world: &Marbles, ball: &Ball, normal: DVec3, v: DVec3, w: DVec3) -> f64 {
     let slip = v - w.cross(normal) * ball.radius;
@@ -128,7 +127,7 @@ impl MarbleScratch {
         }
     }
 
-    /// Takes away what slow approach is left along lasting contacts, so that no step starts into a surface.
+    /// Removes the remaining slow approach along lasting contacts, so that no step starts into a surface.
     fn stop_approach(&mut self, world: &Marbles, bodies: &mut [Marble]) {
         let approaches = |c: &Contact| {
             let a = &self.members[c.a];
@@ -175,7 +174,7 @@ impl MarbleScratch {
         world.accuracy.step * shortest
     }
 
-    /// Whether anything overlaps by more than rest may keep: then a step comes first, which puts it back.
+    /// Whether anything overlaps by more than rest allows: then a step comes first, which puts it back.
     fn overlaps(&self, world: &Marbles) -> bool {
         self.contacts.iter().any(|c| {
             let radius = |k: usize| self.members[k].ball.radius;
@@ -188,7 +187,7 @@ impl MarbleScratch {
         })
     }
 
-    /// Rest, where everything is slow and the contacts can hold everything still.
+    /// Rest, if everything is slow and the contacts can hold everything still.
     fn try_rest(&mut self, world: &Marbles, bodies: &mut [Marble], h: f64) -> bool {
         let slow = self.members.iter().all(|m| {
             let limit = world.accuracy.rest_speed * world.speed_scale(m.index as usize);
@@ -310,8 +309,8 @@ impl MarbleScratch {
         }
     }
 
-    /// Puts centres back onto what they touch: first towards what bears a load, one contact after the other with the
-    /// scenery last, then only out of what they still are in.
+    /// Puts centres back onto what they touch: first towards things that bear a load, one contact after the other with
+    /// the scenery last, then only out of remaining overlaps.
     fn put_back(&mut self, world: &Marbles) {
         for c in self.contacts.iter().rev() {
             let (missing, normal) = overlap(world, &self.members, c);
@@ -342,8 +341,8 @@ struct Loads<'g> {
 }
 
 impl Swept for Loads<'_> {
-    /// Solves each contact twice, up and down again: the lowest come last, so that nothing is left moving into the
-    /// scenery. The largest change of a velocity on the way down.
+    /// Solves each contact twice, up and down again. The lowest come last, so that nothing is left moving into the
+    /// scenery. Gives the largest change of a velocity on the way down.
     fn sweep(&mut self) -> f64 {
         for c in &mut *self.contacts {
             c.solve(self.members);

@@ -1,25 +1,24 @@
-//! What discretisation adds to the energy of a step is taken from those motions only that the contacts and gravity act
-//! on.
+//! Takes back the energy that discretisation adds to a step, only from motions that contacts and gravity act on.
 //!
-//! A group moves rigidly in some ways without any contact or gravity doing work: two balls over a frictionless floor go
-//! on together and turn about each other, a ball rolls around a bowl. The momentum of each such way is kept by the
-//! laws, so the guard must not take from it: the velocities are split into that part and the rest, which are orthogonal
-//! in the kinetic energy, and only the rest is made slower. Where it has not enough, as at the turning point of a
-//! swing, it is stopped and the remainder of what was added stays.
+//! A group has some rigid motions in which no contact and no gravity does work: two balls over a frictionless floor
+//! move on together and turn about each other, or a ball rolls around a bowl. The laws conserve the momentum of each
+//! such motion, so the guard must not take from it. Velocities are split into that part and the rest, which are
+//! orthogonal in the kinetic energy, and only the rest is slowed. If the rest does not have enough energy, as at the
+//! turning point of a swing, it is stopped, and the remainder stays.
 
 use super::Marbles;
 use super::solve::{Contact, Member, With};
 use glam::DVec3;
 
-/// Length of what is left of a unit vector below which it counts as spanned by others. Default 1e-9.
+/// A unit vector counts as spanned by others if less than this length of it is left. Default 1e-9.
 const SPANNED: f64 = 1e-9;
 
-/// Energy over that of a lift by the height that the preset does not see, of which nothing is made. Default 1e-3.
+/// Energy that is ignored, relative to that of a lift by the height that the preset does not see. Default 1e-3.
 pub(super) const FORGIVEN: f64 = 1e-3;
 
 type Row = [f64; 6];
 
-/// Takes back the energy that a step of a group has added; false where there was not enough to take it from.
+/// Takes back the energy that a step of a group has added; false if there was not enough to take it from.
 pub(super) fn guard(world: &Marbles, members: &mut [Member], contacts: &[Contact]) -> bool {
     let rubs = |k: usize| contacts.iter().any(|c| c.is_loaded() && c.law.friction > 0.0 && c.concerns(k));
     let kinetic = |m: &Member, turns: bool, v: DVec3, w: DVec3| {
@@ -55,7 +54,7 @@ pub(super) fn guard(world: &Marbles, members: &mut [Member], contacts: &[Contact
     enough
 }
 
-/// The part of the velocities and spins that is rigid motion on which neither contacts nor gravity act.
+/// The part of the velocities and spins that is a rigid motion on which neither contacts nor gravity act.
 fn kept_motion(world: &Marbles, members: &[Member], contacts: &[Contact], turning: &[bool]) -> Vec<(DVec3, DVec3)> {
     let held = || members.iter().enumerate().filter(|(_, m)| m.is_held);
     let mass: f64 = held().map(|(_, m)| m.ball.mass).sum();
@@ -105,7 +104,7 @@ fn kept_motion(world: &Marbles, members: &[Member], contacts: &[Contact], turnin
     kept
 }
 
-/// Adds what is new of a row to orthonormal ones.
+/// Adds the new part of a row to orthonormal ones.
 fn add(rows: &mut Vec<Row>, row: Row) {
     let whole = length(&row);
     let mut rest = row;
@@ -116,7 +115,7 @@ fn add(rows: &mut Vec<Row>, row: Row) {
     }
 }
 
-/// An orthonormal basis of what is orthogonal to orthonormal rows.
+/// An orthonormal basis of the complement of orthonormal rows.
 fn complement(rows: &[Row]) -> Vec<Row> {
     let mut known = rows.to_vec();
     while known.len() < 6 {

@@ -1,7 +1,7 @@
-//! Centres that overlap what they touch are put back: by the least motion, weighed by mass, that leaves no overlap.
+//! Puts back centres that overlap what they touch, by the least motion, weighted by mass, that leaves no overlap.
 //!
-//! That is a linear complementarity problem like that of the impulses, with overlaps in the place of approaches, and
-//! the same sweeps solve it; it is posed anew where surfaces have turned on the way. Motions between balls keep their
+//! This is a linear complementarity problem like that of the impulses, with overlaps in place of approaches, and the
+//! same sweeps solve it. It is set up again if surfaces have turned along the way. Motions between balls keep their
 //! common centre of mass.
 
 use super::Marbles;
@@ -9,10 +9,11 @@ use super::relax::{Memory, Swept, Verdict, relax};
 use super::solve::{Contact, Member, With};
 use glam::DVec3;
 
-/// Most times that the problem is posed anew. Default 8: each leaves about the square of what was there.
+/// How often, at most, the problem is set up again. Default 8: each time leaves about the square of the previous
+/// overlap.
 const ROUNDS: usize = 8;
 
-/// Overlap over the radius that needs no further correction. Default 1e-6.
+/// Overlaps below this, relative to the radius, need no correction. Default 1e-6.
 pub(super) const CORRECTED: f64 = 1e-6;
 
 /// Part of [`CORRECTED`] at which sweeps end.
@@ -49,7 +50,7 @@ pub(super) fn overlap(world: &Marbles, members: &[Member], c: &Contact) -> (f64,
     }
 }
 
-/// Lifts members until nothing overlaps by more than [`CORRECTED`] of a radius, or sweeps do not get there.
+/// Lifts members until nothing overlaps by more than [`CORRECTED`] of a radius, or sweeps do not converge.
 pub(super) fn lift(
     world: &Marbles,
     members: &mut [Member],
@@ -91,7 +92,7 @@ struct Lifts<'g> {
 }
 
 impl Lifts<'_> {
-    /// Lifts the members of one contact out of each other; how far that moves them.
+    /// Lifts the members of one contact out of each other; gives how far they moved.
     fn solve(&mut self, k: usize) -> f64 {
         let l = &self.lifts[k];
         let apart = self.members[l.a].lift - l.b.map_or(DVec3::ZERO, |b| self.members[b].lift);

@@ -1,4 +1,4 @@
-//! Marbles as the event loop sees them.
+//! Marbles behind the interface of the event loop.
 
 use super::body::{Marble, Phase};
 use super::group::MarbleScratch;
@@ -20,7 +20,7 @@ impl Marbles {
         Touch { v: body.path.v, w: body.spin, inverse_mass, radius: s.radius, gyration: s.gyration }
     }
 
-    /// Rebound speed up to which a contact lasts.
+    /// Largest rebound speed at which a contact lasts.
     #[inline]
     pub(crate) fn settle_speed(&self, scale: f64, law: &Law) -> f64 {
         self.accuracy.settle * (1.0 - law.restitution) * scale
@@ -32,16 +32,15 @@ impl Marbles {
         self.rattles[index]
     }
 
-    /// Separating speed up to which a lasting contact goes on. After an impact it is that of a rebound that settles;
-    /// what else parts a contact is the error of a step, and what comes back from below the height that the preset
-    /// doesn't see has not parted, however elastic the law.
+    /// Largest separating speed at which a lasting contact continues. After an impact, it is that of a rebound that
+    /// settles. Otherwise only the error of a step separates a contact; and a bounce below the height that the preset
+    /// sees does not count as separated, however elastic the law.
     #[inline]
     pub(crate) fn parting_speed(&self, scale: f64, law: &Law, was_hit: bool) -> f64 {
         if was_hit { self.settle_speed(scale, law) } else { self.accuracy.settle * scale }
     }
 
-    /// Whether an impact is the begin of lasting contact: its rebound would be unseen, or its approach is lost in
-    /// rounding.
+    /// Whether an impact begins lasting contact: its rebound would be unseen, or its approach is lost in rounding.
     fn lasts(&self, scale: f64, law: &Law, meeting: &Approach) -> bool {
         let rebound = law.restitution * meeting.speed;
         meeting.rattles && law.restitution < 1.0
@@ -49,15 +48,15 @@ impl Marbles {
             || self.is_unseen(scale, rebound, meeting.pressed)
     }
 
-    /// Whether a rebound is so low that nobody sees it at any preset. What is pressed on at `pressed` m/s² rises by
-    /// v²/(2 · pressed).
+    /// Whether a rebound is too low to be seen at any preset. A body pressed on at `pressed` m/s² rises by v²/(2 ·
+    /// pressed).
     fn is_unseen(&self, scale: f64, rebound: f64, pressed: f64) -> bool {
         let height = ROUNDING.min(0.5 * self.accuracy.settle * self.accuracy.settle);
         // The square of the scale is gravity times radius.
         pressed > 0.0 && rebound * rebound * self.strength <= 2.0 * height * pressed * scale * scale
     }
 
-    /// An order of centres in which loads travel up, and that knows nothing of labels.
+    /// An order of centres along which loads travel upwards, and which does not depend on labels.
     pub(super) fn bottom_first(&self, a: DVec3, b: DVec3) -> Ordering {
         let key = |x: DVec3| [-self.gravity.dot(x), x.x, x.y, x.z];
         let (p, q) = (key(a), key(b));

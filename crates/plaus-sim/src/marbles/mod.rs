@@ -1,4 +1,4 @@
-//! Worlds of spheres among static scenery: no orientation, no shape, exact first times of contact.
+//! Worlds of spheres among static scenery: no orientation, no shape, exact times of first contact.
 
 mod alone;
 mod body;
@@ -32,7 +32,7 @@ pub struct Marbles {
     pub(crate) scenery: Scenery,
     pub(crate) gravity: DVec3,
     pub(crate) strength: f64,
-    /// What each marble is to an impulse.
+    /// Each marble's response to an impulse.
     balls: Vec<Ball>,
     /// Speed in m/s that a fall over one radius gives, up to √2, of each marble.
     scales: Vec<f64>,
@@ -44,20 +44,20 @@ pub struct Marbles {
     pub(crate) duration: f64,
 }
 
-/// What a world is made from.
+/// The parts of a world.
 #[derive(Debug, Clone)]
 pub struct MarbleWorld {
     /// The marbles.
     pub specs: Vec<MarbleSpec>,
-    /// What happens where materials touch.
+    /// The laws where materials touch.
     pub laws: Laws,
-    /// What does not move.
+    /// The scenery.
     pub scenery: Scenery,
     /// Gravity in m/s².
     pub gravity: DVec3,
     /// All tolerances.
     pub accuracy: Accuracy,
-    /// When a run is over at the latest, in s.
+    /// The latest end of a run, in s.
     pub duration: f64,
 }
 
@@ -95,7 +95,7 @@ impl Marbles {
                     body: k,
                     field: "radius",
                     value: spec.radius,
-                    expected: if d.radius > 0.0 { "less than that of every bowl" } else { "positive" },
+                    expected: if d.radius > 0.0 { "less than the radius of every bowl" } else { "positive" },
                 });
             }
         }
@@ -192,11 +192,11 @@ impl Marbles {
         }
     }
 
-    /// Gives a marble that is still waiting another start; everything else keeps its bits, so a saved beginning serves
-    /// many continuations.
+    /// Gives another start to a marble that is still waiting. Everything else keeps its bits, so a saved beginning can
+    /// be continued in many ways.
     ///
     /// # Errors
-    /// [`WorldError`] where the start is bad, or where the marble has been released or the new release lies in the
+    /// [`WorldError`] if the start is bad, or if the marble has been released or the new release lies in the
     /// state's past.
     pub fn restart(&self, state: &mut State<Marble>, index: usize, start: &Start) -> Result<(), WorldError> {
         self.check_start(index, start)?;
@@ -239,7 +239,7 @@ impl Marbles {
     }
 }
 
-/// Ties go by how marbles start: two can start neither at the same time and place.
+/// Ties are ordered by how marbles start: no two can start at the same time and place.
 fn place(start: &Start) -> Place {
     Place([start.time, start.position.x, start.position.y, start.position.z])
 }

@@ -1,10 +1,10 @@
-//! Sweeps over coupled contacts that converge whatever the masses: block Gauss–Seidel with Anderson's acceleration.
+//! Sweeps over coupled contacts that converge for any masses: block Gauss–Seidel with Anderson's acceleration.
 //!
-//! A sweep alone carries a load one body further and moves what is heavy by what is light: a ball of 10⁶ masses on a
-//! small one takes 10⁶ sweeps. Where a few sweeps have not been enough, the next begins at the combination of the last
-//! ones whose change would be least if sweeps were linear. For contacts that stay as they are (open, sticking or
-//! sliding) they are, and then as many sweeps as there are independent loads are enough, like a direct solution; where
-//! contacts change, the sweep itself has the last word, so that no law of contact is bent.
+//! A sweep alone carries a load only one body further, and moves heavy bodies by means of light ones: a ball of 10⁶
+//! times the mass on a small one takes 10⁶ sweeps. If a few sweeps have not been enough, the next begins at the
+//! combination of the last ones whose change would be least if sweeps were linear. For contacts that keep their state
+//! (open, sticking or sliding) they are linear, and then it takes as many sweeps as there are independent loads, like a
+//! direct solution. When contacts change state, the plain sweep decides, so that no law of contact is bent.
 //!
 //! Source: Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12 (1965); Walker & Ni, "Anderson
 //! acceleration for fixed-point iterations", SIAM J. Numer. Anal. 49 (2011), for the form used here and its kinship
@@ -13,27 +13,27 @@
 /// Plain sweeps before any are combined. Default 8: most groups are done by then.
 const PLAIN: u32 = 8;
 
-/// Sweeps that may be done at least, whatever the preset says: a draft too must not let heavy balls sink. Default 60.
+/// Sweeps always allowed, whatever the preset: a draft must not let heavy balls sink either. Default 60.
 const FEWEST: u32 = 60;
 
-/// How many changes are combined at most. Default 12; danger: few are not enough for long chains of unequal masses,
-/// many cost time and go astray where contacts open and close.
+/// Most changes that are combined. Default 12; danger: with few, long chains of unequal masses do not converge; with
+/// many, it takes time and diverges when contacts open and close.
 const WINDOW: usize = 12;
 
 /// Part of a change that must be new for it to count. Dimensionless; default 1e-9: rounding of changes that are a
 /// millionth of what they change.
 const NEW: f64 = 1e-9;
 
-/// Growth of what a sweep changes at which what is remembered is forgotten: other contacts bear now. Default 4.
+/// If a sweep's change grows by this factor, everything remembered is forgotten: other contacts bear now. Default 4.
 const ASTRAY: f64 = 4.0;
 
-/// Something that sweeps solve.
+/// A problem that sweeps solve.
 pub(super) trait Swept {
-    /// Solves every contact once or more; the largest change that is left.
+    /// Solves every contact once or more; gives the largest remaining change.
     fn sweep(&mut self) -> f64;
     /// Appends all loads, in one unit.
     fn read(&self, loads: &mut Vec<f64>);
-    /// Takes loads in the order in which they were read.
+    /// Sets loads, in the order in which they were read.
     fn write(&mut self, loads: &[f64]);
 }
 
@@ -44,8 +44,8 @@ pub(super) enum Verdict {
     GoOn,
 }
 
-/// Sweeps until `judge`, asked with the system and the change left after each sweep, has enough, or `most` are done.
-/// Whether it had enough.
+/// Sweeps until `judge`, which gets the system and the remaining change after each sweep, is satisfied, or `most`
+/// sweeps are done. Gives whether it was satisfied.
 pub(super) fn relax<S: Swept>(
     system: &mut S,
     memory: &mut Memory,
@@ -99,7 +99,7 @@ impl Memory {
         (self.kept, self.next, self.is_fresh) = (0, 0, true);
     }
 
-    /// Replaces `after` by the combination that changes least; false where there is nothing to combine yet.
+    /// Replaces `after` by the combination that changes least; false if there is nothing to combine yet.
     fn combine(&mut self) -> bool {
         let change: Vec<f64> = self.after.iter().zip(&self.before).map(|(g, x)| g - x).collect();
         if !self.is_fresh {

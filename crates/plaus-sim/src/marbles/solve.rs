@@ -1,15 +1,15 @@
 //! One contact of a group, solved exactly given the others: the block of a Gauss–Seidel sweep.
 //!
-//! Impulses act along the normal half-way through the step and must leave no approach along the normal at its end. On a
-//! circle that reflects the velocity about the half-way normal, which keeps its length: the scheme is of second order
-//! and does not lose energy to curvature (it is RATTLE's idea).
+//! Impulses act along the normal half-way through the step, and must leave no approach along the normal at its end. On
+//! a circle this reflects the velocity about the half-way normal, which keeps its length: the scheme is of second order
+//! and loses no energy to curvature (it is RATTLE's idea).
 
 use super::MarbleSpec;
 use crate::material::Law;
 use crate::scenery::Foot;
 use glam::DVec3;
 
-/// What a ball is to an impulse, with the quotients that every impulse needs.
+/// A ball's response to an impulse, with the quotients that every impulse needs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ball {
     pub(super) mass: f64,
@@ -76,12 +76,12 @@ pub(super) struct Member {
     /// Centre at the end of the step, as far as known.
     pub(super) x: DVec3,
     pub(super) is_held: bool,
-    /// How far it is lifted out of what it overlaps.
+    /// How far it is lifted out of overlaps.
     pub(super) lift: DVec3,
 }
 
 impl Member {
-    /// A marble as a step finds it.
+    /// A marble at the start of a step.
     pub(super) fn new(index: u32, ball: Ball, x: DVec3, v: DVec3, w: DVec3) -> Self {
         let (start, start_v, start_w) = (x, v, w);
         Self { index, ball, start, start_v, start_w, free: (v, w), v, w, x, is_held: false, lift: DVec3::ZERO }
@@ -104,15 +104,15 @@ pub(super) struct Contact {
     pub(super) a: usize,
     pub(super) with: With,
     pub(super) law: Law,
-    /// Where `a` stands to the other at the start of the step; of a pair the distance is that of the centres.
+    /// Position of `a` relative to the other at the start of the step; for a pair, the distance is that of the centres.
     pub(super) foot: Foot,
     pub(super) push: Push,
     /// Approach that the contact stopped, in m/s: its load over the mass.
     pub(super) load: f64,
-    /// What the contact has given so far: changes of velocity and spin of `a` and of `b`.
+    /// The total effect of the contact so far: changes of velocity and spin of `a` and of `b`.
     given_a: (DVec3, DVec3),
     given_b: (DVec3, DVec3),
-    /// Of a pair: 1/m and 1/m + r²/I, summed over both. 0 for a surface.
+    /// For a pair: 1/m and 1/m + r²/I, summed over both. 0 for a surface.
     inverse: f64,
     compliance: f64,
 }
@@ -127,7 +127,7 @@ pub(super) enum With {
 const NOTHING: (DVec3, DVec3) = (DVec3::ZERO, DVec3::ZERO);
 
 impl Contact {
-    /// A contact of `members[a]`, which stands to the other as `foot` says.
+    /// A contact of `members[a]`, whose position relative to the other is in `foot`.
     pub(super) fn new(members: &[Member], a: usize, with: With, law: Law, foot: Foot) -> Self {
         let (inverse, compliance) = match with {
             With::Surface(_) => (0.0, 0.0),
@@ -140,7 +140,7 @@ impl Contact {
         Self { a, with, law, foot, push, load: 0.0, given_a: NOTHING, given_b: NOTHING, inverse, compliance }
     }
 
-    /// Forgets what the contact has given.
+    /// Forgets the contact's effect.
     pub(super) fn clear(&mut self) {
         self.load = 0.0;
         (self.given_a, self.given_b) = (NOTHING, NOTHING);
@@ -171,13 +171,13 @@ impl Contact {
         self.a == member || self.with == With::Member(member)
     }
 
-    /// What the contact has given to its first member: changes of its velocity and of its spin times its radius.
+    /// The contact's effect on its first member: changes of its velocity, and of its spin times its radius.
     pub(super) fn read(&self, members: &[Member], loads: &mut Vec<f64>) {
         loads.extend(self.given_a.0.to_array());
         loads.extend((self.given_a.1 * members[self.a].ball.radius).to_array());
     }
 
-    /// Takes that back, and what follows for its second.
+    /// Sets that effect, and the corresponding one on its second member.
     pub(super) fn write(&mut self, members: &[Member], loads: &[f64]) {
         let p = &members[self.a].ball;
         self.given_a = (DVec3::from_slice(loads), DVec3::from_slice(&loads[3..]) * p.inverse_radius);
@@ -187,7 +187,7 @@ impl Contact {
         }
     }
 
-    /// Adds what the contact has given to its members.
+    /// Adds the contact's effect to its members.
     pub(super) fn apply(&self, members: &mut [Member]) {
         let a = &mut members[self.a];
         a.v += self.given_a.0;
@@ -250,15 +250,15 @@ impl Contact {
     }
 }
 
-/// Along which a contact pushes during a step.
+/// The directions in which a contact pushes during a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Push {
     /// Normal at the end of the step.
     pub(super) last: DVec3,
     /// Direction of the normal impulse, scaled so that a unit changes the final normal velocity by one unit per mass.
     direction: DVec3,
-    /// Normal velocity at the end, towards the other and in m/s, that the contact allows: what only closes the gap that
-    /// it had, or has opened on the way.
+    /// Normal velocity towards the other at the end that the contact allows, in m/s: it only closes the gap that was
+    /// there, or opened on the way.
     slack: f64,
     /// Slip of the touching points at the start, in m/s.
     slip: DVec3,
@@ -276,15 +276,16 @@ impl Push {
     }
 
     /// The same for a contact with a gap at the start of a step of `h` seconds, where `v` is the relative velocity of
-    /// the centres and `slip` that of the touching points: it bears only what would overlap at the end.
+    /// the centres and `slip` that of the touching points: it only resists overlap at the end.
     #[inline]
     pub(super) fn across(self, first: DVec3, gap: f64, [v, slip]: [DVec3; 2], h: f64) -> Self {
         Self { slack: (2.0 * gap / h + v.dot(first)).max(0.0), slip: slip - first * slip.dot(first), ..self }
     }
 
-    /// Sliding friction of at most `friction` times the load against the mean of the slip at the start and of `slip`,
-    /// which is that at the end but for it: with it, the load that stops `approach`. Both in units of the velocity that
-    /// they change. The mean is what the step slides along, to second order, and friction against it never adds energy.
+    /// Sliding friction of at most `friction` times the load, against the mean of the slip at the start and of `slip`,
+    /// which is the slip at the end without friction; and the load that stops `approach` together with it. Both are in
+    /// units of the velocity that they change. To second order, the step slides along that mean, and friction against
+    /// it never adds energy.
     #[inline]
     fn drag(&self, slip: DVec3, friction: f64, approach: f64) -> (f64, DVec3) {
         let mean = if self.slip.dot(slip) > 0.0 { self.slip + slip } else { slip };
@@ -307,7 +308,7 @@ impl Push {
     }
 }
 
-/// Approach stopped, velocity and spin of a ball after a surface has stopped it and rubbed it. Mass plays no part.
+/// Approach stopped, velocity and spin of a ball after a surface has stopped it, with friction. Mass does not matter.
 #[inline(always)]
 pub(super) fn respond(ball: &Ball, law: &Law, push: &Push, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
     let approach = -v.dot(push.last) - push.slack;

@@ -1,5 +1,5 @@
-//! What a group of marbles does next: contacts and links that have ended are dropped, then a closed form, a step or
-//! rest is chosen.
+//! What a group of marbles does next: drops contacts and links that have ended, then chooses a closed form, a step or
+//! rest.
 
 use super::Marbles;
 use super::body::{Ending, Marble, Phase};
@@ -8,11 +8,11 @@ use super::{alone, closed};
 use crate::links::{Link, Links};
 use crate::scenery::{Foot, Surface};
 
-/// Separating speed over `√(g r)` plus the body's own that never ends a contact. Default 1e-9: far above rounding, far
-/// below any motion.
+/// Separating speed, over `√(g r)` plus the body's own, that never ends a contact. Default 1e-9: far above rounding,
+/// far below any motion.
 const KEEP: f64 = 1e-9;
 
-/// Decides how a group of marbles goes on.
+/// Decides what a group of marbles does next.
 pub(super) fn settle(
     world: &Marbles,
     members: &[u32],
@@ -44,7 +44,8 @@ pub(super) fn settle(
     scratch.go_on(world, members, bodies, links);
 }
 
-/// Lets contacts follow the surface, and ends those that separate. Where the marble stands to the last that it keeps.
+/// Moves contacts along with the surface, and ends those that separate. Gives the marble's position relative to the
+/// last contact kept.
 fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) -> Option<Foot> {
     let at_end = body.path.t >= body.expiry;
     let leaves = match body.ending {
@@ -92,7 +93,7 @@ fn link_lasts(world: &Marbles, [i, j]: Link, bodies: &[Marble]) -> bool {
     v.dot(offset) <= most * distance && distance - reach <= world.unseen * reach
 }
 
-/// What lies beyond a side of a triangle: its neighbour where they are level, else the edge.
+/// What is beyond a side of a triangle: its neighbour if they are level, otherwise the edge.
 fn across(world: &Marbles, f: u32, side: usize) -> Surface {
     let mesh = world.scenery.mesh();
     let face = &mesh.faces[f as usize];

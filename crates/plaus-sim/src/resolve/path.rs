@@ -1,9 +1,9 @@
-//! The way of an impact's velocities over its normal impulse (Darboux and Keller's equations), step by step.
+//! The path of an impact's velocities over its normal impulse (Darboux and Keller's equations), step by step.
 //!
 //! While the friction force is constant, because the contact sticks or its slip keeps its direction, velocities are
-//! linear in the impulse and a step ends exactly where it is to. Elsewhere Kutta's third-order rule is used; between
-//! the ends of such a step velocities are the cubics with its values and slopes, so that where it is to end is found
-//! without another step, and the change of velocity is that of the impulse there.
+//! linear in the impulse, and a step ends exactly where it should. Elsewhere Kutta's third-order rule is used. Between
+//! the ends of such a step, velocities are the cubics with its values and slopes, so the end is found without another
+//! step, and the change of velocity is that of the impulse there.
 
 use super::ContactMatrix;
 use crate::roots::refine;
@@ -12,13 +12,13 @@ use glam::{DVec2, DVec3};
 /// What ended a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// Nothing: the way goes on.
+    /// Nothing: the path continues.
     Open,
     /// Nothing ever will.
     Never,
     /// The normal velocity has changed its sign.
     Turned,
-    /// All that is to come back has come back.
+    /// Everything that should be released has been.
     Released,
 }
 
@@ -47,10 +47,10 @@ pub(super) struct Path<'k> {
     turn: f64,
     /// Relative speed at the start.
     speed: f64,
-    /// The force that holds a stuck contact, where friction can.
+    /// The force that holds a stuck contact, if friction can.
     holding: Option<DVec2>,
     at: Place,
-    /// Rates there, of a contact that slips; found when they are needed.
+    /// Rates there for a slipping contact; computed when needed.
     rate: Option<Rate>,
     /// The curved step on which the normal velocity has just changed its sign: it goes on.
     leg: Option<Leg>,
@@ -70,17 +70,18 @@ struct Leg {
     from: f64,
 }
 
-/// Sideways velocity, over the speed and the square of the largest turn of a step, with which slip that is about to
-/// stop may be taken to stop. Default 1e-2: at turns of 0.3 a thousandth of the speed, as the steps' own error.
+/// Slip that is about to stop may be taken to stop if its sideways velocity, over the speed and the square of the
+/// largest turn of a step, is below this. Default 1e-2: at turns of 0.3, a thousandth of the speed, like the error of
+/// the steps.
 const STOPS: f64 = 1e-2;
 
 /// Part of the slip that a step may take. Default 0.5.
 const SHRINKS: f64 = 0.5;
 
-/// How much farther than it is expected to be needed a step goes. Default 1.1; one that falls short costs another.
+/// A step goes this much farther than is probably necessary. Default 1.1; falling short costs another step.
 const FARTHER: f64 = 1.1;
 
-/// Tangent of the angle by which a step may have turned the slip, over the angle by which it was to. Default 1.5; one
+/// Tangent of the angle by which a step may have turned the slip, over that of the intended angle. Default 1.5; a step
 /// that turned it farther is halved.
 const WIDEST: f64 = 1.5;
 
@@ -113,8 +114,8 @@ impl<'k> Path<'k> {
         self.rate_under(slip * (-self.friction / slip.length()))
     }
 
-    /// One step, until the normal velocity changes its sign or, where that is given, the work has grown to `released`.
-    /// Slip of at most `tiny` is none.
+    /// One step, until the normal velocity changes its sign or, if given, the work has grown to `released`. Slip of at
+    /// most `tiny` counts as none.
     pub(super) fn step(&mut self, tiny: f64, released: Option<f64>) -> End {
         if let Some(leg) = self.leg {
             // Halves of an impact are alike but for what is lost.
@@ -196,7 +197,7 @@ impl<'k> Path<'k> {
         self.along(Leg { ends: [at, ahead], ..leg }, expected / h, released)
     }
 
-    /// Where a step of this length leads, but for the work.
+    /// Where a step of this length leads, without the work.
     fn kutta(&self, first: &Rate, h: f64) -> Place {
         let at = self.at;
         let second = self.slipping(at.slip + first.slip * (0.5 * h));
@@ -211,7 +212,7 @@ impl<'k> Path<'k> {
         }
     }
 
-    /// Goes along what is left of a curved step until it is to end; it is expected to do so near a part of it.
+    /// Continues along the rest of a curved step until its end, which is probably near `near`.
     fn along(&mut self, leg: Leg, near: f64, released: Option<f64>) -> End {
         let ahead = leg.ends[1];
         let turned = || crossing(|x| (leg.normal(x), leg.slope(x)), [leg.from, near], released.is_some());
@@ -269,8 +270,8 @@ impl Leg {
     }
 }
 
-/// Where a function that changes its sign once between `from` and 1 does so, by Newton's rule from nearby, which mostly
-/// does.
+/// The point between `from` and 1 at which a function changes its sign, which it does once; by Newton's method from a
+/// nearby guess, which usually succeeds.
 fn crossing(eval: impl Fn(f64) -> (f64, f64), [from, near]: [f64; 2], falls: bool) -> f64 {
     let mut x = near.min(1.0);
     for _ in 0..ROUNDS {
@@ -291,7 +292,7 @@ const ROUNDS: usize = 4;
 const NEAR: f64 = 1e-9;
 
 impl Place {
-    /// Normal impulse until a step is to end, and why it ends then, where the normal velocity has this rate.
+    /// Normal impulse until the end of a step, and the reason for that end, if the normal velocity has this rate.
     fn until(&self, rate: f64, released: Option<f64>) -> (f64, End) {
         match released {
             None if rate > 0.0 => ((-self.normal / rate).max(0.0), End::Turned),
@@ -300,7 +301,7 @@ impl Place {
         }
     }
 
-    /// Until the work reaches `released`; or, where the bodies approach again before that, until they begin to.
+    /// Until the work reaches `released`; or, if the bodies begin to approach again before that, until then.
     fn until_released(&self, rate: f64, released: f64) -> (f64, End) {
         // W + u p + r p²/2 = released, with u ≥ 0: the positive root in the form that does not cancel.
         let missing = released - self.work;

@@ -11,7 +11,7 @@
 use crate::material::Law;
 use glam::DVec3;
 
-/// What an impact needs to know of one sphere.
+/// The properties of one sphere that matter in an impact.
 #[derive(Debug, Clone, Copy)]
 pub struct Touch {
     /// Velocity of the centre in m/s.
@@ -51,7 +51,7 @@ impl Touch {
     }
 }
 
-/// What an impact did.
+/// The result of an impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impulse {
     /// Impulse on the first body in N s.
@@ -60,7 +60,7 @@ pub struct Impulse {
     pub approach: f64,
 }
 
-/// Collides `first` with `second`; `normal` is the unit vector from the second towards the first. Nothing happens where
+/// Collides `first` with `second`; `normal` is the unit vector from the second towards the first. Nothing happens if
 /// they do not approach.
 #[inline]
 pub fn sphere_impact(first: &mut Touch, second: &mut Touch, normal: DVec3, law: &Law) -> Impulse {

@@ -2,16 +2,16 @@
 //! and Keller.
 //!
 //! With `K` the inverse inertia seen at the contact, velocities change as `du/dp = K (−μ û, 1)` while the contact slips
-//! in direction `û`. Slip may stop, stay stuck (if the friction that would hold it is inside the cone) or turn. The
+//! in direction `û`. Slip may stop, stay stuck (if the friction needed to hold it is inside the cone) or turn. The
 //! normal work `W = ∫ u_n dp` decides the end: the impact is over when the fraction `e²` of the energy of compression
-//! has come back. Newton's rule gains energy under friction, Poisson's may too; this one cannot, because normal work is
-//! −(1−e²) of the compression's and friction only takes. Strong friction can press bodies together again before that:
-//! what they then take up is added to what has not come back yet.
+//! has come back. Newton's rule gains energy under friction, and Poisson's may too. This rule cannot, because normal
+//! work is −(1−e²) of the compression's, and friction only takes energy. Strong friction can press the bodies together
+//! again before the end: the energy that they then absorb is added to what has not come back yet.
 //!
 //! Sources: Keller, "Impact with friction", J. Appl. Mech. 53 (1986); Stronge, *Impact Mechanics* (2000), ch. 4;
-//! Darboux (1880). Deviation: where the slip turns while it shrinks (three dimensions), the path is followed by steps
-//! of third order that turn it by at most `turn` radians each; slip that keeps its direction (every planar impact) is
-//! followed exactly.
+//! Darboux (1880). Deviation: if the slip turns while it shrinks (three dimensions), the path is followed by
+//! third-order steps that turn it by at most `turn` radians each; slip that keeps its direction (every planar impact)
+//! is followed exactly.
 
 use super::path::{End, Path};
 use glam::{DMat3, DVec2, DVec3};
@@ -113,10 +113,10 @@ pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: 
     path.impulse()
 }
 
-/// A slip that winds round and round while it dies would take steps without end. When it has turned by so many radians
-/// (eight rounds), it counts as stuck below this part of the relative velocity; default 1e-6, far less than what steps
-/// that turn by `turn` resolve. Where a round takes next to nothing off, that part widens with each step, by a factor
-/// of 20,000 in eight more rounds.
+/// A slip that winds round and round while it dies would take endless steps. When it has turned by this many radians
+/// (eight rounds), it counts as stuck below a fraction of the relative velocity; default 1e-6, far less than steps that
+/// turn by `turn` resolve. If a round hardly reduces the slip, that fraction grows with each step, by a factor of
+/// 20,000 in eight more rounds.
 const MANY_TURNS: f64 = 51.2;
 const WOUND: f64 = 1e-6;
 const WIDENS: f64 = 10.0;

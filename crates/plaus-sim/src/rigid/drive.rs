@@ -1,10 +1,10 @@
-//! Bodies that go their own way, by keyframes, whatever they meet: a foot, a paddle, a tray.
+//! Bodies that follow keyframes, whatever they meet: a foot, a paddle, a tray.
 //!
-//! Between keys a track stands still, goes straight, or follows a cubic, as animations in glTF do. A body's way is cut
-//! into stretches of the simulator's own closed form, a parabola with a steady rotation: exact where tracks are
-//! straight; of cubics so short that nowhere on the body the way is off by more than a tenth of the gap at which bodies
-//! touch. Places and velocities along the way are those of the tracks at the ends of the stretches, rotations'
-//! velocities the mean over each.
+//! Between keys a track stands still, is straight, or is a cubic, like animations in glTF. A body's path is cut into
+//! pieces of the simulator's own closed form, a parabola with a steady rotation. Straight tracks are represented
+//! exactly; cubics by pieces so short that no point of the body is off by more than a tenth of the gap at which bodies
+//! touch. At the ends of the pieces, places and velocities are those of the tracks; angular velocities are means over
+//! each piece.
 
 use super::Spec;
 use super::body::{Phase, Turning};
@@ -165,7 +165,7 @@ impl Keyframes {
                 key,
                 field,
                 value,
-                expected: "finite numbers, a length that is not 0 of rotations, and times that ascend from 0 on",
+                expected: "finite numbers, rotations of a length that is not 0, and ascending times of at least 0",
             }
         };
         self.position.check("value", three).map_err(named("position"))?;

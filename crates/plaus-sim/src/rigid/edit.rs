@@ -77,7 +77,7 @@ impl Rigid {
         self.check_edited(state, index)?;
         self.check_start(index, start)?;
         if start.time < state.time {
-            return Err(bad(index, "start time", start.time, "a time from that of the state on"));
+            return Err(bad(index, "start time", start.time, "a time not before that of the state"));
         }
         let body = Turning::waiting(start);
         let is_there = |b: &Turning| !matches!(b.phase, Phase::Waiting | Phase::Gone);

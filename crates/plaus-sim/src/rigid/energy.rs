@@ -1,9 +1,9 @@
-//! What energy the steps of lasting contact may keep.
+//! How much energy the steps of lasting contact may keep.
 //!
-//! Nothing may gain any. And resistance to rolling and to spinning takes some: a contact on a fixed part with normal
-//! force N at distance R from the centre of gravity resists with a torque of at most ρ N R against the part of the
-//! angular velocity across its normal (rolling) and σ N R against that along it (spinning), ρ and σ being the law's.
-//! Without it a pin that was nudged runs around on the rim of its foot, and one that lies rolls, for ever: nothing else
+//! Nothing may gain any. Resistance to rolling and to spinning takes some. A contact on a fixed part, with normal force
+//! N at distance R from the centre of gravity, resists the part of the angular velocity across its normal (rolling)
+//! with a torque of at most ρ N R, and the part along it (spinning) with at most σ N R, where ρ and σ are the law's.
+//! Without this, a pin that was nudged circles on the rim of its foot, and a lying one rolls, for ever: nothing else
 //! takes their energy.
 
 use super::coulomb::{Contact, Member};

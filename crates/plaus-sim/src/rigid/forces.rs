@@ -49,7 +49,7 @@ impl Rigid {
         }
         for (field, value) in [("damping", forces.damping), ("angular damping", forces.angular_damping)] {
             if !(value >= 0.0 && value.is_finite()) {
-                return Err(WorldError::BadBody { body, field, value, expected: "a rate from 0 on" });
+                return Err(WorldError::BadBody { body, field, value, expected: "a rate of at least 0" });
             }
         }
         let Some(spec) = self.specs.get_mut(body) else {

@@ -2,12 +2,12 @@
 //!
 //! While it slides, friction points against the slip `u = v − R ω × n` of its lowest point, whose direction does not
 //! change: `v̇ = −μ g û`, `ω̇ = μ m g R (n × û)/I`, `|u̇| = −μ g (1 + m R²/I)`. So its path is a parabola until the
-//! slip is gone, then straight. Where the friction changes (oil, then dry boards) a new parabola begins: that is a
-//! hook.
+//! slip is gone, and straight after that. If the friction changes (oil, then dry boards), a new parabola begins: that
+//! is a hook.
 //!
-//! Resistance to rolling, a torque of ρ m g R, slows a ball that rolls by `ρ g/(1 + I/(m R²))` until it stands; that to
-//! spinning slows its spin about the normal by `σ m g R/I`. While a ball slides there is none to rolling, save that one
-//! which does not turn is not made to where ρ is at least μ: as of marbles.
+//! Resistance to rolling, a torque of ρ m g R, slows a rolling ball by `ρ g/(1 + I/(m R²))` until it stops; resistance
+//! to spinning slows its spin about the normal by `σ m g R/I`. A sliding ball has no resistance to rolling, with one
+//! exception, as for marbles: if ρ is at least μ, a ball that does not turn does not begin to turn.
 //!
 //! Source: textbook, e.g. Hopkins & Patterson, "Bowling frames: Paths of a bowling ball", Am. J. Phys. 45 (1977).
 

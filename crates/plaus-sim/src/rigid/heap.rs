@@ -1,8 +1,8 @@
-//! What a group touches, and what is different where it is a heap: many bodies in lasting contact.
+//! What a group touches, and what is different in a heap, which is many bodies in lasting contact.
 //!
-//! Half way through a step corners leave what they touch by its [`SAG`]. Each event of a heap interrupts a step of all
-//! of its bodies: contacts that count as over there would all be struck anew, one after the other, and each would
-//! interrupt a step again. So in a heap points are part of the contact that lasts up to that distance.
+//! Half way through a step, corners leave what they touch by its [`SAG`]. In a heap, each event interrupts a step of
+//! all its bodies. If contacts counted as over by then, all would be struck anew, one after the other, and each would
+//! interrupt a step again. So in a heap, points up to that distance are part of the lasting contact.
 
 use super::Rigid;
 use super::body::{NEVER, Phase, Turning};

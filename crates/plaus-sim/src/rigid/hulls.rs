@@ -1,7 +1,7 @@
 //! Convex polyhedra against each other, cuboids and balls, as the search for contact and the steps of lasting contact
 //! see them.
 //!
-//! A cuboid is the polyhedron of its corners here, a ball a point with a rounding.
+//! Here a cuboid is the polyhedron of its corners, and a ball is a point with a rounding.
 
 use super::body::{Pose, Turning};
 use super::convex::{ConvexPair, Quest};

@@ -293,7 +293,7 @@ impl Rigid {
             return bad("orientation", 0.0, "a quaternion that is not zero");
         }
         if !(start.time >= 0.0 && start.time.is_finite()) {
-            return bad("start time", start.time, "a time from 0 on");
+            return bad("start time", start.time, "a time of at least 0");
         }
         let waiting = Turning::waiting(start);
         let spec = &self.specs[body];

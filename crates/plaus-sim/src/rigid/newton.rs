@@ -1,4 +1,4 @@
-//! Impulses of several lasting contacts at once: Newton's rule on what Coulomb's law leaves undone.
+//! Impulses of several lasting contacts at once: Newton's method on the residual of Coulomb's law.
 //!
 //! With the velocity `w` that is not to be at a contact and a small compliance `ε`, impulses `f` obey unilateral
 //! contact and Coulomb's law exactly where `f = P(f − w/ε)`, `P` being the projection onto the cone that keeps the

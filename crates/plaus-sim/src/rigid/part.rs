@@ -193,11 +193,11 @@ impl Part {
                 let mut last = f64::NEG_INFINITY;
                 for s in stretches {
                     if s.from.is_nan() || s.from < last {
-                        return bad("begin of a stretch", s.from, "ascending numbers");
+                        return bad("start of a stretch", s.from, "ascending numbers");
                     }
                     let friction = s.friction.unwrap_or(0.0);
                     if !(friction >= 0.0 && friction.is_finite()) {
-                        return bad("friction of a stretch", friction, "a number from 0 on");
+                        return bad("friction of a stretch", friction, "a number of at least 0");
                     }
                     last = s.from;
                 }

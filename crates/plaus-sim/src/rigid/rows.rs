@@ -1,7 +1,7 @@
-//! The table of pairs: which row serves two bodies. A row knows their distance, when they first touch, and all points
-//! at which they do.
+//! The table of pairs: which row serves two bodies. A row knows how far apart they are, when they first touch, and all
+//! points at which they do.
 //!
-//! What is new in a row: a line here, and its answer in each of the functions below. The compiler asks for both.
+//! A new row is a line here, and its answer in each of the functions below. The compiler asks for both.
 
 use super::body::{Pose, Turning};
 use super::pair::{balls, cuboid_and_balls, swapped};

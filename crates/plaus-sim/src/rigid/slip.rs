@@ -1,4 +1,4 @@
-//! Sliding friction at one contact: the direction of the slip that is left, and the load.
+//! Sliding friction at one contact: the direction of the remaining slip, and the load.
 //!
 //! With velocity `f` before any impulse and response `K`, a load `λ` with friction against the unit slip `s` leaves
 //! `u = f + (K n − μ K s) λ`, whose normal part is to be what is asked for. Coulomb's law holds where what is left

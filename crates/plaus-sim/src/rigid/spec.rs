@@ -97,7 +97,7 @@ impl Spec {
         // y².
         let largest = inertia.max_element();
         if largest > (inertia.x + inertia.y + inertia.z - largest) * (1.0 + ROUNDING) {
-            let expected = "moments of which none exceeds the sum of the two others";
+            let expected = "moments none of which exceeds the sum of the other two";
             return Err(WorldError::BadBody { body, field: "inertia", value: largest, expected });
         }
         world.laws.require(b.material)?;

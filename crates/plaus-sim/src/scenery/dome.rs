@@ -25,7 +25,7 @@ impl Dome {
     /// A cap.
     ///
     /// # Errors
-    /// [`WorldError::BadSurface`] where the radius is not positive or a number is not finite.
+    /// [`WorldError::BadSurface`] if the radius is not positive or a number is not finite.
     pub fn new(centre: DVec3, radius: f64, hollow: bool, clip: Aabb, material: Material) -> Result<Self, WorldError> {
         let bad = |field, value, expected| WorldError::BadSurface { surface: "dome".into(), field, value, expected };
         if !(radius > 0.0 && radius.is_finite()) {

@@ -1,4 +1,4 @@
-//! Broad phase for what does not move: a uniform grid over the space of ball centres.
+//! Broad phase for static scenery: a uniform grid over the space of ball centres.
 //!
 //! A feature is listed in each cell from which the largest ball can touch its box, grown by how far it may be moved.
 //! The outermost cells reach to infinity.

@@ -1,6 +1,6 @@
-//! Triangle meshes: faces, and of the edges and vertices those that a sphere can touch.
+//! Triangle meshes: faces, and those edges and vertices that a sphere can touch.
 //!
-//! A sphere that meets a concave or flat edge meets a face first, so only convex and open edges are kept, and only the
+//! A sphere that meets a concave or flat edge meets a face first. So only convex and open edges are kept, and only the
 //! vertices of such edges. Faces are one-sided: their normal points out of the solid.
 
 use crate::error::WorldError;
@@ -77,7 +77,7 @@ impl Mesh {
     /// The same with a margin for each vertex: what cannot move is found faster.
     ///
     /// # Errors
-    /// As [`Mesh::new`], and where the margins are not as many as the vertices.
+    /// As [`Mesh::new`], and if the margins are not as many as the vertices.
     pub fn with_margins(
         vertices: Vec<DVec3>,
         triangles: &[([u32; 3], Material)],
@@ -236,7 +236,7 @@ impl Mesh {
     /// a scene whose draws differ in small offsets builds its mesh once.
     ///
     /// # Errors
-    /// [`WorldError::MovedTooFar`] beyond the mesh's margin, [`WorldError::DegenerateTriangle`] where a triangle
+    /// [`WorldError::MovedTooFar`] beyond the mesh's margin, [`WorldError::DegenerateTriangle`] if a triangle
     /// collapses, [`WorldError::UnknownVertex`] for an index that the mesh lacks. The mesh is then only partly moved:
     /// drop it or move the vertices back.
     pub fn move_vertices(&mut self, moved: &[(u32, DVec3)]) -> Result<(), WorldError> {

@@ -1,4 +1,4 @@
-//! What does not move: planes, a triangle mesh, bowls and domes, with a broad phase for the bounded ones.
+//! Static scenery: planes, a triangle mesh, bowls and domes, with a broad phase for the bounded ones.
 
 mod aabb;
 mod dome;
@@ -103,7 +103,7 @@ impl Scenery {
     /// Scenery for balls of radius up to `reach`.
     ///
     /// # Errors
-    /// [`WorldError::BadNumber`] where `reach` is not positive.
+    /// [`WorldError::BadNumber`] if `reach` is not positive.
     pub fn new(planes: Vec<Plane>, mesh: Mesh, domes: Vec<Dome>, reach: f64) -> Result<Self, WorldError> {
         if !(reach > 0.0 && reach.is_finite()) {
             return Err(WorldError::BadNumber { field: "largest radius", value: reach, expected: "a positive length" });

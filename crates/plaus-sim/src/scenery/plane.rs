@@ -21,7 +21,7 @@ impl Plane {
     /// The plane through `point` with `normal` (of any length) out of the solid.
     ///
     /// # Errors
-    /// [`WorldError::BadSurface`] where the normal has no direction or a number is not finite.
+    /// [`WorldError::BadSurface`] if the normal has no direction or a number is not finite.
     pub fn new(point: DVec3, normal: DVec3, material: Material) -> Result<Self, WorldError> {
         let bad = |field, value, expected| WorldError::BadSurface { surface: "plane".into(), field, value, expected };
         let length = normal.length();

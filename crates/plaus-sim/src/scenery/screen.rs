@@ -1,4 +1,4 @@
-//! A box in few bytes, to rule out quickly most of what is not near.
+//! A box in few bytes, to quickly rule out most things that are far away.
 
 use super::Aabb;
 

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 impl Scenery {
     /// The surface that a ball in contact with `surface` touches now, its centre being at `x`: the same as long as the
-    /// foot of the perpendicular stays on it, else the nearest face, edge or vertex around. `None` where a dome has
+    /// foot of the perpendicular stays on it, else the nearest face, edge or vertex around. `None` if a dome has
     /// been left.
     pub(crate) fn track(&self, surface: Surface, x: DVec3) -> Option<Surface> {
         match surface {

@@ -17,7 +17,7 @@ impl Cuboid {
     /// A cuboid with `edges` in m whose edges and corners are rounded with radius `rounding` in m (0: sharp).
     ///
     /// # Errors
-    /// [`WorldError::BadNumber`] where an edge is not positive, or the rounding is negative or not less than half the
+    /// [`WorldError::BadNumber`] if an edge is not positive, or the rounding is negative or not less than half the
     /// shortest edge.
     pub fn new(edges: DVec3, rounding: f64) -> Result<Self, WorldError> {
         for value in edges.to_array() {

@@ -1,4 +1,4 @@
-//! Cylinders, cones and capsules: the convex hull of two discs about one axis, sharp or grown by a ball.
+//! Cylinders, cones and capsules: the convex hull of two discs about one axis, sharp or rounded.
 
 use super::MassProperties;
 use crate::error::WorldError;
@@ -44,7 +44,7 @@ impl Frustum {
     pub fn new(radii: [f64; 2], height: f64, rounding: f64) -> Result<Self, WorldError> {
         for (field, value) in [("radius", radii[0]), ("radius", radii[1]), ("height", height), ("rounding", rounding)] {
             if !(value >= 0.0 && value.is_finite()) {
-                return Err(WorldError::BadNumber { field, value, expected: "a length from 0 on" });
+                return Err(WorldError::BadNumber { field, value, expected: "a length of at least 0" });
             }
         }
         let solid = Self { core: Discs::new([-0.5 * height, 0.5 * height], radii), rounding };

@@ -1,9 +1,9 @@
 //! Shapes of turning bodies, their mass properties, and the points and balls that make up their skin.
 //!
-//! A shape is described to the simulator as **feelers**: balls fixed in the body whose union has the shape's skin
-//! wherever it can touch something. A sharp corner is a ball of radius 0, a rounded one has its rounding radius, a
-//! sphere is a single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot.
-//! Two bodies with flat faces are looked at by their faces, edges and corners.
+//! The simulator sees a shape as **feelers**: balls fixed in the body whose union has the shape's surface wherever it
+//! can touch something. A sharp corner is a ball of radius 0, a rounded one has its rounding radius, a sphere is a
+//! single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot. Two bodies
+//! with flat faces are compared by faces, edges and corners.
 
 mod compound;
 pub(crate) mod convex_pair;

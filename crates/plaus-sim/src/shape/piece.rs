@@ -1,4 +1,4 @@
-//! Convex pieces: what every body, and what stands still, is made of for the row of pairs that serves all shapes.
+//! Convex pieces, of which every body and all scenery is made for the row of pairs that serves all shapes.
 
 use super::Feeler;
 use super::frustum::Discs;

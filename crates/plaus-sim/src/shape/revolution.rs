@@ -1,10 +1,10 @@
 //! Bodies of revolution about their z axis, from a meridian profile.
 //!
-//! The profile is a flat foot, a rounded rim, and a cubic spline of the radius over the height up to a cap that is part
-//! of a sphere. Mass, centre of gravity and inertia are integrated exactly over the spline's pieces (they are
-//! polynomials) and by closed forms over rim and cap. The skin is made of balls on the axis that touch it from inside,
-//! `stations` of them, and of rings: the rim of the foot and the flank above it, where balls on the axis would stick
-//! out below.
+//! The profile is a flat foot, a rounded rim, and a cubic spline of the radius over the height, up to a cap that is
+//! part of a sphere. Mass, centre of gravity and inertia are integrated exactly over the spline's pieces (they are
+//! polynomials), and by closed forms over rim and cap. The skin consists of `stations` balls on the axis that touch it
+//! from inside, and of rings: the rim of the foot and the flank above it, where balls on the axis would stick out
+//! below.
 
 use super::{Feeler, MassProperties};
 use crate::error::WorldError;
@@ -111,7 +111,7 @@ impl Profile {
     /// drawing: closer where it bends more.
     ///
     /// # Errors
-    /// [`WorldError::BadNumber`] where the profile does not rise from its foot to its cap.
+    /// [`WorldError::BadNumber`] if the profile does not rise from its foot to its cap.
     pub fn outline(&self, points: usize) -> Result<Vec<[f64; 2]>, WorldError> {
         self.check()?;
         let (pieces, [_, cap]) = (self.pieces(), self.points[self.points.len() - 1]);
@@ -214,7 +214,7 @@ impl Revolution {
     /// lies too deep by up to about `spacing²/(8 radius)`.
     ///
     /// # Errors
-    /// [`WorldError::BadNumber`] where the profile does not rise from its foot to its cap.
+    /// [`WorldError::BadNumber`] if the profile does not rise from its foot to its cap.
     pub fn new(profile: &Profile, stations: usize) -> Result<Self, WorldError> {
         profile.check()?;
         let pieces = profile.pieces();

@@ -1,5 +1,5 @@
-//! Plain worlds of the shapes that the scenes have, for tests, benchmarks and the trade-off study. The scenes build
-//! their own.
+//! Simple worlds with the shapes of the scenes, for tests, benchmarks and the trade-off study. The scenes build their
+//! own.
 
 mod alley;
 mod bins;

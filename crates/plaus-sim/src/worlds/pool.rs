@@ -1,4 +1,4 @@
-//! The energy that bodies on an alley can still set free, together, where standing pins might meet it.
+//! The energy that bodies on an alley can still release together, where standing pins might meet it.
 
 use super::alley::{END, GUTTER, PIT};
 use super::{Alley, Still, Verdict};

@@ -1,4 +1,4 @@
-//! Bodies that have as good as come to rest: heaps whose steps of lasting contact never end creep by micrometres.
+//! Bodies that are practically at rest: heaps whose steps of lasting contact never end creep by micrometres.
 
 use crate::rigid::{Phase, Turning};
 use crate::state::State;

@@ -1,4 +1,4 @@
-//! A check on whoever simulates marbles over bins.
+//! A check for anyone who simulates marbles over bins.
 
 use super::Bins;
 use crate::marbles::{Marble, Marbles};

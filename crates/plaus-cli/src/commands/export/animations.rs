@@ -14,12 +14,12 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Samples that are held in memory at a time.
+/// Number of samples held in memory at a time.
 const AT_A_TIME: usize = 64;
-/// What a folder of animations has; only such folders are replaced.
+/// The file that marks a folder of animations. Only folders that have it are replaced.
 const INDEX: &str = "plaus-export.json";
 
-/// Animations to be written.
+/// The animations to write.
 pub(super) struct Animations<'a> {
     run: &'a RunReader<'a>,
     args: &'a Args,
@@ -38,7 +38,7 @@ impl<'a> Animations<'a> {
         };
         if samples.is_empty() {
             let none = if args.confirmed {
-                "no solution holds at the accuracy of the list of confirmed solutions"
+                "none of the run's solutions holds at the accuracy at which they were confirmed"
             } else {
                 "no sample of the run satisfies the constraint"
             };
@@ -52,7 +52,7 @@ impl<'a> Animations<'a> {
         let one = !self.args.all_distinct && !self.args.confirmed && self.samples.len() == 1;
         if out == Path::new("-") {
             if !self.format.is_table() {
-                return Err(Error::Request("animations are files: name one by --out PATH".to_owned()));
+                return Err(Error::Request("animations are written to files: name one by --out PATH".to_owned()));
             }
             let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
             self.all(Path::new("-"), &mut out)?;
@@ -62,7 +62,7 @@ impl<'a> Animations<'a> {
             let (count, most) = (self.samples.len(), self.format.most());
             if count > most {
                 let message = format!(
-                    "{count} samples: one {} holds {most} at most; choose some by --sample, or make a folder by --out",
+                    "{count} samples: one {} holds at most {most}; choose some by --sample, or make a folder by --out",
                     self.format.row().name
                 );
                 return Err(Error::Request(message));
@@ -88,7 +88,7 @@ impl<'a> Animations<'a> {
         self.args.motion.until.unwrap_or_default()
     }
 
-    /// The same with the impacts that are asked for.
+    /// The same replay with only the impacts asked for.
     fn heard(&self, mut replay: Replay) -> Replay {
         let motion = &self.args.motion;
         if motion.min_impulse.is_some() || motion.merge.is_some() {
@@ -99,19 +99,19 @@ impl<'a> Animations<'a> {
         replay
     }
 
-    /// The animation of a sample, or what it has of the one body that is to be written.
+    /// The sample's whole animation, or the part about one body if only that is to be written.
     fn shown<'r>(&self, replay: &'r Replay) -> Result<Cow<'r, Animation>, Error> {
         let whole = &replay.animation;
         let Some(name) = &self.args.motion.root_motion else { return Ok(Cow::Borrowed(whole)) };
         whole.only(name).map(Cow::Owned).ok_or_else(|| {
             let names: Vec<&str> = whole.tracks.iter().map(|track| track.name.as_str()).collect();
             let near = nearest(name, names.iter().copied());
-            let hint = near.map_or_else(|| "choose of".to_owned(), |near| format!("did you mean {near}? There are"));
+            let hint = near.map_or_else(|| "there are".to_owned(), |near| format!("did you mean {near}? There are"));
             Error::Request(format!("--root-motion {name}: there is no such body; {hint} {}", names.join(", ")))
         })
     }
 
-    /// Hands a sample to `make` as it is to be written.
+    /// Passes a sample to `make` in the form in which it is written.
     fn clip<T>(&self, replay: &Replay, make: impl FnOnce(&Clip<'_>) -> Result<T, ExportError>) -> Result<T, Error> {
         let (motion, animation) = (&self.args.motion, self.shown(replay)?);
         let cut = Cut::new(self.fps(), motion.time_range, &replay.animation).map_err(refused)?;
@@ -127,12 +127,13 @@ impl<'a> Animations<'a> {
         let mut label = label::of(self.run.run().manifest(), replay);
         label.facts.insert("fps".to_owned(), cut.fps().into());
         label.facts.insert("time_range".to_owned(), json!([cut.from(), cut.to()]));
-        // What a scene's frame range is to be set to, where a program does not do that.
+        // The frame that a scene's frame range should end at, for programs that do not set it themselves.
         label.facts.insert("last_frame".to_owned(), json!((cut.length() * cut.fps()).ceil()));
         label
     }
 
-    /// What goes beside a file, where there is none: programs write their own notes into it.
+    /// Writes what belongs beside the file, unless something is there already: other programs keep their own notes in
+    /// it.
     fn beside(&self, path: &Path) -> Result<(), Error> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let Some((end, text)) = self.format.beside(&name) else { return Ok(()) };
@@ -143,7 +144,7 @@ impl<'a> Animations<'a> {
         }
     }
 
-    /// A folder of animations, one a sample, and a list of them.
+    /// A folder of animations, one for each sample, and a list of them.
     fn fill(&self, folder: &Path) -> Result<(), Error> {
         let mut list = BufWriter::new(File::create_new(folder.join(INDEX)).map_err(Error::Output)?);
         write!(list, "{{\"plaus\": {}, \"animations\": [", json!(glb::GENERATOR)).map_err(Error::Output)?;
@@ -157,7 +158,7 @@ impl<'a> Animations<'a> {
         list.write_all(b"\n]}\n").and_then(|()| list.flush()).map_err(Error::Output)
     }
 
-    /// One animation of a folder; what the list says of it.
+    /// Writes one animation of a folder; gives its entry in the list.
     fn file(&self, folder: &Path, replay: &Replay) -> Result<Value, Error> {
         let (scene, sample) = (&self.run.run().manifest().scene, replay.sample);
         let name = format!("{scene}-{}.{}", sample.to_string().replace(':', "-"), self.format.row().ending);
@@ -182,7 +183,7 @@ fn refused(error: ExportError) -> Error {
     }
 }
 
-/// Says how far it is with frames that take long.
+/// Shows progress if frames take long.
 fn show(done: u64, of: u64) {
     if console::is_live() {
         let end = if done == of { "\r\x1b[K" } else { "" };

@@ -1,5 +1,5 @@
-//! All formats, one row each: tables of draws, which `plaus_run` writes, and animations, which `plaus_export` and
-//! `plaus_picture` do.
+//! All formats, one row each: tables of draws, written by `plaus_run`, and animations, written by `plaus_export` and
+//! `plaus_picture`.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use plaus_export::Exporter;
@@ -24,8 +24,8 @@ const DRAWS: [(Format, Row); 2] = [
             name: "csv",
             ending: "csv",
             about: "a table of draws: one row per chain and draw",
-            help: "Columns chain, draw (from 0), log_p, satisfied (true or false), then one a scalar of the scene, in \
-                its units; for ball2d: rest_x in ball diameters D, theta_1 ... in degrees.",
+            help: "Columns: chain, draw (from 0), log_p, satisfied (true or false), then one for each scalar of the \
+                   scene, in its units; for ball2d: rest_x in ball diameters D, theta_1 ... in degrees.",
         },
     ),
     (
@@ -36,7 +36,7 @@ const DRAWS: [(Format, Row); 2] = [
             about: "a Zarr v3 folder of draws for ArviZ and xarray",
             help: "az.from_zarr(PATH) with ArviZ 1.x, \
                 az.from_datatree(xarray.open_datatree(PATH, engine=\"zarr\")) with 0.23. \
-                Scalars of one name that are numbered are one variable with a named dimension.",
+                Scalars with the same name and different numbers become one variable with a named dimension.",
         },
     ),
 ];
@@ -47,7 +47,7 @@ pub(super) fn all() -> Vec<(Format, Row)> {
     DRAWS.into_iter().chain(animations).collect()
 }
 
-/// Reads a format; completions and suggestions come with it.
+/// Reads the name of a format; completions and suggestions follow from it.
 pub(super) fn parser() -> impl TypedValueParser<Value = Format> {
     let values = all().into_iter().map(|(_, row)| PossibleValue::new(row.name).help(row.about));
     PossibleValuesParser::new(values).try_map(|name| {
@@ -56,13 +56,13 @@ pub(super) fn parser() -> impl TypedValueParser<Value = Format> {
     })
 }
 
-/// What `--help` says of each.
+/// What `--help` says about each.
 pub(super) fn help() -> String {
     let rows = all().into_iter().map(|(_, row)| format!("{}: {}. {}", row.name, row.about, row.help));
     let mut text = rows.collect::<Vec<_>>().join("\n");
     text.push_str(
-        "\nTimes count from the beginning of --time-range. One sample makes a file; several make a folder, or a table, \
-        or one file with --into.",
+        "\nTimes count from the beginning of --time-range. One sample makes a file; several make a folder, a table, or \
+         one file with --into.",
     );
     text
 }

@@ -14,7 +14,7 @@ use plaus_scenes::Until;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Which run, in which format, where to.
+/// Which run, in which format, and to which file or folder.
 #[derive(clap::Args)]
 #[command(after_long_help = formats::help())]
 pub(crate) struct Args {
@@ -29,10 +29,10 @@ pub(crate) struct Args {
     /// Write all samples into this one file: clips of a GLB, variants of a USD prim, tiles of a picture or video
     #[arg(long, value_name = "FILE", conflicts_with = "out")]
     into: Option<PathBuf>,
-    /// A sample to animate, its chain and its draw, as in the table, e.g. 0:17; may be given several times
+    /// A sample to animate, as CHAIN:DRAW, e.g. 0:17; may be given several times
     #[arg(long, value_name = "CHAIN:DRAW")]
     sample: Vec<SampleId>,
-    /// Animate one sample of each distinct satisfying solution
+    /// Animate one sample of each distinct solution
     #[arg(long, conflicts_with = "sample")]
     all_distinct: bool,
     /// Animate one sample of each distinct solution that `--confirm` found to hold
@@ -40,10 +40,10 @@ pub(crate) struct Args {
     confirmed: bool,
     #[command(flatten)]
     motion: Motion,
-    /// Replace what is there, if such an export made it
+    /// Replace what is there, if it was made by such an export
     #[arg(long)]
     force: bool,
-    /// Read a damaged run as far as it is intact, and say what is lost
+    /// Read a damaged run as far as it is intact, and report what is lost
     #[arg(long)]
     salvage: bool,
 }
@@ -51,21 +51,21 @@ pub(crate) struct Args {
 /// How motion is written.
 #[derive(clap::Args)]
 struct Motion {
-    /// Frames per second: where keys lie if they may, besides those at every impact [default: 60; gif 20, mp4 30]
+    /// Frames per second: where keys may lie, besides those at every impact [default: 60; gif 20, mp4 30]
     #[arg(long)]
     fps: Option<f64>,
-    /// Animate only from FROM to TO, in seconds
+    /// Animate only the time from FROM to TO, in seconds
     #[arg(long, value_name = "FROM:TO", value_parser = range)]
     time_range: Option<(f64, f64)>,
-    /// Where an animation ends: `rest`, when all is at rest; `decided`, when it is certain whether it satisfies; or
-    /// after a time, e.g. `5s` [default: rest]
+    /// Where an animation ends: `rest`, when everything is at rest; `decided`, once it is certain whether it satisfies;
+    /// or after a time, e.g. `5s` [default: rest]
     #[arg(long, value_name = "rest|decided|SECONDSs", value_parser = until)]
     until: Option<Until>,
-    /// glb: straight lines between keys, right in every program, or cubic splines that are exact where a program
-    /// follows glTF [default: linear]
+    /// glb: how keys are joined: straight lines, which every program reads correctly, or cubic splines, exact in
+    /// programs that follow glTF [default: linear]
     #[arg(long, value_enum)]
     keys: Option<Keys>,
-    /// usda: time codes per second, the frame rate of the scene that it is opened in [default: 24]
+    /// usda: time codes per second, the frame rate of the scene that opens it [default: 24]
     #[arg(long, value_name = "RATE")]
     time_codes: Option<f64>,
     /// glb and usda: the axis that points up [default: y]
@@ -74,21 +74,21 @@ struct Motion {
     /// glb and usda: units per metre, e.g. 100 for centimetres [default: 1]
     #[arg(long, value_name = "UNITS")]
     scale: Option<f64>,
-    /// glb: write this body alone, as the node above all others, for game engines that move an actor by its animation
+    /// glb: write only this body, as the root node, for game engines that move an actor by its animation
     #[arg(long, value_name = "BODY")]
     root_motion: Option<String>,
     /// png, gif and mp4: pixels across and down, e.g. 1920x1080
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
-    /// events and wav: leave out impacts with less impulse, in N s
+    /// events and wav: leave out impacts with a smaller impulse, in N s
     #[arg(long, value_name = "NS")]
     min_impulse: Option<f64>,
-    /// events and wav: make one of the impacts of a pair that follow the first within this time, e.g. 2ms
+    /// events and wav: merge repeated impacts of a pair of bodies if they follow the first within this time, e.g. 2ms
     #[arg(long, value_name = "TIME", value_parser = seconds)]
     merge: Option<f64>,
 }
 
-/// What is between keys.
+/// How keys are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Keys {
     /// Cubic splines with exact tangents.
@@ -108,19 +108,19 @@ enum UpAxis {
 
 fn range(text: &str) -> Result<(f64, f64), String> {
     let parts = text.split_once(':').and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
-    parts.ok_or_else(|| format!("`{text}` is no range: write FROM:TO in seconds, e.g. 0.5:2"))
+    parts.ok_or_else(|| format!("`{text}` is not a range: write FROM:TO in seconds, e.g. 0.5:2"))
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {
     let parts = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-    parts.ok_or_else(|| format!("`{text}` is no size: write WIDTHxHEIGHT in pixels, e.g. 1280x720"))
+    parts.ok_or_else(|| format!("`{text}` is not a size: write WIDTHxHEIGHT in pixels, e.g. 1280x720"))
 }
 
 /// A time above 0 with its unit.
 fn seconds(text: &str) -> Result<f64, String> {
     let units = [("ms", 1e-3), ("s", 1.0)];
     let number = units.iter().find_map(|(unit, size)| Some(text.strip_suffix(unit)?.parse::<f64>().ok()? * size));
-    let wrong = || format!("`{text}` is no time: write a number above 0 with its unit, e.g. 2ms or 5s");
+    let wrong = || format!("`{text}` is not a time: write a number above 0 with its unit, e.g. 2ms or 5s");
     number.filter(|time| *time > 0.0 && time.is_finite()).ok_or_else(wrong)
 }
 
@@ -133,7 +133,7 @@ pub(super) fn until(text: &str) -> Result<Until, String> {
             .ok()
             .filter(|time| *time <= LONGEST)
             .map(Until::Time)
-            .ok_or_else(|| format!("`{text}`: write rest, decided, or a time of at most {LONGEST} s such as 5s")),
+            .ok_or_else(|| format!("`{text}`: write rest, decided, or a time of at most {LONGEST} s, such as 5s")),
     }
 }
 
@@ -153,7 +153,7 @@ impl Motion {
         }
     }
 
-    /// Flags that were given, and the formats that know them; none: all formats of animations.
+    /// The flags that were given, each with the formats that know it; no formats means all formats of animations.
     fn given(&self) -> Vec<(&'static str, &'static [&'static str])> {
         let layers: &[&str] = &["glb", "usda"];
         let all = [
@@ -172,7 +172,7 @@ impl Motion {
         all.into_iter().filter(|(given, ..)| *given).map(|(_, flag, formats)| (flag, formats)).collect()
     }
 
-    /// Numbers that can be meant.
+    /// Checks that the numbers make sense.
     fn check(&self) -> Result<(), Failure> {
         for (flag, value, low, high) in [
             ("--time-codes", self.time_codes, 1e-3, 1e6),
@@ -211,7 +211,7 @@ impl Args {
             run = run.salvaged();
             console::note_line(&super::salvage(&run.reader()?));
         } else if run.folder().is_being_written() {
-            console::note_line("note: the run is being written; this exports it as of its last checkpoint");
+            console::note_line("note: the run is still being written; this exports its last checkpoint");
         }
         let tables = !matches!(self.format, Format::Animation(_));
         let reader = run.reader()?;
@@ -233,7 +233,7 @@ impl Args {
         self.into.as_deref().or(self.out.as_deref()).unwrap_or(Path::new("-"))
     }
 
-    /// Whether the flags go together.
+    /// Checks that the flags fit together.
     fn check(&self) -> Result<(), Failure> {
         let chosen = !self.sample.is_empty() || self.all_distinct || self.confirmed;
         let given = self.motion.given();
@@ -241,7 +241,7 @@ impl Args {
             if chosen || self.into.is_some() || !given.is_empty() {
                 let flags: Vec<&str> = given.iter().map(|(flag, _)| *flag).collect();
                 let message = format!(
-                    "--sample, --all-distinct, --confirmed and {} go with animations: csv and zarr hold all draws",
+                    "--sample, --all-distinct, --confirmed and {} are for animations: csv and zarr hold all draws",
                     if flags.is_empty() { "--into".to_owned() } else { flags.join(", ") }
                 );
                 return Err(Failure::Message(message));
@@ -263,7 +263,7 @@ impl Args {
         self.check_name(row.name)
     }
 
-    /// A name that ends as files of another format do is a slip.
+    /// Refuses a file name whose extension belongs to another format: that is a slip.
     fn check_name(&self, name: &str) -> Result<(), Failure> {
         let path = self.path();
         let end = path.extension().map(|end| end.to_string_lossy().to_lowercase()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What each engine is given. Commands are lists of arguments wherever the engine takes them; the scripts of Slurm
+//! The files that each engine gets. Commands are lists of arguments if the engine takes them; the scripts of Slurm
 //! quote each argument for the shell.
 
 use crate::commands::job::{Engine, Job, text_of};
@@ -8,18 +8,18 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// How a file's text is not to be had.
+/// The error for a file whose text cannot be made.
 fn broken(error: impl std::fmt::Display) -> Failure {
     Failure::Message(format!("cannot write the job: {error}"))
 }
 
-/// A command to be run here, one argument each, as a shell would take it.
+/// A command to be run here, one argument each, in the form that a shell takes.
 pub(super) fn in_shell(words: &[String]) -> String {
     words.iter().map(|word| quoted(Path::new(word))).collect::<Vec<_>>().join(" ")
 }
 
 /// Writes the engine's files for the pieces numbered `wanted`; gives the commands that submit them, in order. `PIECES`
-/// in one stands for what the command before printed.
+/// in a command stands for what the previous command printed.
 pub(super) fn write(job: &Job, wanted: &[u32]) -> Result<Vec<Vec<String>>, Failure> {
     match job.what.engine {
         Engine::Slurm => slurm(job, wanted),
@@ -39,11 +39,12 @@ pub(super) fn ranges(numbers: &[u32]) -> String {
     shown.collect::<Vec<_>>().join(",")
 }
 
-/// What stands in a command for the number that Slurm gives the array.
+/// Placeholder in a command for the number that Slurm gives the array.
 pub(super) const PIECES: &str = "PIECES";
 
 fn slurm(job: &Job, wanted: &[u32]) -> Result<Vec<Vec<String>>, Failure> {
-    // Slurm replaces `%j` and the like in names of folders, and cannot be told not to: so the shell writes the logs.
+    // Slurm replaces `%j` and the like in names of folders, and this cannot be turned off. So the shell writes the
+    // logs.
     let script = |name: &str, threads: usize, log: &str, more: &str, command: &[String]| {
         let logs = quoted(Path::new(&text_of(&job.path().join("logs"))?));
         let text = format!(
@@ -78,7 +79,7 @@ struct Task {
     cwd: String,
     stdout: &'static str,
     stderr: String,
-    /// How often a worker may be lost under it.
+    /// How often a task may lose its worker.
     crash_limit: u32,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     deps: Vec<u32>,
@@ -121,13 +122,13 @@ fn hyperqueue(job: &Job, wanted: &[u32]) -> Result<Vec<Vec<String>>, Failure> {
     Ok(vec![[&words[..], &job.what.options, &[path]].concat()])
 }
 
-/// Longest text that a parameter of a template may have.
+/// Longest text that a parameter of a template may have, in characters.
 const LONGEST_PARAMETER: usize = 1024;
-/// Longest name of a job.
+/// Longest name of a job, in characters.
 const LONGEST_NAME: usize = 128;
 
 fn openjd(job: &Job, wanted: &[u32]) -> Result<Vec<Vec<String>>, Failure> {
-    // Every word that is not ours is a parameter: text within a parameter is never looked into for more of them.
+    // Every word from the user becomes a parameter: placeholders within a parameter's text are never replaced.
     let mut parameters: Vec<Value> = Vec::new();
     let mut action = |step: &str, words: Vec<String>, piece: Option<&str>| -> Result<Value, Failure> {
         let mut shown = Vec::new();

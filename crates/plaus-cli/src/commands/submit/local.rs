@@ -1,4 +1,5 @@
-//! The engine of one machine: a process a piece, some at a time; one that is killed is started again.
+//! The engine for one machine: one process for each piece, several at a time. A process that is killed is started
+//! again.
 
 use super::engines::in_shell;
 use crate::clock::Stopwatch;
@@ -13,7 +14,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
-/// How often it is looked who has ended.
+/// Time between two checks for processes that have ended.
 const TICK: Duration = Duration::from_millis(20);
 /// Seconds between two lines of progress.
 const EVERY: f64 = 5.0;
@@ -51,14 +52,16 @@ pub(super) fn run(job: &Job, wanted: &[u32]) -> Result<Outcome, Failure> {
             match status.code() {
                 Some(0) => {}
                 None if attempt < ATTEMPTS && !interrupt::asked() => {
-                    console::note_line(&format!("piece {piece} was killed ({status}): it goes on from its checkpoint"));
+                    console::note_line(&format!(
+                        "piece {piece} was killed ({status}): it continues from its checkpoint"
+                    ));
                     waiting.push_back((piece, attempt + 1));
                 }
                 _ => failed.push(piece),
             }
         }
         if interrupt::asked() {
-            // The same signal went to them, or goes now: they write a checkpoint and end.
+            // They got the same signal, or get it now: they write a checkpoint and end.
             working.iter().for_each(|one| interrupt::pass_on(one.process.id()));
             waiting.clear();
         }
@@ -84,14 +87,15 @@ fn start(job: &Job, piece: u32) -> Result<Child, Failure> {
 fn finish(job: &Job, mut failed: Vec<u32>) -> Result<Outcome, Failure> {
     let again = in_shell(&[job.path().display().to_string()]);
     if interrupt::asked() {
-        console::note_line(&format!("interrupted; go on: plaus submit --again {again} --go"));
+        console::note_line(&format!("interrupted; continue with: plaus submit --again {again} --go"));
         return Ok(Outcome::Interrupted);
     }
     if !failed.is_empty() {
         failed.sort_unstable();
         let pieces = super::engines::ranges(&failed);
         return Err(Failure::Message(format!(
-            "pieces {pieces} failed; `plaus status {again}` says how, `plaus submit --again {again} --go` goes on with them"
+            "pieces {pieces} failed; `plaus status {again}` says why, `plaus submit --again {again} --go` continues \
+                 them"
         )));
     }
     let words = job.merge_command()?;

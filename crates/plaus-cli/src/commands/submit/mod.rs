@@ -25,29 +25,29 @@ pub(crate) struct Args {
     /// Engine that runs the pieces
     #[arg(long, value_name = "ENGINE", required_unless_present = "again")]
     to: Option<Engine>,
-    /// Pieces to cut the run into: at most as many as it has chains, or a chance has batches
+    /// Number of pieces to cut the run into: at most as many as it has chains, or a chance has batches
     #[arg(long, value_name = "N", required_unless_present = "again", value_parser = clap::value_parser!(u32).range(1..))]
     shards: Option<u32>,
     /// Folder to make for the job, on a disk that all machines share; must not exist
     #[arg(long, value_name = "JOB", required_unless_present = "again")]
     out: Option<PathBuf>,
-    /// Submit those pieces of a job that are not finished and not at work: they go on from their checkpoints
+    /// Submit the pieces of a job that are neither finished nor running: they continue from their checkpoints
     #[arg(long, value_name = "JOB", conflicts_with_all = ["scenario", "to", "shards", "out", "program"])]
     again: Option<PathBuf>,
-    /// Estimate how likely what is demanded is, as `plaus chance` does, instead of sampling; `--iterations` are those
-    /// of a rung then
+    /// Estimate a probability, as `plaus chance` does, instead of sampling; `--iterations` then counts those of each
+    /// rung
     #[arg(long, conflicts_with = "again")]
     chance: bool,
-    /// Submit the job. Without this, it is only written and shown
+    /// Submit the job. Without this flag, it is only written and shown
     #[arg(long)]
     go: bool,
     /// Threads of each piece
     #[arg(long, value_name = "T", default_value_t = 1)]
     threads: u16,
-    /// Where `plaus` lies on the machines that run the pieces; where it lies here unless given
+    /// Path of `plaus` on the machines that run the pieces [default: its path here]
     #[arg(long, value_name = "PATH")]
     program: Option<PathBuf>,
-    /// What the engine's own command is given besides, e.g. `-- --partition=long --time=24:00:00`
+    /// Further options for the engine's own command, e.g. `-- --partition=long --time=24:00:00`
     #[arg(last = true, value_name = "OPTIONS")]
     options: Vec<String>,
     #[command(flatten, next_help_heading = "With --chance")]
@@ -59,7 +59,7 @@ impl Args {
         let go = self.go;
         let job = match &self.again {
             Some(path) => Job::open(path)?.ok_or_else(|| {
-                Failure::Message(format!("{}: there is no job here: it has no job.json", path.display()))
+                Failure::Message(format!("{}: this is not a job: it has no job.json", path.display()))
             })?,
             None => self.create()?,
         };
@@ -77,7 +77,9 @@ impl Args {
         match (go, job.what.engine) {
             (false, _) => {
                 let again = in_shell(&["--again".to_owned(), job.path().display().to_string()]);
-                console::note_line(&format!("\nnothing is submitted yet; submit it: plaus submit {again} --go"));
+                console::note_line(&format!(
+                    "\nnothing has been submitted yet; to submit it: plaus submit {again} --go"
+                ));
                 Ok(Outcome::Done)
             }
             (true, Engine::Local) => local::run(&job, &wanted),
@@ -86,7 +88,7 @@ impl Args {
     }
 
     fn create(self) -> Result<Job, Failure> {
-        let missing = || Failure::Message("name a scenario, or a job with `--again`".to_owned());
+        let missing = || Failure::Message("name a scenario; or name a job with `--again`".to_owned());
         let (Some(wanted), Some(engine), Some(pieces), Some(out)) = (self.wanted, self.to, self.shards, self.out)
         else {
             return Err(missing());
@@ -106,7 +108,7 @@ impl Args {
             words.extend(iterations.map(|iterations| format!("--iterations={iterations}")));
             (recipe, asking.batches, Some(words))
         } else if let Some(word) = self.how.words().first() {
-            return Err(Failure::Message(format!("{word} goes with --chance")));
+            return Err(Failure::Message(format!("{word} can only be used with --chance")));
         } else {
             let recipe = wanted.recipe()?;
             let chains = recipe.scenario.sampler.chains;
@@ -129,19 +131,19 @@ impl Args {
     }
 }
 
-/// The file of the command that runs. Within another program, Python say, that is another file, which would not know
-/// our words.
+/// The file of the running command. Within another program, such as Python, that file would be Python itself, which
+/// does not know our arguments.
 fn this_program() -> Result<PathBuf, Failure> {
-    let ask = "name the command plaus by `--program`, e.g. `--program \"$(command -v plaus)\"`";
+    let ask = "name the command plaus with `--program`, e.g. `--program \"$(command -v plaus)\"`";
     let program = std::env::current_exe()
-        .map_err(|error| Failure::Message(format!("cannot tell where plaus lies: {error}; {ask}")))?;
+        .map_err(|error| Failure::Message(format!("cannot find the program plaus: {error}; {ask}")))?;
     if program.file_stem().is_some_and(|name| name.to_string_lossy().starts_with("plaus")) {
         return Ok(program);
     }
-    Err(Failure::Message(format!("plaus runs within {} here: {ask}", program.display())))
+    Err(Failure::Message(format!("plaus is running inside {}: {ask}", program.display())))
 }
 
-/// Shows what is, or would be, submitted: files on stdout with their contents, then the commands.
+/// Shows what is, or would be, submitted: on stdout, the files with their contents, then the commands.
 fn show(job: &Job, wanted: &[u32], commands: &[Vec<String>]) -> Result<(), Failure> {
     let mut files: Vec<PathBuf> = std::fs::read_dir(job.path().join("submit"))
         .map(|entries| entries.flatten().map(|entry| entry.path()).collect())
@@ -155,7 +157,7 @@ fn show(job: &Job, wanted: &[u32], commands: &[Vec<String>]) -> Result<(), Failu
     commands.iter().try_for_each(|command| output::print_line(&in_shell(command)))
 }
 
-/// Lines of a file that are shown.
+/// Number of lines of a file that are shown.
 const SHOWN_LINES: usize = 40;
 
 fn excerpt(path: &Path) -> String {
@@ -179,7 +181,7 @@ fn submit(commands: &[Vec<String>]) -> Result<Outcome, Failure> {
             return Err(Failure::Message(format!("`{}` failed ({}): {said}", in_shell(&words), output.status)));
         }
         console::note_line(&said);
-        // Slurm says `NUMBER` or `NUMBER;CLUSTER`.
+        // Slurm prints `NUMBER` or `NUMBER;CLUSTER`.
         before = said.split(';').next().unwrap_or_default().to_owned();
     }
     Ok(Outcome::Done)

@@ -1,4 +1,4 @@
-//! The restricted standard normal, up to shift, scale and reflection: its integral and the proposals of its sampler.
+//! The restricted standard normal, up to shift, scale and reflection: its integral, and the proposals of its sampler.
 
 use crate::gaussian::HALF_LN_TAU;
 use crate::{Stream, math, open_unit};

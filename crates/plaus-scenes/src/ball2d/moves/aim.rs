@@ -1,13 +1,13 @@
-//! Redraw some normals and solve for another, so that the ball lands near the target all the same.
+//! Redraws some normals and solves for another, so that the ball still lands near the target.
 //!
-//! The move redraws some angles from their prior, draws a pattern of downward bounces (mostly the one the other angles
-//! have together with a probe angle), draws a place x from the constraint's own Gaussian, finds all angles that land
-//! the ball there and whose bounces follow the pattern, and chooses one with probability in proportion to
-//! `w = φ(θ)/|dx/dθ|`, φ the angle's prior. The density of the result is
-//! `h(θ) = P(pattern) · N(x(θ); target, σ_d) · φ(θ) / S(x(θ))`, `S` the sum of `w` over the angles found. Together with
-//! the redrawn angles the acceptance ratio becomes `S/P(pattern)` of the candidate over that of the current state:
-//! nearly an independence sampler of the target. Which angles are redrawn, which one is solved for and the probe are
-//! drawn without looking at the state: they are the path.
+//! The move redraws some angles from their prior. It draws a pattern of downward bounces (mostly the one that the other
+//! angles have together with a probe angle), and a place x from the constraint's own Gaussian. It finds all angles that
+//! land the ball there with bounces that follow the pattern, and chooses one with probability proportional to `w =
+//! φ(θ)/|dx/dθ|`, where φ is the angle's prior. The density of the result is `h(θ) = P(pattern) · N(x(θ); target, σ_d)
+//! · φ(θ) / S(x(θ))`, with `S` the sum of `w` over the angles found. Together with the redrawn angles, the acceptance
+//! ratio becomes `S/P(pattern)` of the candidate over that of the current state: nearly an independence sampler of the
+//! target. The probe, the angles to redraw and the one to solve for are drawn without looking at the state: they are
+//! the path.
 
 use super::landing::{Course, Landing};
 use super::roots::Roots;
@@ -144,7 +144,7 @@ impl<'a> Aiming<'a> {
         (roots, weights, weights.iter().sum())
     }
 
-    /// Draws an angle in degrees, with the log of its density up to a constant of the scene; `None` where the drawn
+    /// Draws an angle in degrees, with the log of its density up to a constant of the scene; `None` if the drawn
     /// place cannot be reached.
     fn sample(&self, stream: &mut Stream) -> Option<(f64, f64)> {
         let pattern = self.draw_pattern(stream);

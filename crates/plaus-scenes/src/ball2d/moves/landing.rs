@@ -1,10 +1,10 @@
 //! Where the ball comes to rest as a function of one normal's angle, and that function's inverse.
 //!
-//! With every other normal held, the place of rest is a trigonometric polynomial of degree two in twice the angle θ of
-//! one normal: the bounce maps the incoming velocity to one affine in (cos 2θ, sin 2θ), all later bounces are linear
-//! maps, and each hop's length is a quadratic form of its velocity. So the angles that land the ball at a given x are
-//! the roots of a quartic in tan θ. Where a bounce is downward, the rule for it is another linear map: a *pattern* says
-//! which bounces are.
+//! With every other normal fixed, the resting place is a trigonometric polynomial of degree two in twice the angle θ of
+//! one normal. The reason: the bounce maps the incoming velocity to one affine in (cos 2θ, sin 2θ), all later bounces
+//! are linear maps, and each hop's length is a quadratic form of its velocity. So the angles that land the ball at a
+//! given x are the roots of a quartic in tan θ. If a bounce is downward, its rule is another linear map: a *pattern*
+//! says which bounces are.
 
 use super::roots::{Roots, quartic};
 use crate::ball2d::config::{Downward, MAX_COLLISIONS};
@@ -34,8 +34,8 @@ impl<'a> Course<'a> {
         self.collisions
     }
 
-    /// Which bounces after the aimed one are downward where that one's normal is `normal`; `None` where it is downward
-    /// itself, or the draw rejected.
+    /// Which bounces after the aimed one are downward if that one's normal is `normal`; `None` if it is downward
+    /// itself, or the draw is rejected.
     pub(super) fn pattern(&self, normal: DVec2) -> Option<Pattern> {
         let turned = |(index, &other)| if index == self.aimed { normal } else { other };
         let normals = self.normals[..self.collisions].iter().enumerate().map(turned);
@@ -49,7 +49,7 @@ impl<'a> Course<'a> {
         DVec2::new(t, 1.0) / (1.0 + t * t).sqrt()
     }
 
-    /// The place of rest under `pattern`; `None` where a bounce before the aimed one rejects the draw.
+    /// The resting place under `pattern`; `None` if a bounce before the aimed one rejects the draw.
     pub(super) fn landing(&self, pattern: Pattern) -> Option<Landing> {
         let mut incoming = flight::fallen(self.height);
         let before = self.normals[..self.aimed].iter().copied();

@@ -1,4 +1,4 @@
-//! The moves of the 2D ball: its own, one a file, and which of the library it makes.
+//! The moves of the 2D ball: its own, one in each file, and the moves of the library that it uses.
 
 mod aim;
 mod landing;
@@ -25,7 +25,7 @@ impl Menu for Ball2dMoves {
             "perturb",
             0.75,
             Printed::Weight(1.0),
-            "The paper's move: every angle, with probability ½, gets a uniform step.",
+            "The paper's move: each angle gets a uniform step with probability ½.",
         ),
         Row::own("redraw", 0.1, "One angle is drawn anew from its prior."),
         Row::own(

@@ -1,8 +1,8 @@
-//! Real roots of small polynomials on an interval, every simple one of them.
+//! Real roots of small polynomials on an interval: all simple ones.
 //!
-//! Between neighbouring roots of its derivative a polynomial is monotone: there a change of sign brackets exactly one
-//! root, which a safeguarded Newton iteration finds to the last bits. No root is chosen by how small its imaginary part
-//! is. A double root, which touches zero without crossing, may be missed.
+//! Between neighbouring roots of its derivative a polynomial is monotone. There a change of sign brackets exactly one
+//! root, which a safeguarded Newton iteration finds to the last bits. No root is chosen by the size of its imaginary
+//! part. A double root, which touches zero without crossing, may be missed.
 
 /// Up to four roots, in increasing order.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

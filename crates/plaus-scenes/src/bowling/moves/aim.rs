@@ -5,38 +5,38 @@ use plaus_dist::stream::below;
 use plaus_dist::{Density, LogDensity, LogRatio, NotANumber, Sample, Stream, WrappedUniform, math, open_unit};
 use plaus_mcmc::{Law, ModelError, Move, Path, Proposal, Recipe, StateRefOf, Variables, vars};
 
-/// How often the place across the lane is drawn from its law instead, so that places from where no pin is met are left
-/// and come back.
+/// How often the place across the lane is drawn from its law instead, so that places from which no pin is met can be
+/// left and reached.
 const STRAY: f64 = 0.1;
 
-/// Radius of a pin where it is widest, in m. Only where one aims depends on it.
+/// Largest radius of a pin, in m. Only the aim depends on it.
 const PIN: f64 = 0.0605;
 
-/// The ball is released from where it should meet a pin of the first row: with its centre at a uniform distance to the
-/// side from that pin's at which the two touch. To see by how much it comes to the side on its way there, the ball is
-/// tried out on a lane without pins and gutters. With probability `anew` all else is drawn from the prior before that,
-/// and else it stays.
+/// Releases the ball from where it should meet a pin of the first row: with its centre at a uniform distance to the
+/// side from that pin, within the distance at which the two touch. To find how far the ball moves to the side on its
+/// way, it is first tried on a lane without pins and gutters. With probability `anew`, everything else is drawn from
+/// the prior before that; otherwise it stays.
 ///
-/// The density of the place depends on all else and not on the place before, so the ratio is that of the old place and
-/// of all else, over that of the new. Where that law is not uniform, or a ball does not reach the pins, the chain
-/// stays.
+/// The density of the place depends on everything else, but not on the previous place, so the ratio is that of the old
+/// place and of everything else over that of the new. If its law is not uniform, or a ball does not reach the pins, the
+/// chain stays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aim {
-    /// Probability that all else is drawn from the prior.
+    /// Probability that everything else is drawn from the prior.
     pub anew: f64,
 }
 
-/// The density of places across the lane, given all else of a draw.
+/// The density of places across the lane, given everything else of a draw.
 struct Places {
     law: WrappedUniform,
-    /// Places from where the middle of a pin of the first row is met.
+    /// Places from which the middle of a pin of the first row is met.
     middles: Vec<f64>,
-    /// How far to their sides the ball still touches.
+    /// How far to the sides of these the ball still touches.
     reach: f64,
 }
 
 impl Places {
-    /// `None` where nothing can be aimed.
+    /// `None` if nothing can be aimed.
     fn of(target: &Bowling, draw: &Shot) -> Result<Option<Self>, ModelError> {
         let Law::Uniform(law) = target.vars.get(Quantity::Across as usize).law else { return Ok(None) };
         let row = target.lane.first_row(draw);
@@ -62,7 +62,7 @@ impl Places {
     }
 }
 
-/// Log density of all of a draw but its place across the lane.
+/// Log density of everything in a draw except its place across the lane.
 fn log_rest(target: &Bowling, draw: &Shot) -> Result<LogDensity, NotANumber> {
     vars::log_density_of(target, draw, (0..target.vars.len()).filter(|&var| var != Quantity::Across as usize))
 }
@@ -92,7 +92,7 @@ impl Move<Bowling> for Aim {
         let Some(there) = Places::of(target, candidate)? else { return Ok(Proposal::Stay) };
         candidate.ball[Quantity::Across as usize] = there.sample(stream);
         let to = log_q(target, candidate, &there, anew)?;
-        // Places are the same where all else is.
+        // The places are the same if everything else is.
         let here = if anew { Places::of(target, current.draw)? } else { Some(there) };
         let Some(here) = here else { return Ok(Proposal::Stay) };
         let log_ratio = LogRatio::of(log_q(target, current.draw, &here, anew)?, to)?;

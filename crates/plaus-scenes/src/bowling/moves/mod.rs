@@ -1,5 +1,5 @@
-//! The moves of bowling: its own, one a file, and which of the library it makes. Those named `change_…` are the paper's
-//! seven (its appendix A.2).
+//! The moves of bowling: its own, one in each file, and the moves of the library that it uses. Those named `change_…`
+//! are the paper's seven (its appendix A.2).
 
 mod aim;
 
@@ -20,32 +20,28 @@ impl Menu for BowlingMoves {
     type Scene = Bowling;
     const SCENE: &'static str = "bowling";
     const ROWS: &'static [Row] = &[
-        Row::paper("change_all", 0.05, Printed::Weight(0.05), "The paper's: everything is drawn anew."),
-        Row::paper("change_radius", 0.04, Printed::Weight(0.075), "The paper's: the ball's radius is shifted."),
+        Row::paper("change_all", 0.05, Printed::Weight(0.05), "The paper's: draw everything anew."),
+        Row::paper("change_radius", 0.04, Printed::Weight(0.075), "The paper's: shift the ball's radius."),
         Row::paper(
             "change_density",
             0.04,
             Printed::Weight(0.075),
-            "The paper's: the ball's density is shifted, and with it its radius of gyration where that is uncertain.",
+            "The paper's: shift the ball's density, and its radius of gyration if that is uncertain.",
         ),
-        Row::paper("change_position", 0.1, Printed::Weight(0.2), "The paper's: where the ball is released is shifted."),
-        Row::paper("change_velocity", 0.1, Printed::Weight(0.2), "The paper's: the ball's velocity is changed."),
-        Row::paper("change_spin", 0.05, Printed::Weight(0.2), "The paper's: the ball's spin is changed."),
-        Row::paper("change_pins", 0.1, Printed::Weight(0.2), "The paper's: some pins are shifted."),
-        Row::own("redraw", 0.12, "One quantity of the ball is drawn anew."),
-        Row::own("redraw_pins", 0.1, "Some pins are set anew."),
-        Row::own("aim", 0.25, "The ball is released from where it should meet a pin of the first row."),
+        Row::paper("change_position", 0.1, Printed::Weight(0.2), "The paper's: shift the ball's place of release."),
+        Row::paper("change_velocity", 0.1, Printed::Weight(0.2), "The paper's: change the ball's velocity."),
+        Row::paper("change_spin", 0.05, Printed::Weight(0.2), "The paper's: change the ball's spin."),
+        Row::paper("change_pins", 0.1, Printed::Weight(0.2), "The paper's: shift some pins."),
+        Row::own("redraw", 0.12, "Draw one quantity of the ball anew."),
+        Row::own("redraw_pins", 0.1, "Draw the places of some pins anew."),
+        Row::own("aim", 0.25, "Release the ball from where it should hit a pin of the first row."),
         Row::own(
             "refine",
             0.25,
-            "Everything is shifted a little, by steps of any size down to a ten-thousandth of the paper's: what a \
-             shot that has many collisions hangs on.",
+            "Shift everything a little, by steps of any size down to a ten-thousandth of the paper's. Shots with many \
+             collisions need such small steps.",
         ),
-        Row::own(
-            "mirror",
-            0.05,
-            "Left and right are exchanged. Without effect where the pins to stand are not the same from both sides.",
-        ),
+        Row::own("mirror", 0.05, "Exchange left and right. No effect if the pins that should stand are not symmetric."),
     ];
 }
 
@@ -84,9 +80,9 @@ fn stride(scene: &Bowling, var: usize) -> Stride {
     }
 }
 
-/// The whole shot as seen in a mirror along the lane. Where the delivery's laws are not the same from both sides, the
-/// prior says so. Where the pins that are set up, or those to be left, are not the same in the mirror, nothing changes:
-/// the mirrored shot is an answer to another question.
+/// The whole shot mirrored along the lane. If the delivery's laws are not symmetric, the prior accounts for that. If
+/// the pins that are set up, or those to be left, are not symmetric, nothing changes: the mirrored shot would answer
+/// another question.
 pub fn mirror(target: &Bowling, current: StateRefOf<'_, Bowling>, candidate: &mut Shot, _: &mut Stream) -> bool {
     let Some(order) = target.rack().mirrored() else { return false };
     for quantity in Quantity::ALL {

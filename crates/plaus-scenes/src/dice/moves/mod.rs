@@ -1,7 +1,7 @@
-//! The moves of the dice, one a file. The first three are the paper's (its section 5.4).
+//! The moves of the dice, one in each file. The first three are the paper's (its section 5.4).
 //!
-//! Ratios are taken with respect to the law of the tables, as the prior's density is: a change of a control point that
-//! leaves its law as it is has ratio 1.
+//! Ratios are taken with respect to the law of the tables, like the prior's density: a change of a control point that
+//! preserves its law has ratio 1.
 
 mod near;
 mod pick;
@@ -33,49 +33,44 @@ impl Menu for DiceMoves {
     type Scene = Dice;
     const SCENE: &'static str = "dice";
     const ROWS: &'static [Row] = &[
-        Row::paper("everything", 0.01, Printed::Free, "The paper's: everything is drawn anew."),
+        Row::paper("everything", 0.01, Printed::Free, "The paper's: draw everything anew."),
         Row::paper(
             "component",
             0.2,
             Printed::Free,
-            "The paper's: one number of one die's initial conditions, or its orientation, is changed.",
+            "The paper's: change one number of one die's initial conditions, or its orientation.",
         ),
-        Row::paper(
-            "point",
-            0.04,
-            Printed::Free,
-            "The paper's: one control point of the table, wherever it is, is changed.",
-        ),
-        Row::own("near", 0.2, "A control point near one of the collisions of the current animation is changed."),
-        Row::own("rethrow", 0.05, "One die's throw is drawn anew, and so is its table where it has one of its own."),
+        Row::paper("point", 0.04, Printed::Free, "The paper's: change one control point anywhere on the table."),
+        Row::own("near", 0.2, "Change a control point near one of the collisions of the current animation."),
+        Row::own("rethrow", 0.05, "Draw one die's throw anew, and its table too if it has its own."),
         Row::own(
             "recast",
             0.2,
-            "A die gets a fresh throw, and a fresh table where it has one of its own, from the place from where, \
-             tried out, it comes to rest near its target with a demanded face up.",
+            "Give a die a new throw, and a new table if it has its own, and move both to where a trial shows that it \
+         comes to rest near its target with the right face up.",
         ),
         Row::own(
             "pick",
             0.1,
-            "Like recast, with throws that are tried until one is likely under the prior and comes to rest near its \
-             target; for dice thrown onto one table.",
+            "Like recast, but try throws until one is likely under the prior and comes to rest near its target; for dice \
+         thrown onto one table.",
         ),
         Row::own(
             "turn",
             0.15,
-            "A die's throw begins in another of the orientations that its symmetry makes equal: another face comes \
-             up, and nothing else changes.",
+            "Begin a die's throw in another of the orientations that its symmetry makes equivalent: another face comes \
+         up, and nothing else changes.",
         ),
         Row::own(
             "shift",
             0.15,
-            "A die's throw is shifted so that it comes to rest near its target, and so is its table where it has \
-             one of its own.",
+            "Shift a die's throw, and its table too if it has its own, so that the die comes to rest near its \
+         target.",
         ),
     ];
 }
 
-/// All moves. A table without anything random has no points to change, and a die without a target nothing to aim at.
+/// All moves. A table without randomness has no points to change, and a die without a target cannot be aimed.
 pub(super) fn all(scene: &Dice, rules: &Rules) -> Vec<Box<dyn Move<Dice>>> {
     let (steps, symmetric, recipe) = (&scene.config.steps, rules.symmetric_redraws(), rules.recipe());
     let sizes = Sizes::new(steps.point_least, steps.point_most);
@@ -102,9 +97,9 @@ pub(super) fn all(scene: &Dice, rules: &Rules) -> Vec<Box<dyn Move<Dice>>> {
     all
 }
 
-/// One of the numbers of one die's initial conditions makes a step that leaves its law as it is; or, a quarter of the
-/// time, its orientation is turned about a random axis. Sizes of steps are those of places, of velocities, of spins and
-/// of turns.
+/// Changes one number of one die's initial conditions by a step that preserves its law; or, a quarter of the time,
+/// turns its orientation about a random axis. There are sizes for steps of places, of velocities, of spins and of
+/// turns.
 #[must_use]
 pub fn component(scene: &Dice, sizes: Sizes) -> Step {
     const NAMES: [&str; 4] = ["place", "velocity", "spin", "turn"];
@@ -116,10 +111,9 @@ pub fn component(scene: &Dice, sizes: Sizes) -> Step {
     Step { name: "component", ways, each: NUMBERS + 3, sizes: NAMES.map(|name| (name, sizes)).to_vec() }
 }
 
-/// One die's pips are turned by another of the rotations that leave its body as it is, each as likely: the throw begins
+/// Turns one die's pips by another of the rotations that map its body to itself, all equally likely. The throw begins
 /// in another orientation, the body moves as before bit by bit, and another face comes up. A cube has 24 such
-/// rotations, a cuboid with two equal edges 8, any other 4: a face of a cuboid comes up only in place of one of its
-/// size.
+/// rotations, a cuboid with two equal edges 8, any other 4: a face of a cuboid can only be replaced by one of its size.
 pub fn turn(target: &Dice, _: StateRefOf<'_, Dice>, candidate: &mut Draw, stream: &mut Stream) -> bool {
     let die = below(stream, candidate.throws.len());
     let (turns, turn) = (target.plan.rotations.len(), &mut candidate.throws[die].turn);
@@ -147,14 +141,14 @@ fn aimed(target: &Dice) -> impl Iterator<Item = (usize, [f64; 2])> {
     target.plan.places.iter().enumerate().filter_map(|(die, place)| Some((die, (*place)?)))
 }
 
-/// Changes a control point of a table: the way it was changed, and whether it stays where its law has a density.
+/// Changes a control point of a table. Gives the way in which it was changed, and whether its law has a density there.
 fn change(draw: &mut Draw, table: usize, site: Site, sizes: Sizes, stream: &mut Stream) -> (Path, bool) {
     let (score, is_wide) = sizes.step(draw.tables[table].score(site), stream);
     draw.tables[table].set(site, score);
     (marked(path(table, site), is_wide), score.abs() <= LARGEST_SCORE)
 }
 
-/// The scales of a move of control points: one a field.
+/// The scales of a move of control points: one for each field.
 fn declared(sizes: &[Sizes; 3]) -> Vec<plaus_mcmc::Scale> {
     let names = ["height", "restitution", "friction"];
     names.iter().zip(sizes).map(|(name, sizes)| sizes.declared(name, plaus_mcmc::Scale::ONE)).collect()

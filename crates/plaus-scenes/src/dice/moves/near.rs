@@ -7,12 +7,12 @@ use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::library::{Sizes, is_adapted};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
-/// One of the places where a die touched its table, or lies at last, the k-th of a die with a weight of 1/k: early ones
-/// steer, and there are many late ones; one of the sixteen control points that a field there depends on; and one of the
-/// random fields. That point makes a step that leaves its law as it is.
+/// Chooses one of the places where a die touched its table or finally lies, the k-th of a die with weight 1/k: early
+/// places steer, and there are many late ones. Then chooses one of the sixteen control points that a field there
+/// depends on, and one of the random fields. Changes that point by a step that preserves its law.
 ///
-/// After the step the die touches elsewhere. The ratio is the point's share in the weights of the new animation's
-/// places over that in the old one's.
+/// After the step, the die touches elsewhere. The ratio is the point's share of the weights of the new animation's
+/// places over its share in the old one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
     /// Sizes of the steps, of heights, restitutions and frictions.
@@ -37,7 +37,7 @@ fn places<'a>(draw: &'a Draw, rest: &'a Rest, table: usize) -> impl Iterator<Ite
     })
 }
 
-/// Log probability of choosing a site of a table, but for what is the same for all sites.
+/// Log probability of choosing a site of a table, up to a constant that is the same for all sites.
 fn log_q(target: &Dice, state: StateRefOf<'_, Dice>, table: usize, site: Site) -> f64 {
     let (mut all, mut hits) = (0.0, 0.0);
     for ([x, y], weight) in places(state.draw, state.outcome, table) {

@@ -7,33 +7,35 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogDensity, LogRatio, Stream, math, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
-/// Of dice thrown onto one table one, two or three that stand in a row are recast at once, each by tries that are made
+/// For dice thrown onto one table. Recasts one, two or three neighbouring dice at once, by tries that are repeated
 /// until one is picked: a try whose place of release is likely under the prior, and which, alone on its table, comes to
-/// rest near its target. Where dice hold each other off their places several have to go at once, and each only to where
-/// it is good: tries picked die by die find that in a time that adds up, where whole candidates at random would need
-/// the product.
+/// rest near its target. If dice keep each other from their places, several have to move at once, and each only to a
+/// good place. Tries picked die by die find that in a time that is a sum, where random candidates for all at once would
+/// need the product.
 ///
-/// A try is a recast's (see [`Recast`]), led more often; it is picked with a probability g that depends on the try and
-/// on its table, and is never 0. So a picked one has the density q g/Z of its throw, Z being the same for the way back,
-/// as is the chance that none of `TRIES` tries is picked; that leaves the ratio `q(old) g(old) / (q(new) g(new))`. This
-/// is rejection sampling (von Neumann 1951) inside of an independence move (Tierney, "Markov chains for exploring
-/// posterior distributions", Annals of Statistics 22, 1994).
+/// A try is that of a recast (see [`Recast`]), but is led more often. It is picked with a probability g that depends on
+/// the try and on its table, and is never 0. So a picked throw has the density q g/Z, where Z is the same for the way
+/// back, and so is the probability that none of `TRIES` tries is picked. This leaves the ratio `q(old) g(old) / (q(new)
+/// g(new))`. This is rejection sampling (von Neumann 1951) inside an independence move (Tierney, "Markov chains for
+/// exploring posterior distributions", Annals of Statistics 22, 1994).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pick {
     /// Standard deviation of the place that tries aim at, along each axis, in m.
     pub sd: f64,
-    /// How far from its target a die may come to rest alone and still be picked, by g's Gaussian factor, in m.
+    /// How near its target a die must come to rest alone to be picked: the standard deviation of a Gaussian factor of
+    /// g, in m.
     pub near: f64,
 }
 
 /// Most tries for a die.
 const TRIES: usize = 300;
-/// Share of tries left where the prior has them. It must not be 0: what another die pushed to its place was led
-/// anywhere, and there must be a way back to it.
+/// Share of tries left where the prior puts them. It must not be 0: a die that another die pushed to its place may have
+/// been led anywhere, and there must be a way back to that.
 const LEFT: f64 = 0.1;
-/// The least g of the place of release, and of the place of rest: what a state that nobody would pick costs to leave.
+/// The least g of the place of release, and of the resting place: the cost of leaving a state that would never be
+/// picked.
 const LEAST: [f64; 2] = [0.01, 0.01];
-/// Places of release as likely as this, relative to the likeliest, are picked always, in nats.
+/// Places of release at least this likely, relative to the likeliest, are always picked, in nats.
 const SPARED: f64 = 2.0;
 
 impl Pick {
@@ -78,7 +80,7 @@ impl Pick {
         Ok(None)
     }
 
-    /// Log of q g of some dice as they are, but for what is the same for all.
+    /// Log of q g of some dice as they are, up to a constant that is the same for all.
     fn log_q(self, target: &Dice, draw: &Draw, dice: &[(usize, Led)]) -> Result<LogDensity, ModelError> {
         dice.iter().try_fold(LogDensity::ONE, |sum, &(die, led)| {
             let Some(place) = target.plan.places[die] else { return Ok(LogDensity::ZERO) };
@@ -87,7 +89,7 @@ impl Pick {
         })
     }
 
-    /// The same of a state, by new try-outs; 0 where one does not come to rest.
+    /// The same for a state, by new trials; 0 if one does not come to rest.
     fn log_q_of(self, target: &Dice, draw: &Draw, rest: &Rest, path: Path) -> Result<LogDensity, ModelError> {
         let mut dice = Vec::new();
         for die in members(path) {

@@ -7,7 +7,7 @@ use plaus_dist::{LogRatio, Stream};
 use plaus_mcmc::library::{Sizes, is_adapted};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
-/// The paper's move: one control point of one table, each as likely, makes a step that leaves its law as it is. Most
+/// The paper's move: changes one control point of one table, all equally likely, by a step that preserves its law. Most
 /// points are far from any die.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
@@ -46,7 +46,7 @@ impl Move<Dice> for Point {
         Ok(Proposal::Candidate { log_ratio: LogRatio::ONE, path, later: None })
     }
 
-    /// The step leaves the law of the point as it is, with respect to which densities are taken.
+    /// The step preserves the law of the point, with respect to which densities are taken.
     fn log_ratio(
         &self,
         _: &Dice,

@@ -1,4 +1,4 @@
-//! A fresh throw from where it leads to the target.
+//! A new throw from a place from which it leads to the target.
 
 use super::{aimed, log_between};
 use crate::dice::constraint::Constraint;
@@ -8,24 +8,25 @@ use plaus_dist::stream::below;
 use plaus_dist::{Density, Gaussian, LogDensity, LogRatio, Sample, Stream, math, open_unit, standard_normal};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
-/// A die gets a fresh throw from the prior, and a fresh table where it has one of its own, from a place from where it
-/// should come to rest near its target, with its pips turned so that a demanded face is likely to be up.
+/// Gives a die a new throw from the prior, and a new table if it has its own, from a place from which it should come to
+/// rest near its target, with its pips turned so that the right face is likely to be up.
 ///
-/// The throw is tried out to see how far it leads. A die with a random table of its own is tried out on that: it begins
-/// at a uniform place within a cell, the table goes with it by whole cells, and it comes to rest just where it is led.
-/// Any other die, and any where something was spilt, is tried out alone on a plain table, and led by any length; then
-/// alone on its own table from there, which tells how its pips have to be turned. What other dice do to it is seen when
-/// it is simulated.
+/// A trial shows how far the throw leads. A die with a random table of its own is tried on that table: it begins at a
+/// uniform place within a cell, the table moves with it by whole cells, and it comes to rest exactly where it is led.
+/// Any other die, and any die on a table with a spill, is first tried alone on a plain table, and led by any length;
+/// then it is tried alone on its own table from there, which shows how its pips have to be turned. The effect of other
+/// dice shows when it is simulated.
 ///
-/// The density of such a proposal is that of the throw under the prior, but for its place; times that of the error of
-/// the place aimed at; times the chance that the pips are turned so. It depends on the state led to and not on that led
-/// from, so the ratio is that of the old state over that of the new one. A die whose try-out does not come to rest is
-/// neither led to nor from.
+/// The density of such a proposal is that of the throw under the prior, except for its place, times that of the error
+/// of the place aimed at, times the probability that the pips are turned this way. It depends on the state led to and
+/// not on the one led from, so the ratio is that of the old state over that of the new one. A die whose trial does not
+/// come to rest is neither led to nor from.
 ///
-/// Of dice thrown onto one table one, two or three that stand in a row are recast at once, as likely whatever the
-/// state: dice that are in each other's way hold each other where they are, for neither comes to its own place before
-/// the other goes. Half of those are not led, but thrown from where the prior has them: what they leave may be led
-/// anywhere, as a die is that another one pushed to its place, and there must be a way back to it.
+/// For dice thrown onto one table, one, two or three neighbouring ones are recast at once, with probabilities that do
+/// not depend on the state: dice in each other's way hold each other where they are, because neither comes to its own
+/// place before the other goes. Half of them are not led, but thrown from where the prior puts them. The place that
+/// they leave may have been led anywhere, like that of a die pushed to its place by another one, and there must be a
+/// way back to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recast {
     /// Standard deviation of the place aimed at, along each axis, in m.
@@ -42,7 +43,7 @@ pub(super) struct Led {
     pub(super) orientation: DQuat,
 }
 
-/// Share of throws that are left where they were drawn, of dice thrown onto one table.
+/// Share of throws that are left where they were drawn, for dice thrown onto one table.
 const LEFT: f64 = 0.5;
 
 /// Whether dice are tried out on the tables that they are thrown onto.
@@ -55,7 +56,7 @@ fn is_mixed(target: &Dice) -> bool {
     target.plan.together
 }
 
-/// Where a die's throw leads, as try-outs tell; `None` where it does not come to rest.
+/// Where a die's throw leads, according to trials; `None` if it does not come to rest.
 pub(super) fn led(target: &Dice, draw: &Draw, rest: Option<&Rest>, die: usize) -> Result<Option<Led>, ModelError> {
     let offset = target.offset(draw, die);
     if is_exact(target) {
@@ -70,8 +71,8 @@ pub(super) fn led(target: &Dice, draw: &Draw, rest: Option<&Rest>, die: usize) -
     led_on_table(target, draw, die, (start + offset + plain.position, plain.orientation))
 }
 
-/// Where and how a die lies at last that is thrown alone onto its table; `None` where it does not come to rest.
-/// `plain`: where and how it does on a plain one, where it was led.
+/// Where and how a die finally lies if it is thrown alone onto its table; `None` if it does not come to rest. `plain`
+/// is where and how it does so on a plain table, where it was led.
 pub(super) fn led_on_table(
     target: &Dice,
     draw: &Draw,
@@ -87,7 +88,7 @@ pub(super) fn led_on_table(
     Ok(trip.map(|trip| Led { rest, own: trip.position + offset, orientation: trip.orientation }))
 }
 
-/// Weights of the turns of a die's pips, given how its body lies: what the demands of a face make of them.
+/// Weights of the turns of a die's pips, given how its body lies, according to the faces asked for.
 pub(super) fn weights(target: &Dice, die: usize, orientation: DQuat) -> Vec<f64> {
     let log = |pips| {
         let logs = target.plan.demands.iter().map(|demand| match &demand.constraint {
@@ -121,7 +122,7 @@ pub(super) fn members(path: Path) -> impl Iterator<Item = usize> {
 }
 
 impl Recast {
-    /// Casts one die anew: where it is led; `None` where its try-out does not come to rest.
+    /// Casts one die anew: where it is led; `None` if its try-out does not come to rest.
     fn cast(
         self,
         target: &Dice,
@@ -143,8 +144,8 @@ impl Recast {
         Ok(led)
     }
 
-    /// Throws one die anew and leads it to its place, or, that share of the time where dice meet, leaves it where it
-    /// was drawn: where and how it comes to rest, if it does.
+    /// Throws one die anew and leads it to its place; if dice meet, leaves it where it was drawn for that share of the
+    /// time. Gives where and how it comes to rest, if it does.
     pub(super) fn lead(
         self,
         target: &Dice,
@@ -166,7 +167,7 @@ impl Recast {
         let is_left = is_mixed(target) && open_unit(stream) < left;
         for axis in 0..2 {
             if is_left {
-                // In place of what the throw was drawn with.
+                // In place of the value that the throw was drawn with.
                 let place = target.prior().number(die, axis).sample(stream);
                 rest[axis] += place - throw.position[axis];
                 throw.position[axis] = place;
@@ -186,7 +187,7 @@ impl Recast {
         Ok(Some((rest, trip.orientation)))
     }
 
-    /// Log density of proposing a die's throw as it is, but for what is the same for all.
+    /// Log density of proposing a die's throw as it is, up to a constant that is the same for all.
     pub(super) fn log_q(
         self,
         target: &Dice,
@@ -233,7 +234,7 @@ impl Recast {
     }
 }
 
-/// The ratio of two densities; 0 where the first is, whatever the second.
+/// The ratio of two densities; 0 if the first is 0, whatever the second is.
 pub(super) fn over(from: LogDensity, to: LogDensity) -> Result<LogRatio, ModelError> {
     if from.is_zero() { Ok(LogRatio::ZERO) } else { Ok(LogRatio::of(from, to)?) }
 }
@@ -262,7 +263,7 @@ impl Move<Dice> for Recast {
             to = to + self.log_q(target, candidate, (die, Some(new)), LEFT)?;
             dice |= 1 << die;
         }
-        // A die that leaves its table on the way has no way back.
+        // A die that leaves its table has no way back.
         let later = is_exact(target).then_some(LogRatio::ONE);
         Ok(Proposal::Candidate { log_ratio: over(from, to)?, path: Path(dice), later })
     }

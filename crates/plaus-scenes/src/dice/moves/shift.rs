@@ -6,14 +6,14 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math, standard_normal};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
-/// A die's throw is shifted along the table so that, if all goes as before, it comes to rest near its target: at a
-/// place Gaussian about it.
+/// Shifts a die's throw along the table so that, if everything goes as before, it comes to rest near its target, at a
+/// place with a Gaussian law around it.
 ///
 /// A die with a random table of its own is shifted by whole cells together with the table: the same animation
-/// elsewhere, bit by bit, but for what was spilt. Any other is shifted alone, by any length; on a flat table without
-/// fields that is the same animation elsewhere, but for rounding. The way back aims from where the candidate came to
+/// elsewhere, bit by bit, except for the spill. Any other die is shifted alone, by any length; on a flat table without
+/// fields that is the same animation elsewhere, up to rounding. The way back aims from where the candidate came to
 /// rest, so the ratio is `q(−shift | candidate)/q(shift | current)`, of densities or of probabilities of cells; both
-/// kinds of shift keep volumes.
+/// kinds of shift preserve volumes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shift {
     /// Standard deviation of the place aimed at, along each axis, in m.
@@ -45,7 +45,7 @@ impl Shift {
         -math::ln(self.sd * std::f64::consts::TAU.sqrt())
     }
 
-    /// What no log probability or density exceeds, rounding included.
+    /// An upper bound of any log probability or density, including rounding.
     fn most(self, target: &Dice) -> f64 {
         if target.plan.carries() { 1e-9 } else { 2.0 * self.log_peak() + 1e-9 }
     }

@@ -1,4 +1,4 @@
-//! How long a body flies.
+//! How long a body is in flight.
 
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
@@ -9,19 +9,19 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A body flies, under gravity alone, for at least, or at most, so long in all.
+/// The total time that a body is in flight, under gravity alone, lies within limits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct AirTime {
-    /// Name of a body. May be left out where there is one.
+    /// Name of a body. May be left out if there is only one.
     pub body: String,
-    /// No less. Unset: there is no such limit.
+    /// The least allowed. Unset: no lower limit.
     #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
     pub at_least_s: Option<f64>,
-    /// No more. Unset: there is no such limit.
+    /// The most allowed. Unset: no upper limit.
     #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
     pub at_most_s: Option<f64>,
-    /// What lies outside loses one nat each so many milliseconds.
+    /// How many milliseconds outside the limits cost one nat.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e9, "x-unit" = "ms"))]
     pub scale_ms: f64,
     /// Only this window counts.

@@ -17,33 +17,34 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Beats {
-    /// Name of a body, or a pattern such as `ball_*`. May be left out where there is one.
+    /// Name of a body, or a pattern such as `ball_*`. May be left out if there is only one.
     pub body: String,
-    /// With whom, a body or a part of the scenery, or a pattern; empty: with anything.
+    /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
     pub with: String,
-    /// Which impact of each body, from 1; −1 is the last.
+    /// Which impact of each body, counted from 1; −1 is the last.
     #[schemars(range(min = -10_000, max = 10_000))]
     pub nth: i32,
-    /// Only impacts count at which the two meet at this speed or faster.
+    /// Only count impacts at which the two meet at this speed or faster.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
     pub faster_than: f64,
-    /// What has to come on what.
+    /// What must coincide with what.
     pub each: Each,
-    /// Time from beat to beat: 0.5 is 120 beats a minute. Unset: `times_s` has them.
+    /// Time between beats: 0.5 means 120 beats a minute. Unset: the beats are in `times_s`.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 3600.0, "x-unit" = "s", "x-example" = 0.5))]
     pub every_s: Option<f64>,
-    /// When the first of the regular beats is.
+    /// Time of the first regular beat.
     #[schemars(extend("minimum" = 0.0, "maximum" = 3600.0, "x-unit" = "s"))]
     pub offset_s: f64,
-    /// The beats, in place of regular ones.
+    /// The times of the beats, in place of regular ones.
     #[schemars(length(max = 10_000), extend("x-unit" = "s"))]
     pub times_s: Vec<f64>,
-    /// A file that has the beats, in place of `times_s`, which a run writes down.
+    /// A file with the times of the beats, in place of `times_s`. A run stores the times, and then no longer needs the
+    /// file.
     pub times_from: Option<Onsets>,
     /// How far from a beat an impact may be.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "ms"))]
     pub within_ms: f64,
-    /// What is farther off loses one nat each so many milliseconds.
+    /// How many milliseconds beyond that cost one nat.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms"))]
     pub scale_ms: f64,
 }
@@ -52,16 +53,16 @@ pub struct Beats {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Onsets {
-    /// The file, `.csv`, `.mid` or `.midi`: its path from the folder of the scenario, with `/` between folders.
+    /// The file, `.csv`, `.mid` or `.midi`: its path from the scenario's folder, with `/` between folders.
     pub file: String,
-    /// Of a table: the column with this name in its first row, in seconds. Unset: the first column.
+    /// For a table: the column with this name in its first row, in seconds. Unset: the first column.
     #[serde(default)]
     pub column: Option<String>,
-    /// Of MIDI: only notes of this key; 36 is a bass drum, 60 the middle C. Unset: all.
+    /// For MIDI: only notes of this key; 36 is a bass drum, 60 is middle C. Unset: all.
     #[serde(default)]
     #[schemars(range(min = 0, max = 127))]
     pub note: Option<u8>,
-    /// Of MIDI: only notes of this channel; 10 are the drums. Unset: all.
+    /// For MIDI: only notes of this channel; 10 is the drums. Unset: all.
     #[serde(default)]
     #[schemars(range(min = 1, max = 16))]
     pub channel: Option<u8>,
@@ -82,22 +83,22 @@ impl Onsets {
         let which = Which { column: self.column.as_deref(), note: self.note, channel: self.channel };
         let times = onsets(&self.file, &bytes, &which).map_err(|error| wrong(error.to_string()))?;
         if times.len() > MOST_BEATS {
-            return Err(wrong(format!("it has {} beats: at most {MOST_BEATS} are served", times.len())));
+            return Err(wrong(format!("it has {} beats; the most allowed is {MOST_BEATS}", times.len())));
         }
         Ok(times)
     }
 }
 
-/// What has to come on what.
+/// What must coincide with what.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Each {
-    /// The `nth` impact of every body comes on a beat.
+    /// The `nth` impact of every body falls on a beat.
     #[default]
     Body,
-    /// Every impact that counts comes on a beat; where there is none, nothing is asked.
+    /// Every impact that counts falls on a beat; without impacts, nothing is required.
     Impact,
-    /// On every beat of `times_s` comes an impact.
+    /// An impact falls on every beat of `times_s`.
     Beat,
 }
 
@@ -149,7 +150,7 @@ impl Beats {
         }
     }
 
-    /// What came of a beat.
+    /// What happened at a beat.
     fn timed(&self, what: String, beat: f64, found: Option<f64>) -> Timed {
         let within = 1e-3 * self.within_ms;
         Timed { what, wanted: Window { from: beat - within, to: beat + within }, found }
@@ -159,7 +160,7 @@ impl Beats {
         ((1e-3 * self.within_ms - off) / (1e-3 * self.scale_ms)).max(-FAR)
     }
 
-    /// Each single demand: from which margin to which.
+    /// The margin of every single demand, as a range.
     fn parts(&self, probe: &Probe<'_>) -> Vec<Reach> {
         let best = self.margin(0.0);
         let open = Reach::between(-FAR, best);
@@ -194,11 +195,11 @@ impl Beats {
 }
 
 impl Ask for Beats {
-    /// The times become those of `times_s`, so that a run needs the file no more.
+    /// Stores the times in `times_s`, so that a run no longer needs the file.
     fn load(&mut self, key: &str, files: &dyn Files) -> Result<(), ConfigError> {
         let Some(from) = &self.times_from else { return Ok(()) };
         if self.every_s.is_some() || !self.times_s.is_empty() {
-            let message = "say the beats in one way: `every_s`, `times_s` or `times_from`";
+            let message = "give the beats in one way: `every_s`, `times_s` or `times_from`";
             return Err(ConfigError::new(format!("{key}.times_from"), message));
         }
         self.times_s = from.read(&format!("{key}.times_from"), files)?;
@@ -210,7 +211,7 @@ impl Ask for Beats {
         place.body("body", &self.body)?;
         place.partner("with", &self.with)?;
         if self.nth == 0 {
-            return Err(place.at("nth").wrong("there is no impact 0: they count from 1, or from −1 backwards"));
+            return Err(place.at("nth").wrong("there is no impact 0: count from 1 forwards, or from −1 backwards"));
         }
         let longest = place.cast().longest;
         if let Some(late) = self.times_s.iter().find(|time| !(**time >= 0.0 && **time <= longest.min(3600.0))) {
@@ -219,10 +220,10 @@ impl Ask for Beats {
             return Err(place.at("times_s").wrong(&message));
         }
         match (self.every_s, self.times_s.is_empty(), self.each) {
-            (Some(_), false, _) => Err(place.wrong("say the beats in one way: `every_s` or `times_s`")),
+            (Some(_), false, _) => Err(place.wrong("give the beats in one way: `every_s` or `times_s`")),
             (None, true, _) => Err(place.wrong("there are no beats: give `every_s`, `times_s` or `times_from`")),
             (Some(_), _, Each::Beat) => {
-                Err(place.at("each").wrong("regular beats have no end: list those that need an impact in `times_s`"))
+                Err(place.at("each").wrong("regular beats never end: list the beats that need an impact in `times_s`"))
             }
             (Some(_), ..) if self.offset_s > longest => {
                 Err(place.at("offset_s").wrong(&format!("the first beat is after the end, {longest} s")))
@@ -257,7 +258,7 @@ impl Ask for Beats {
         }
     }
 
-    /// Each demand costs what it lacks; the margin is that of the worst.
+    /// Each demand costs what its margin lacks; the margin is that of the worst demand.
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let parts = self.parts(probe);
         let whole = |end: fn(&Reach) -> Mark| {

@@ -9,18 +9,18 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One event happens, and another not before it.
+/// One event happens, and another does not happen before it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Before {
     /// What comes first, and must come.
     pub first: Event,
-    /// What comes later, if it comes.
+    /// What comes later, if it happens at all.
     pub then: Event,
     /// How much later, at least.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "ms"))]
     pub by_ms: f64,
-    /// Too early loses one nat each so many milliseconds.
+    /// How many milliseconds too early cost one nat.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "ms"))]
     pub scale_ms: f64,
 }

@@ -10,26 +10,26 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A body hits something at least, or at most, so many times.
+/// The number of times that a body hits something lies within limits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Bounces {
-    /// Name of a body, or a pattern such as `ball_*`: all impacts of those it fits count. May be left out where there
-    /// is one body.
+    /// Name of a body, or a pattern such as `ball_*`: impacts of all matching bodies count. May be left out if there is
+    /// only one body.
     pub body: String,
-    /// With whom, a body or a part of the scenery, or a pattern; empty: with anything.
+    /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
     pub with: String,
-    /// Only impacts count at which the two meet at this speed or faster: the last bounces of a thing are many and
+    /// Only count impacts at which the two meet at this speed or faster: the last bounces of a thing are many and
     /// small.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
     pub faster_than: f64,
-    /// No fewer. Unset: there is no such limit.
+    /// The least allowed. Unset: no lower limit.
     #[schemars(extend("minimum" = 0, "maximum" = 1_000_000, "x-example" = 4))]
     pub at_least: Option<u32>,
-    /// No more. Unset: there is no such limit.
+    /// The most allowed. Unset: no upper limit.
     #[schemars(extend("minimum" = 0, "maximum" = 1_000_000, "x-example" = 4))]
     pub at_most: Option<u32>,
-    /// What a bounce too few or too many costs.
+    /// What each bounce too few or too many costs.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
     pub nats_each: f64,
     /// Only impacts in this window count.
@@ -51,7 +51,7 @@ impl Default for Bounces {
 }
 
 impl Bounces {
-    /// Half a bounce of room on either side, so that no number lies on an edge.
+    /// Half a bounce of room on either side, so that no count lies on an edge.
     fn band(&self) -> Band {
         let from = self.at_least.map_or(f64::NEG_INFINITY, |n| f64::from(n) - 0.5);
         let to = self.at_most.map_or(f64::INFINITY, |n| f64::from(n) + 0.5);
@@ -71,7 +71,7 @@ impl Ask for Bounces {
         let window = self.when.window();
         let hits = probe.hits(&self.body, &self.with, self.faster_than);
         let count = hits.filter(|hit| hit.time >= window.from && hit.time <= window.to).count() as f64;
-        // So many that no more could matter, but a number: a body hits something as often as it likes.
+        // The number of further impacts has no limit, but the bound must be a finite number.
         let most = if probe.sees_all(window) { count } else { f64::MAX };
         self.band().reach(Span { low: count, high: most })
     }

@@ -1,4 +1,4 @@
-//! Requirements made of others: all of them, any, not one, at least so many.
+//! Requirements made of others: all of them, any of them, not one, at least some number of them.
 
 use crate::files::Files;
 use crate::require::claim::Claim;
@@ -22,31 +22,31 @@ pub struct All(#[schemars(length(min = 1, max = 64))] pub Vec<Require>);
 #[serde(transparent)]
 pub struct AnyOf(#[schemars(length(min = 1, max = 64))] pub Vec<Require>);
 
-/// A requirement must not be met. What it costs is by how much it is met.
+/// A requirement must not be met. The cost grows with the margin by which it is met.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Not(pub Box<Require>);
 
-/// At least so many of several requirements: the margin is that of the last one needed.
+/// At least a number of several requirements must be met. The margin is that of the last one needed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AtLeast {
     /// How many.
     #[schemars(range(min = 1, max = 64))]
     pub count: u32,
-    /// Of which.
+    /// Which requirements.
     #[schemars(length(min = 1, max = 64))]
     pub of: Vec<Require>,
 }
 
-/// The k-th largest of some margins; as small as can be where there are fewer.
+/// The k-th largest of some margins; the smallest possible value if there are fewer.
 pub(super) fn kth_best(margins: &[f64], k: usize) -> f64 {
     let mut margins = margins.to_vec();
     margins.sort_by(|a, b| b.total_cmp(a));
     if k == 0 { FAR } else { margins.get(k - 1).copied().unwrap_or(-FAR) }
 }
 
-/// The latest of the moments of some requirements, where each has one.
+/// The latest of the moments of some requirements, if each has one.
 pub(super) fn deepest<'a>(of: impl IntoIterator<Item = &'a Require>) -> Option<f64> {
     of.into_iter().map(|one| one.moment()).try_fold(0.0, |latest, moment| Some(f64::max(latest, moment?)))
 }
@@ -55,7 +55,7 @@ fn check(of: &[Require], place: &Place<'_>) -> Result<(), ConfigError> {
     of.iter().enumerate().try_for_each(|(index, one)| one.check(&place.entry(index).at(one.name())))
 }
 
-/// Both ends of what some requirements can come to, put together in one way.
+/// The best and worst that some requirements can come to, combined by one function.
 fn put_together(of: &[Require], probe: &Probe<'_>, together: impl Fn(&[Mark]) -> Mark) -> Reach {
     let each: Vec<Reach> = of.iter().map(|one| one.reach(probe)).collect();
     let end = |end: fn(&Reach) -> Mark| together(&each.iter().map(end).collect::<Vec<_>>());
@@ -92,7 +92,7 @@ impl Ask for All {
     }
 
     fn moment(&self) -> Option<f64> {
-        // One that cannot be met ends it.
+        // One requirement that cannot be met is enough.
         self.0.iter().filter_map(Require::moment).reduce(f64::min)
     }
 

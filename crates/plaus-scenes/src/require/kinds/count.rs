@@ -11,22 +11,22 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// At least, or at most, so many of several bodies do something.
+/// The number of bodies that meet a requirement lies within limits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Count {
     /// Which bodies: a pattern such as `die_*`.
     #[serde(default = "everybody")]
     pub of: String,
-    /// No fewer. Unset: there is no such limit.
+    /// The least allowed. Unset: no lower limit.
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 10_000, "x-example" = 4))]
     pub at_least: Option<u32>,
-    /// No more. Unset: there is no such limit.
+    /// The most allowed. Unset: no upper limit.
     #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 10_000, "x-example" = 4))]
     pub at_most: Option<u32>,
-    /// What they do: a requirement that names no body.
+    /// What each of them must do: a requirement that names no body.
     pub that: Box<Require>,
 }
 
@@ -44,12 +44,12 @@ impl Ask for Count {
         place.limits(self.at_least.map(f64::from), self.at_most.map(f64::from))?;
         let bodies = place.cast().matching(&self.of).count();
         if let Some(wanted) = self.at_least.filter(|wanted| *wanted as usize > bodies) {
-            return Err(place.at("at_least").wrong(&format!("{wanted} of {bodies}: there are no more bodies")));
+            return Err(place.at("at_least").wrong(&format!("{wanted} is too many: there are only {bodies} bodies")));
         }
         self.that.check(&place.at("that").counted().at(self.that.name()))
     }
 
-    /// The margin of the one that decides.
+    /// The margin of the body that decides.
     fn reach(&self, probe: &Probe<'_>) -> Reach {
         let each = probe.cast().matching(probe.name(&self.of)).map(|body| self.that.reach(&probe.about(body)));
         let each: Vec<Reach> = each.collect();

@@ -13,13 +13,13 @@ use plaus_dist::math;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A face of a die, or an axis of a body, is up: at the end, or at a time.
+/// A face of a die, or an axis of a body, points up: at the end, or at some time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FacesUp {
-    /// Name of a body. May be left out where there is one.
+    /// Name of a body. May be left out if there is only one.
     pub body: String,
-    /// Which face, of a body with pips. Unset: `axis` counts.
+    /// Which face, for a body with pips. Unset: `axis` is used.
     #[schemars(extend("minimum" = 1, "maximum" = 6, "x-example" = 6))]
     pub face: Option<u32>,
     /// Which axis of the body.
@@ -27,10 +27,10 @@ pub struct FacesUp {
     /// How far from upright it may be.
     #[schemars(extend("minimum" = 0.1, "maximum" = 180.0, "x-unit" = "degree"))]
     pub within_deg: f64,
-    /// What lies outside loses one nat each so many degrees.
+    /// How many degrees beyond that cost one nat.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1e4, "x-unit" = "degree"))]
     pub scale_deg: f64,
-    /// At which time: `at_s`, `frame` or `from_s`. Without one: at the end.
+    /// At which time: `at_s`, `frame` or `from_s`. Unset: at the end.
     pub when: When,
 }
 
@@ -40,16 +40,16 @@ pub struct FacesUp {
 pub enum Axis {
     /// Its first.
     X,
-    /// Against its first.
+    /// The opposite of its first.
     MinusX,
     /// Its second.
     Y,
-    /// Against its second.
+    /// The opposite of its second.
     MinusY,
-    /// Its third: of a pin, towards its head.
+    /// Its third. For a pin, it points to the head.
     #[default]
     Z,
-    /// Against its third.
+    /// The opposite of its third.
     MinusZ,
 }
 
@@ -97,7 +97,7 @@ impl Ask for FacesUp {
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError> {
         place.one_body("body", &self.body)?;
         if self.face.is_some() && !place.cast().faces {
-            return Err(place.at("face").wrong("no body here has faces with pips; ask for an `axis`"));
+            return Err(place.at("face").wrong("no body here has faces with pips; use `axis`"));
         }
         self.when.check(place)
     }

@@ -12,21 +12,21 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// An impact happens, when asked for: the first of a body, the last, or another.
+/// A chosen impact of a body happens within a window of time: the first, the last, or another.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Impact {
-    /// Name of a body, or a pattern such as `ball_*`: any of those it fits. May be left out where there is one body.
+    /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is only one body.
     pub body: String,
-    /// With whom, a body or a part of the scenery, or a pattern; empty: with anything.
+    /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
     pub with: String,
-    /// Which of its impacts, from 1; −1 is the last, −2 the last but one.
+    /// Which of its impacts, counted from 1; −1 is the last, −2 the last but one.
     #[schemars(range(min = -10_000, max = 10_000))]
     pub nth: i32,
-    /// Only impacts count at which the two meet at this speed or faster.
+    /// Only count impacts at which the two meet at this speed or faster.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
     pub faster_than: f64,
-    /// When.
+    /// The window of time in which it must happen.
     pub when: When,
 }
 

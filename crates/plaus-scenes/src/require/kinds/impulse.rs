@@ -9,27 +9,27 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The impulse of an impact is at least, or at most, so large.
+/// The impulse of an impact lies within limits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Impulse {
-    /// Name of a body, or a pattern such as `ball_*`: any of those it fits. May be left out where there is one body.
+    /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is only one body.
     pub body: String,
-    /// With whom, a body or a part of the scenery, or a pattern; empty: with anything.
+    /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
     pub with: String,
-    /// Which of its impacts, from 1; −1 is the last, −2 the last but one.
+    /// Which of its impacts, counted from 1; −1 is the last, −2 the last but one.
     #[schemars(range(min = -10_000, max = 10_000))]
     pub nth: i32,
-    /// Only impacts count at which the two meet at this speed or faster.
+    /// Only count impacts at which the two meet at this speed or faster.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
     pub faster_than: f64,
-    /// No less. Unset: there is no such limit.
+    /// The least allowed. Unset: no lower limit.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "N·s", "x-example" = 0.01))]
     pub at_least: Option<f64>,
-    /// No more. Unset: there is no such limit.
+    /// The most allowed. Unset: no upper limit.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "N·s", "x-example" = 0.01))]
     pub at_most: Option<f64>,
-    /// What lies outside loses one nat each such part of the limit: 0.1 is a tenth.
+    /// How far outside costs one nat, as a part of the limit: 0.1 is a tenth.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e3))]
     pub scale: f64,
 }

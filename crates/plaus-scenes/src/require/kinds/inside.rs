@@ -15,18 +15,18 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Inside {
-    /// Name of a body. May be left out where there is one.
+    /// Name of a body. May be left out if there is only one.
     pub body: String,
-    /// From where to where along x. Unset: anywhere.
+    /// Range along x. Unset: anywhere.
     #[schemars(extend("x-unit" = "mm"))]
     pub x_mm: Option<[f64; 2]>,
-    /// From where to where along y. Unset: anywhere.
+    /// Range along y. Unset: anywhere.
     #[schemars(extend("x-unit" = "mm"))]
     pub y_mm: Option<[f64; 2]>,
-    /// From where to where upwards. Unset: anywhere.
+    /// Range of height. Unset: anywhere.
     #[schemars(extend("x-unit" = "mm"))]
     pub z_mm: Option<[f64; 2]>,
-    /// Middle of a ball in place of a box.
+    /// Centre of a ball, in place of a box.
     #[schemars(extend("x-unit" = "mm"))]
     pub centre_mm: Option<[f64; 3]>,
     /// Radius of the ball.
@@ -34,10 +34,10 @@ pub struct Inside {
     pub radius_mm: f64,
     /// Whether at some time, always, never, or at the end.
     pub how: How,
-    /// What lies outside loses one nat each so many millimetres.
+    /// How many millimetres outside cost one nat.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
     pub scale_mm: f64,
-    /// In which window.
+    /// The window of time.
     pub when: When,
 }
 
@@ -77,7 +77,7 @@ impl Inside {
         [("x_mm", self.x_mm), ("y_mm", self.y_mm), ("z_mm", self.z_mm)]
     }
 
-    /// Least and largest depth below the region's skin over a leg, in mm; negative outside.
+    /// Least and largest depth below the region's surface over a leg, in mm; negative outside.
     fn depths(&self, leg: &Leg) -> [f64; 2] {
         if let Some(centre) = self.centre_mm {
             let [near, far] = leg.distances(1e-3 * DVec3::from_array(centre));
@@ -108,13 +108,13 @@ impl Ask for Inside {
             if !(low < high && low.abs() <= 1e6 && high.abs() <= 1e6) {
                 return Err(place
                     .at(key)
-                    .wrong("from where to where, in mm: the first is the smaller one, at most 1e6"));
+                    .wrong("a range in mm: the first number is the smaller one, and both are at most 1e6"));
             }
         }
         let boxed = self.sides().iter().any(|(_, side)| side.is_some());
         match (boxed, self.centre_mm) {
             (true, Some(_)) => {
-                Err(place.wrong("a box or a ball: `centre_mm` and `x_mm`, `y_mm`, `z_mm` exclude each other"))
+                Err(place.wrong("choose a box or a ball: use either `centre_mm`, or `x_mm`, `y_mm` and `z_mm`"))
             }
             (false, None) => Err(place.wrong("which region? Give `x_mm`, `y_mm` or `z_mm`, or `centre_mm`")),
             (_, Some(centre)) if !centre.iter().all(|x| x.abs() <= 1e6) => {

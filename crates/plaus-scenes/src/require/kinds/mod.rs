@@ -1,4 +1,4 @@
-//! The kinds of requirements: a file and a row each.
+//! The kinds of requirements: one file and one row each.
 
 mod air_time;
 mod beats;
@@ -52,31 +52,31 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a kind of requirement must say of itself.
+/// What every kind of requirement must provide.
 pub(super) trait Ask {
-    /// Reads the files that it names; `key` is where it stands.
+    /// Reads the files that it names; `key` is its own key.
     fn load(&mut self, _key: &str, _files: &dyn Files) -> Result<(), ConfigError> {
         Ok(())
     }
 
-    /// Refuses what can mean nothing: bodies that are not there, empty windows.
+    /// Refuses what makes no sense: bodies that do not exist, empty windows.
     fn check(&self, place: &Place<'_>) -> Result<(), ConfigError>;
 
-    /// How well a motion meets it, or can still meet it, where it is known in part.
+    /// How well a motion meets it; or, for a motion known in part, how well it can still be met.
     fn reach(&self, probe: &Probe<'_>) -> Reach;
 
-    /// A time from which on it may be seen, of a motion known until then, that it cannot be met any more; `None` where
-    /// only the end says.
+    /// The earliest time at which a motion known until then may show that it can no longer be met; `None` if only the
+    /// end shows it.
     fn moment(&self) -> Option<f64> {
         None
     }
 
-    /// The times that it asks for, and what came of each in a motion that is known to its end.
+    /// The times that it asks for, and when each event happened in a motion that is known to its end.
     fn times(&self, _probe: &Probe<'_>) -> Vec<Timed> {
         Vec::new()
     }
 
-    /// What it claims that others may contradict.
+    /// Its claims, which other requirements may contradict.
     fn claims(&self) -> Vec<Claim> {
         Vec::new()
     }
@@ -84,7 +84,7 @@ pub(super) trait Ask {
 
 macro_rules! kinds {
     ($($(#[$doc:meta])* $name:literal $kind:ident,)+) => {
-        /// Something that is required of a motion.
+        /// A requirement on a motion.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
         pub enum Require {
             $($(#[$doc])* #[serde(rename = $name)] $kind($kind),)+
@@ -112,13 +112,13 @@ macro_rules! kinds {
 }
 
 kinds! {
-    /// An impact happens when asked for: the first of a body, the last, or another.
+    /// An impact happens within a window of time: the first of a body, the last, or another.
     "impact" Impact,
-    /// A body comes to rest when asked for.
+    /// A body comes to rest within a window of time.
     "rests" Rests,
-    /// A body hits something at least, or at most, so many times.
+    /// The number of times that a body hits something lies within limits.
     "bounces" Bounces,
-    /// A face of a die, or an axis of a body, is up.
+    /// A face of a die, or an axis of a body, points up.
     "faces_up" FacesUp,
     /// A body stands.
     "stands" Stands,
@@ -136,45 +136,45 @@ kinds! {
     "before" Before,
     /// Impacts come on the beats of a rhythm.
     "beats" Beats,
-    /// A body is so fast at an impact.
+    /// The speed of a body at an impact lies within limits.
     "speed" Speed,
-    /// A body turns so fast at an impact.
+    /// The angular speed of a body at an impact lies within limits.
     "spin" Spin,
-    /// An impact is so hard.
+    /// The impulse of an impact lies within limits.
     "impulse" Impulse,
-    /// A body flies for so long.
+    /// The time that a body is in flight lies within limits.
     "air_time" AirTime,
-    /// The way of a body is so long.
+    /// The length of a body's path lies within limits.
     "path_length" PathLength,
-    /// A body is so far from another.
+    /// A body is at a given place relative to another.
     "relative" Relative,
-    /// So many of several bodies do something.
+    /// The number of bodies that meet a requirement lies within limits.
     "count" Count,
     /// All of several requirements.
     "all" All,
     /// Any of several requirements.
     "any" AnyOf,
-    /// Not a requirement.
+    /// A requirement is not met.
     "not" Not,
-    /// At least so many of several requirements.
+    /// At least a number of several requirements are met.
     "at_least" AtLeast,
 }
 
 impl Require {
-    /// How well a motion meets it, or can still meet it, where it is known in part.
+    /// How well a motion meets it; or, for a motion known in part, how well it can still be met.
     #[must_use]
     pub fn reach(&self, probe: &Probe<'_>) -> Reach {
         self.ask().reach(probe)
     }
 
-    /// The times that it asks for, and what came of each in a motion that is known to its end; empty for kinds that are
-    /// not about one moment. Of `not` there are none: what must not be has no time.
+    /// The times that it asks for, and when each event happened in a motion that is known to its end. Empty for kinds
+    /// that are not about one moment. Also empty for `not`: an event that must not happen has no time.
     #[must_use]
     pub fn times(&self, probe: &Probe<'_>) -> Vec<Timed> {
         self.ask().times(probe)
     }
 
-    /// Reads the files that it names; `key` is where it stands.
+    /// Reads the files that it names; `key` is its own key.
     pub(crate) fn load(&mut self, key: &str, files: &dyn Files) -> Result<(), ConfigError> {
         let key = format!("{key}.{}", self.name());
         self.ask_mut().load(&key, files)

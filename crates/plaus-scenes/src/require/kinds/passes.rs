@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Passes {
-    /// Name of a body. May be left out where there is one.
+    /// Name of a body. May be left out if there is only one.
     pub body: String,
     /// The point along x.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
@@ -22,16 +22,16 @@ pub struct Passes {
     /// Along y.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
     pub y_mm: f64,
-    /// Its height.
+    /// The point's height.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
     pub z_mm: f64,
-    /// A body that comes closer than this meets it.
+    /// A body that comes closer than this meets the requirement.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
     pub within_mm: f64,
-    /// What stays farther off loses one nat each so many millimetres.
+    /// How many millimetres farther away cost one nat.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
     pub scale_mm: f64,
-    /// In which window.
+    /// The window of time.
     pub when: When,
 }
 

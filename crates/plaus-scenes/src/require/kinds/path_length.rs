@@ -1,4 +1,4 @@
-//! How long a way a body goes.
+//! How long a body's path is.
 
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
@@ -10,19 +10,19 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The way of a body is at least, or at most, so long.
+/// The length of a body's path lies within limits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PathLength {
-    /// Name of a body. May be left out where there is one.
+    /// Name of a body. May be left out if there is only one.
     pub body: String,
-    /// No less. Unset: there is no such limit.
+    /// The least allowed. Unset: no lower limit.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1e9, "x-unit" = "mm", "x-example" = 500.0))]
     pub at_least_mm: Option<f64>,
-    /// No more. Unset: there is no such limit.
+    /// The most allowed. Unset: no upper limit.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1e9, "x-unit" = "mm", "x-example" = 500.0))]
     pub at_most_mm: Option<f64>,
-    /// What lies outside loses one nat each so many millimetres.
+    /// How many millimetres outside cost one nat.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e9, "x-unit" = "mm"))]
     pub scale_mm: f64,
     /// Only this window counts.

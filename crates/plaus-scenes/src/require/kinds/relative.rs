@@ -1,4 +1,4 @@
-//! Where a body is, seen from another.
+//! Where a body is, relative to another.
 
 use crate::require::kinds::Ask;
 use crate::require::place::Place;
@@ -10,30 +10,30 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A body's middle is so far from another's, at the end or at a time.
+/// A body's middle is at a given place relative to another's, at the end or at some time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Relative {
     /// Name of a body.
     pub body: String,
-    /// Name of the body it is seen from.
+    /// Name of the other body.
     pub to: String,
-    /// How far along x. Unset: any.
+    /// Distance along x from the other body. Unset: any.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = 20.0))]
     pub x_mm: Option<f64>,
-    /// How far along y. Unset: any.
+    /// Distance along y from the other body. Unset: any.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = 0.0))]
     pub y_mm: Option<f64>,
-    /// How far upwards. Unset: any.
+    /// Height above the other body. Unset: any.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = 0.0))]
     pub z_mm: Option<f64>,
-    /// A body that is closer to that meets it.
+    /// A body that is closer than this to that place meets the requirement.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
     pub within_mm: f64,
-    /// What lies farther off loses one nat each so many millimetres.
+    /// How many millimetres farther away cost one nat.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
     pub scale_mm: f64,
-    /// At which time: `at_s`, `frame` or `from_s`. Without one: at the end.
+    /// At which time: `at_s`, `frame` or `from_s`. Unset: at the end.
     pub when: When,
 }
 
@@ -57,10 +57,10 @@ impl Ask for Relative {
         place.one_body("body", &self.body)?;
         place.one_body("to", &self.to)?;
         if self.body == self.to {
-            return Err(place.at("to").wrong("a body cannot be seen from itself"));
+            return Err(place.at("to").wrong("`body` and `to` are the same body"));
         }
         if [self.x_mm, self.y_mm, self.z_mm] == [None; 3] {
-            return Err(place.wrong("where? Give `x_mm`, `y_mm` or `z_mm`"));
+            return Err(place.wrong("no place given: give `x_mm`, `y_mm` or `z_mm`"));
         }
         self.when.check(place)
     }

@@ -12,13 +12,14 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A body comes to rest, when asked for: `to_s` alone is "by", `from_s` alone "not before".
+/// A body comes to rest within a window of time: `to_s` alone means "by then", `from_s` alone "not before".
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Rests {
-    /// Name of a body; of a pattern such as `ball_*`, the last body that it fits. May be left out where there is one.
+    /// Name of a body, or a pattern such as `ball_*` for the last of the matching bodies. May be left out if there is
+    /// only one body.
     pub body: String,
-    /// When.
+    /// The window of time in which it must come to rest.
     pub when: When,
 }
 

@@ -15,21 +15,21 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RestsAt {
-    /// Name of a body. May be left out where there is one.
+    /// Name of a body. May be left out if there is only one.
     pub body: String,
-    /// Place along x.
+    /// The place along x.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
     pub x_mm: f64,
-    /// Place along y.
+    /// The place along y.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm"))]
     pub y_mm: f64,
-    /// Height. Unset: any.
+    /// The height. Unset: any.
     #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = 8.0))]
     pub z_mm: Option<f64>,
-    /// A body closer than this meets it.
+    /// A body that rests closer than this meets the requirement.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
     pub within_mm: f64,
-    /// What lies farther off loses one nat each so many millimetres.
+    /// How many millimetres farther away cost one nat.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
     pub scale_mm: f64,
 }

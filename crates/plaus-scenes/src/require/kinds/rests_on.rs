@@ -1,4 +1,4 @@
-//! On what a body lies.
+//! What a body lies on.
 
 use crate::require::cast::matches;
 use crate::require::kinds::Ask;
@@ -9,16 +9,16 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A body lies on another, or on a part of the scenery: what it touched last before it came to rest, as far as a
-/// motion's impacts and contacts tell.
+/// A body lies on another, or on a part of the scenery: on what it touched last before it came to rest, according to
+/// the motion's impacts and contacts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RestsOn {
-    /// Name of a body. May be left out where there is one.
+    /// Name of a body. May be left out if there is only one.
     pub body: String,
-    /// On what: a body or a part of the scenery, or a pattern.
+    /// What it lies on: a body, a part of the scenery, or a pattern.
     pub on: String,
-    /// What it costs to lie elsewhere.
+    /// What it costs to lie on something else.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
     pub nats: f64,
 }

@@ -9,29 +9,29 @@ use crate::scene::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A body turns at least, or at most, so fast as it hits something, or as it leaves it.
+/// The angular speed of a body, as it hits something or as it leaves it, lies within limits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Spin {
-    /// Name of a body, or a pattern such as `ball_*`: any of those it fits. May be left out where there is one body.
+    /// Name of a body, or a pattern such as `ball_*` for any matching body. May be left out if there is only one body.
     pub body: String,
-    /// With whom, a body or a part of the scenery, or a pattern; empty: with anything.
+    /// What it hits: a body, a part of the scenery, or a pattern; empty: anything.
     pub with: String,
-    /// Which of its impacts, from 1; −1 is the last, −2 the last but one.
+    /// Which of its impacts, counted from 1; −1 is the last, −2 the last but one.
     #[schemars(range(min = -10_000, max = 10_000))]
     pub nth: i32,
-    /// Only impacts count at which the two meet at this speed or faster.
+    /// Only count impacts at which the two meet at this speed or faster.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s"))]
     pub faster_than: f64,
-    /// No less. Unset: there is no such limit.
+    /// The least allowed. Unset: no lower limit.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "rad/s", "x-example" = 1.0))]
     pub at_least: Option<f64>,
-    /// No more. Unset: there is no such limit.
+    /// The most allowed. Unset: no upper limit.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1e6, "x-unit" = "rad/s", "x-example" = 1.0))]
     pub at_most: Option<f64>,
-    /// Whether after the impact, and not before it.
+    /// Whether the angular speed after the impact counts, instead of the one before it.
     pub after: bool,
-    /// What lies outside loses one nat each so much.
+    /// How far outside the limits costs one nat.
     #[schemars(extend("minimum" = 1e-9, "maximum" = 1e6, "x-unit" = "rad/s"))]
     pub scale: f64,
 }

@@ -11,20 +11,19 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A body stands: its third axis is upright, more or less, at the end or at a time. `not` makes it a body that has
-/// fallen.
+/// A body stands: its third axis is nearly upright, at the end or at some time. For a body that has fallen, use `not`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Stands {
-    /// Name of a body. May be left out where there is one.
+    /// Name of a body. May be left out if there is only one.
     pub body: String,
-    /// A body that leans farther has fallen.
+    /// A body that leans farther than this has fallen.
     #[schemars(extend("minimum" = 0.1, "maximum" = 180.0, "x-unit" = "degree"))]
     pub within_deg: f64,
-    /// What leans farther loses one nat each so many degrees.
+    /// How many degrees beyond that cost one nat.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1e4, "x-unit" = "degree"))]
     pub scale_deg: f64,
-    /// At which time: `at_s`, `frame` or `from_s`. Without one: at the end.
+    /// At which time: `at_s`, `frame` or `from_s`. Unset: at the end.
     pub when: When,
 }
 

@@ -13,22 +13,22 @@ use plaus_animation::Track;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A body touches another, or a part of the scenery. Of two bodies that never touch, how far they stayed apart counts.
-/// `not` makes it a body that never touches the other.
+/// A body touches another, or a part of the scenery. If two bodies never touch, their least distance counts. For a body
+/// that must never touch another, use `not`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Touches {
-    /// Name of a body, or a pattern: any of those it fits. May be left out where there is one body.
+    /// Name of a body, or a pattern for any matching body. May be left out if there is only one body.
     pub body: String,
-    /// What it touches: a body or a part of the scenery, or a pattern; empty: anything.
+    /// What it touches: a body, a part of the scenery, or a pattern; empty: anything.
     pub with: String,
-    /// What it costs not to touch it, or, under `not`, to touch it.
+    /// What it costs not to touch; or, under `not`, to touch.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1000.0, "x-unit" = "nat"))]
     pub nats: f64,
-    /// Bodies that stay apart lose one nat more each so many millimetres.
+    /// How many millimetres between two bodies cost one more nat.
     #[schemars(extend("minimum" = 1e-6, "maximum" = 1e6, "x-unit" = "mm"))]
     pub scale_mm: f64,
-    /// In which window.
+    /// The window of time.
     pub when: When,
 }
 
@@ -52,7 +52,7 @@ impl Touches {
         hits.chain(ours.map(|contact| contact.start.max(window.from))).reduce(f64::min)
     }
 
-    /// How far apart the two stay, at least, in mm, as balls about them: 0 where that is not known.
+    /// The least distance between the two in mm, with balls around them in their place; 0 if it is unknown.
     fn gap(&self, probe: &Probe<'_>) -> f64 {
         let Some([from, to]) = probe.seen(self.when.window()) else { return 0.0 };
         let tracks = |pattern: &str| {

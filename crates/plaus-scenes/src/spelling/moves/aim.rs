@@ -4,9 +4,9 @@ use crate::spelling::{Rest, Spelling};
 use plaus_dist::stream::below;
 use plaus_dist::{Stream, math};
 
-/// The law of an aimed drop: with probability `aimed` over a designated bin that no ball but `apart` fills, each such
-/// bin as likely and each position over it; else anywhere in the drop rectangle. Anywhere too where no such bin lies
-/// under the rectangle.
+/// The law of an aimed drop: with probability `aimed` over a designated bin that no ball other than `apart` fills, with
+/// equal probability for each such bin and a uniform position over it; otherwise anywhere in the drop rectangle. Also
+/// anywhere if no such bin lies under the rectangle.
 pub(super) struct Aim<'a> {
     target: &'a Spelling,
     aimed: f64,
@@ -45,7 +45,7 @@ impl<'a> Aim<'a> {
         math::ln(self.aimed * over / self.empty.len() as f64 + (1.0 - self.aimed) * anywhere)
     }
 
-    /// No such law has a density above this.
+    /// An upper bound of the log density of any such law.
     pub(super) fn highest(target: &Spelling, aimed: f64) -> f64 {
         let areas = target.word().designated().iter().filter_map(|&bin| target.over(bin)).map(|ends| area(&ends));
         let anywhere = 1.0 / target.rectangle().area();

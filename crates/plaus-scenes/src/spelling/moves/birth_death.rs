@@ -1,4 +1,4 @@
-//! A ball more over a bin that waits for one, or a ball less.
+//! Adds a ball over a bin that waits for one, or removes a ball.
 
 use super::aim::Aim;
 use super::happens;
@@ -7,11 +7,12 @@ use plaus_dist::stream::below;
 use plaus_dist::{LogRatio, Stream, math};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
-/// Half of the time a birth: one of the N − n balls that are not dropped, each as likely, is, at a position that mostly
-/// lies over an empty designated bin. Else a death: one of the n balls that are dropped, each as likely, no longer is.
+/// Half of the time a birth: one of the N − n balls that are not dropped, all equally likely, is added at a position
+/// that mostly lies over an empty designated bin. Otherwise a death: one of the n balls that are dropped, all equally
+/// likely, is removed.
 ///
-/// A birth has density `h(position)/(N−n)` and the death that undoes it probability `1/(n+1)`. The law h is that of the
-/// state with one ball less, so a death knows its ratio after the simulation.
+/// A birth has density `h(position)/(N−n)`, and the death that undoes it has probability `1/(n+1)`. The law h is that
+/// of the state with one ball less, so the ratio of a death is known only after the simulation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BirthDeath {
     /// Share of positions that aim.

@@ -1,5 +1,5 @@
-//! The moves of the balls that spell: its own, one a file, and which of the library it makes. The first four are the
-//! paper's (its appendix B.2), activate and deactivate being one.
+//! The moves of the balls that spell: its own, one in each file, and the moves of the library that it uses. The first
+//! four are the paper's (its appendix B.2); activate and deactivate are one move here.
 
 mod aim;
 mod birth_death;
@@ -23,19 +23,19 @@ impl Menu for SpellingMoves {
     type Scene = Spelling;
     const SCENE: &'static str = "spelling";
     const ROWS: &'static [Row] = &[
-        Row::paper("change_all", 0.01, Printed::Weight(0.04), "The paper's: everything is drawn anew."),
-        Row::paper("change_vertices", 0.07, Printed::Weight(0.32), "The paper's: some partition vertices are shifted."),
-        Row::own("redraw_vertices", 0.08, "Some partition vertices are drawn anew."),
-        Row::paper("change_ball", 0.19, Printed::Weight(0.32), "The paper's: one ball's drop position is shifted."),
+        Row::paper("change_all", 0.01, Printed::Weight(0.04), "The paper's: draw everything anew."),
+        Row::paper("change_vertices", 0.07, Printed::Weight(0.32), "The paper's: shift some partition vertices."),
+        Row::own("redraw_vertices", 0.08, "Draw some partition vertices anew."),
+        Row::paper("change_ball", 0.19, Printed::Weight(0.32), "The paper's: shift one ball's drop position."),
         Row::paper(
             "toggle",
             0.05,
             Printed::Weight(0.32),
-            "The paper's: some balls are dropped that were not, and its reverse; each half of the time.",
+            "The paper's: add some balls or remove some, each half of the time.",
         ),
-        Row::own("redrop", 0.2, "A ball is dropped elsewhere, preferably over an empty designated bin."),
-        Row::own("birth_death", 0.3, "A ball more, preferably over an empty designated bin, or one less."),
-        Row::own("swap", 0.1, "Two balls exchange their drop positions, hence their turns to fall."),
+        Row::own("redrop", 0.2, "Drop a ball elsewhere, preferably over an empty bin to fill."),
+        Row::own("birth_death", 0.3, "Add a ball, preferably over an empty bin to fill, or remove one."),
+        Row::own("swap", 0.1, "Let two balls exchange their drop positions, and so their turns to fall."),
     ];
 }
 

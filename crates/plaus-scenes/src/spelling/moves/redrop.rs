@@ -5,15 +5,15 @@ use crate::spelling::{Drops, Rest, Spelling};
 use plaus_dist::{LogRatio, Stream, math, open_unit};
 use plaus_mcmc::{ModelError, Move, Path, Proposal, StateRefOf};
 
-/// How much likelier a ball that fills no designated bin by itself is chosen than one that does.
+/// A ball that fills no designated bin by itself is this many times as likely to be chosen as one that does.
 const USELESS: f64 = 10.0;
 
-/// A ball that is dropped, mostly a useless one, is dropped elsewhere, mostly over a designated bin that no other ball
-/// fills.
+/// Takes a ball that is dropped, mostly a useless one, and drops it elsewhere, mostly over a designated bin that no
+/// other ball fills.
 ///
-/// Which balls are useless and which bins empty, the outcome tells; the way back asks the candidate's. So the ratio is
-/// `w'(ball)/Σw' · h'(old position) / (w(ball)/Σw · h(new position))`, with the primed factors known after the
-/// simulation.
+/// The outcome tells which balls are useless and which bins are empty; for the way back, the candidate's outcome does.
+/// So the ratio is `w'(ball)/Σw' · h'(old position) / (w(ball)/Σw · h(new position))`, where the primed factors are
+/// known after the simulation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Redrop {
     /// Share of positions that aim.

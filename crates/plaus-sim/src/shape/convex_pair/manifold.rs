@@ -1,4 +1,4 @@
-//! All points at which two pieces touch, each named so that it is found again at other poses.
+//! All points at which two pieces touch, each with a name by which it is found again at other poses.
 
 use super::edge::{on_edge, on_rim};
 use super::nearest::{ends, in_common, nearest, polyhedra};

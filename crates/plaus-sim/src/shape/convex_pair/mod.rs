@@ -1,15 +1,15 @@
 //! Two convex pieces of any kind: how far apart they are, where they are nearest, and the points at which they touch.
-//! The row of pairs that serves what no other row does.
+//! This row of the table of pairs serves all pairs that no other row serves.
 //!
-//! The distance to a core is known in closed form, signed, and it is a convex function of the point; so is the way a
-//! core reaches in a direction. What is nearest on two cores is a corner, an edge or a rim of one of them on the other,
-//! or lies along the normal of a face or of two sides. So the distance is the least over corners (closed form), edges
-//! (the root of a monotone function) and rims (the same between samples), and over those normals; no simplex, no
-//! tolerance on the end of an iteration. Two polyhedra have a search of their own (`hull_pair`). Of cores that overlap
-//! the depth is along the best of the same directions.
+//! The signed distance from a point to a core is known in closed form and is a convex function of the point; so is the
+//! core's support function. The nearest features of two cores are a corner, an edge or a rim of one of them against the
+//! other, or they lie along the normal of a face or of two sides. So the distance is the least over corners (closed
+//! form), edges (the root of a monotone function), rims (the same between samples), and those normals: no simplex, and
+//! no tolerance at which an iteration ends. Two polyhedra have a search of their own (`hull_pair`). If cores overlap,
+//! the depth is that along the best of the same directions.
 //!
-//! A direction in which the cores are as far apart as two of their points proves that these are nearest: the tests do
-//! that, and compare with another library.
+//! If the cores are as far apart along a direction as two of their points, these points are proved to be the nearest.
+//! The tests use this proof, and compare with another library.
 
 mod edge;
 mod manifold;

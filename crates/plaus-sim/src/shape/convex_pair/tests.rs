@@ -1,4 +1,4 @@
-//! Pairs of pieces at random poses, against proofs of their own and a search over directions.
+//! Pairs of pieces at random poses, tested by the proof of nearest points and by a search over directions.
 
 use super::{Both, Mark, nearest};
 use crate::shape::frustum::Discs;

@@ -1,12 +1,12 @@
 //! Two cuboids: how far apart they are, where they are nearest, and all the points at which they touch.
 //!
-//! A rounded cuboid is its core (a smaller, sharp cuboid) and everything within its rounding of it, so only the cores
+//! A rounded cuboid is its core (a smaller, sharp cuboid) and everything within its rounding of the core, so only cores
 //! are looked at.
 //!
-//! Cores that are apart are separated best along a face's normal or the cross product of two edges, or else the nearest
+//! Cores that are apart are best separated along a face's normal or the cross product of two edges, or else the nearest
 //! point of one of them is a corner. So the distance is exact after fifteen axes and the distances of sixteen corners
-//! from the other cuboid: no iteration, no tolerance on its end. Cores that overlap are as deep as their axis of least
-//! overlap says.
+//! from the other cuboid: no iteration, and no tolerance at which it ends. If cores overlap, the axis of least overlap
+//! gives the depth.
 //!
 //! The points of contact are those of the usual clipping of two support features: corners near a face of the other, and
 //! crossings of edges. Each is named by its [`Feature`], so that it can be followed to another pose

@@ -1,4 +1,4 @@
-//! Against a way to the distance that shares nothing with it: alternating projections.
+//! Compares with an independent way to the distance: alternating projections.
 
 use super::*;
 use glam::DQuat;

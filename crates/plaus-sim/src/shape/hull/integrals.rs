@@ -1,11 +1,10 @@
-//! Volume and moments of a convex polyhedron grown by a ball, exactly.
+//! Volume and moments of a rounded convex polyhedron, exactly.
 //!
-//! The grown body is the polyhedron, a slab over every face, a wedge of a cylinder along every edge and a sector of a
+//! The rounded body is the polyhedron, a slab over every face, a wedge of a cylinder along every edge and a sector of a
 //! ball at every corner (Steiner's decomposition). The polyhedron is a sum of tetrahedra (Mirtich, "Fast and accurate
-//! computation of polyhedral mass properties", J. Graphics Tools 1 (1996), gives the same integrals by projection);
-//! over a corner's sector, whose directions fill a spherical polygon, integrals of degree one and two follow from arcs
-//! of great circles by the divergence theorem, and its solid angle is the corner's defect, `2π − Σ` of the faces'
-//! angles.
+//! computation of polyhedral mass properties", J. Graphics Tools 1 (1996), gives the same integrals by projection).
+//! Over a corner's sector, whose directions fill a spherical polygon, integrals of degree one and two follow from arcs
+//! of great circles by the divergence theorem; its solid angle is the corner's defect, `2π − Σ` of the faces' angles.
 
 use super::polyhedron::Polyhedron;
 use glam::{DMat3, DVec3};

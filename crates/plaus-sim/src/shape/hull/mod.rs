@@ -62,8 +62,8 @@ impl ConvexHull {
     ///
     /// # Errors
     /// [`WorldError::BadPoint`] for a point that is not finite, [`WorldError::FewPoints`] for fewer than four distinct
-    /// ones, [`WorldError::FlatHull`] where all are in a plane, [`WorldError::LargeHull`] for more than 1000 points, 64
-    /// corners or 12 corners of one face, [`WorldError::UnclearHull`] where points are so nearly in a plane that
+    /// ones, [`WorldError::FlatHull`] if all are in a plane, [`WorldError::LargeHull`] for more than 1000 points, 64
+    /// corners or 12 corners of one face, [`WorldError::UnclearHull`] if points are so nearly in a plane that
     /// rounding decides on the faces, [`WorldError::BadNumber`] for a rounding that is negative or not finite.
     pub fn new(points: &[DVec3], rounding: f64) -> Result<Self, WorldError> {
         if let Some((point, &at)) = points.iter().enumerate().find(|(_, p)| !p.is_finite()) {

@@ -1,4 +1,4 @@
-//! Against closed forms, and against sums over a lattice that know no faces.
+//! Compares with closed forms, and with sums over a lattice, which do not use faces.
 
 use super::integrals::outer;
 use super::*;

@@ -2,8 +2,8 @@
 //! until it meets the first other point.
 //!
 //! Source: Chand & Kapur, "An algorithm for convex polytopes", J. ACM 17 (1970). Deviation: all points within [`FLAT`]
-//! of a face's plane belong to it, so faces that are flat but for rounding come out whole, and what comes out is
-//! checked to be a closed surface.
+//! of a face's plane belong to it, so that faces that are flat up to rounding stay whole; the result is checked to be a
+//! closed surface.
 
 use crate::error::WorldError;
 use glam::{DVec2, DVec3};

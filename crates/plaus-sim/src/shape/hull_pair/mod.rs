@@ -1,8 +1,8 @@
 //! Two convex polyhedra, each with a rounding: how far apart they are, where they are nearest, and all the points at
-//! which they touch. A ball is a polyhedron of a single corner.
+//! which they touch. A ball is a polyhedron with a single corner.
 //!
-//! The same questions as `cuboid_pair` answers for cuboids, and the same answers: what is nearest is named by its
-//! [`Feature`], whose exact geometry gives points, normal and gap at this and at other poses.
+//! It answers the same questions as `cuboid_pair` does for cuboids, in the same form: the nearest features are named by
+//! a [`Feature`], whose exact geometry gives points, normal and gap at this and at other poses.
 
 mod edges;
 mod manifold;

@@ -1,13 +1,12 @@
 //! The distance of two polyhedra.
 //!
-//! Cores that are apart are kept farthest apart by a face's normal or the common perpendicular of two edges, or else
-//! the nearest point of one of them is a corner over an edge or a corner of the other. So the distance is exact after
-//! all faces, all pairs of edges that can face each other, and, where those do not tell, all corners against all edges:
-//! no iteration. Cores that overlap are as deep as their axis of least overlap says, which is the least way out.
+//! Cores that are apart are best separated along a face's normal or the common perpendicular of two edges, or else the
+//! nearest point of one of them is a corner, over an edge or a corner of the other. So the distance is exact after all
+//! faces, all pairs of edges that can face each other and, if these do not decide, all corners against all edges: no
+//! iteration. If cores overlap, the axis of least overlap gives the depth, which is the shortest way out.
 //!
-//! That two points are nearest is proved by themselves: they are as far apart as the planes across the line between
-//! them, each touching its core, keep the cores. So a guess from a pose nearby needs only that proof
-//! ([`HullPair::nearest`]).
+//! Two points prove themselves to be nearest: the planes through them across the line between them, each touching its
+//! core, are just as far apart. So a guess from a nearby pose needs only this proof ([`HullPair::nearest`]).
 
 use super::{Feature, HullPair, Meeting};
 use crate::shape::hull::On;

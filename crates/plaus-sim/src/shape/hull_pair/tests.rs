@@ -1,5 +1,5 @@
-//! Distances prove themselves: points on both skins, apart along a direction that keeps the bodies just as far apart.
-//! And against cuboids, which share nothing with this but the answer.
+//! Distances prove themselves: points on both surfaces, along a direction that keeps the bodies just as far apart. Also
+//! compares with cuboids, whose code is independent.
 
 use super::*;
 use crate::shape::cuboid_pair::CuboidPair;
