@@ -9,7 +9,7 @@ use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-const KIND: Kind = Kind::new(*b"recs", 1, "records of a chain");
+const KIND: Kind = Kind::new(*b"recs", 2, "records of a chain");
 
 /// A block with the run and the chain it belongs to.
 #[derive(Serialize, Deserialize)]

@@ -16,7 +16,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Seek, SeekFrom};
 use std::path::Path;
 
-const KIND: Kind = Kind::new(*b"trai", 1, "a trail of checkpoints");
+const KIND: Kind = Kind::new(*b"trai", 2, "a trail of checkpoints");
 
 /// The beginning of a frame: the run, and one past the last iteration.
 type Head = (u64, u64);
