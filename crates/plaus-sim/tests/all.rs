@@ -29,6 +29,7 @@ mod rigid_extremes;
 mod rigid_given;
 mod rigid_heaps;
 mod rigid_hulls;
+mod rigid_joints;
 mod rigid_ledges;
 mod rigid_mirror;
 mod rigid_pieces;

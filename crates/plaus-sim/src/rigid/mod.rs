@@ -59,6 +59,7 @@ mod body;
 mod bound;
 mod boxes;
 mod capsule;
+mod cluster;
 mod contact;
 mod convex;
 mod coulomb;
@@ -72,6 +73,8 @@ mod glide;
 mod heap;
 mod hulls;
 mod hunt;
+mod joint;
+mod jointed;
 mod kicks;
 mod ledges;
 mod mechanics;
@@ -100,6 +103,8 @@ use drive::Drive;
 pub use drive::{Between, Key, Keyframes, Track};
 pub use forces::Forces;
 
+use joint::Joints;
+pub use joint::{Frame, Hinge, Joint, JointKind};
 use ledges::Ledge;
 pub use part::{Part, SolidPart, Stretch, Table};
 pub use scratch::RigidScratch;
@@ -171,6 +176,7 @@ pub struct Rigid {
     ledges: Vec<Option<Ledge>>,
     /// Parts as bodies meet them by their pieces; empty where none do.
     stills: Vec<Still>,
+    joints: Joints,
     laws: Laws,
     gravity: DVec3,
     strength: f64,
@@ -214,7 +220,19 @@ impl Rigid {
         if sink.is_nan() {
             return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
         }
-        Ok(Self { specs, parts, ledges, stills, laws, gravity, strength, accuracy, sink, duration })
+        Ok(Self {
+            specs,
+            parts,
+            ledges,
+            stills,
+            joints: Joints::default(),
+            laws,
+            gravity,
+            strength,
+            accuracy,
+            sink,
+            duration,
+        })
     }
 
     /// Has a body go its own way from time 0 on, whatever it meets: others feel it with the velocity that it has. Its
@@ -266,14 +284,20 @@ impl Rigid {
             tree.meeting(&boxes, &boxes[k], &mut near);
             let is_driven = |j: usize| self.specs[j].is_driven();
             let earlier = near.iter().map(|&j| j as usize).filter(|&j| j < k && bodies[j].path.t == body.path.t);
-            for j in earlier.filter(|&j| !(is_driven(j) && is_driven(k))) {
+            let are_apart = |j: usize| !(is_driven(j) && is_driven(k) || self.is_joined([j, k], [&bodies[j], body]));
+            for j in earlier.filter(|&j| are_apart(j)) {
                 let depth = -self.gap([j, k], [&bodies[j], body]);
                 if depth > OVERLAP * self.specs[j].size.min(self.specs[k].size) {
                     return Err(WorldError::BodiesOverlap { a: j, b: k, depth });
                 }
             }
         }
-        Ok(State::new(bodies))
+        self.check_joints(&bodies)?;
+        let mut state = State::new(bodies);
+        for [a, b] in self.joints.pairs() {
+            state.links.insert(a as u32, b as u32);
+        }
+        Ok(state)
     }
 
     fn check_start(&self, body: usize, start: &Start) -> Result<(), WorldError> {

@@ -15,7 +15,7 @@
 //! more (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)).
 
 use super::blocks::Blocks;
-use super::coulomb::{Contact, Member};
+use super::coulomb::{Contact, Hold, Member};
 use glam::{DMat3, DVec3};
 
 /// Compliance of a contact over its response to an impulse. Default 1e-7: smaller values lose digits to rounding,
@@ -361,6 +361,9 @@ fn moved(m: &Member, [v, w]: [DVec3; 2]) -> f64 {
 fn is_lawful(c: &Contact, members: &[Member], enough: f64) -> bool {
     let n = c.normal;
     let trial = c.impulse - c.wrong(members) / c.compliance();
+    if c.hold != Hold::Coulomb {
+        return (c.held(trial).0 - c.impulse).length() * c.compliance() <= enough;
+    }
     let load = trial.dot(n).max(0.0);
     let across = trial - n * trial.dot(n);
     let lawful = if load > 0.0 { n * load + across.clamp_length_max(c.friction * load) } else { DVec3::ZERO };
@@ -374,11 +377,24 @@ fn stiffness(c: &Contact, compliance: f64) -> f64 {
     1.0 / (compliance * c.compliance())
 }
 
+/// What a joint makes of the impulse that would hold it.
+fn joint(c: &Contact, trial: DVec3, stiff: f64) -> Projected {
+    let (impulse, gives_way) = c.held(trial);
+    match c.hold {
+        Hold::Brake(_) if gives_way => Projected { impulse, ..OPEN },
+        Hold::Brake(_) => Projected { impulse, stiffness: outer(c.normal, c.normal) * stiff, sliding: None },
+        _ => Projected::sticking(impulse, stiff),
+    }
+}
+
 /// What Coulomb's law makes of a contact with the velocity `wrong` that is not to be.
 fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
     let stiff = stiffness(c, COMPLIANCE);
     let n = c.normal;
     let trial = c.impulse - wrong * stiff;
+    if c.hold != Hold::Coulomb {
+        return joint(c, trial, stiff);
+    }
     let load = trial.dot(n);
     if load.is_nan() || load <= 0.0 {
         return OPEN;
@@ -405,6 +421,9 @@ fn cone(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
     let stiff = stiffness(c, compliance);
     let (n, friction) = (c.normal, c.friction);
     let trial = c.impulse - wrong * stiff;
+    if c.hold != Hold::Coulomb {
+        return joint(c, trial, stiff);
+    }
     let along = trial.dot(n);
     let across = trial - n * along;
     let side = across.length();
