@@ -22,6 +22,7 @@ mod metamorphic;
 mod restart;
 mod rigid_acted;
 mod rigid_boxes;
+mod rigid_chains;
 mod rigid_coins;
 mod rigid_die;
 mod rigid_driven;

@@ -6,18 +6,19 @@ use plaus_dist::math;
 use plaus_sim::rigid::{BodySpec, Joint, Rigid, RigidWorld, Start, Turning};
 use plaus_sim::shape::{Cuboid, Shape};
 use plaus_sim::trace::Trace;
-use plaus_sim::{Accuracy, Law, Laws, Preset, Scratch};
+use plaus_sim::{Accuracy, Law, Laws, Outcome, Preset, Scratch, State};
 use std::f64::consts::PI;
 
-fn cuboid(x: f64, y: f64, z: f64) -> Shape {
+pub(crate) fn cuboid(x: f64, y: f64, z: f64) -> Shape {
     Shape::Cuboid(Cuboid::new(DVec3::new(x, y, z), 0.0).unwrap())
 }
 
-fn world(shapes: &[Shape], gravity: f64, preset: Preset) -> Rigid {
+/// Bodies without anything around them, that would part as they met.
+pub(crate) fn world(shapes: &[Shape], gravity: f64, preset: Preset) -> Rigid {
     Rigid::new(RigidWorld {
         bodies: shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
         parts: Vec::new(),
-        laws: Laws::uniform(Law::new(0.3, 0.5)).unwrap(),
+        laws: Laws::uniform(Law::new(0.0, 1.0)).unwrap(),
         gravity: DVec3::NEG_Z * gravity,
         accuracy: Accuracy { events: 10_000_000, ..Accuracy::preset(preset) },
         skin: 1.0,
@@ -35,7 +36,7 @@ fn trace(world: &Rigid, starts: &[Start], until: f64) -> Trace<Turning> {
 }
 
 /// A body's place in the axes of the world.
-fn point(body: &Turning, own: DVec3) -> DVec3 {
+pub(crate) fn point(body: &Turning, own: DVec3) -> DVec3 {
     body.path.x + body.turn * own
 }
 
@@ -90,8 +91,8 @@ fn step(size: f64, preset: Preset) -> f64 {
     0.25 * Accuracy::preset(preset).step * (size / G).sqrt()
 }
 
-/// The leapfrog's period is off by `(ω h)²/24` of itself where the swing is small; where it is wide, the quickest part
-/// of it counts, at most four times as fast. An even lower order would not fall by the square of the step.
+/// The leapfrog's period is off by `(ω h)²/24` of itself where the swing is small; where it is wide, its quickest part
+/// counts, at most twice as fast, and that its period depends on its energy: eight times as much is allowed.
 #[test]
 fn a_pendulum_has_the_elliptic_period() {
     for angle in [0.1, 1.0, 2.0, 3.0] {
@@ -105,12 +106,12 @@ fn a_pendulum_has_the_elliptic_period() {
             let measured = 2.0 * (times[n] - times[0]) / n as f64;
             let turn = rate * step(0.03, preset);
             let off = (measured / period - 1.0).abs();
-            assert!(n >= 2 && off < 4.0 * turn * turn / 24.0, "{angle} {}: {off:e} of {turn}", preset.name());
+            assert!(n >= 2 && off < turn * turn / 3.0, "{angle} {}: {off:e} of {turn}", preset.name());
             errors.push(off);
             // Twins: a swing of no height, and a mass in one point.
             let small = (measured * rate / (2.0 * PI) - 1.0).abs();
             let thin = (measured / (period * rate / (G / 0.2).sqrt()) - 1.0).abs();
-            assert!(small > 5e-4 && thin > 0.1, "{small} {thin}");
+            assert!(small > 4e-4 && thin > 0.1, "{small} {thin}");
         }
         let [_, standard, fine, reference] = errors[..] else { unreachable!() };
         // Steps are to each other as 4 and 5: 16 and 25 at the second order, at the first 4 and 5.
@@ -199,122 +200,194 @@ fn a_double_pendulum_agrees_with_lagrange() {
             let twin = Double { inertia: [truth.inertia[0], 0.0], ..truth }.after(y, time, 4000);
             assert!(off(0, &twin).max(off(1, &twin)) > 0.02, "{start:?}");
         }
-        println!("{start:?}: {errors:?}");
         assert!(errors[1] < 2e-2, "{errors:?}");
         assert!(errors[1] > 8.0 * errors[2] && errors[2] > 12.0 * errors[3], "{errors:?}");
     }
 }
 
-/// Numbers evenly in [0, 1) from a seed.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0
-    }
-
-    fn turn(&mut self) -> DQuat {
-        let v = self.vector();
-        DQuat::from_xyzw(v.x, v.y, v.z, self.next() + 0.1).normalize()
-    }
-}
-
-/// A chain of random bodies, each joined to the one before it by a random joint, that moves as one; its first body is
-/// where it is said.
-fn chain(numbers: &mut Numbers, count: usize, at: DVec3, friction: f64) -> (Vec<Shape>, Vec<Start>, Vec<Joint>) {
-    let (mut shapes, mut starts, mut joints): (Vec<Shape>, Vec<Start>, Vec<Joint>) = Default::default();
-    let (v, w) = (numbers.vector() * 2.0, numbers.vector() * 6.0);
-    for k in 0..count {
-        let half = DVec3::new(0.03, 0.03, 0.03) + DVec3::new(numbers.next(), numbers.next(), numbers.next()) * 0.05;
-        let shape = if numbers.next() < 0.3 { Shape::Ball(half.x) } else { cuboid(half.x, half.y, half.z) };
-        let orientation = numbers.turn();
-        // Next to the one before, with the joint between them.
-        let way = numbers.vector().normalize() * (0.1 + 0.1 * numbers.next());
-        let x = starts.last().map_or(at, |s| s.position + way);
-        let start = Start { position: x, orientation, velocity: v + w.cross(x - at), spin: w, time: 0.0 };
-        if let Some(last) = starts.last() {
-            let middle = x - way * 0.5;
-            let joint = match numbers.next() {
-                n if n < 0.4 => Joint::ball(middle, k - 1, last),
-                n if n < 0.8 => Joint::hinge(middle, numbers.vector(), k - 1, last).with_friction(friction),
-                _ => Joint::weld(middle, k - 1, last),
-            };
-            joints.push(joint.to(k, &start));
-        }
-        starts.push(start);
-        shapes.push(shape);
-    }
-    (shapes, starts, joints)
-}
-
-/// What joints hold is together: how far their anchors are apart at most.
-fn apart(joints: &[Joint], bodies: &[Turning]) -> f64 {
-    let anchor = |k: usize, j: &Joint| {
-        let body = if k == 0 { Some(j.body) } else { j.other };
-        body.map_or(j.frames[k].at, |b| point(&bodies[b], j.frames[k].at))
-    };
-    joints.iter().map(|j| (anchor(0, j) - anchor(1, j)).length()).fold(0.0, f64::max)
-}
-
-/// Momentum, angular momentum about the origin, and kinetic energy.
-fn totals(shapes: &[Shape], bodies: &[Turning]) -> (DVec3, DVec3, f64) {
-    let mut all = (DVec3::ZERO, DVec3::ZERO, 0.0);
-    for (shape, b) in shapes.iter().zip(bodies) {
-        let mass = shape.mass_properties(1000.0);
-        let own = b.turn * (mass.inertia * (b.turn.conjugate() * b.spin));
-        all.0 += b.path.v * mass.mass;
-        all.1 += own + b.path.x.cross(b.path.v) * mass.mass;
-        all.2 += 0.5 * (mass.mass * b.path.v.length_squared() + b.spin.dot(own));
-    }
-    all
-}
-
-/// Random chains in space, of two to five bodies that are struck apart by a kick at their start: linear and angular
-/// momentum stay to the rounding of their steps, at any time, also half way through one; kinetic energy to the square of
-/// the step; joints hold. Each has a twin that is caught: a chain of which one joint is missing, and one with friction.
+/// A wheel on an axle with dry friction τ stops after I ω/τ, having turned by I ω²/(2 τ), and is at rest then; twins
+/// with a tenth more or less friction are told apart. A rod is held where the friction is more than its weight's
+/// torque, and else falls.
 #[test]
-fn free_chains_keep_momentum_and_energy() {
-    let mut caught = [0, 0];
-    for seed in 0..100 {
-        let mut go = |friction: f64, missing: bool| {
-            let mut numbers = Numbers(seed);
-            let count = 2 + (seed % 4) as usize;
-            let (shapes, starts, joints) = chain(&mut numbers, count, DVec3::ZERO, friction);
-            let mut world = world(&shapes, 0.0, Preset::Fine);
-            for joint in &joints[usize::from(missing)..] {
-                world.join(*joint).unwrap();
-            }
-            let mut state = world.state(&starts).unwrap();
-            let mut scratch = Scratch::default();
-            let at = |state: &plaus_sim::State<Turning>, time: f64| -> Vec<Turning> {
-                state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, time)).collect()
-            };
-            world.run(&mut state, &mut scratch, 0.01, &mut ()).unwrap();
-            let (impulse, twist) = (numbers.vector() * 0.3, numbers.vector() * 0.02);
-            world.kick(&mut state, count - 1, impulse, twist).unwrap();
-            world.run(&mut state, &mut scratch, 0.1, &mut ()).unwrap();
-            let before = totals(&shapes, &at(&state, 0.1));
-            world.run(&mut state, &mut scratch, 2.0, &mut ()).unwrap();
-            let bodies = at(&state, 2.0);
-            let after = totals(&shapes, &bodies);
-            let mass: f64 = shapes.iter().map(|s| s.mass_properties(1000.0).mass).sum();
-            let scale = (2.0 * before.2 * mass).sqrt();
-            let kept = [(after.0 - before.0).length() / scale, (after.1 - before.1).length() / (scale * 0.1)];
-            (kept, after.2 / before.2 - 1.0, apart(&joints, &bodies))
+fn friction_stops_a_hinge() {
+    let shape = cuboid(0.2, 0.2, 0.05);
+    let inertia = shape.mass_properties(1000.0).inertia.z;
+    let (spin, time) = (8.0, 0.9);
+    for preset in Preset::ALL {
+        let turned = |friction: f64| {
+            let start = Start { spin: DVec3::Z * spin, ..Start::at_rest(DVec3::ZERO) };
+            let mut world = world(std::slice::from_ref(&shape), G, preset);
+            world.join(Joint::hinge(DVec3::ZERO, DVec3::Z, 0, &start).with_friction(friction)).unwrap();
+            let mut state = world.state(&[start]).unwrap();
+            let outcome = world.run(&mut state, &mut Scratch::default(), 5.0, &mut ()).unwrap();
+            let side = state.bodies()[0].turn * DVec3::X;
+            (outcome, state.bodies()[0].path.t, math::atan2(side.y, side.x))
         };
-        let (kept, energy, off) = go(0.0, false);
-        if seed % 10 == 0 { println!("{seed} {kept:?} {energy:e} {off:e}"); }
-        assert!(kept.iter().all(|k| *k < 1e-10), "{seed}: {kept:?}");
-        assert!(energy.abs() < 1e-3, "{seed}: {energy}");
-        assert!(off < 1e-3, "{seed}: {off}");
-        caught[0] += u32::from(go(0.0, true).2 > 1e-2);
-        caught[1] += u32::from(go(2e-3, false).1 < -1e-3);
+        let (outcome, stopped, angle) = turned(inertia * spin / time);
+        let expected = 0.5 * spin * time;
+        let off = |angle: f64| math::sin(0.5 * (angle - expected)).abs() * 2.0;
+        // The last step is straight, however little of it was left: half of it at its speed.
+        let last = 0.25 * Accuracy::preset(preset).step * (0.025 / G).sqrt();
+        let bound = 0.5 * spin / time * last * last + 1e-9;
+        assert_eq!(outcome, Outcome::AllAtRest);
+        assert!(stopped >= time - last && stopped < time + 3.0 * last, "{stopped} {last}");
+        assert!(off(angle) < bound, "{}: {angle} for {expected} by {bound}", preset.name());
+        assert!([0.9, 1.1].iter().all(|part| off(turned(part * inertia * spin / time).2) > 0.1));
     }
-    println!("{caught:?}");
-    assert!(caught[0] > 80 && caught[1] > 40, "{caught:?}");
+    let (_, start, _) = rod(1.0, Preset::Standard);
+    let torque = 3.0 * G * 0.2 * math::sin(1.0);
+    for (part, falls) in [(1.5, false), (1.1, false), (1.001, false), (0.999, true)] {
+        let (mut world, ..) = rod(1.0, Preset::Standard);
+        world.join(Joint::hinge(DVec3::ZERO, DVec3::Y, 0, &start).with_friction(part * torque)).unwrap();
+        let mut state = world.state(&[start]).unwrap();
+        let outcome = world.run(&mut state, &mut Scratch::default(), 3.0, &mut ()).unwrap();
+        assert_eq!(outcome == Outcome::AllAtRest && state.bodies()[0].path.t < 0.1, !falls, "{part}: {outcome:?}");
+    }
+}
+
+/// A door that swings without friction comes to its stop when it has turned so far, goes back with e times its speed,
+/// and comes to the other stop when that says; of the two angles it keeps between them. One without restitution stays.
+#[test]
+fn a_door_rebounds_from_its_stop() {
+    let shape = cuboid(0.8, 0.04, 2.0);
+    for (preset, e) in Preset::ALL.into_iter().flat_map(|p| [(p, 0.4), (p, 1.0), (p, 0.0)]) {
+        let rate = 1.5;
+        let start =
+            Start { spin: DVec3::Z * rate, velocity: DVec3::Y * (0.4 * rate), ..Start::at_rest(DVec3::X * 0.4) };
+        let mut world = world(std::slice::from_ref(&shape), G, preset);
+        world.join(Joint::hinge(DVec3::ZERO, DVec3::Z, 0, &start).with_limits([-0.3, 1.1], e)).unwrap();
+        let motions = trace(&world, &[start], 3.0);
+        let angle = |time: f64| {
+            let side = motions.body_at(&world, 0, time).unwrap().turn * DVec3::X;
+            math::atan2(side.y, side.x)
+        };
+        let [first, second] = [1.1 / rate, 1.1 / rate + 1.4 / (e * rate)];
+        let expected = |t: f64| match t {
+            t if t < first => rate * t,
+            t if t < second => 1.1 - e * rate * (t - first),
+            t => -0.3 + e * e * rate * (t - second),
+        };
+        // A stop is touched 2 of the body's gaps before it, at its reach.
+        let (gap, h) = (Accuracy::preset(preset).gap * 0.02, step(0.02, preset));
+        let mut worst = 0.0_f64;
+        for time in (0..60).map(|k| 0.05 * f64::from(k)).filter(|t| *t < second + 1.4 / (e * e * rate)) {
+            worst = worst.max((angle(time) - expected(time)).abs());
+        }
+        // Chords are shorter than arcs by (ω h)²/6; a step that is cut very short before a stop costs some digits.
+        let bound = 8.0 * (gap + rate * rate * h * h);
+        assert!(worst < bound, "{} {e}: {worst:e} of {bound:e}", preset.name());
+        let angles = || motions.motions[0].iter().map(|m| m.turn * DVec3::X).map(|x| math::atan2(x.y, x.x));
+        assert!(angles().all(|a| (-0.3..=1.1).contains(&a)), "{} {e}: beyond a stop", preset.name());
+        let spin = motions.body_at(&world, 0, 0.5 * (first + second.min(3.0))).unwrap().spin.z;
+        // What stays is pushed to the gap that contacts keep.
+        let push = if e == 0.0 { gap / h } else { 0.0 };
+        assert!((spin + e * rate).abs() < 1e-6 + push, "{spin} {e}");
+    }
+}
+
+/// Two welded cubes are one cuboid: thrown, they move as it does, to the square of the step.
+#[test]
+fn a_weld_makes_one_body_of_two() {
+    let mut errors = Vec::new();
+    for preset in Preset::ALL {
+        let orientation = DQuat::from_xyzw(0.3, 0.1, -0.2, 0.8).normalize();
+        let whole = Start {
+            orientation,
+            velocity: DVec3::new(1.0, -2.0, 3.0),
+            spin: DVec3::new(3.0, -4.0, 2.0),
+            ..Start::at_rest(DVec3::Z)
+        };
+        let halves = [-0.05, 0.05].map(|x| {
+            let arm = orientation * (DVec3::X * x);
+            Start { position: whole.position + arm, velocity: whole.velocity + whole.spin.cross(arm), ..whole }
+        });
+        let one = world(&[cuboid(0.2, 0.1, 0.1)], G, preset);
+        let mut two = world(&[cuboid(0.1, 0.1, 0.1), cuboid(0.1, 0.1, 0.1)], G, preset);
+        two.join(Joint::weld(whole.position, 0, &halves[0]).to(1, &halves[1])).unwrap();
+        let (time, t) = (0.8, [trace(&one, &[whole], 0.8), trace(&two, &halves, 0.8)]);
+        let (body, pair) = (t[0].body_at(&one, 0, time).unwrap(), [0, 1].map(|k| t[1].body_at(&two, k, time).unwrap()));
+        let off = [0, 1].map(|k| {
+            let arm = DVec3::X * [-0.05, 0.05][k];
+            // The middle's place, and two of the corners.
+            [DVec3::ZERO, DVec3::Y * 0.05, DVec3::Z * 0.05]
+                .map(|own| (point(&body, arm + own) - point(&pair[k], own)).length())
+                .into_iter()
+                .fold(0.0, f64::max)
+        });
+        let middle = (pair[0].path.x + pair[1].path.x) * 0.5;
+        // Within a step the middle is on a chord of its parabola.
+        let h = step(0.05, preset);
+        assert!((middle - body.path.x).length() < G * h * h / 8.0 + 1e-10, "{}", preset.name());
+        errors.push(off[0].max(off[1]));
+    }
+    let [_, standard, fine, reference] = errors[..] else { unreachable!() };
+    assert!(standard < 5e-3 && standard > 8.0 * fine && fine > 12.0 * reference, "{errors:?}");
+}
+
+/// A ball hits two that are welded, in line: the weld passes on half of the impulse, and breaks where that is more than
+/// it bears. Once broken, a body that is kicked goes alone.
+#[test]
+fn a_weld_breaks_at_its_impulse() {
+    let (r, speed) = (0.05, 2.0);
+    let mass = Shape::Ball(r).mass_properties(1000.0).mass;
+    // Elastic, one mass on two: 4/3 m v, of which half goes on.
+    let passed = 2.0 / 3.0 * mass * speed;
+    for (part, breaks) in [(1.0 + 1e-6, false), (1.0 - 1e-6, true)] {
+        let mut world = world(&[Shape::Ball(r), Shape::Ball(r), Shape::Ball(r)], 0.0, Preset::Standard);
+        let [a, b] = [0.0, 0.1].map(|x| Start::at_rest(DVec3::X * x));
+        let shot = Start { velocity: DVec3::X * speed, ..Start::at_rest(DVec3::X * -0.5) };
+        let weld = Joint::weld(DVec3::X * 0.05, 0, &a).to(1, &b).that_breaks_at(part * passed);
+        let weld = world.join(weld).unwrap();
+        let mut state = world.state(&[a, b, shot]).unwrap();
+        let mut scratch = Scratch::default();
+        world.run(&mut state, &mut scratch, 0.5, &mut ()).unwrap();
+        assert_eq!(world.is_held(weld, &state), !breaks, "{part}");
+        let at = |state: &State<Turning>, k: usize, t: f64| world.at(k, &state.bodies()[k], t).path.v;
+        for k in [0, 1] {
+            assert!((at(&state, k, 0.5) - DVec3::X * (speed * 2.0 / 3.0)).length() < 1e-7, "{}", at(&state, k, 0.5));
+        }
+        assert!((at(&state, 2, 0.5) + DVec3::X * (speed / 3.0)).length() < 1e-7);
+        world.kick(&mut state, 1, DVec3::X * mass, DVec3::ZERO).unwrap();
+        world.run(&mut state, &mut scratch, 1.0, &mut ()).unwrap();
+        let gained = at(&state, 1, 1.0).x - speed * 2.0 / 3.0;
+        assert!((gained - if breaks { 1.0 } else { 0.5 }).abs() < 1e-6, "{gained}");
+    }
+}
+
+/// Over a minute the joints of a double pendulum stay as near as at its start: at the ends of steps by a thousandth of
+/// the gap at which bodies touch, between them by the sag of a step's curve. Its energy stays within the square of the
+/// step, and a run that is paused has the same bits.
+#[test]
+fn joints_do_not_drift_apart() {
+    for (preset, until) in [(Preset::Draft, 60.0), (Preset::Standard, 60.0), (Preset::Fine, 4.0)] {
+        let (world, starts, truth) = double([1.2, 0.5], preset);
+        let motions = trace(&world, &starts, until);
+        let apart = |bodies: [&Turning; 2]| {
+            let elbow = point(bodies[0], DVec3::Z * (truth.c[0] - truth.l)) - point(bodies[1], DVec3::Z * truth.c[1]);
+            point(bodies[0], DVec3::Z * truth.c[0]).length().max(elbow.length())
+        };
+        let energy = |k: usize| -> f64 { (0..2).map(|b| world.energy(b, &motions.motions[b][k])).sum() };
+        // Twice the reach of what holds at the hinges, each a thousandth of half the preset's gap times a half width.
+        let (mut worst, bound) = (0.0_f64, 2.0 * 0.5e-3 * Accuracy::preset(preset).gap * 0.03);
+        let mut swing = 0.0_f64;
+        for k in 1..motions.motions[0].len() {
+            let bodies = [0, 1].map(|b| &motions.motions[b][k]);
+            worst = worst.max(apart(bodies));
+            swing = swing.max((energy(k) - energy(1)).abs());
+        }
+        let weight: f64 = truth.mass.iter().sum::<f64>() * G * truth.l;
+        assert!(worst < bound, "{}: {worst:e} of {bound:e}", preset.name());
+        let turn = 4.0 * step(0.025, preset) * (G / truth.l).sqrt();
+        assert!(swing / weight < turn * turn, "{}: {} of {turn}", preset.name(), swing / weight);
+    }
+    let (world, starts, _) = double([1.2, 0.5], Preset::Draft);
+    let [mut whole, mut paused] = [(); 2].map(|()| world.state(&starts).unwrap());
+    world.run(&mut whole, &mut Scratch::default(), 2.0, &mut ()).unwrap();
+    for k in 1..=20 {
+        world.run(&mut paused, &mut Scratch::default(), 0.1 * f64::from(k), &mut ()).unwrap();
+        paused = serde_json::from_str(&serde_json::to_string(&paused).unwrap()).unwrap();
+    }
+    for (a, b) in whole.bodies().iter().zip(paused.bodies()) {
+        assert_eq!((a.path, a.turn, a.spin), (b.path, b.turn, b.spin));
+    }
 }

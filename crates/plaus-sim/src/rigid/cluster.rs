@@ -100,14 +100,13 @@ impl Rigid {
             let is_stuck = matches!(other, Other::Body(_)) && !linked && is_hurried && !points.is_empty();
             return Some(is_stuck.then_some(true));
         }
-        let count = points.len();
         let struck = self.strike_cluster(&cluster, points, seeds.as_slice(), bodies);
         for k in seeds {
             self.list_touches(k, &mut bodies[k]);
         }
         let (time, x) = (bodies[index].path.t, bodies[index].path.x);
         let mut lasts = true;
-        for point in struck.iter().filter(|p| p.is_outer).take(count) {
+        for point in struck.iter().filter(|p| p.is_outer) {
             lasts &= point.lasting;
             point.report(time, index, x, report);
         }

@@ -39,7 +39,16 @@
 //! still holds it, and energy is not kept in a group that it is part of. Per body there are also a constant force and
 //! torque, damping, and more or less gravity ([`Rigid::act_on`]), and sleep until it is hit ([`Rigid::put_to_sleep`]).
 //! Between two runs bodies may be kicked, taken out and put in ([`Rigid::kick`], [`Rigid::remove`], [`Rigid::put`]).
-//! There are no joints.
+//!
+//! Joints hold bodies to each other or to the fixed world ([`Rigid::join`]): ball joints, hinges with limits and dry
+//! friction, welds that may break at an impulse. What they hold moves in the steps of lasting contact, four times as
+//! short, whose error falls as the square of the step: the period of a pendulum of 120° is off by 4e-4, 1e-4, 7e-6 and
+//! 3e-7 of itself at the four presets. Between two steps joints are apart by less than a thousandth of the gap at which
+//! bodies touch, however long a run is; half way through a step by the sag of its curve, at most a thousandth of the
+//! joint's arm at the standard preset. Linear and angular momentum are kept to rounding, energy to the square of the
+//! step, up and down: it is not guarded where there are joints, and it does not creep as long as steps are even. An
+//! impact is resolved with all that hangs together, at all its points by Newton's and Coulomb's laws; other contacts of
+//! the same bodies are struck next. A body with joints is not put to sleep, and not put in anew.
 //!
 //! ```
 //! use glam::DVec3;

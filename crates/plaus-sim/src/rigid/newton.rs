@@ -96,8 +96,9 @@ struct Projected {
 
 impl Projected {
     /// What a contact answers that sticks.
-    fn sticking(impulse: DVec3, stiff: f64) -> Self {
-        Self { impulse, stiffness: DMat3::IDENTITY * stiff, sliding: None }
+    fn sticking(c: &Contact, impulse: DVec3, stiff: f64) -> Self {
+        let ways = if matches!(c.hold, Hold::Brake(_)) { outer(c.normal, c.normal) } else { DMat3::IDENTITY };
+        Self { impulse: ways * impulse, stiffness: ways * stiff, sliding: None }
     }
 
     /// Whether friction has turned round since `before`: the slip went through none then, and the contact is tried
@@ -181,7 +182,7 @@ impl Newton {
                 self.impulses.push(lawful.impulse);
                 *p = if lawful.reverses(p, c) {
                     let stiff = stiffness(c, COMPLIANCE);
-                    Projected::sticking(c.impulse - wrong * stiff, stiff)
+                    Projected::sticking(c, c.impulse - wrong * stiff, stiff)
                 } else {
                     lawful
                 };
@@ -379,11 +380,9 @@ fn stiffness(c: &Contact, compliance: f64) -> f64 {
 
 /// What a joint makes of the impulse that would hold it.
 fn joint(c: &Contact, trial: DVec3, stiff: f64) -> Projected {
-    let (impulse, gives_way) = c.held(trial);
-    match c.hold {
-        Hold::Brake(_) if gives_way => Projected { impulse, ..OPEN },
-        Hold::Brake(_) => Projected { impulse, stiffness: outer(c.normal, c.normal) * stiff, sliding: None },
-        _ => Projected::sticking(impulse, stiff),
+    match c.held(trial) {
+        (impulse, true) => Projected { impulse, sliding: impulse.try_normalize(), ..OPEN },
+        (impulse, false) => Projected::sticking(c, impulse, stiff),
     }
 }
 
@@ -410,7 +409,7 @@ fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
         return slides(-s, DMat3::ZERO);
     }
     if side <= most {
-        return Projected::sticking(trial, stiff);
+        return Projected::sticking(c, trial, stiff);
     }
     let t = across / side;
     slides(t, (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (most / side))
@@ -431,7 +430,7 @@ fn cone(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
         return OPEN;
     }
     if side <= friction * along {
-        return Projected::sticking(trial, stiff);
+        return Projected::sticking(c, trial, stiff);
     }
     let (t, narrow) = (across / side, 1.0 / (1.0 + friction * friction));
     let direction = n + t * friction;
