@@ -396,7 +396,7 @@ impl Rigid {
             let worst = (0..bond.points.len()).map(|p| bond.point(p, poses).apart.length()).fold(0.0, f64::max);
             // The arms may be long, and what they are turned by has been rounded.
             let arms = bond.anchors(poses).map(DVec3::length);
-            if !(worst <= OVERLAP * (self.specs[body].size + arms[0].max(arms[1]))) {
+            if worst > OVERLAP * (self.specs[body].size + arms[0].max(arms[1])) {
                 let (field, expected) = if kind == JointKind::Ball {
                     ("distance of its anchors in m at the start", "0")
                 } else {
