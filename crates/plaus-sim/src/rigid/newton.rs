@@ -97,8 +97,11 @@ struct Projected {
 impl Projected {
     /// What a contact answers that sticks.
     fn sticking(c: &Contact, impulse: DVec3, stiff: f64) -> Self {
-        let ways = if matches!(c.hold, Hold::Brake(_)) { outer(c.normal, c.normal) } else { DMat3::IDENTITY };
-        Self { impulse: ways * impulse, stiffness: ways * stiff, sliding: None }
+        let (impulse, ways) = match c.hold {
+            Hold::Brake(_) => (c.normal * impulse.dot(c.normal), outer(c.normal, c.normal)),
+            _ => (impulse, DMat3::IDENTITY),
+        };
+        Self { impulse, stiffness: ways * stiff, sliding: None }
     }
 
     /// Whether friction has turned round since `before`: the slip went through none then, and the contact is tried
