@@ -114,7 +114,7 @@ fn kicked(seed: u64, friction: f64, missing: bool, until: f64) -> Option<([f64; 
 }
 
 /// Random chains in space, of two to five bodies, whose joints hold what a kick would part: linear and angular momentum
-/// stay to the rounding of their steps, also half way through one; energy, elastic impacts among them too, to the square
+/// stay to the rounding of their steps, also half way through one; energy, with elastic impacts too, to the square
 /// of the step, a tenth of a radian; joints are open by the sag of a step's curve. Twins are caught: a chain of which
 /// one joint is missing, and one whose hinges rub.
 #[test]

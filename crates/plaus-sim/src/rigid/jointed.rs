@@ -6,8 +6,8 @@
 //! symplectic as long as steps are even; both bodies get their impulses at one point, so linear and angular momentum
 //! stay to rounding. Half way through a step what is held is apart by the sag of a curve, `(ω h)²/8` of its arm.
 //!
-//! A hinge holds two points of its axis, a weld three; their redundant parts share the load. Dry friction is a row along
-//! one direction at a lever from the axis, of limited size; a limit is a contact without friction there.
+//! A hinge holds two points of its axis, a weld three; their redundant parts share the load. Dry friction is a row
+//! along one direction at a lever from the axis, of limited size; a limit is a contact without friction there.
 
 use super::Rigid;
 use super::body::{Pose, Turning};
@@ -170,8 +170,8 @@ impl RigidScratch {
         worst
     }
 
-    /// A row of a joint at the end of a drift, and whether it goes on: a limit does that is still touched. `time` is how
-    /// long a brake acts.
+    /// A row of a joint at the end of a drift, and whether it goes on: a limit does that is still touched. `time` is
+    /// how long a brake acts.
     pub(super) fn row_at_end(&self, world: &Rigid, row: &Row, time: f64) -> (Contact, bool) {
         let bond = &world.joints.bonds[row.joint];
         let poses = self.poses(row, |p| &p.end);

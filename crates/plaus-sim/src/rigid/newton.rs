@@ -383,10 +383,9 @@ fn stiffness(c: &Contact, compliance: f64) -> f64 {
 
 /// What a joint makes of the impulse that would hold it.
 fn joint(c: &Contact, trial: DVec3, stiff: f64) -> Projected {
-    match c.held(trial) {
-        (impulse, true) => Projected { impulse, sliding: impulse.try_normalize(), ..OPEN },
-        (impulse, false) => Projected::sticking(c, impulse, stiff),
-    }
+    let (impulse, gives_way) = c.held(trial);
+    let open = Projected { impulse, sliding: impulse.try_normalize(), ..OPEN };
+    if gives_way { open } else { Projected::sticking(c, impulse, stiff) }
 }
 
 /// What Coulomb's law makes of a contact with the velocity `wrong` that is not to be.
