@@ -205,6 +205,18 @@ pub enum WorldError {
         /// What it should be.
         expected: &'static str,
     },
+    /// A joint that cannot be.
+    #[error("joint {joint}: {field} is {value}, expected {expected}")]
+    BadJoint {
+        /// Its number: joints count from 0 in the order in which they were added.
+        joint: usize,
+        /// What is wrong.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it should be.
+        expected: &'static str,
+    },
     /// A state made for another world.
     #[error("the state has {state} bodies, the world {world}")]
     WrongState {

@@ -111,6 +111,24 @@ pub trait Mechanics {
         linked: bool,
         report: &mut dyn FnMut(&Impact),
     ) -> Option<bool>;
+    /// Collides a body with something, together with all that joints hold to either; `None` where there are none. Else
+    /// as [`hit_body`](Self::hit_body) says.
+    #[inline]
+    fn hit_joined(
+        &self,
+        _index: usize,
+        _other: Other,
+        _linked: bool,
+        _bodies: &mut [Self::Body],
+        _report: &mut dyn FnMut(&Impact),
+    ) -> Option<Option<bool>> {
+        None
+    }
+    /// Other bodies that an impact of one or two bodies moves at once, through joints.
+    #[inline]
+    fn joined(&self, _a: u32, _b: Option<u32>, _bodies: &[Self::Body]) -> Vec<u32> {
+        Vec::new()
+    }
     /// The lasting surface contacts of a body.
     fn contacts<'b>(&self, body: &'b Self::Body) -> &'b [Surface];
     /// Decides what a group of bodies in lasting contact with each other (`links` among `members`, all clocks equal)

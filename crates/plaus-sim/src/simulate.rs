@@ -5,7 +5,7 @@
 
 use crate::broad::BoxTree;
 use crate::links::Links;
-use crate::mechanics::{Impact, Mechanics};
+use crate::mechanics::{Impact, Mechanics, Other};
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::State;
 use crate::trace::Observer;
@@ -246,12 +246,21 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             counts.impacts += 1;
             observer.impact(impact);
         };
+        let (first, other, linked) = match meeting {
+            Meeting::Surface(k, surface) => (k, Other::Surface(surface), false),
+            Meeting::Bodies(i, j) => (i, Other::Body(j as usize), links.contains(i, j)),
+        };
+        if let Some(met) = mechanics.hit_joined(first as usize, other, linked, bodies, &mut report) {
+            if let (Meeting::Bodies(i, j), Some(true)) = (meeting, met) {
+                links.insert(i, j);
+            }
+            return met.is_some();
+        }
         match meeting {
             Meeting::Surface(k, surface) => {
                 mechanics.hit_surface(k as usize, &mut bodies[k as usize], surface, &mut report)
             }
             Meeting::Bodies(i, j) => {
-                let linked = links.contains(i, j);
                 let (low, high) = bodies.split_at_mut(j as usize);
                 let both = [&mut low[i as usize], &mut high[0]];
                 let met = mechanics.hit_body([i as usize, j as usize], both, linked, &mut report);
@@ -273,7 +282,8 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
             Meeting::Bodies(i, j) => (j, Some(i)),
         };
         let worklist = &mut scratch.worklist;
-        for k in std::iter::once(a).chain(b) {
+        let joined = mechanics.joined(a, b, &state.bodies);
+        for k in std::iter::once(a).chain(b).chain(joined) {
             for &s in mechanics.contacts(&state.bodies[k as usize]) {
                 if !matches!(meeting, Meeting::Surface(m, t) if m == k && t == s) {
                     worklist.push(Meeting::Surface(k, s));

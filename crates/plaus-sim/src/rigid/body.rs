@@ -94,6 +94,9 @@ pub struct Turning {
     pub(crate) passing: DVec3,
     /// Whether it is to sleep from its release on.
     pub(super) sleeps: bool,
+    /// Which of its joints are torn, one a bit.
+    #[serde(default)]
+    pub(super) torn: u32,
     /// Whether the group that it last settled with is a heap.
     #[serde(default)]
     pub(super) in_heap: bool,
@@ -135,6 +138,7 @@ impl Turning {
             ends: [Momentum::default(); 2],
             passing: DVec3::ZERO,
             sleeps: false,
+            torn: 0,
             in_heap: false,
             hurried: 0,
             hurried_from: -NEVER,

@@ -207,18 +207,12 @@ impl Rigid {
         report: &mut dyn FnMut(&Impact),
     ) -> bool {
         let spec = &self.specs[index];
-        self.list_touches(index, body);
         let pose = body.pose();
         let mut members = [RigidScratch::member(spec, &pose.r, pose.v, pose.w)];
-        let hurried = body.is_hurried();
-        let first = self.point_on_part(&self.touch(index, &pose, surface), index, &pose, hurried, &members[0]);
-        let Some(first) = first.filter(Point::is_struck) else { return false };
-        let mut points = vec![first];
-        self.for_known_touches(index, body, &pose, |t| {
-            if t.surface != surface {
-                points.extend(self.point_on_part(&t, index, &pose, hurried, &members[0]));
-            }
-        });
+        let mut points = self.points_on_part(index, body, surface, &members[0]);
+        if points.is_empty() {
+            return false;
+        }
         strike(&mut points, &mut members, self.accuracy.slip_turn);
         body.set_motion(spec, Motion { v: members[0].v, w: members[0].w });
         if !body.flies() {
@@ -228,6 +222,27 @@ impl Rigid {
             p.report(body.path.t, index, pose.x, report);
         }
         true
+    }
+
+    /// The points at which a body strikes a part, or touches one; none where the first is not struck.
+    pub(super) fn points_on_part(
+        &self,
+        index: usize,
+        body: &mut Turning,
+        surface: Surface,
+        member: &Member,
+    ) -> Vec<Point> {
+        self.list_touches(index, body);
+        let (pose, hurried) = (body.pose(), body.is_hurried());
+        let first = self.point_on_part(&self.touch(index, &pose, surface), index, &pose, hurried, member);
+        let Some(first) = first.filter(Point::is_struck) else { return Vec::new() };
+        let mut points = vec![first];
+        self.for_known_touches(index, body, &pose, |t| {
+            if t.surface != surface {
+                points.extend(self.point_on_part(&t, index, &pose, hurried, member));
+            }
+        });
+        points
     }
 
     fn point_on_part(&self, t: &Touch, index: usize, pose: &Pose, hurried: bool, member: &Member) -> Option<Point> {

@@ -16,6 +16,17 @@ pub(crate) struct Member {
     pub(crate) last: [DVec3; 2],
 }
 
+/// Which impulses a contact may have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Hold {
+    /// Those within Coulomb's cone about the normal.
+    Coulomb,
+    /// Any: a point of a joint.
+    Point,
+    /// Along the normal, either way, at most of this size in N s: a brake.
+    Brake(f64),
+}
+
 /// A contact between a member and a fixed part or another member.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Contact {
@@ -25,6 +36,7 @@ pub(crate) struct Contact {
     /// Unit normal towards `a`.
     pub(crate) normal: DVec3,
     pub(crate) friction: f64,
+    pub(crate) hold: Hold,
     /// Least normal velocity after solving.
     pub(crate) target: f64,
     /// What is added to the velocity at the point to get the one that is meant: its mean over a drift, say.
@@ -70,6 +82,7 @@ impl Contact {
             arms,
             normal,
             friction,
+            hold: Hold::Coulomb,
             target: 0.0,
             bias: DVec3::ZERO,
             held_slip: None,
@@ -137,6 +150,18 @@ impl Contact {
         let u = self.velocity(members) + self.bias;
         let n = self.normal;
         let wanted = n * self.target - u;
+        if self.hold != Hold::Coulomb {
+            self.is_right = true;
+            let free = match self.hold {
+                Hold::Brake(_) => n * (wanted.dot(n) / self.along),
+                _ => self.k_inverse * wanted,
+            };
+            let next = self.held(self.impulse + free).0;
+            let change = next - self.impulse;
+            self.push(members, change);
+            self.impulse = next;
+            return change.length() * self.along;
+        }
         if self.impulse == DVec3::ZERO && wanted.dot(n) <= 0.0 {
             self.is_right = true;
             return 0.0;
@@ -156,6 +181,17 @@ impl Contact {
         change.length() * self.along
     }
 
+    /// The nearest impulse that a joint's contact may have, and whether it gives way along its normal.
+    pub(super) fn held(&self, impulse: DVec3) -> (DVec3, bool) {
+        match self.hold {
+            Hold::Brake(most) => {
+                let along = impulse.dot(self.normal);
+                (self.normal * along.clamp(-most, most), along.abs() > most)
+            }
+            _ => (impulse, false),
+        }
+    }
+
     /// The unit vector of its slip, where it slides under load.
     pub(crate) fn slip_direction(&self) -> Option<DVec3> {
         let load = self.impulse.dot(self.normal);
@@ -167,7 +203,8 @@ impl Contact {
     pub(super) fn note_slide(&mut self) {
         let load = self.impulse.dot(self.normal);
         let across = self.impulse - self.normal * load;
-        self.slides = load > 0.0 && across.length() >= self.friction * load * (1.0 - AT_EDGE);
+        self.slides =
+            self.hold == Hold::Coulomb && load > 0.0 && across.length() >= self.friction * load * (1.0 - AT_EDGE);
         self.is_right = true;
     }
 

@@ -43,7 +43,7 @@ impl Rigid {
         Ok(())
     }
 
-    /// Takes a body out at the state's time. What rested on it wakes.
+    /// Takes a body out at the state's time. What rested on it wakes, joints let go of it.
     ///
     /// # Errors
     /// [`WorldError::BadBody`] for a body that is not there or goes its own way.
@@ -71,10 +71,13 @@ impl Rigid {
     ///
     /// # Errors
     /// [`WorldError`] where its start lies before the state's time, is not finite, or overlaps scenery, or, where it is
-    /// released at the state's time, a body that is there; [`WorldError::BadBody`] for a body that is not there or goes
-    /// its own way. Nothing has changed then.
+    /// released at the state's time, a body that is there; [`WorldError::BadBody`] for a body that is not there, goes
+    /// its own way or has joints. Nothing has changed then.
     pub fn put(&self, state: &mut State<Turning>, index: usize, start: &Start) -> Result<(), WorldError> {
         self.check_edited(state, index)?;
+        if !self.joints.of(index).is_empty() {
+            return Err(bad(index, "index of what is put in", index as f64, "a body without joints"));
+        }
         self.check_start(index, start)?;
         if start.time < state.time {
             return Err(bad(index, "start time", start.time, "a time not before that of the state"));

@@ -18,7 +18,7 @@ impl RigidScratch {
     /// Whether a step was so long that keeping its points out of the ground lifted bodies higher than their energy can:
     /// a pin that rocks over its foot's rim, say. Then a shorter one must see where it touches.
     pub(super) fn climbs(&self, world: &Rigid) -> Option<f64> {
-        (!self.has_driven(world) && self.energy_to_keep(world) < 0.0).then_some(0.5)
+        (!self.is_open(world) && self.energy_to_keep(world) < 0.0).then_some(0.5)
     }
 
     /// Takes back what a step's error has brought: along the first kick's impulses, whose part `α` is moved to the
@@ -26,7 +26,7 @@ impl RigidScratch {
     /// cones. `firsts` are the contacts with the impulses of the first kick, of which what is left stays. What cannot
     /// be had in this way is left; whether all was.
     pub(super) fn keep_energy(&mut self, world: &Rigid, firsts: &mut [Contact], enough: Enough) -> bool {
-        if self.has_driven(world) {
+        if self.is_open(world) {
             return true;
         }
         let allowed = self.energy_to_keep(world) + TINY * self.weight_times_gap(world);

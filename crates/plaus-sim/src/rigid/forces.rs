@@ -75,9 +75,9 @@ impl Rigid {
     /// until another body hits it.
     ///
     /// # Errors
-    /// [`WorldError::BadBody`] for a body that is not there, has been released, or goes its own way.
+    /// [`WorldError::BadBody`] for a body that is not there, has been released, goes its own way, or has joints.
     pub fn put_to_sleep(&self, state: &mut State<Turning>, body: usize) -> Result<(), WorldError> {
-        let known = self.specs.get(body).is_some_and(|s| !s.is_driven());
+        let known = self.specs.get(body).is_some_and(|s| !s.is_driven()) && self.joints.of(body).is_empty();
         match state.bodies.get_mut(body).filter(|b| known && b.phase == Phase::Waiting) {
             Some(sleeper) => {
                 sleeper.sleeps = true;
@@ -87,7 +87,7 @@ impl Rigid {
                 body,
                 field: "index of a sleeper",
                 value: body as f64,
-                expected: "a body that waits for its release and has no keyframes",
+                expected: "a body that waits for its release and has neither keyframes nor joints",
             }),
         }
     }

@@ -37,6 +37,8 @@ impl RigidScratch {
         self.leaving.clear();
         self.pairs.clear();
         self.parting.clear();
+        self.rows.clear();
+        self.stops.clear();
         let is_heap = is_heap(group);
         for &k in group {
             bodies[k as usize].in_heap = is_heap;
@@ -44,7 +46,12 @@ impl RigidScratch {
                 self.gather_pair(world, [k as usize, j as usize], bodies, is_heap);
             }
         }
-        links.retain(|[i, j]| !group.contains(&i) || self.pairs.iter().any(|p| p.0 == [i as usize, j as usize]));
+        links.retain(|link| {
+            let pair = link.map(|k| k as usize);
+            !group.contains(&link[0])
+                || self.pairs.iter().any(|p| p.0 == pair)
+                || world.is_joined(pair, pair.map(|k| &bodies[k]))
+        });
         for &k in group {
             self.gather_touches(world, k as usize, bodies, is_heap);
         }
@@ -52,9 +59,15 @@ impl RigidScratch {
         for p in self.pairs.iter_mut().chain(&mut self.parting) {
             p.0 = p.0.map(|k| self.places.iter().position(|q| q.body == k).unwrap_or(0));
         }
+        if !world.joints.bonds.is_empty() {
+            self.gather_joints(world, group, bodies);
+        }
     }
 
     fn gather_pair(&mut self, world: &Rigid, [i, j]: [usize; 2], bodies: &[Turning], is_heap: bool) {
+        if world.is_joined([i, j], [&bodies[i], &bodies[j]]) {
+            return;
+        }
         let (a, b) = (bodies[i].pose(), bodies[j].pose());
         let restitution = world.pair_law([i, j]).restitution;
         let hurried = (bodies[i].is_hurried() || bodies[j].is_hurried()) && restitution < 1.0;
@@ -77,8 +90,9 @@ impl RigidScratch {
             return;
         }
         let (spec, pose, hurried) = (&world.specs[index], bodies[index].pose(), bodies[index].is_hurried());
+        let is_held = world.bonds_of(index, bodies).next().is_some();
         if spec.is_driven() {
-            if self.pairs.iter().any(|p| p.0.contains(&index)) {
+            if is_held || self.pairs.iter().any(|p| p.0.contains(&index)) {
                 self.places.push(Place::of(&bodies[index], index));
             }
             return;
@@ -108,7 +122,7 @@ impl RigidScratch {
         }
         let body = &mut bodies[index];
         body.listed = -NEVER;
-        let linked = self.pairs.iter().any(|p| p.0.contains(&index));
+        let linked = is_held || self.pairs.iter().any(|p| p.0.contains(&index));
         if self.touches.len() == before && !linked {
             self.leaving.retain(|l| l.0 != at);
             body.list(std::iter::empty());

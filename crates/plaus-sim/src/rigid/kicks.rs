@@ -4,6 +4,7 @@ use super::Rigid;
 use super::body::Pose;
 use super::coulomb::{Contact, response};
 use super::energy::resist;
+use super::jointed::PASSES_OF_JOINTS;
 use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch, TOUCHING};
 use super::solve::{Enough, solve};
 use super::step::{PASSES, PASSES_OF_CUBOIDS};
@@ -22,10 +23,10 @@ impl RigidScratch {
     /// The first half of a step of `h` seconds from the starts: a kick and the drift, whose ends are left in `places`.
     /// It is to be done with where the second half, whose velocities are left in `members`, is worth doing.
     pub(super) fn drift(&mut self, world: &Rigid, h: f64) -> Step {
-        let (push, fine) = (world.strength * h, self.fine(world) / h);
+        let (push, fine) = (world.strength * h, self.fine(world).min(self.closed(world)) / h);
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
         let step = Step { enough, h };
-        self.prepare(world, |spec, p| {
+        self.prepare(world, 0.5 * h, |spec, p| {
             let (v, w) = (p.start.v, p.start.w);
             if spec.is_driven() { (v + p.drive * (0.5 * h), w) } else { spec.kicked(&p.start.r, [v, w], 0.5 * h) }
         });
@@ -37,7 +38,13 @@ impl RigidScratch {
                 c.push(&mut self.members, c.impulse);
             }
         }
-        let passes = if self.has_cuboids_in_touch() || self.is_at_ledges(world) { PASSES_OF_CUBOIDS } else { PASSES };
+        let passes = if !self.rows.is_empty() {
+            PASSES_OF_JOINTS
+        } else if self.has_cuboids_in_touch() || self.is_at_ledges(world) {
+            PASSES_OF_CUBOIDS
+        } else {
+            PASSES
+        };
         for pass in 0..passes {
             solve(&mut self.contacts, &mut self.members, &mut self.newton, enough, world.accuracy.sweeps);
             for (p, m) in self.places.iter_mut().zip(&self.members) {
@@ -73,6 +80,9 @@ impl RigidScratch {
             c.target = (world.pair_goal(both, t.gap, h) - t.gap) / h;
             c.bias = t.mean_velocity(&after, &begin, &end, h) - c.velocity(&self.members);
         }
+        if !self.rows.is_empty() {
+            self.aim_joints(world, h, |p, m| p.drifted(&world.specs[p.body], m.v, m.w, h).0);
+        }
         if self.push < 1.0 {
             for c in self.contacts.iter_mut().filter(|c| c.target > 0.0) {
                 c.target *= self.push;
@@ -103,13 +113,13 @@ impl RigidScratch {
             off |= (missing > 0.0 || c.impulse != DVec3::ZERO) && missing.abs() * h > CLOSE * world.pair_gap(both);
             c.bias = mean - c.velocity(&self.members);
         }
-        off
+        off | (!self.rows.is_empty() && self.aim_joints(world, h, |p, _| p.end) > 1.0)
     }
 
     /// A step whose impulses all come at its start, plastic, wherever the drift leads then: what is left where bodies
     /// are so deep in an edge that no drift goes the way that its start says. Contacts only take energy.
     pub(super) fn give_in(&mut self, world: &Rigid, h: f64) {
-        self.prepare(world, |spec, p| {
+        self.prepare(world, h, |spec, p| {
             let (v, w) = (p.start.v, p.start.w);
             if spec.is_driven() { (v + p.drive * h, w) } else { spec.kicked(&p.start.r, [v, w], h) }
         });
@@ -138,6 +148,17 @@ impl RigidScratch {
         self.firsts.clone_from(&self.contacts);
         for c in 0..self.contacts.len() {
             let old = self.contacts[c];
+            if let Some(row) = c.checked_sub(self.touches.len() + self.pairs.len()) {
+                let (mut next, goes_on) = self.row_at_end(world, &self.rows[row], 0.5 * step.h);
+                if old.impulse != DVec3::ZERO || goes_on {
+                    next.impulse = next.held(old.impulse).0;
+                    next.push(&mut self.members, next.impulse);
+                } else {
+                    next.target = -f64::MAX;
+                }
+                self.contacts[c] = next;
+                continue;
+            }
             let (mut next, gap, touching) = if let Some((a, t)) = self.touches.get(c) {
                 let (p, m) = (&self.places[*a], &self.members[*a]);
                 let after = world.touch(p.body, &p.end, t.surface);

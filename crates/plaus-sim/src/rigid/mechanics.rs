@@ -7,7 +7,7 @@ use super::part::Part;
 use super::scratch::RigidScratch;
 use super::step::{self};
 use crate::links::Links;
-use crate::mechanics::{Impact, Mechanics};
+use crate::mechanics::{Impact, Mechanics, Other};
 use crate::scenery::{Aabb, Surface};
 
 impl Mechanics for Rigid {
@@ -103,6 +103,23 @@ impl Mechanics for Rigid {
     }
 
     #[inline]
+    fn hit_joined(
+        &self,
+        index: usize,
+        other: Other,
+        linked: bool,
+        bodies: &mut [Turning],
+        report: &mut dyn FnMut(&Impact),
+    ) -> Option<Option<bool>> {
+        if self.joints.bonds.is_empty() { None } else { self.hit_cluster(index, other, linked, bodies, report) }
+    }
+
+    #[inline]
+    fn joined(&self, a: u32, b: Option<u32>, bodies: &[Turning]) -> Vec<u32> {
+        if self.joints.bonds.is_empty() { Vec::new() } else { self.cluster_beside(a, b, bodies) }
+    }
+
+    #[inline]
     fn contacts<'b>(&self, body: &'b Turning) -> &'b [Surface] {
         body.touching()
     }
@@ -113,8 +130,10 @@ impl Mechanics for Rigid {
 }
 
 impl Rigid {
-    /// Whether two bodies cannot meet now: both are at rest, or go their own ways.
+    /// Whether two bodies cannot meet now: both are at rest, go their own ways, or are joined.
     fn ignores(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> bool {
-        bodies.iter().all(|b| b.phase == Phase::Rest) || pair.iter().all(|&k| self.specs[k].is_driven())
+        bodies.iter().all(|b| b.phase == Phase::Rest)
+            || pair.iter().all(|&k| self.specs[k].is_driven())
+            || self.is_joined(pair, bodies)
     }
 }

@@ -39,7 +39,16 @@
 //! still holds it, and energy is not kept in a group that it is part of. Per body there are also a constant force and
 //! torque, damping, and more or less gravity ([`Rigid::act_on`]), and sleep until it is hit ([`Rigid::put_to_sleep`]).
 //! Between two runs bodies may be kicked, taken out and put in ([`Rigid::kick`], [`Rigid::remove`], [`Rigid::put`]).
-//! There are no joints.
+//!
+//! Joints hold bodies to each other or to the fixed world ([`Rigid::join`]): ball joints, hinges with limits and dry
+//! friction, welds that may break at an impulse. What they hold moves in the steps of lasting contact, four times as
+//! short, whose error falls as the square of the step: the period of a pendulum of 120° is off by 4e-4, 1e-4, 7e-6 and
+//! 3e-7 of itself at the four presets. Between two steps joints are apart by less than a thousandth of the gap at which
+//! bodies touch, however long a run is; half way through a step by the sag of its curve, at most a thousandth of the
+//! joint's arm at the standard preset. Linear and angular momentum are kept to rounding, energy to the square of the
+//! step, up and down: it is not guarded where there are joints, and it does not creep as long as steps are even. An
+//! impact is resolved with all that hangs together, at all its points by Newton's and Coulomb's laws; other contacts of
+//! the same bodies are struck next. A body with joints is not put to sleep, and not put in anew.
 //!
 //! ```
 //! use glam::DVec3;
@@ -59,6 +68,7 @@ mod body;
 mod bound;
 mod boxes;
 mod capsule;
+mod cluster;
 mod contact;
 mod convex;
 mod coulomb;
@@ -72,6 +82,8 @@ mod glide;
 mod heap;
 mod hulls;
 mod hunt;
+mod joint;
+mod jointed;
 mod kicks;
 mod ledges;
 mod mechanics;
@@ -100,6 +112,8 @@ use drive::Drive;
 pub use drive::{Between, Key, Keyframes, Track};
 pub use forces::Forces;
 
+use joint::Joints;
+pub use joint::{Frame, Hinge, Joint, JointKind};
 use ledges::Ledge;
 pub use part::{Part, SolidPart, Stretch, Table};
 pub use scratch::RigidScratch;
@@ -171,6 +185,7 @@ pub struct Rigid {
     ledges: Vec<Option<Ledge>>,
     /// Parts as bodies meet them by their pieces; empty where none do.
     stills: Vec<Still>,
+    joints: Joints,
     laws: Laws,
     gravity: DVec3,
     strength: f64,
@@ -214,7 +229,19 @@ impl Rigid {
         if sink.is_nan() {
             return Err(WorldError::BadNumber { field: "sink", value: sink, expected: "a height, or -∞" });
         }
-        Ok(Self { specs, parts, ledges, stills, laws, gravity, strength, accuracy, sink, duration })
+        Ok(Self {
+            specs,
+            parts,
+            ledges,
+            stills,
+            joints: Joints::default(),
+            laws,
+            gravity,
+            strength,
+            accuracy,
+            sink,
+            duration,
+        })
     }
 
     /// Has a body go its own way from time 0 on, whatever it meets: others feel it with the velocity that it has. Its
@@ -266,14 +293,20 @@ impl Rigid {
             tree.meeting(&boxes, &boxes[k], &mut near);
             let is_driven = |j: usize| self.specs[j].is_driven();
             let earlier = near.iter().map(|&j| j as usize).filter(|&j| j < k && bodies[j].path.t == body.path.t);
-            for j in earlier.filter(|&j| !(is_driven(j) && is_driven(k))) {
+            let are_apart = |j: usize| !(is_driven(j) && is_driven(k) || self.is_joined([j, k], [&bodies[j], body]));
+            for j in earlier.filter(|&j| are_apart(j)) {
                 let depth = -self.gap([j, k], [&bodies[j], body]);
                 if depth > OVERLAP * self.specs[j].size.min(self.specs[k].size) {
                     return Err(WorldError::BodiesOverlap { a: j, b: k, depth });
                 }
             }
         }
-        Ok(State::new(bodies))
+        self.check_joints(&bodies)?;
+        let mut state = State::new(bodies);
+        for [a, b] in self.joints.pairs() {
+            state.links.insert(a as u32, b as u32);
+        }
+        Ok(state)
     }
 
     fn check_start(&self, body: usize, start: &Start) -> Result<(), WorldError> {

@@ -15,7 +15,7 @@
 //! more (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)).
 
 use super::blocks::Blocks;
-use super::coulomb::{Contact, Member};
+use super::coulomb::{Contact, Hold, Member};
 use glam::{DMat3, DVec3};
 
 /// Compliance of a contact over its response to an impulse. Default 1e-7: smaller values lose digits to rounding,
@@ -96,8 +96,12 @@ struct Projected {
 
 impl Projected {
     /// What a contact answers that sticks.
-    fn sticking(impulse: DVec3, stiff: f64) -> Self {
-        Self { impulse, stiffness: DMat3::IDENTITY * stiff, sliding: None }
+    fn sticking(c: &Contact, impulse: DVec3, stiff: f64) -> Self {
+        let (impulse, ways) = match c.hold {
+            Hold::Brake(_) => (c.normal * impulse.dot(c.normal), outer(c.normal, c.normal)),
+            _ => (impulse, DMat3::IDENTITY),
+        };
+        Self { impulse, stiffness: ways * stiff, sliding: None }
     }
 
     /// Whether friction has turned round since `before`: the slip went through none then, and the contact is tried
@@ -181,7 +185,7 @@ impl Newton {
                 self.impulses.push(lawful.impulse);
                 *p = if lawful.reverses(p, c) {
                     let stiff = stiffness(c, COMPLIANCE);
-                    Projected::sticking(c.impulse - wrong * stiff, stiff)
+                    Projected::sticking(c, c.impulse - wrong * stiff, stiff)
                 } else {
                     lawful
                 };
@@ -361,6 +365,9 @@ fn moved(m: &Member, [v, w]: [DVec3; 2]) -> f64 {
 fn is_lawful(c: &Contact, members: &[Member], enough: f64) -> bool {
     let n = c.normal;
     let trial = c.impulse - c.wrong(members) / c.compliance();
+    if c.hold != Hold::Coulomb {
+        return (c.held(trial).0 - c.impulse).length() * c.compliance() <= enough;
+    }
     let load = trial.dot(n).max(0.0);
     let across = trial - n * trial.dot(n);
     let lawful = if load > 0.0 { n * load + across.clamp_length_max(c.friction * load) } else { DVec3::ZERO };
@@ -374,11 +381,21 @@ fn stiffness(c: &Contact, compliance: f64) -> f64 {
     1.0 / (compliance * c.compliance())
 }
 
+/// What a joint makes of the impulse that would hold it.
+fn joint(c: &Contact, trial: DVec3, stiff: f64) -> Projected {
+    let (impulse, gives_way) = c.held(trial);
+    let open = Projected { impulse, sliding: impulse.try_normalize(), ..OPEN };
+    if gives_way { open } else { Projected::sticking(c, impulse, stiff) }
+}
+
 /// What Coulomb's law makes of a contact with the velocity `wrong` that is not to be.
 fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
     let stiff = stiffness(c, COMPLIANCE);
     let n = c.normal;
     let trial = c.impulse - wrong * stiff;
+    if c.hold != Hold::Coulomb {
+        return joint(c, trial, stiff);
+    }
     let load = trial.dot(n);
     if load.is_nan() || load <= 0.0 {
         return OPEN;
@@ -394,7 +411,7 @@ fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
         return slides(-s, DMat3::ZERO);
     }
     if side <= most {
-        return Projected::sticking(trial, stiff);
+        return Projected::sticking(c, trial, stiff);
     }
     let t = across / side;
     slides(t, (DMat3::IDENTITY - outer(n, n) - outer(t, t)) * (most / side))
@@ -405,6 +422,9 @@ fn cone(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
     let stiff = stiffness(c, compliance);
     let (n, friction) = (c.normal, c.friction);
     let trial = c.impulse - wrong * stiff;
+    if c.hold != Hold::Coulomb {
+        return joint(c, trial, stiff);
+    }
     let along = trial.dot(n);
     let across = trial - n * along;
     let side = across.length();
@@ -412,7 +432,7 @@ fn cone(c: &Contact, wrong: DVec3, compliance: f64) -> Projected {
         return OPEN;
     }
     if side <= friction * along {
-        return Projected::sticking(trial, stiff);
+        return Projected::sticking(c, trial, stiff);
     }
     let (t, narrow) = (across / side, 1.0 / (1.0 + friction * friction));
     let direction = n + t * friction;

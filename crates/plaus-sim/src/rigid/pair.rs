@@ -7,6 +7,7 @@
 
 use super::body::{Motion, Phase, Pose, Turning};
 use super::capsule::capsules;
+use super::coulomb::Member;
 use super::scratch::{KEEP, PUSH, RigidScratch, TOUCHING, pair_contact};
 use super::strike::{Point, strike};
 use super::touch::{PairTouch, to_middle};
@@ -170,16 +171,8 @@ impl Rigid {
         let [s, t] = pair.map(|k| &self.specs[k]);
         let (time, hurried) = (a.path.t, a.is_hurried() || b.is_hurried());
         let (p, q) = (a.pose(), b.pose());
-        let law = self.pair_law(pair);
-        let (settles, within) = (self.pair_settle_speed(pair), TOUCHING * self.pair_gap(pair));
         let mut members = [RigidScratch::member(s, &p.r, p.v, p.w), RigidScratch::member(t, &q.r, q.v, q.w)];
-        let mut points = Vec::new();
-        self.for_pair_touches(pair, [&p, &q], within, |touch| {
-            let contact = pair_contact(&members, [0, 1], to_middle(touch.arms, [p.x, q.x]), touch.normal, law.friction);
-            let point = Point::new(contact, -touch.rate(&p, &q), law, settles, hurried, Other::Body(pair[1]));
-            // A first contact is struck however slowly; what is slow later is for the steps of lasting contact.
-            points.push(Point { least: if linked && point.lasting { f64::INFINITY } else { 0.0 }, ..point });
-        });
+        let mut points = self.points_of_pair(pair, [a, b], &members, linked);
         if !points.iter().any(Point::is_struck) {
             // Found again and again without an approach, as where two pairs of points are equally near: their group is
             // to deal with it.
@@ -200,6 +193,27 @@ impl Rigid {
             point.report(time, pair[0], p.x, report);
         }
         Some(points.iter().all(|point| point.lasting))
+    }
+
+    /// The points at which two bodies touch, as an impact sees them.
+    pub(super) fn points_of_pair(
+        &self,
+        pair: [usize; 2],
+        [a, b]: [&Turning; 2],
+        members: &[Member; 2],
+        linked: bool,
+    ) -> Vec<Point> {
+        let (p, q, hurried) = (a.pose(), b.pose(), a.is_hurried() || b.is_hurried());
+        let law = self.pair_law(pair);
+        let (settles, within) = (self.pair_settle_speed(pair), TOUCHING * self.pair_gap(pair));
+        let mut points = Vec::new();
+        self.for_pair_touches(pair, [&p, &q], within, |touch| {
+            let contact = pair_contact(members, [0, 1], to_middle(touch.arms, [p.x, q.x]), touch.normal, law.friction);
+            let point = Point::new(contact, -touch.rate(&p, &q), law, settles, hurried, Other::Body(pair[1]));
+            // A first contact is struck however slowly; what is slow later is for the steps of lasting contact.
+            points.push(Point { least: if linked && point.lasting { f64::INFINITY } else { 0.0 }, ..point });
+        });
+        points
     }
 
     /// Has both bodies look anew at what they touch.

@@ -29,7 +29,12 @@ pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(V
         return None;
     };
     let spec = &world.specs[place.body];
-    if !spec.is_compound() || !group.pairs.is_empty() || !group.parting.is_empty() || spec.is_driven() {
+    if !group.rows.is_empty()
+        || !spec.is_compound()
+        || !group.pairs.is_empty()
+        || !group.parting.is_empty()
+        || spec.is_driven()
+    {
         return None;
     }
     if spec.torque() != DVec3::ZERO {
@@ -80,6 +85,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
         return false;
     }
     if let [place] = &group.places[..]
+        && group.rows.is_empty()
         && world.specs[place.body].torque() == DVec3::ZERO
     {
         let spec = &world.specs[place.body];
@@ -108,12 +114,6 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
                 && is_above(group.touches.iter().map(|t| t.1.arm), spec.pull / spec.strength);
         }
     }
-    // What contacts cannot stop within a step is not at rest.
-    group.prepare(world, |spec, p| {
-        let (v, w) = (p.start.v, p.start.w);
-        if spec.is_driven() { (v, w) } else { spec.kicked(&p.start.r, [v, w], h) }
-    });
-    group.leave_out_distant(world);
     let limit = world.accuracy.rest_residual * world.strength * h;
     let fastest = |p: &Place| p.start.v.length().max(p.start.w.length() * world.specs[p.body].reach);
     let fastest = group.places.iter().map(fastest).fold(0.0, f64::max);
@@ -121,8 +121,31 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     // What is carried by a corner of a pile near tipping is found slowly.
     let patience = if group.has_cuboids_in_touch() { PATIENCE } else { 1 };
     let enough = Enough::new(0.03 * limit / f64::from(patience), world.strength * h);
-    solve(&mut group.contacts, &mut group.members, &mut group.newton, enough, world.accuracy.sweeps * patience);
-    group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= residual)
+    // What contacts cannot stop within a step is not at rest; nor is what swings, where it turns round.
+    let sweeps = world.accuracy.sweeps * patience;
+    if !are_stopped(world, group, [h, 1.0, residual], enough, sweeps) {
+        return false;
+    }
+    let held = NO_MOTION * world.strength * h;
+    group.rows.is_empty() || are_stopped(world, group, [h, 0.0, held], Enough::new(0.1 * held, held), sweeps)
+}
+
+/// Whether contacts leave bodies at most this speed, the last of the numbers, after a kick of `h` seconds and with this
+/// part of their velocities before.
+fn are_stopped(
+    world: &Rigid,
+    group: &mut RigidScratch,
+    [h, part, most]: [f64; 3],
+    enough: Enough,
+    sweeps: u32,
+) -> bool {
+    group.prepare(world, h, |spec, p| {
+        let (v, w) = (p.start.v * part, p.start.w * part);
+        if spec.is_driven() { (v, w) } else { spec.kicked(&p.start.r, [v, w], h) }
+    });
+    group.leave_out_distant(world);
+    solve(&mut group.contacts, &mut group.members, &mut group.newton, enough, sweeps);
+    group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= most)
 }
 
 /// Part of a motion that may be left where contacts are to stop it. Default 0.1: friction that cannot leaves all of it.

@@ -2,6 +2,7 @@
 
 use super::body::{Phase, Pose, Turning};
 use super::coulomb::{Contact, Member, response};
+use super::joint::Row;
 use super::newton::Newton;
 use super::touch::{PairTouch, Touch};
 use super::tumble::{drift, rotation};
@@ -38,7 +39,11 @@ pub struct RigidScratch {
     pub(super) pairs: Vec<([usize; 2], PairTouch)>,
     /// Points between bodies in lasting contact that touch but separate.
     pub(super) parting: Vec<([usize; 2], PairTouch)>,
-    /// Of the touches first, then of the pairs.
+    /// Rows of joints.
+    pub(super) rows: Vec<Row>,
+    /// Limits of joints that are not touched, or are just leaving.
+    pub(super) stops: Vec<Row>,
+    /// Of the touches first, then of the pairs, then of the joints.
     pub(super) contacts: Vec<Contact>,
     /// The same with the impulses of a step's first kick.
     pub(super) firsts: Vec<Contact>,

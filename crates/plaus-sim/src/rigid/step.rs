@@ -10,6 +10,7 @@
 
 use super::body::{Momentum, Motion, Phase, Turning};
 use super::coulomb::{Contact, Member, response};
+use super::jointed::SWING;
 use super::part::Part;
 use super::rest;
 use super::scratch::{Place, RigidScratch, TOUCHING};
@@ -62,7 +63,11 @@ pub(super) fn settle(
         return;
     }
     scratch.gather(world, group, bodies, links);
-    if let ([place], [(_, touch)], []) = (&scratch.places[..], &scratch.touches[..], &scratch.leaving[..])
+    if !scratch.rows.is_empty() && world.strike_stops(scratch, bodies) {
+        scratch.gather(world, group, bodies, links);
+    }
+    if let ([place], [(_, touch)], [], []) =
+        (&scratch.places[..], &scratch.touches[..], &scratch.leaving[..], &scratch.rows[..])
         && glide::begin(world, place.body, &mut bodies[place.body], touch)
     {
         return;
@@ -77,6 +82,7 @@ pub(super) fn settle(
         scratch.lie_down(world, bodies);
         return;
     }
+    h = scratch.until_stop(world, h);
     if let Some((foot, shift, turn)) = rest::lies_nearly_flat(world, scratch) {
         let body = &mut bodies[scratch.places[0].body];
         body.path.x += shift;
@@ -140,9 +146,10 @@ impl RigidScratch {
         driven.map(|p| bodies[p.body].expiry - bodies[p.body].path.t).fold(h, f64::min)
     }
 
-    /// Whether some member goes its own way, so that energy may come and go.
-    pub(super) fn has_driven(&self, world: &Rigid) -> bool {
-        self.places.iter().any(|p| world.specs[p.body].is_driven())
+    /// Whether energy may come and go: some member goes its own way, or joints hold some. The energy of what swings
+    /// goes up and down by the steps' error; to take only would slow it down.
+    pub(super) fn is_open(&self, world: &Rigid) -> bool {
+        !self.rows.is_empty() || self.places.iter().any(|p| world.specs[p.body].is_driven())
     }
 
     fn step_length(&self, world: &Rigid) -> f64 {
@@ -183,7 +190,7 @@ impl RigidScratch {
         if world.strength == 0.0 && !time.is_finite() {
             time = world.duration;
         }
-        world.accuracy.step * time
+        world.accuracy.step * if self.rows.is_empty() { time } else { SWING * time }
     }
 
     /// Whether the drift of a step brings a point back that is just leaving, and by what part the step is too long
@@ -214,8 +221,9 @@ impl RigidScratch {
         Member { inverse_mass, inverse_inertia, v, w, reach: spec.reach, last: [DVec3::ZERO; 2] }
     }
 
-    /// Members at their starts with the velocities that `free` gives, and contacts without impulses.
-    pub(super) fn prepare(&mut self, world: &Rigid, free: impl Fn(&Spec, &Place) -> (DVec3, DVec3)) {
+    /// Members at their starts with the velocities that `free` gives, and contacts without impulses; those are to act
+    /// for so many seconds.
+    pub(super) fn prepare(&mut self, world: &Rigid, time: f64, free: impl Fn(&Spec, &Place) -> (DVec3, DVec3)) {
         self.members.clear();
         self.members.extend(self.places.iter().map(|p| {
             let spec = &world.specs[p.body];
@@ -233,6 +241,7 @@ impl RigidScratch {
             let arms = to_middle(t.arms, [a, b].map(|k| self.places[*k].start.x));
             self.contacts.push(self.pair_contact(world, [*a, *b], arms, t.normal));
         }
+        self.prepare_joints(world, time);
     }
 
     /// Rest: without velocity, flat where the ground is, and lifted out of what overlap steps have left.
@@ -246,7 +255,7 @@ impl RigidScratch {
             let tidy = TIDY * world.specs[p.body].gap;
             let (low, high) =
                 touches().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), t| (l.min(t.gap), h.max(t.gap)));
-            if (low >= -tidy && high - low <= tidy) || self.has_cuboids_in_touch() {
+            if (low >= -tidy && high - low <= tidy) || self.has_cuboids_in_touch() || !self.rows.is_empty() {
                 continue;
             }
             if let Some((shift, turn)) = rest::flatten(touches()) {
@@ -291,6 +300,7 @@ impl RigidScratch {
             bodies[p.body].passing += passing;
             bodies[q.body].passing += passing;
         }
+        self.pass_joints(bodies, h);
     }
 }
 

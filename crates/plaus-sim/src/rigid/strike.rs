@@ -33,6 +33,8 @@ pub(super) struct Point {
     /// Whether the contact lasts from here on.
     pub(super) lasting: bool,
     pub(super) other: Other,
+    /// Whether it is a contact, and no limit of a joint.
+    pub(super) is_outer: bool,
 }
 
 /// Approach, over the speed below which a bounce lasts, that is left to the solver of lasting contacts. Default 0.1;
@@ -47,7 +49,7 @@ impl Point {
         let lasting = law.restitution * approach <= settles || hurried && law.restitution < 1.0;
         let restitution = if lasting { 0.0 } else { law.restitution };
         let least = if lasting { LEFT * settles } else { 0.0 };
-        Self { contact, restitution, least, approach, lasting, other }
+        Self { contact, restitution, least, approach, lasting, other, is_outer: true }
     }
 
     /// Tells of the impulse, if it was struck.
@@ -98,15 +100,21 @@ pub(super) fn strike(points: &mut [Point], members: &mut [Member], turn: f64) {
         let struck = first.contact;
         struck.push(members, struck.impulse);
     } else {
-        strike_at_once(points, members);
+        strike_at_once(points, &mut [], members);
     }
 }
 
-fn strike_at_once(points: &mut [Point], members: &mut [Member]) {
+/// The same of members that joints hold, whose rows keep their velocities at 0.
+pub(super) fn strike_joined(points: &mut [Point], joints: &mut [Contact], members: &mut [Member]) {
+    points.sort_by(|p, q| q.approach.total_cmp(&p.approach));
+    strike_at_once(points, joints, members);
+}
+
+fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [Member]) {
     let start: Vec<Member> = members.to_vec();
     let before: Vec<DVec3> = points.iter().map(|p| p.contact.velocity(members)).collect();
     let fastest = before.iter().map(|u| u.length()).fold(0.0, f64::max);
-    let mut contacts: Vec<Contact> = points.iter().map(|p| p.contact).collect();
+    let mut contacts: Vec<Contact> = points.iter().map(|p| p.contact).chain(joints.iter().copied()).collect();
     let mut newton = Newton::default();
     let mut makes_energy = |part: f64, members: &mut [Member]| {
         members.copy_from_slice(&start);
@@ -115,6 +123,7 @@ fn strike_at_once(points: &mut [Point], members: &mut [Member]) {
             c.impulse = DVec3::ZERO;
             c.target = if p.is_struck() { part * p.restitution * p.approach } else { 0.0 };
         }
+        contacts[points.len()..].copy_from_slice(joints);
         solve(&mut contacts, members, &mut newton, Enough::new(SOLVED * fastest, fastest), SWEEPS);
         let (mut energy, mut scale) = (0.0, 0.0);
         for (c, u) in contacts.iter().zip(&before) {
@@ -131,8 +140,10 @@ fn strike_at_once(points: &mut [Point], members: &mut [Member]) {
         }
         makes_energy(low, members);
     }
-    for (p, c) in points.iter_mut().zip(contacts) {
-        p.contact = c;
+    let (of_points, of_joints) = contacts.split_at(points.len());
+    joints.copy_from_slice(of_joints);
+    for (p, c) in points.iter_mut().zip(of_points) {
+        p.contact = *c;
     }
 }
 

@@ -1,0 +1,229 @@
+//! Joints within the steps of lasting contact: rows beside those of contacts, which hold whatever the load.
+//!
+//! The impulses of the first kick are such that what a joint holds together is together where the drift ends, to
+//! [`CLOSED`] of the gap at which bodies touch, wherever it was before: so nothing drifts apart, however long. Those of
+//! the second kick leave it no velocity. That is RATTLE (Andersen, J. Comput. Phys. 52 (1983)), of second order and
+//! symplectic as long as steps are even; both bodies get their impulses at one point, so linear and angular momentum
+//! stay to rounding. Half way through a step what is held is apart by the sag of a curve, `(ω h)²/8` of its arm.
+//!
+//! A hinge holds two points of its axis, a weld three; their redundant parts share the load. Dry friction is a row
+//! along one direction at a lever from the axis, of limited size; a limit is a contact without friction there.
+
+use super::Rigid;
+use super::body::{Pose, Turning};
+use super::coulomb::{Contact, Hold, Member, response};
+use super::joint::{Bond, FIXED, Part, Row, Seat};
+use super::scratch::{KEEP, PUSH, Place, RigidScratch, TOUCHING};
+use super::touch::to_middle;
+use glam::{DMat3, DVec3};
+
+/// Distance that a step may leave between what a joint holds together, over the gap at which its bodies touch. Default
+/// 1e-3; what the solver leaves is below.
+const CLOSED: f64 = 1e-3;
+
+/// Passes over the end of a step with joints: each leaves about half of the angle that a step turns by.
+pub(super) const PASSES_OF_JOINTS: usize = 12;
+
+/// Length of a step with joints over that of other steps. Default 0.25: half way through a step at the standard preset
+/// a joint is apart by about a thousandth of its arm.
+pub(super) const SWING: f64 = 0.25;
+
+/// How often a step that would pass a limit is aimed at it anew.
+const AIMS: usize = 8;
+
+/// How near to where a limit counts as touched a step aims, over the gap. Default 0.5: below [`KEEP`], so that it is
+/// touched then.
+const AIMED: f64 = 0.5;
+
+/// A row of a joint between members, or a member and the fixed world.
+pub(super) fn row_contact(members: &[Member], row: &Row, seat: &Seat, hold: Hold) -> Contact {
+    let response = |k: usize, arm: DVec3| response(members[k].inverse_mass, &members[k].inverse_inertia, arm);
+    let other = row.b.map_or(DMat3::ZERO, |b| response(b, seat.arms[1]));
+    let k = response(row.a, seat.arms[0]) + other;
+    let mut contact = Contact::new(row.a, row.b, seat.arms, seat.normal, 0.0, k);
+    contact.hold = hold;
+    contact
+}
+
+impl Bond {
+    /// Where a row is with its bodies in these places; both get their impulse at one point.
+    pub(super) fn seat(&self, part: Part, poses: [&Pose; 2]) -> Seat {
+        let seat = match part {
+            Part::Point(k) => Seat { normal: DVec3::Z, ..self.point(k, poses) },
+            Part::Brake | Part::Stop { is_high: false } => self.lever(poses),
+            Part::Stop { is_high: true } => {
+                let seat = self.lever(poses);
+                Seat { normal: -seat.normal, ..seat }
+            }
+        };
+        Seat { arms: to_middle(seat.arms, poses.map(|p| p.x)), ..seat }
+    }
+
+    /// What impulses a row may have within so many seconds.
+    pub(super) fn hold(&self, part: Part, time: f64) -> Hold {
+        match part {
+            Part::Point(_) => Hold::Point,
+            Part::Brake => Hold::Brake(self.hinge().map_or(0.0, |h| h.friction) * time / self.lever),
+            Part::Stop { .. } => Hold::Coulomb,
+        }
+    }
+
+    /// How far a limit is, and how fast it comes nearer or goes away, at the lever; and its restitution.
+    pub(super) fn stop(&self, is_high: bool, poses: [&Pose; 2]) -> (f64, f64, f64) {
+        let rate = self.rate(poses) * self.lever;
+        let restitution = self.hinge().map_or(0.0, |h| h.restitution);
+        (self.room(is_high, poses), if is_high { -rate } else { rate }, restitution)
+    }
+}
+
+impl Rigid {
+    /// Gap at which a limit of a joint is touched.
+    pub(super) fn stop_gap(&self, bond: &Bond) -> f64 {
+        self.specs[bond.joint.body].gap
+    }
+
+    /// Rebound at its lever up to which a joint stays at a limit.
+    pub(super) fn stop_settle_speed(&self, bond: &Bond, restitution: f64) -> f64 {
+        let settle = (self.accuracy.settle * (1.0 - restitution)).max((2.0 * self.accuracy.gap).sqrt());
+        settle * self.specs[bond.joint.body].speed
+    }
+}
+
+impl RigidScratch {
+    /// The poses of a joint's bodies, taken from their places by `pose`.
+    fn poses<'p>(&'p self, row: &Row, pose: impl Fn(&'p Place) -> &'p Pose) -> [&'p Pose; 2] {
+        [pose(&self.places[row.a]), row.b.map_or(&FIXED, |b| pose(&self.places[b]))]
+    }
+
+    /// Finds the rows of the joints that hold a group's bodies: all of their points, their brakes, and the limits that
+    /// stay touched. Those that do not are left in `stops`.
+    pub(super) fn gather_joints(&mut self, world: &Rigid, group: &[u32], bodies: &[Turning]) {
+        let (mut rows, mut stops) = (std::mem::take(&mut self.rows), std::mem::take(&mut self.stops));
+        let at = |k: usize| self.places.iter().position(|p| p.body == k);
+        for &k in group {
+            for j in world.bonds_of(k as usize, bodies) {
+                let bond = &world.joints.bonds[j];
+                let Some(a) = at(k as usize).filter(|_| bond.joint.body == k as usize) else { continue };
+                let row = |part| Row { joint: j, part, a, b: bond.joint.other.and_then(at) };
+                rows.extend((0..bond.points.len()).map(|k| row(Part::Point(k))));
+                if bond.hinge().is_some_and(|h| h.friction > 0.0) {
+                    rows.push(row(Part::Brake));
+                }
+                if bond.limits().is_some() {
+                    for is_high in [false, true] {
+                        let stop = row(Part::Stop { is_high });
+                        let (room, rate, e) = bond.stop(is_high, self.poses(&stop, |p| &p.start));
+                        let limit = world.stop_settle_speed(bond, e);
+                        let lasts = room <= TOUCHING * world.stop_gap(bond) && rate <= limit && -rate * e <= limit;
+                        if lasts { &mut rows } else { &mut stops }.push(stop);
+                    }
+                }
+            }
+        }
+        (self.rows, self.stops) = (rows, stops);
+    }
+
+    /// How far at most the ends of a step may be off where joints hold, in m.
+    pub(super) fn closed(&self, world: &Rigid) -> f64 {
+        let gap = |row: &Row| CLOSED * world.stop_gap(&world.joints.bonds[row.joint]);
+        self.rows.iter().map(gap).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Adds the rows of joints to the contacts of members at their starts; brakes act for so many seconds.
+    pub(super) fn prepare_joints(&mut self, world: &Rigid, time: f64) {
+        for row in &self.rows {
+            let bond = &world.joints.bonds[row.joint];
+            let seat = bond.seat(row.part, self.poses(row, |p| &p.start));
+            self.contacts.push(row_contact(&self.members, row, &seat, bond.hold(row.part, time)));
+        }
+    }
+
+    /// Says what each row is to bring about over a drift of `h` seconds whose ends are `ends`: that its points meet
+    /// there. By how much, over what is allowed, they do not.
+    pub(super) fn aim_joints(&mut self, world: &Rigid, h: f64, ends: impl Fn(&Place, &Member) -> Pose) -> f64 {
+        let first = self.contacts.len() - self.rows.len();
+        let mut worst = 0.0_f64;
+        for (c, row) in self.contacts[first..].iter_mut().zip(&self.rows) {
+            let bond = &world.joints.bonds[row.joint];
+            let end = |k: usize| ends(&self.places[k], &self.members[k]);
+            let ends = [end(row.a), row.b.map_or(FIXED, end)];
+            let ends = [&ends[0], &ends[1]];
+            let gap = world.stop_gap(bond);
+            match row.part {
+                Part::Point(k) => {
+                    let apart = bond.point(k, ends).apart;
+                    worst = worst.max(apart.length() / (CLOSED * gap));
+                    c.bias = apart / h - c.velocity(&self.members);
+                }
+                Part::Stop { is_high } => {
+                    let starts = [row.a].into_iter().chain(row.b).map(|k| &self.places[k].start);
+                    let mut starts = starts.chain([&FIXED]);
+                    let room = bond.room(is_high, std::array::from_fn(|_| starts.next().unwrap_or(&FIXED)));
+                    let spec = &world.specs[bond.joint.body];
+                    c.target = ((KEEP * gap - room) / h).min(PUSH * world.accuracy.settle * spec.speed);
+                    let mean = (bond.room(is_high, ends) - room) / h;
+                    c.bias = c.normal * (mean - c.velocity(&self.members).dot(c.normal));
+                }
+                Part::Brake => {}
+            }
+        }
+        worst
+    }
+
+    /// A row of a joint at the end of a drift, and whether it goes on: a limit does that is still touched. `time` is
+    /// how long a brake acts.
+    pub(super) fn row_at_end(&self, world: &Rigid, row: &Row, time: f64) -> (Contact, bool) {
+        let bond = &world.joints.bonds[row.joint];
+        let poses = self.poses(row, |p| &p.end);
+        let contact = row_contact(&self.members, row, &bond.seat(row.part, poses), bond.hold(row.part, time));
+        let goes_on = match row.part {
+            Part::Stop { is_high } => bond.room(is_high, poses) <= TOUCHING * world.stop_gap(bond),
+            _ => true,
+        };
+        (contact, goes_on)
+    }
+
+    /// A step that ends where the first of the limits is reached that it would pass. Within a step the room is nearly a
+    /// parabola of time.
+    pub(super) fn until_stop(&mut self, world: &Rigid, mut h: f64) -> f64 {
+        if self.stops.is_empty() {
+            return h;
+        }
+        for _ in 0..AIMS {
+            self.drift(world, h);
+            let mut first = h;
+            for row in &self.stops {
+                let Part::Stop { is_high } = row.part else { continue };
+                let bond = &world.joints.bonds[row.joint];
+                let aim = AIMED * world.stop_gap(bond);
+                let (room, rate, _) = bond.stop(is_high, self.poses(row, |p| &p.start));
+                let end = bond.room(is_high, self.poses(row, |p| &p.end));
+                if end >= 0.0 {
+                    continue;
+                }
+                // room + rate t + bend t² is the aim, for the last time before the end.
+                let (room, bend) = (room - aim, ((end - room) / h - rate) / h);
+                let root = (rate * rate - 4.0 * bend * room).max(0.0).sqrt();
+                let late = if rate > 0.0 { -(rate + root) / (2.0 * bend) } else { 2.0 * room / (root - rate) };
+                first = first.min(if late > 0.0 && late < h { late } else { 0.5 * h });
+            }
+            if first == h {
+                break;
+            }
+            h = first;
+        }
+        h
+    }
+
+    /// Notes what the impulses of joints between two bodies add to their angular momenta on the way.
+    pub(super) fn pass_joints(&self, bodies: &mut [Turning], h: f64) {
+        let first = self.contacts.len() - self.rows.len();
+        for ((c, early), row) in self.contacts[first..].iter().zip(&self.firsts[first..]).zip(&self.rows) {
+            let Some(b) = row.b else { continue };
+            let [p, q] = [row.a, b].map(|k| &self.places[k]);
+            let passing = (p.end.v - q.end.v).cross(early.impulse + c.impulse) * (0.5 * h);
+            bodies[p.body].passing += passing;
+            bodies[q.body].passing += passing;
+        }
+    }
+}
