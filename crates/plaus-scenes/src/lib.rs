@@ -12,7 +12,7 @@
 //! let ball = Ball2d::new(config)?;
 //! let moves = ball.moves(&scenario.sampler.rules)?;
 //! let mut chain = Chain::start(&ball, &moves, Seed(scenario.sampler.seed).chain(0))?;
-//! while ball.class(chain.state()).is_none() {
+//! while ball.class(chain.state().by_ref()).is_none() {
 //!     chain.step()?;
 //! }
 //! let animation = ball.animate(&chain.state().draw)?;
