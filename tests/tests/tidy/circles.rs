@@ -56,7 +56,11 @@ fn imports(module: &[String], text: &str, modules: &BTreeSet<Module>) -> BTreeSe
         let Some(at) = statement.rfind("use ").filter(|&at| at == 0 || statement[..at].ends_with([' ', '}'])) else {
             continue;
         };
-        for path in paths_of(&statement[at + "use ".len()..]) {
+        let tree = &statement[at + "use ".len()..];
+        if !tree.chars().all(|c| c.is_alphanumeric() || "_:{}, *".contains(c)) {
+            continue; // the word in a text
+        }
+        for path in paths_of(tree) {
             let mut names = path.iter().map(String::as_str).peekable();
             let mut base: Module = match names.peek() {
                 Some(&"crate") => Vec::new(),
