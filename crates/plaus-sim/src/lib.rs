@@ -60,5 +60,5 @@ pub mod worlds;
 pub use accuracy::{Accuracy, Preset};
 pub use error::WorldError;
 pub use material::{Law, Laws, Material};
-pub use simulate::{Outcome, Scratch};
+pub use simulate::{Outcome, Scratch, work};
 pub use state::State;

@@ -9,6 +9,7 @@ use crate::mechanics::{Impact, Mechanics, Other};
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::State;
 use crate::trace::Observer;
+use std::cell::Cell;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -72,8 +73,32 @@ enum Meeting {
     Bodies(u32, u32),
 }
 
+thread_local! {
+    static WORK: Cell<u64> = const { Cell::new(0) };
+}
+
+/// How many events were taken on this thread so far, in all simulations: what a piece of work costs is by how much this
+/// grows, the same on every machine.
+#[must_use]
+pub fn work() -> u64 {
+    WORK.get()
+}
+
 /// Runs until `until` (at most the world's duration) or until the run is over earlier, and says how it ended.
 pub fn simulate<M: Mechanics>(
+    mechanics: &M,
+    state: &mut State<M::Body>,
+    scratch: &mut Scratch<M::Scratch>,
+    until: f64,
+    observer: &mut impl Observer<M>,
+) -> Outcome {
+    let before = state.counts.events;
+    let outcome = go(mechanics, state, scratch, until, observer);
+    WORK.set(WORK.get() + (state.counts.events - before));
+    outcome
+}
+
+fn go<M: Mechanics>(
     mechanics: &M,
     state: &mut State<M::Body>,
     scratch: &mut Scratch<M::Scratch>,

@@ -70,6 +70,10 @@ pub struct Sampler {
     /// then kept. Unset: whichever measured better for the scene (dice: yes; others: no). Without a warm-up, or for
     /// moves that are rarely tried in it, the configured sizes stay.
     pub adapt: Option<bool>,
+    /// Whether the warm-up also learns how often to make each move, from how far it leads for its cost. This replaces
+    /// part of the configured weights and is then kept. A move that was never accepted is hardly made any more. Only
+    /// where `adapt` is on. Unset: no.
+    pub adapt_weights: Option<bool>,
     /// How draws are made. Every method samples the same law. Unset: `chain`.
     pub method: Option<Method>,
     /// Exact acceptance, or the paper's as printed.
@@ -125,6 +129,7 @@ impl Default for Sampler {
             thin: 1,
             checkpoint_every: 20_000,
             adapt: None,
+            adapt_weights: None,
             method: None,
             rules: Rules::default(),
             tempering: Tempering::default(),
@@ -192,6 +197,12 @@ impl Scenario {
     #[must_use]
     pub fn adapts(&self) -> bool {
         self.sampler.adapt.unwrap_or_else(|| self.world.adapts())
+    }
+
+    /// Whether moves' weights are learnt in it too.
+    #[must_use]
+    pub fn weighs(&self) -> bool {
+        self.adapts() && self.sampler.adapt_weights.unwrap_or(false)
     }
 
     /// How draws are made, or that a trial decides it.
