@@ -5,7 +5,7 @@ use plaus_dist::{Gaussian, LogDensity, LogPotential, Seed, Stream, math};
 use plaus_mcmc::diagnose::integrated_autocorrelation_time;
 use plaus_mcmc::library::{RedrawAll, Sizes, StepAll};
 use plaus_mcmc::{
-    Chain, Law, Mixture, ModelError, Move, Recipe, Simulated, StateOf, Target, Var, Variables, Vars, vars,
+    Chain, Law, Mixture, ModelError, Move, Recipe, Simulated, StateRefOf, Target, Var, Variables, Vars, vars,
 };
 use std::cell::Cell;
 
@@ -64,7 +64,7 @@ impl Target for Costly {
     fn simulate(
         &self,
         draw: &[f64; 3],
-        _: Option<&StateOf<Self>>,
+        _: Option<StateRefOf<'_, Self>>,
         _: LogPotential,
         memory: &mut Memory,
     ) -> Result<Simulated<[f64; 3]>, ModelError> {
@@ -88,7 +88,7 @@ impl Target for Costly {
         WORK.get()
     }
 
-    fn numbers(&self, state: &StateOf<Self>) -> Vec<f64> {
+    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
         state.draw.to_vec()
     }
 }
