@@ -83,8 +83,8 @@ pub(crate) fn scalar_table(diagnosis: &Diagnosis, most: usize) -> String {
     lay_out(&rows)
 }
 
-/// Each move's acceptance, over all chains and per chain where there are few; also, on average over chains, how often it
-/// is made since the warm-up, where that was learnt there.
+/// Each move's acceptance, over all chains and per chain where there are few; also, on average over chains, how often
+/// it is made since the warm-up, where that was learnt there.
 pub(crate) fn move_table(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
     let tally = &diagnosis.tally;
     let few = tally.chains.len() <= 8;

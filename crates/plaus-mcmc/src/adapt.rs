@@ -277,8 +277,8 @@ fn remade<T: Target>(kernel: &dyn Move<T>, scales: &Scales, id: MoveId) -> Optio
 }
 
 impl<T: Target> Mixture<T> {
-    /// The same moves at these scales, with the probabilities learnt with them, else with the same: the kernel of a chain whose warm-up ended with
-    /// them.
+    /// The same moves at these scales, with the probabilities learnt with them, else with the same: the kernel of a
+    /// chain whose warm-up ended with them.
     #[must_use]
     pub fn at(&self, scales: &Scales) -> Self {
         let weighed = scales.weighing.as_ref().and_then(Weighing::cumulative);

@@ -80,8 +80,8 @@ pub trait Target: Sync {
     }
 
     /// A count of the work that simulations have done on this thread, for this target or any other: it only grows, and
-    /// the same simulation adds the same on every machine. Moves are weighed by it, see [`crate::weigh`]; where it stays
-    /// 0 all iterations count alike.
+    /// the same simulation adds the same on every machine. Moves are weighed by it, see [`crate::weigh`]; where it
+    /// stays 0 all iterations count alike.
     fn work(&self) -> u64 {
         0
     }

@@ -2,16 +2,16 @@
 //!
 //! What a move brings to a number of the state is the mean square of its jumps over the number's variance, with 0 for
 //! every proposal that was not accepted; what it costs is the simulator's work, counted in events, and one for the
-//! iteration. Half the sum of what is brought in an iteration is 1 less the number's autocorrelation at lag one. A chain
-//! is as good as the number that mixes worst, so shares of the work are sought that bring most to that one: a game of
-//! moves against numbers, solved by fictitious play (Robinson, "An iterative method of solving a game", Annals of
-//! Mathematics 54, 1951). Squared jumps as a measure: Pasarica and Gelman, "Adaptively scaling the Metropolis algorithm
-//! using expected squared jumped distance", Statistica Sinica 20, 2010.
+//! iteration. Half the sum of what is brought in an iteration is 1 less the number's autocorrelation at lag one. A
+//! chain is as good as the number that mixes worst, so shares of the work are sought that bring most to that one: a
+//! game of moves against numbers, solved by fictitious play (Robinson, "An iterative method of solving a game", Annals
+//! of Mathematics 54, 1951). Squared jumps as a measure: Pasarica and Gelman, "Adaptively scaling the Metropolis
+//! algorithm using expected squared jumped distance", Statistica Sinica 20, 2010.
 //!
 //! What few iterations tell is believed little: moves keep their configured share of the work but for a part of at most
 //! three quarters, `¾ n / (n + 50 m)` of it after n iterations with m moves. So what no number tells of, as a table's
-//! bumps, goes on being moved. A move that was tried [`ENOUGH`] times and never accepted keeps a hundredth of its share:
-//! what is reached by it alone is still reached.
+//! bumps, goes on being moved. A move that was tried [`ENOUGH`] times and never accepted keeps a hundredth of its
+//! share: what is reached by it alone is still reached.
 //!
 //! No clock is looked at: weights follow from target, moves, seed and chain.
 
@@ -224,8 +224,8 @@ mod tests {
         assert_eq!(best_shares(&[vec![], vec![]]), None);
     }
 
-    /// Of moves as good as each other, one at twice the work is chosen less; one that is never accepted hardly ever; and
-    /// few iterations change little.
+    /// Of moves as good as each other, one at twice the work is chosen less; one that is never accepted hardly ever;
+    /// and few iterations change little.
     #[test]
     fn work_and_failure_weigh_little() {
         let learnt = |rounds: u64| {

@@ -43,8 +43,8 @@ impl Learned {
         Self { name, parts, some: false, fits: Arc::new([]) }
     }
 
-    /// Some of those of one body or part, each part as likely, each of its variables with probability ½. What belongs to
-    /// none is a part too; one of more than sixteen variables is cut into several.
+    /// Some of those of one body or part, each part as likely, each of its variables with probability ½. What belongs
+    /// to none is a part too; one of more than sixteen variables is cut into several.
     #[must_use]
     pub fn some_of(name: &'static str, vars: &Vars) -> Self {
         let all = learnable(vars);
