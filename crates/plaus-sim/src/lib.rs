@@ -55,10 +55,12 @@ pub mod shape;
 pub mod simulate;
 pub mod state;
 pub mod trace;
+mod work;
 pub mod worlds;
 
 pub use accuracy::{Accuracy, Preset};
 pub use error::WorldError;
 pub use material::{Law, Laws, Material};
-pub use simulate::{Outcome, Scratch, work};
+pub use simulate::{Outcome, Scratch};
 pub use state::State;
+pub use work::work;

@@ -9,7 +9,7 @@ use crate::mechanics::{Impact, Mechanics, Other};
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::State;
 use crate::trace::Observer;
-use std::cell::Cell;
+use crate::work;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -73,17 +73,6 @@ enum Meeting {
     Bodies(u32, u32),
 }
 
-thread_local! {
-    static WORK: Cell<u64> = const { Cell::new(0) };
-}
-
-/// How many events were taken on this thread so far, in all simulations: what a piece of work costs is by how much this
-/// grows, the same on every machine.
-#[must_use]
-pub fn work() -> u64 {
-    WORK.get()
-}
-
 /// Runs until `until` (at most the world's duration) or until the run is over earlier, and says how it ended.
 pub fn simulate<M: Mechanics>(
     mechanics: &M,
@@ -94,7 +83,7 @@ pub fn simulate<M: Mechanics>(
 ) -> Outcome {
     let before = state.counts.events;
     let outcome = go(mechanics, state, scratch, until, observer);
-    WORK.set(WORK.get() + (state.counts.events - before));
+    work::add(state.counts.events - before);
     outcome
 }
 
