@@ -83,13 +83,19 @@ pub(crate) fn scalar_table(diagnosis: &Diagnosis, most: usize) -> String {
     lay_out(&rows)
 }
 
-/// Each move's acceptance, over all chains and per chain where there are few.
+/// Each move's acceptance, over all chains and per chain where there are few; also, on average over chains, how often
+/// it is made since the warm-up, where that was learnt there.
 pub(crate) fn move_table(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
     let tally = &diagnosis.tally;
     let few = tally.chains.len() <= 8;
     let mut rows = vec![vec!["move".to_owned(), "tried".to_owned(), "accepted".to_owned()]];
     if few {
         rows[0].extend(tally.chains.iter().map(|one| format!("chain {}", one.chain)));
+    }
+    let learnt: Vec<&[f64]> =
+        tally.chains.iter().map(|one| one.weights.as_slice()).filter(|weights| !weights.is_empty()).collect();
+    if !learnt.is_empty() {
+        rows[0].push("learnt weight".to_owned());
     }
     for (index, (name, count)) in manifest.moves.iter().zip(&tally.counts).enumerate() {
         let mut row = vec![format!("  {name}"), grouped(count.made()), percent(count.acceptance())];
@@ -98,6 +104,10 @@ pub(crate) fn move_table(manifest: &Manifest, diagnosis: &Diagnosis) -> String {
                 chain.counts.get(index).map_or("-".to_owned(), |count| percent(count.acceptance()))
             };
             row.extend(tally.chains.iter().map(of));
+        }
+        if !learnt.is_empty() {
+            let sum: f64 = learnt.iter().filter_map(|weights| weights.get(index)).sum();
+            row.push(percent(sum / learnt.len() as f64));
         }
         rows.push(row);
     }
@@ -243,6 +253,7 @@ pub fn to_json(manifest: &Manifest, diagnosis: &Diagnosis) -> Value {
             "acceptance": acceptance(&manifest.moves, &tally.counts),
             "tempering": tally.tempering,
             "scales": tally.scales,
+            "weights": tally.weights,
         })
     };
     json!({

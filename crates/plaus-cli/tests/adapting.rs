@@ -30,5 +30,13 @@ fn scales_are_shown_and_kept() {
     assert!(said("short").contains("as configured"));
     place.run("sample ball.toml --out plain -q --warmup 800");
     assert!(!said("plain").contains("scales") && scales("plain").iter().all(|one| one.as_array().unwrap().is_empty()));
+    assert!(!said("plain").contains("learnt weight"));
+    place.run("sample ball.toml --out weighed -q --warmup 800 --set adapt=true --set adapt_weights=true");
+    assert!(said("weighed").contains("learnt weight"));
+    let json: Value = serde_json::from_str(&place.run("diagnose weighed --json").out).unwrap();
+    for chain in json["chains"].as_array().unwrap() {
+        let sum: f64 = chain["weights"].as_array().unwrap().iter().map(|one| one.as_f64().unwrap()).sum();
+        assert!((sum - 1.0).abs() < 1e-12, "{chain}");
+    }
     place.ends("sample ball.toml --out bad --set adapt=often", 2).says(&["--set adapt=often", "true or false"]);
 }

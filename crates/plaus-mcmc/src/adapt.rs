@@ -16,7 +16,8 @@
 //! and Computing 18, 2008).
 //!
 //! A move may also learn from the states that its chain visited, except in the first quarter of the warm-up: see
-//! [`crate::fit`]. What it has learnt is then kept in the same way.
+//! [`crate::fit`]. So may the mixture learn how often to make each move: see [`crate::weigh`]. What was learnt is then
+//! kept in the same way.
 //!
 //! The scales are a function of target, moves, seed and chain; each chain has its own, and so has each rung of tempered
 //! replicas.
@@ -25,6 +26,7 @@ use crate::fit::Learning;
 use crate::moves::{Mixture, Move, MoveId, Path};
 use crate::scale::Scale;
 use crate::target::{StateRefOf, Target};
+use crate::weigh::Weighing;
 use plaus_dist::math;
 use serde::{Deserialize, Serialize};
 
@@ -92,18 +94,21 @@ pub struct Scales {
     of: Vec<Vec<Adapted>>,
     /// For each move, what it learns.
     learned: Vec<Option<Learning>>,
+    /// The moves' weights, where they are learnt.
+    weighing: Option<Weighing>,
 }
 
 impl Scales {
-    /// The beginning of adaptation; `None` if no move has a scale, or learns.
-    fn start<T: Target>(moves: &Mixture<T>, until: u64) -> Option<Self> {
+    /// The beginning of adaptation; `None` if no move has a scale, or learns, and moves are not weighed.
+    fn start<T: Target>(moves: &Mixture<T>, until: u64, weighs: bool) -> Option<Self> {
         let begin = |scale: Scale| Adapted { log: scale.log(scale.start), tried: 0, accepted: 0, sum: 0.0, summed: 0 };
         let of: Vec<Vec<Adapted>> =
             moves.iter().map(|(_, kernel)| kernel.scales().into_iter().map(begin).collect()).collect();
-        let begin = |numbers: usize| (numbers > 0).then(|| Learning::start(numbers));
+        let begin = |parts: Vec<usize>| (!parts.is_empty()).then(|| Learning::start(parts));
         let learned: Vec<Option<Learning>> = moves.iter().map(|(_, kernel)| begin(kernel.learns())).collect();
         let is_any = of.iter().any(|scales| !scales.is_empty()) || learned.iter().any(Option::is_some);
-        is_any.then_some(Self { until, frozen: false, of, learned })
+        let weighing = weighs.then(|| Weighing::start(moves));
+        (is_any || weighs).then_some(Self { until, frozen: false, of, learned, weighing })
     }
 
     /// Whether the warm-up is over, so that they no longer change.
@@ -131,12 +136,19 @@ impl Scales {
         self.learned.get(usize::from(id.0)).and_then(Option::as_ref)
     }
 
+    /// The probabilities of the moves, where they were learnt and the warm-up is over.
+    #[must_use]
+    pub fn probabilities(&self) -> Option<Vec<f64>> {
+        self.weighing.as_ref()?.probabilities()
+    }
+
     /// Whether these scales belong to these moves.
     #[must_use]
     pub fn fit<T: Target>(&self, moves: &Mixture<T>) -> bool {
-        let numbers = |learned: &Option<Learning>| learned.as_ref().map_or(0, Learning::numbers);
+        let parts = |learned: &Option<Learning>| learned.as_ref().map_or(Vec::new(), |one| one.parts().to_vec());
         self.of.iter().map(Vec::len).eq(moves.iter().map(|(_, kernel)| kernel.scales().len()))
-            && self.learned.iter().map(numbers).eq(moves.iter().map(|(_, kernel)| kernel.learns()))
+            && self.learned.iter().map(parts).eq(moves.iter().map(|(_, kernel)| kernel.learns()))
+            && self.weighing.as_ref().is_none_or(|weighing| weighing.fits(self.of.len()))
     }
 }
 
@@ -150,9 +162,9 @@ pub(crate) struct Adaptation<T: Target> {
 impl<T: Target> Adaptation<T> {
     /// Adaptation in the iterations before `until`, from the start. `None` if there is nothing to adapt, or no
     /// iteration in which to do it.
-    pub(crate) fn start(moves: &Mixture<T>, until: u64) -> Option<Self> {
+    pub(crate) fn start(moves: &Mixture<T>, until: u64, weighs: bool) -> Option<Self> {
         // Iteration 0 is the start, which is not made by a move.
-        let scales = (until > 1).then(|| Scales::start(moves, until)).flatten()?;
+        let scales = (until > 1).then(|| Scales::start(moves, until, weighs)).flatten()?;
         Some(Self::resume(moves, scales))
     }
 
@@ -165,6 +177,44 @@ impl<T: Target> Adaptation<T> {
 
     pub(crate) fn scales(&self) -> &Scales {
         &self.scales
+    }
+
+    /// Probabilities of the moves that were learnt, each with those before it.
+    pub(crate) fn cumulative(&self) -> Option<&[f64]> {
+        self.scales.weighing.as_ref()?.cumulative()
+    }
+
+    /// Whether what an iteration brings is noted; in all but the first quarter of the warm-up.
+    fn weighs_at(&self, iteration: u64) -> bool {
+        self.scales.weighing.is_some() && !self.scales.frozen && iteration >= self.scales.until / 4
+    }
+
+    /// Whether the work of an iteration is to be counted.
+    pub(crate) fn counts_work(&self, iteration: u64) -> bool {
+        self.weighs_at(iteration) && Weighing::counts_work(iteration)
+    }
+
+    /// The chain that adapts has another state, that no move made.
+    pub(crate) fn forget_state(&mut self) {
+        if let Some(weighing) = &mut self.scales.weighing {
+            weighing.forget_state();
+        }
+    }
+
+    /// Notes what iteration `iteration` brought, for the moves' weights.
+    pub(crate) fn weigh(
+        &mut self,
+        iteration: u64,
+        (id, accepted): (MoveId, bool),
+        work: Option<u64>,
+        (target, state): (&T, StateRefOf<'_, T>),
+    ) {
+        if self.weighs_at(iteration)
+            && let Some(weighing) = &mut self.scales.weighing
+        {
+            let is_new = accepted || weighing.is_blind();
+            weighing.note(id, accepted, work, is_new.then(|| target.numbers(state)));
+        }
     }
 
     /// A move with its present scales; `None` if it has none.
@@ -210,25 +260,29 @@ impl<T: Target> Adaptation<T> {
             self.scales.frozen = true;
             self.scales.of.iter_mut().flatten().for_each(Adapted::freeze);
             self.scales.learned.iter_mut().flatten().for_each(Learning::freeze);
+            if let Some(weighing) = &mut self.scales.weighing {
+                weighing.freeze(&moves.iter().map(|(weight, _)| weight).collect::<Vec<f64>>());
+            }
             *self = Self::resume(moves, self.scales.clone());
         }
     }
 }
 
 fn remade<T: Target>(kernel: &dyn Move<T>, scales: &Scales, id: MoveId) -> Option<Box<dyn Move<T>>> {
-    if let Some(fit) = scales.learned(id).and_then(Learning::fit) {
-        return kernel.at_fit(fit);
+    if let Some(learning) = scales.learned(id) {
+        return kernel.at_fits(learning.fits());
     }
     let values = scales.values(id);
     if values.is_empty() { None } else { kernel.at_scales(&values) }
 }
 
 impl<T: Target> Mixture<T> {
-    /// The same moves, with the same probabilities, at these scales: the kernel of a chain whose warm-up ended with
-    /// them.
+    /// The same moves at these scales, with the probabilities learnt with them, else with the same: the kernel of a
+    /// chain whose warm-up ended with them.
     #[must_use]
     pub fn at(&self, scales: &Scales) -> Self {
-        self.map(|id, kernel| remade(kernel, scales, id))
+        let weighed = scales.weighing.as_ref().and_then(Weighing::cumulative);
+        self.map(|id, kernel| remade(kernel, scales, id), weighed)
     }
 }
 
@@ -259,7 +313,8 @@ mod tests {
         let mut one = begun();
         let known = |summed: u64| {
             (one.summed, one.sum) = (summed, summed as f64);
-            let mut scales = Scales { until: 2, frozen: true, of: vec![vec![one]], learned: vec![None] };
+            let mut scales =
+                Scales { until: 2, frozen: true, of: vec![vec![one]], learned: vec![None], weighing: None };
             scales.of[0][0].freeze();
             scales.values(MoveId(0))
         };

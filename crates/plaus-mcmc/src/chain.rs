@@ -195,7 +195,13 @@ impl<'a, T: Target> Chain<'a, T> {
     /// that has just started.
     #[must_use]
     pub fn adapting(self, until: u64) -> Self {
-        Self { adaptation: Adaptation::start(self.moves, until), ..self }
+        Self { adaptation: Adaptation::start(self.moves, until, false), ..self }
+    }
+
+    /// The same, which also learns how often to make each move, see [`crate::weigh`].
+    #[must_use]
+    pub fn weighing(self, until: u64) -> Self {
+        Self { adaptation: Adaptation::start(self.moves, until, true), ..self }
     }
 
     /// The same chain, continuing with the scales that it had; they must [fit](Scales::fit) its moves.
@@ -247,8 +253,13 @@ impl<'a, T: Target> Chain<'a, T> {
     pub fn step(&mut self) -> Result<Step, ChainError> {
         let (next, moves) = (self.iteration + 1, self.moves);
         let mut stream = self.streams.at(next, Purpose::PROPOSE);
-        let (move_id, configured) = moves.choose(&mut stream);
+        let learnt = self.adaptation.as_ref().and_then(Adaptation::cumulative);
+        let (move_id, configured) = match learnt {
+            Some(cumulative) => moves.choose_by(cumulative, &mut stream),
+            None => moves.choose(&mut stream),
+        };
         let fail = |source| ChainError::Model { iteration: next, step: Some(configured.name().to_owned()), source };
+        let begun = self.begin_to_count(next).map_err(fail)?;
         self.candidate.clone_from(&self.state.draw);
         let kernel = kernel(moves, self.adaptation.as_ref(), move_id);
         let proposal =
@@ -257,10 +268,25 @@ impl<'a, T: Target> Chain<'a, T> {
         self.iteration = next;
         self.counts[usize::from(move_id.0)].count(verdict);
         if let Some(adaptation) = &mut self.adaptation {
+            let work = begun.map(|begun| self.target.work() - begun);
             adaptation.look(moves, next, self.target, self.state.by_ref());
-            adaptation.learn(moves, next, (move_id, proposal.path()), verdict == Verdict::Accepted);
+            let accepted = verdict == Verdict::Accepted;
+            adaptation.weigh(next, (move_id, accepted), work, (self.target, self.state.by_ref()));
+            adaptation.learn(moves, next, (move_id, proposal.path()), accepted);
         }
         Ok(Step { move_id, verdict })
+    }
+
+    /// The work done so far, where that of iteration `next` is to be counted. What it adds to that must follow from the
+    /// state alone, whatever was remembered: so the memory is made anew, as it is after the state was simulated.
+    fn begin_to_count(&mut self, next: u64) -> Result<Option<u64>, ModelError> {
+        if !self.adaptation.as_ref().is_some_and(|adaptation| adaptation.counts_work(next)) {
+            return Ok(None);
+        }
+        self.scratch = T::Scratch::default();
+        self.target.simulate(&self.state.draw, None, LogPotential::ZERO, &mut self.scratch)?;
+        self.target.settle(true, &mut self.scratch);
+        Ok(Some(self.target.work()))
     }
 
     /// The accept step of Metropolis and Hastings, solved for the constraint: with u uniform and drawn first, `ln u <
@@ -330,6 +356,7 @@ impl<'a, T: Target> Chain<'a, T> {
         std::mem::swap(&mut a.moves, &mut b.moves);
         std::mem::swap(&mut a.counts, &mut b.counts);
         std::mem::swap(&mut a.adaptation, &mut b.adaptation);
+        [a, b].into_iter().filter_map(|chain| chain.adaptation.as_mut()).for_each(Adaptation::forget_state);
     }
 
     fn accept_above(

@@ -72,6 +72,7 @@ pub mod target;
 pub mod tempered;
 pub mod vars;
 pub mod view;
+pub mod weigh;
 
 pub use adapt::{Adapted, Scales};
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
@@ -93,3 +94,4 @@ pub use solutions::{Distinct, FirstOfClass, Hits};
 pub use target::{Goal, ModelError, Simulated, SolutionClass, State, StateOf, StateRef, StateRefOf, Target};
 pub use tempered::Tempered;
 pub use vars::{Member, Var, Variables, Vars};
+pub use weigh::Weighing;

@@ -115,10 +115,10 @@ pub trait Move<T: Target>: Send + Sync {
         None
     }
 
-    /// The number of numbers in the points that it learns from in a chain's warm-up, see [`crate::fit`]; 0 for a move
-    /// that learns nothing.
-    fn learns(&self) -> usize {
-        0
+    /// For each part of the points that it learns from in a chain's warm-up, how many numbers it has, see
+    /// [`crate::fit`]; none for a move that learns nothing.
+    fn learns(&self) -> Vec<usize> {
+        Vec::new()
     }
 
     /// Those numbers of a state.
@@ -126,8 +126,8 @@ pub trait Move<T: Target>: Send + Sync {
         Vec::new()
     }
 
-    /// The same move with a density fitted to such points. A move that learns must return one.
-    fn at_fit(&self, _fit: &Fit) -> Option<Box<dyn Move<T>>> {
+    /// The same move with densities fitted to each part of such points. A move that learns must return one.
+    fn at_fits(&self, _fits: &[Option<Fit>]) -> Option<Box<dyn Move<T>>> {
         None
     }
 
@@ -211,11 +211,16 @@ impl<T: Target> Mixture<T> {
 
     /// Chooses a move. A mixture of one move uses no random number.
     pub fn choose(&self, stream: &mut Stream) -> (MoveId, &dyn Move<T>) {
+        self.choose_by(&self.cumulative, stream)
+    }
+
+    /// The same by other probabilities, each with those before it.
+    pub(crate) fn choose_by(&self, cumulative: &[f64], stream: &mut Stream) -> (MoveId, &dyn Move<T>) {
         let index = if self.moves.len() == 1 {
             0
         } else {
             let u = open_unit(stream);
-            self.cumulative.iter().position(|&bound| u < bound).unwrap_or(self.moves.len() - 1)
+            cumulative.iter().position(|&bound| u < bound).unwrap_or(self.moves.len() - 1)
         };
         (MoveId(index as u16), self.moves[index].as_ref())
     }
@@ -237,12 +242,19 @@ impl<T: Target> Mixture<T> {
         (0..self.moves.len()).map(|index| self.get(MoveId(index as u16)))
     }
 
-    /// The same probabilities, with some moves replaced.
-    pub(crate) fn map(&self, replace: impl Fn(MoveId, &dyn Move<T>) -> Option<Box<dyn Move<T>>>) -> Self {
+    /// The same moves with some replaced, and with other cumulative probabilities where these are given.
+    pub(crate) fn map(
+        &self,
+        replace: impl Fn(MoveId, &dyn Move<T>) -> Option<Box<dyn Move<T>>>,
+        cumulative: Option<&[f64]>,
+    ) -> Self {
         let kernel = |(id, kernel): (u16, &Arc<dyn Move<T>>)| {
             replace(MoveId(id), kernel.as_ref()).map_or_else(|| Arc::clone(kernel), Arc::from)
         };
-        Self { moves: (0..).zip(&self.moves).map(kernel).collect(), cumulative: self.cumulative.clone() }
+        Self {
+            moves: (0..).zip(&self.moves).map(kernel).collect(),
+            cumulative: cumulative.unwrap_or(&self.cumulative).to_vec(),
+        }
     }
 
     /// The same probabilities for moves of another target, one for one.

@@ -174,6 +174,14 @@ impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {
     fn settle(&self, accepted: bool, scratch: &mut T::Scratch) {
         self.target.settle(accepted, scratch);
     }
+
+    fn work(&self) -> u64 {
+        self.target.work()
+    }
+
+    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
+        self.target.numbers(<Self as Sees<T>>::state(state))
+    }
 }
 
 impl<T: Goal, R: Requirement<T>> Goal for Required<'_, T, R> {

@@ -79,6 +79,19 @@ pub trait Target: Sync {
         None
     }
 
+    /// A count of the work that simulations have done on this thread, for this target or any other: it only grows, and
+    /// the same simulation adds the same on every machine. Moves are weighed by it, see [`crate::weigh`]; where it
+    /// stays 0 all iterations count alike.
+    fn work(&self) -> u64 {
+        0
+    }
+
+    /// Numbers of a state by which is judged how far moves lead, see [`crate::weigh`], as many for each; without any
+    /// moves keep their weights.
+    fn numbers(&self, _state: StateRefOf<'_, Self>) -> Vec<f64> {
+        Vec::new()
+    }
+
     /// Called after every accept step that followed a simulation, with whether the simulated candidate became the
     /// current state, so that memory kept in `scratch` about the current state can follow.
     fn settle(&self, _accepted: bool, _scratch: &mut Self::Scratch) {}

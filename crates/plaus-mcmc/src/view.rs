@@ -71,6 +71,14 @@ impl<W: Reweighed> Target for W {
     fn settle(&self, accepted: bool, scratch: &mut Self::Scratch) {
         Reweighed::seen(self).settle(accepted, scratch);
     }
+
+    fn work(&self) -> u64 {
+        Reweighed::seen(self).work()
+    }
+
+    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
+        Reweighed::seen(self).numbers(state)
+    }
 }
 
 impl<W: Reweighed> View for W
@@ -187,7 +195,7 @@ impl<S: Target + 'static, V: Sees<S>> Move<V> for Lent<S> {
         self.kernel().scale_of(path)
     }
 
-    fn learns(&self) -> usize {
+    fn learns(&self) -> Vec<usize> {
         self.kernel().learns()
     }
 
@@ -195,7 +203,7 @@ impl<S: Target + 'static, V: Sees<S>> Move<V> for Lent<S> {
         self.kernel().learn_from(target.seen(), V::state(state))
     }
 
-    fn at_fit(&self, fit: &Fit) -> Option<Box<dyn Move<V>>> {
-        Some(Box::new(Lent(Arc::from(self.kernel().at_fit(fit)?))))
+    fn at_fits(&self, fits: &[Option<Fit>]) -> Option<Box<dyn Move<V>>> {
+        Some(Box::new(Lent(Arc::from(self.kernel().at_fits(fits)?))))
     }
 }

@@ -279,6 +279,7 @@ const PLAN: Plan = Plan {
     rungs: 1,
     swap_every: 7,
     adapt: true,
+    weigh: false,
 };
 
 /// Whatever the threads, and wherever it was stopped; with replicas too. A longer run keeps the scales.

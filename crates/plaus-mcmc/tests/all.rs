@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod toys;
+mod weigh;
 
 mod adapt;
 mod arviz_reference;

@@ -187,6 +187,7 @@ fn a_run_reports_the_first_failing_chain() {
         rungs: 1,
         swap_every: 1,
         adapt: false,
+        weigh: false,
     };
     for threads in [1, 4] {
         let error = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere).unwrap_err();
@@ -211,6 +212,7 @@ fn what_fails_beyond_the_last_demanded_solution_is_no_failure() {
             rungs: 1,
             swap_every: 1,
             adapt: false,
+            weigh: false,
         };
         let ended = run(&lost, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), threads, &mut Nowhere);
         // The counters reach a new class in every iteration, and have five before they fail.
@@ -249,6 +251,7 @@ fn the_start_counts_as_a_solution() {
             rungs: 1,
             swap_every: 1,
             adapt: false,
+            weigh: false,
         };
         let mut ends = Ends(Vec::new());
         run(&COUNTER, &Mixture::of(Box::new(ALWAYS)), plan, Vec::new(), 1, &mut ends).unwrap();

@@ -27,6 +27,7 @@ const PLAN: Plan = Plan {
     rungs: 1,
     swap_every: 1,
     adapt: false,
+    weigh: false,
 };
 
 /// The same, each chain with replicas at four rungs.

@@ -130,7 +130,7 @@ fn it_goes_on_with_the_same_bits_and_is_frozen() {
                 fits.push(chain.scales().unwrap().learned(MoveId(0)).unwrap().clone());
             }
         }
-        assert!(fits[0].fit().is_some() && fits.iter().all(|fit| *fit == fits[0]));
+        assert!(fits[0].fits()[0].is_some() && fits.iter().all(|fit| *fit == fits[0]));
         (chain.state().clone(), chain.scales().unwrap().clone(), chain.counts().to_vec())
     };
     assert_eq!(whole(&[]), whole(&[1, 1500, WARMUP / 2 + 77, WARMUP - 1, WARMUP, WARMUP + 9]));

@@ -17,7 +17,7 @@ use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::Path;
 
-const KIND: Kind = Kind::new(*b"chkp", 5, "a checkpoint of a chain");
+const KIND: Kind = Kind::new(*b"chkp", 6, "a checkpoint of a chain");
 
 /// The state from which a chain can continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

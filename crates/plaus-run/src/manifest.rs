@@ -177,6 +177,7 @@ fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
         rungs: sampler.tempering.rungs,
         swap_every: sampler.tempering.swap_every,
         adapt: scenario.adapts(),
+        weigh: scenario.weighs(),
     }
 }
 

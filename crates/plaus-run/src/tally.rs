@@ -25,6 +25,8 @@ pub struct ChainTally {
     pub tempering: Option<TemperingTally>,
     /// The scales of its moves, if it adapts any.
     pub scales: Vec<ScaleTally>,
+    /// The probabilities of its moves, if they were learnt in the warm-up; else, and while it lasts, none.
+    pub weights: Vec<f64>,
 }
 
 /// What a scale was adapted to.
@@ -185,6 +187,10 @@ fn tally(run: &RunReader<'_>, chain: u32) -> Result<(ChainTally, Distinct), RunF
         scales: snapshot
             .and_then(|snapshot| snapshot.scales.as_ref())
             .map_or_else(Vec::new, |adapted| scales(run, adapted)),
+        weights: snapshot
+            .and_then(|snapshot| snapshot.scales.as_ref())
+            .and_then(Scales::probabilities)
+            .unwrap_or_default(),
     };
     let mut distinct = Distinct::default();
     for &phase in run.counted() {

@@ -124,7 +124,8 @@ impl Course<'_> {
         let streams = Seed(!self.plan.seed.0).chain(u64::from(chain));
         let mut chain = Chain::start(self.scene, self.moves, streams)?;
         if self.plan.adapt {
-            chain = chain.adapting(self.iterations);
+            let until = self.iterations;
+            chain = if self.plan.weigh { chain.weighing(until) } else { chain.adapting(until) };
         }
         let scalars = self.scene.scalars();
         let variables: Vec<usize> = (0..scalars.len()).filter(|&k| scalars[k].role == Role::Draw).collect();

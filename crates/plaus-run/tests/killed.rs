@@ -1,6 +1,6 @@
 //! A run killed at any write, or on a full disk, goes on to the same bytes.
 
-use crate::common::{FailingDisk, adapting, bytes_of, recipe, tempered};
+use crate::common::{FailingDisk, adapting, bytes_of, recipe, tempered, weighing};
 use plaus_run::disk::{Disk, RealDisk};
 use plaus_run::{Error, Folder, More, Recipe, Run, Sampling, Shard, Unwatched};
 use plaus_run::{Watch, resume, sample, sample_shard};
@@ -96,6 +96,8 @@ fn a_tempered_run_killed_anywhere_loses_nothing_final() {
 fn a_run_killed_while_it_adapts_loses_nothing_final() {
     killed_everywhere(adapting(1), true);
     killed_everywhere(adapting(3), true);
+    killed_everywhere(weighing(1), true);
+    killed_everywhere(weighing(3), true);
 }
 
 /// Scales that were kept are kept by a longer run; what was adapted is in the tally.

@@ -103,6 +103,14 @@ impl Target for AnyScene {
     fn settle(&self, accepted: bool, scratch: &mut AnyScratch) {
         with_scene!(self, scene => scene.settle(accepted, scratch_of(&**scene, scratch)));
     }
+
+    fn work(&self) -> u64 {
+        with_scene!(self, scene => scene.work())
+    }
+
+    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
+        with_scene!(self, scene => scene.numbers(state_of(&**scene, state)))
+    }
 }
 
 impl Goal for AnyScene {

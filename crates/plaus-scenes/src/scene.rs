@@ -171,3 +171,10 @@ impl ConfigError {
         Self { key: key.into(), message: message.to_string() }
     }
 }
+
+/// The scalars of a state, by which moves are weighed.
+pub(crate) fn numbers<S: Scene>(scene: &S, state: StateRefOf<'_, S>) -> Vec<f64> {
+    let mut values = vec![0.0; scene.scalars().len()];
+    scene.write_scalars(state, &mut values);
+    values
+}

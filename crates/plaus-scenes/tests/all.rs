@@ -18,3 +18,4 @@ mod require_kinds;
 mod scenario_bad;
 mod scenario_properties;
 mod scenario_schema;
+mod weigh;

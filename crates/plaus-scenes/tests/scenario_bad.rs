@@ -51,6 +51,12 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
             "sampler.tempering.rungs",
             &["tempering needs exact acceptance", "set sampler.rules.preset = \"exact\", or rungs = 1"],
         ),
+        (
+            "[sampler]\nadapt_weights = true\n[world.ball2d]",
+            (2, 17),
+            "sampler.adapt_weights",
+            &["only where scales are adapted", "set sampler.adapt = true"],
+        ),
         ("[sampeler]\nseed = 1\n[world.ball2d]", (1, 2), "sampeler", &["did you mean `sampler`?"]),
         ("[world.ball2d.weights]\naimm = 1", (2, 1), "world.ball2d.weights.aimm", &["did you mean `aim`?"]),
         // Wrong types.

@@ -55,6 +55,7 @@ pub mod shape;
 pub mod simulate;
 pub mod state;
 pub mod trace;
+mod work;
 pub mod worlds;
 
 pub use accuracy::{Accuracy, Preset};
@@ -62,3 +63,4 @@ pub use error::WorldError;
 pub use material::{Law, Laws, Material};
 pub use simulate::{Outcome, Scratch};
 pub use state::State;
+pub use work::work;

@@ -9,6 +9,7 @@ use crate::mechanics::{Impact, Mechanics, Other};
 use crate::queue::{Event, Happening, Tournament};
 use crate::state::State;
 use crate::trace::Observer;
+use crate::work;
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -74,6 +75,19 @@ enum Meeting {
 
 /// Runs until `until` (at most the world's duration) or until the run is over earlier, and says how it ended.
 pub fn simulate<M: Mechanics>(
+    mechanics: &M,
+    state: &mut State<M::Body>,
+    scratch: &mut Scratch<M::Scratch>,
+    until: f64,
+    observer: &mut impl Observer<M>,
+) -> Outcome {
+    let before = state.counts.events;
+    let outcome = go(mechanics, state, scratch, until, observer);
+    work::add(state.counts.events - before);
+    outcome
+}
+
+fn go<M: Mechanics>(
     mechanics: &M,
     state: &mut State<M::Body>,
     scratch: &mut Scratch<M::Scratch>,

@@ -48,6 +48,7 @@ fn sample(scene: &Ball2d, moves: &Mixture<Ball2d>) {
         rungs: 1,
         swap_every: 1,
         adapt: false,
+        weigh: false,
     };
     run(scene, moves, plan, Vec::new(), 1, &mut Drop).unwrap();
 }

@@ -3,7 +3,7 @@
 //! | move | what it does | log ratio |
 //! | --- | --- | --- |
 //! | [`RedrawAll`] | everything anew | prior of the old draw over that of the new one |
-//! | [`Learned`] | everything anew, numbers from a density learnt in the warm-up | the mixture's, old over new |
+//! | [`Learned`] | numbers, all or some of one body, anew from a density learnt in the warm-up | its density, old over new |
 //! | [`RedrawOne`] | one variable of a set anew | its old density over its new one |
 //! | [`RedrawSome`] | each variable of a set anew with a probability | their old densities over their new ones |
 //! | [`RedrawGroup`] | all variables of one body or part anew | their old densities over their new ones |
@@ -36,7 +36,7 @@ mod swap;
 mod symmetry;
 mod toggle;
 
-pub use learned::Learned;
+pub use learned::{Chosen, Learned};
 pub use redraw_all::RedrawAll;
 pub use redraw_group::RedrawGroup;
 pub use redraw_one::RedrawOne;

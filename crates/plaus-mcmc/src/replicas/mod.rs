@@ -159,6 +159,13 @@ impl<'a, T: Target> Replicas<'a, T> {
         Self { chains, ..self }
     }
 
+    /// The same, each rung of which also learns how often to make each move: see [`Chain::weighing`].
+    #[must_use]
+    pub fn weighing(self, until: u64) -> Self {
+        let chains = self.chains.into_iter().map(|chain| chain.weighing(until)).collect();
+        Self { chains, ..self }
+    }
+
     /// Replicas that continue from a snapshot made after iteration `iteration`, which must
     /// [fit](ReplicasSnapshot::fits).
     #[must_use]

@@ -54,6 +54,9 @@ pub struct Plan {
     pub swap_every: u64,
     /// Whether moves' scales are adapted in the warm-up, see [`crate::adapt`].
     pub adapt: bool,
+    /// Whether moves' weights are learnt then too, see [`crate::weigh`]; never without `adapt`.
+    #[serde(default)]
+    pub weigh: bool,
 }
 
 impl Plan {

@@ -104,7 +104,8 @@ impl<'a, T: Goal> Worker<'a, T> {
             return Ok(());
         }
         if replicas.is_none() && end > 0 {
-            let started = Replicas::start(job.course(), job.plan.seed, books.index)?.adapting(job.adapts_until());
+            let (started, until) = (Replicas::start(job.course(), job.plan.seed, books.index)?, job.adapts_until());
+            let started = if plan.weigh { started.weighing(until) } else { started.adapting(until) };
             books.class = job.target.class(started.top().state().by_ref());
             books.note::<T>(job, 0, started.top(), made, hunt);
             *replicas = Some(started);

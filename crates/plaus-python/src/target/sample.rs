@@ -110,6 +110,7 @@ pub(crate) fn sample_target<'py>(
         rungs: 1,
         swap_every: 20,
         adapt: false,
+        weigh: false,
     };
     let target = ByFunctions(functions);
     let pulse = Arc::new(Pulse::default());

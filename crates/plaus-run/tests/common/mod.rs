@@ -26,8 +26,16 @@ pub(crate) fn tempered(solutions: Option<u64>) -> Recipe {
 
 /// The same whose step sizes are adapted in a warm-up of several blocks.
 pub(crate) fn adapting(rungs: u32) -> Recipe {
-    let overrides = ["adapt=true", "warmup=330", "iterations=200", "swap_every=7"].map(str::to_owned);
-    let overrides = [overrides.as_slice(), &[format!("rungs={rungs}")]].concat();
+    set(&format!("adapt=true warmup=330 iterations=200 swap_every=7 rungs={rungs}"))
+}
+
+/// The same, which also learns how often to make each move.
+pub(crate) fn weighing(rungs: u32) -> Recipe {
+    set(&format!("adapt=true adapt_weights=true warmup=330 iterations=200 swap_every=7 rungs={rungs}"))
+}
+
+fn set(overrides: &str) -> Recipe {
+    let overrides: Vec<String> = overrides.split(' ').map(str::to_owned).collect();
     let scenario = Scenario::read("ball.toml", TEXT, &overrides).unwrap();
     Recipe { scenario, overrides, ..recipe(None) }
 }

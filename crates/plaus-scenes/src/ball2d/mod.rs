@@ -165,6 +165,10 @@ impl Target for Ball2d {
     fn most(&self) -> Option<LogPotential> {
         Some(LogPotential::ONE)
     }
+
+    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
+        crate::scene::numbers(self, state)
+    }
 }
 
 impl Variables for Ball2d {

@@ -167,6 +167,14 @@ impl Target for Bowling {
     fn most(&self) -> Option<LogPotential> {
         Some(self.goal.log_potential(self.reachable(Pins::default())))
     }
+
+    fn work(&self) -> u64 {
+        plaus_sim::work()
+    }
+
+    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
+        crate::scene::numbers(self, state)
+    }
 }
 
 impl Variables for Bowling {

@@ -166,6 +166,14 @@ impl Target for Custom {
     fn most(&self) -> Option<LogPotential> {
         Some(LogPotential::ONE)
     }
+
+    fn work(&self) -> u64 {
+        plaus_sim::work()
+    }
+
+    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
+        crate::scene::numbers(self, state)
+    }
 }
 
 impl Variables for Custom {

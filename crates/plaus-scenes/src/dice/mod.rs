@@ -232,6 +232,14 @@ impl Target for Dice {
     fn most(&self) -> Option<LogPotential> {
         Some(LogPotential::ONE)
     }
+
+    fn work(&self) -> u64 {
+        plaus_sim::work()
+    }
+
+    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
+        crate::scene::numbers(self, state)
+    }
 }
 
 impl Goal for Dice {

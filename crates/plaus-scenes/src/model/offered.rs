@@ -43,10 +43,18 @@ impl<S: Variables + 'static> Offered for S {
             Row::own(
                 "learned",
                 0.0,
-                "Draw everything anew, using for numbers that tables show a density learnt in the warm-up. It learns only \
-             if `adapt` of the sampler is true; otherwise everything is drawn from its law.",
+                "Draw all random numbers that tables show anew from a density learnt in the warm-up. All else stays. \
+                 It learns only if `adapt` of the sampler is true; otherwise they are drawn from their laws.",
             ),
             |scene| Box::new(Learned::of("learned", scene.vars())),
+        ),
+        (
+            Row::own(
+                "learned_some",
+                0.0,
+                "The same for some of these numbers of one body, each with probability one half, given the others.",
+            ),
+            |scene| Box::new(Learned::some_of("learned_some", scene.vars())),
         ),
     ];
 }

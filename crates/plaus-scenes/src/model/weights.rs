@@ -255,7 +255,8 @@ mod tests {
         assert_eq!(read("aim = 1").unwrap(), Weights::default().with("aim", 1.0));
         assert_eq!(
             toml::to_string(&Weights::<Toy>::default()).unwrap(),
-            "change = 0.5\npoint = 0.25\naim = 0.25\nredraw_any = 0.0\nstep_any = 0.0\nstep_all = 0.0\nlearned = 0.0\n"
+            "change = 0.5\npoint = 0.25\naim = 0.25\nredraw_any = 0.0\nstep_any = 0.0\nstep_all = 0.0\nlearned = 0.0\n\
+             learned_some = 0.0\n"
         );
         assert!(
             read("aimm = 1")

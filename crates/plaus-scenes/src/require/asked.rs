@@ -207,6 +207,14 @@ impl<S: Scene> Target for Asked<S> {
     fn settle(&self, accepted: bool, scratch: &mut S::Scratch) {
         self.scene.settle(accepted, scratch);
     }
+
+    fn work(&self) -> u64 {
+        self.scene.work()
+    }
+
+    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
+        crate::scene::numbers(self, state)
+    }
 }
 
 impl<S: Scene> Goal for Asked<S> {

@@ -70,6 +70,10 @@ pub struct Sampler {
     /// then kept. Unset: whichever measured better for the scene (dice: yes; others: no). Without a warm-up, or for
     /// moves that are rarely tried in it, the configured sizes stay.
     pub adapt: Option<bool>,
+    /// Whether the warm-up also learns how often to make each move, from how far it leads for its cost. This replaces
+    /// part of the configured weights and is then kept. A move that was never accepted is hardly made any more. It
+    /// needs `adapt`. Unset: no.
+    pub adapt_weights: Option<bool>,
     /// How draws are made. Every method samples the same law. Unset: `chain`.
     pub method: Option<Method>,
     /// Exact acceptance, or the paper's as printed.
@@ -125,6 +129,7 @@ impl Default for Sampler {
             thin: 1,
             checkpoint_every: 20_000,
             adapt: None,
+            adapt_weights: None,
             method: None,
             rules: Rules::default(),
             tempering: Tempering::default(),
@@ -194,6 +199,12 @@ impl Scenario {
         self.sampler.adapt.unwrap_or_else(|| self.world.adapts())
     }
 
+    /// Whether moves' weights are learnt in it too.
+    #[must_use]
+    pub fn weighs(&self) -> bool {
+        self.adapts() && self.sampler.adapt_weights.unwrap_or(false)
+    }
+
     /// How draws are made, or that a trial decides it.
     #[must_use]
     pub fn method(&self) -> Method {
@@ -211,6 +222,10 @@ impl Scenario {
 
     /// Whether the scene can be built and sampled.
     fn try_building(&self) -> Result<(), ConfigError> {
+        if self.sampler.adapt_weights == Some(true) && !self.adapts() {
+            let message = "weights are learnt only where scales are adapted: set sampler.adapt = true";
+            return Err(ConfigError::new("sampler.adapt_weights", message));
+        }
         if self.sampler.tempering.rungs > 1 && !self.sampler.rules.is_exact() {
             let message = "tempering needs exact acceptance, because its swaps use the law of every rung: set sampler.rules.preset = \"exact\", or rungs = 1";
             return Err(ConfigError::new("sampler.tempering.rungs", message));

@@ -209,6 +209,14 @@ impl Target for Spelling {
     fn settle(&self, accepted: bool, work: &mut Work) {
         work.settle(accepted);
     }
+
+    fn work(&self) -> u64 {
+        plaus_sim::work()
+    }
+
+    fn numbers(&self, state: StateRefOf<'_, Self>) -> Vec<f64> {
+        crate::scene::numbers(self, state)
+    }
 }
 
 /// Two solutions are the same if every ball lies in the same bin.

@@ -1,0 +1,250 @@
+//! Weights of moves, learnt in a chain's warm-up by what each move brings for its work, and kept from then on.
+//!
+//! What a move brings to a number of the state is the mean square of its jumps over the number's variance, with 0 for
+//! every proposal that was not accepted; what it costs is the simulator's work, counted in events, and one for the
+//! iteration. Half the sum of what is brought in an iteration is 1 less the number's autocorrelation at lag one. A
+//! chain is as good as the number that mixes worst, so shares of the work are sought that bring most to that one: a
+//! game of moves against numbers, solved by fictitious play (Robinson, "An iterative method of solving a game", Annals
+//! of Mathematics 54, 1951). Squared jumps as a measure: Pasarica and Gelman, "Adaptively scaling the Metropolis
+//! algorithm using expected squared jumped distance", Statistica Sinica 20, 2010.
+//!
+//! What few iterations tell is believed little: moves keep their configured share of the work but for a part of at most
+//! three quarters, `¾ n / (n + 50 m)` of it after n iterations with m moves. So what no number tells of, as a table's
+//! bumps, goes on being moved. A move that was tried [`ENOUGH`] times and never accepted keeps a hundredth of its
+//! share: what is reached by it alone is still reached.
+//!
+//! No clock is looked at: weights follow from target, moves, seed and chain.
+
+use crate::moves::{Mixture, MoveId};
+use crate::target::Target;
+use plaus_dist::math;
+use serde::{Deserialize, Serialize};
+
+/// A move is said to be never accepted after so many tries. One that is accepted once in fourteen proposals is then
+/// given up once in a hundred times, and not wholly.
+pub const ENOUGH: u64 = 64;
+/// What is left of such a move's share.
+const LEFT: f64 = 0.01;
+/// Iterations a move after which what was seen is believed by half.
+const HALF: f64 = 50.0;
+/// Most of the work that is given out anew.
+const MOST: f64 = 0.75;
+/// Tries without which nothing is known of a move's gain.
+const FEW: u64 = 4;
+/// Of so many iterations one is counted the work of, as that needs another simulation.
+const EVERY: u64 = 4;
+/// Rounds of fictitious play: the value is then known to about a percent.
+const ROUNDS: usize = 4000;
+
+/// What was seen of one move.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+struct Seen {
+    tried: u64,
+    accepted: u64,
+    /// Iterations whose work was counted, and the work.
+    counted: u64,
+    work: u64,
+    /// Per number, the sum of its squared jumps.
+    jumps: Vec<f64>,
+}
+
+/// What is learnt of the moves' weights.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Weighing {
+    seen: Vec<Seen>,
+    /// States seen; per number, their mean and the sum of squares about it.
+    states: u64,
+    means: Vec<f64>,
+    squares: Vec<f64>,
+    /// The numbers of the state seen last; none where that is another one by now.
+    last: Vec<f64>,
+    /// By move, the probabilities to choose this one or one before it; none before they are learnt.
+    cumulative: Vec<f64>,
+}
+
+impl Weighing {
+    pub(crate) fn start<T: Target>(moves: &Mixture<T>) -> Self {
+        let seen = vec![Seen::default(); moves.iter().count()];
+        Self { seen, ..Self::empty() }
+    }
+
+    /// The probabilities that were learnt, by move; `None` while they are not.
+    #[must_use]
+    pub fn probabilities(&self) -> Option<Vec<f64>> {
+        let before = std::iter::once(&0.0).chain(&self.cumulative);
+        let of = || self.cumulative.iter().zip(before).map(|(upto, before)| upto - before).collect();
+        (!self.cumulative.is_empty()).then(of)
+    }
+
+    /// The same, each with those before it.
+    pub(crate) fn cumulative(&self) -> Option<&[f64]> {
+        (!self.cumulative.is_empty()).then_some(self.cumulative.as_slice())
+    }
+
+    /// Whether they are of so many moves.
+    pub(crate) fn fits(&self, moves: usize) -> bool {
+        self.seen.len() == moves && [0, moves].contains(&self.cumulative.len())
+    }
+
+    /// Whether the work of an iteration is counted.
+    pub(crate) fn counts_work(iteration: u64) -> bool {
+        iteration.is_multiple_of(EVERY)
+    }
+
+    /// The chain has another state, that no move made.
+    pub(crate) fn forget_state(&mut self) {
+        self.last.clear();
+    }
+
+    /// Notes what became of an iteration, and what its work was where that was counted; `numbers` are those of the
+    /// state it led to, `None` where that is the one before.
+    pub(crate) fn note(&mut self, id: MoveId, accepted: bool, work: Option<u64>, numbers: Option<Vec<f64>>) {
+        let seen = &mut self.seen[usize::from(id.0)];
+        seen.tried += 1;
+        seen.accepted += u64::from(accepted);
+        if let Some(work) = work {
+            seen.counted += 1;
+            seen.work += work;
+        }
+        if let Some(numbers) = numbers {
+            if accepted && !self.last.is_empty() {
+                seen.jumps.resize(numbers.len(), 0.0);
+                let jumps = numbers.iter().zip(&self.last).map(|(new, old)| math::square(new - old));
+                seen.jumps.iter_mut().zip(jumps).for_each(|(sum, jump)| *sum += jump);
+            }
+            self.last = numbers;
+        }
+        self.states += 1;
+        self.means.resize(self.last.len(), 0.0);
+        self.squares.resize(self.last.len(), 0.0);
+        for ((mean, squares), x) in self.means.iter_mut().zip(&mut self.squares).zip(&self.last) {
+            let off = x - *mean;
+            *mean += off / self.states as f64;
+            *squares += off * (x - *mean);
+        }
+    }
+
+    /// Whether the numbers of the present state are wanted though it is the one before.
+    pub(crate) fn is_blind(&self) -> bool {
+        self.last.is_empty()
+    }
+
+    /// Learns the weights from all that was noted. `configured`: probabilities of the moves.
+    pub(crate) fn freeze(&mut self, configured: &[f64]) {
+        let costs = self.costs();
+        let total: f64 = configured.iter().zip(&costs).map(|(p, cost)| p * cost).sum();
+        let mut shares: Vec<f64> = configured.iter().zip(&costs).map(|(p, cost)| p * cost / total).collect();
+        if let Some(best) = best_shares(&self.gains(&costs)) {
+            let (n, m) = (self.states as f64, self.seen.len() as f64);
+            let believed = MOST * n / (n + HALF * m);
+            shares.iter_mut().zip(best).for_each(|(share, best)| *share = (1.0 - believed) * *share + believed * best);
+        }
+        for (share, seen) in shares.iter_mut().zip(&self.seen) {
+            *share *= if seen.tried >= ENOUGH && seen.accepted == 0 { LEFT } else { 1.0 };
+        }
+        let weights: Vec<f64> = shares.iter().zip(&costs).map(|(share, cost)| share / cost).collect();
+        let sum: f64 = weights.iter().sum();
+        let mut upto = 0.0;
+        self.cumulative = weights.iter().map(|weight| (upto += weight / sum, upto).1).collect();
+        if let Some(last) = self.cumulative.last_mut() {
+            *last = 1.0;
+        }
+        let seen = vec![Seen::default(); self.seen.len()];
+        *self = Self { seen, cumulative: std::mem::take(&mut self.cumulative), ..Self::empty() };
+    }
+
+    fn empty() -> Self {
+        let [means, squares, last, cumulative] = [(); 4].map(|()| Vec::new());
+        Self { seen: Vec::new(), states: 0, means, squares, last, cumulative }
+    }
+
+    /// Work of an iteration by move, of all together where one's was hardly counted.
+    fn costs(&self) -> Vec<f64> {
+        let [counted, work] =
+            [|seen: &Seen| seen.counted, |seen: &Seen| seen.work].map(|of| self.seen.iter().map(of).sum::<u64>());
+        let mean = |counted: u64, work: u64| 1.0 + work as f64 / counted.max(1) as f64;
+        let all = mean(counted, work);
+        self.seen.iter().map(|seen| if seen.counted < FEW { all } else { mean(seen.counted, seen.work) }).collect()
+    }
+
+    /// By move, what it brings to each number for its cost; numbers that never vary, or are none, are left out.
+    fn gains(&self, costs: &[f64]) -> Vec<Vec<f64>> {
+        let varies = |&k: &usize| self.squares[k].is_finite() && self.squares[k] > 0.0;
+        let numbers: Vec<usize> = (0..self.squares.len()).filter(varies).collect();
+        let gain = |(seen, cost): (&Seen, &f64)| {
+            let brought = |&k: &usize| {
+                let jump = seen.jumps.get(k).copied().unwrap_or(0.0) / (self.squares[k] / self.states as f64);
+                if seen.tried < FEW { 0.0 } else { jump / (seen.tried as f64 * cost) }
+            };
+            numbers.iter().map(brought).collect()
+        };
+        self.seen.iter().zip(costs).map(gain).collect()
+    }
+}
+
+/// Shares of the work that bring most to the number that gains least, given what each move brings to each; `None` where
+/// there is a number that none brings anything to, or no number.
+fn best_shares(gains: &[Vec<f64>]) -> Option<Vec<f64>> {
+    let numbers = gains.first()?.len();
+    let most = |k: usize| gains.iter().map(|gain| gain[k]).fold(0.0, f64::max);
+    if numbers == 0 || !(0..numbers).all(|k| most(k) > 0.0) {
+        return None;
+    }
+    let first = |values: &[f64], better: fn(f64, f64) -> bool| {
+        (1..values.len()).fold(0, |best, k| if better(values[k], values[best]) { k } else { best })
+    };
+    // What the moves chosen so far have brought to each number, what numbers chosen so far would have got of each move.
+    let (mut brought, mut got, mut plays) = (vec![0.0; numbers], vec![0.0; gains.len()], vec![0.0; gains.len()]);
+    for _ in 0..ROUNDS {
+        let worst = first(&brought, |a, b| a < b);
+        got.iter_mut().zip(gains).for_each(|(got, gain)| *got += gain[worst]);
+        let best = first(&got, |a, b| a > b);
+        plays[best] += 1.0 / ROUNDS as f64;
+        brought.iter_mut().zip(&gains[best]).for_each(|(sum, gain)| *sum += gain);
+    }
+    Some(plays)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two moves that each serve one number, one three times as fast: work in the ratio 1 to 3 serves both alike. A
+    /// third that serves both, but worse than their mixture, is not played; one that serves both better is all.
+    #[test]
+    fn shares_serve_the_worst_number_best() {
+        let shares =
+            |gains: &[[f64; 2]]| best_shares(&gains.iter().map(|gain| gain.to_vec()).collect::<Vec<_>>()).unwrap();
+        let near = |found: &[f64], wanted: &[f64]| found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 0.05);
+        let found = shares(&[[3.0, 0.0], [0.0, 1.0], [0.5, 0.5]]);
+        assert!(near(&found, &[0.25, 0.75, 0.0]), "{found:?}");
+        let found = shares(&[[3.0, 0.0], [0.0, 1.0], [0.9, 0.9]]);
+        assert!(near(&found, &[0.0, 0.0, 1.0]), "{found:?}");
+        assert_eq!(best_shares(&[vec![1.0, 0.0], vec![2.0, 0.0]]), None, "a number that nothing moves");
+        assert_eq!(best_shares(&[vec![], vec![]]), None);
+    }
+
+    /// Of moves as good as each other, one at twice the work is chosen less; one that is never accepted hardly ever;
+    /// and few iterations change little.
+    #[test]
+    fn work_and_failure_weigh_little() {
+        let learnt = |rounds: u64| {
+            let (seen, empty) = (vec![Seen::default(); 3], Weighing::empty());
+            let mut weighing = Weighing { seen, ..empty };
+            weighing.note(MoveId(0), false, None, Some(vec![0.0]));
+            for k in 0..rounds {
+                let x = if k % 2 == 0 { 1.0 } else { 0.0 };
+                weighing.note(MoveId(0), true, Some(9), Some(vec![x]));
+                weighing.note(MoveId(1), true, Some(19), Some(vec![1.0 - x]));
+                weighing.note(MoveId(1), true, Some(19), Some(vec![x]));
+                weighing.note(MoveId(2), false, Some(9), None);
+            }
+            weighing.freeze(&[0.25, 0.5, 0.25]);
+            weighing.probabilities().unwrap()
+        };
+        let (few, many) = (learnt(4), learnt(1000));
+        assert!((few[1] - 0.5).abs() < 0.06 && few[2] > 0.2, "{few:?}");
+        assert!(many[0] > 2.0 * many[1] && many[2] < 0.01 && many[2] > 0.0, "{many:?}");
+        assert!((many.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+}
