@@ -57,6 +57,7 @@ fn turns_under_a_torque_and_angular_damping_are_those_of_the_closed_form() {
          spin_deg_s = [0, 0, { uniform = [50, 150] }]\n\
          angular_damping = { uniform = [0.5, 3] }\ntorque_n_m = [0, 0, { uniform = [0.0005, 0.001] }]\n",
     );
+    let mut of_twin = 0.0_f64;
     let inertia = 0.4 * 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.05_f64.powi(5);
     for draw in draws(&world) {
         let [spin, torque, damping] = draw.numbers[..] else { panic!("{draw:?}") };
@@ -67,8 +68,10 @@ fn turns_under_a_torque_and_angular_damping_are_those_of_the_closed_form() {
         let found = 2.0 * math::atan2(turn.xyz().length(), turn.w.abs());
         // A ball's leg may turn it otherwise by 1e-3.
         assert!((found - angle).abs() < 1e-3, "{found} for {angle}");
-        assert!((found - spin * time).abs() > 1e-2, "a turn without torque is not told from it");
+        of_twin = of_twin.max((found - spin * time).abs());
     }
+    // In some draws torque and damping nearly cancel; over all a turn without them is far off.
+    assert!(of_twin > 0.1, "a turn without torque and damping is not told from it: {of_twin}");
 }
 
 /// It hangs in the air, though a neighbour falls past it; one that is hit falls too.

@@ -194,18 +194,6 @@ fn all() -> Amount<amount::Scale> {
     1.0.into()
 }
 
-fn is_all(scale: &Amount<amount::Scale>) -> bool {
-    *scale == all()
-}
-
-fn is_none<M>(amount: &Amount<M>) -> bool {
-    *amount == Amount::default()
-}
-
-fn is_nothing<M>(amounts: &[Amount<M>; 3]) -> bool {
-    amounts.iter().all(is_none)
-}
-
 fn half<M>() -> Amount<M> {
     0.5.into()
 }
@@ -327,21 +315,21 @@ pub struct Body {
     #[serde(default)]
     pub release_s: Amount<amount::Moment>,
     /// How much of the world's gravity it feels: 1 all, 0 none (it floats), below 0 it rises.
-    #[serde(default = "all", skip_serializing_if = "is_all")]
+    #[serde(default = "all")]
     pub gravity_scale: Amount<amount::Scale>,
     /// Rate at which it loses velocity, as in thick air: by a factor of e in `1/damping` seconds.
-    #[serde(default, skip_serializing_if = "is_none")]
+    #[serde(default)]
     pub damping: Amount<amount::Rate>,
     /// Rate at which it loses angular momentum.
-    #[serde(default, skip_serializing_if = "is_none")]
+    #[serde(default)]
     pub angular_damping: Amount<amount::Rate>,
     /// A constant force at its centre of gravity, along the world's axes: wind, a thruster.
-    #[serde(default, skip_serializing_if = "is_nothing")]
+    #[serde(default)]
     pub force_n: [Amount<amount::Force>; 3],
     /// A constant torque about its centre of gravity, along the world's axes.
-    #[serde(default, skip_serializing_if = "is_nothing")]
+    #[serde(default)]
     pub torque_n_m: [Amount<amount::Torque>; 3],
     /// Stays where it is, in the air too, until another body hits it.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default)]
     pub asleep: bool,
 }
