@@ -3,6 +3,8 @@
 
 mod common;
 
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_acting;
 mod custom_bad;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_exact;

@@ -86,6 +86,13 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 0, 31]\nvelocity_m_s = [{ uniform = [0, 2] }, 0, 0]",
         "relative = { body = 'marble_1', to = 'marble_3', y_mm = 15, within_mm = 20, scale_mm = 40 }",
     ],
+    // What acts besides contact is uncertain.
+    [
+        "duration_s = 0.5",
+        "at_mm = [0, 0, 200]\nvelocity_m_s = [1, 0, 0]\ngravity_scale = { uniform = [-0.5, 1] }\n\
+         damping = { uniform = [0, 3] }\nforce_n = [0, { normal = [0, 0.3] }, 0]",
+        "passes = { x_mm = 300, y_mm = 60, z_mm = 150, within_mm = 30, scale_mm = 60 }",
+    ],
     // The hull of a file falls onto the triangles of another; where these are, and how large both are, is uncertain.
     [
         "duration_s = 0.2\n[[world.custom.fixed]]\nname = 'roof'\n\

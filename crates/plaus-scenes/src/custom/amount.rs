@@ -55,6 +55,14 @@ measures! {
     Friction: "", 0.0 to 1e3, NotNegative;
     /// A coefficient of restitution.
     Restitution: "", 0.0 to 1.0, Share;
+    /// A part of the world's gravity.
+    Scale: "", -1e3 to 1e3, Any;
+    /// A component of a force.
+    Force: "N", -1e6 to 1e6, Any;
+    /// A component of a torque.
+    Torque: "N m", -1e6 to 1e6, Any;
+    /// A rate at which something is lost.
+    Rate: "1/s", 0.0 to 1e3, NotNegative;
     /// A density over another.
     Factor: "", 1e-6 to 1e6, NotNegative;
     /// A number whose unit is not known here.

@@ -81,7 +81,7 @@ fn pieces(rigid: &Rigid, index: usize, motions: &[Turning], axes: DQuat, (end, i
     for (k, motion) in motions.iter().enumerate() {
         let until = motions.get(k + 1).map_or(end, |next| next.path.t);
         let span = (until - motion.path.t).max(0.0);
-        let turns = motion.phase == Phase::Flight && !is_round;
+        let turns = matches!(motion.phase, Phase::Flight | Phase::Leg) && !is_round;
         let parts = if turns { (motion.spin.length() * span / TURN).ceil().clamp(1.0, MOST_PIECES) } else { 1.0 };
         for part in 0..parts as u32 {
             let time = motion.path.t + span * f64::from(part) / parts;

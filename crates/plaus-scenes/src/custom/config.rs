@@ -91,6 +91,12 @@ impl Default for Config {
                 velocity_m_s: [aimed(1.0), aimed(0.0), 0.0.into()],
                 spin_deg_s: Default::default(),
                 release_s: Amount::default(),
+                gravity_scale: all(),
+                damping: Amount::default(),
+                angular_damping: Amount::default(),
+                force_n: Default::default(),
+                torque_n_m: Default::default(),
+                asleep: false,
             }],
             driven: Vec::new(),
             weights: Weights::default(),
@@ -182,6 +188,10 @@ impl Default for Material {
 
 fn water() -> Amount<amount::Density> {
     1000.0.into()
+}
+
+fn all() -> Amount<amount::Scale> {
+    1.0.into()
 }
 
 fn half<M>() -> Amount<M> {
@@ -304,4 +314,22 @@ pub struct Body {
     /// When it appears. Before that, nothing can touch it.
     #[serde(default)]
     pub release_s: Amount<amount::Moment>,
+    /// How much of the world's gravity it feels: 1 all, 0 none (it floats), below 0 it rises.
+    #[serde(default = "all")]
+    pub gravity_scale: Amount<amount::Scale>,
+    /// Rate at which it loses velocity, as in thick air: by a factor of e in `1/damping` seconds.
+    #[serde(default)]
+    pub damping: Amount<amount::Rate>,
+    /// Rate at which it loses angular momentum.
+    #[serde(default)]
+    pub angular_damping: Amount<amount::Rate>,
+    /// A constant force at its centre of gravity, along the world's axes: wind, a thruster.
+    #[serde(default)]
+    pub force_n: [Amount<amount::Force>; 3],
+    /// A constant torque about its centre of gravity, along the world's axes.
+    #[serde(default)]
+    pub torque_n_m: [Amount<amount::Torque>; 3],
+    /// Stays where it is, in the air too, until another body hits it.
+    #[serde(default)]
+    pub asleep: bool,
 }

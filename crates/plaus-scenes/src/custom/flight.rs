@@ -137,6 +137,9 @@ pub(super) fn fly(plan: &Plan, draw: &Drawn, work: &mut Work) -> Result<Ending, 
             return overlap.map(Ending::Overlap).ok_or_else(|| ModelError::new(error));
         }
     };
+    for index in plan.bodies.iter().enumerate().filter(|(_, body)| body.acting.is_asleep).map(|(index, _)| index) {
+        built.rigid.put_to_sleep(&mut state, index).map_err(ModelError::new)?;
+    }
     let mut trace = Trace::default();
     let outcome = built.rigid.run(&mut state, scratch, f64::INFINITY, &mut trace).map_err(ModelError::new)?;
     match outcome {

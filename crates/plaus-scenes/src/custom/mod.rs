@@ -1,6 +1,7 @@
 //! Worlds that users describe: bodies, scenery and materials, any number of which may be uncertain. Only requirements
 //! say what must happen.
 
+mod acting;
 mod amount;
 mod animate;
 mod config;

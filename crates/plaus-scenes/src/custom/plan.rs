@@ -1,5 +1,6 @@
 //! What a scenario describes, with every number as a value: from it the simulator's world of a draw is made.
 
+use super::acting::Acting;
 use super::config::{Body, Config, Material};
 use super::driven::{Driven, Way};
 use super::names::{Member, check_name, colour, members};
@@ -46,6 +47,7 @@ pub(super) struct Moving {
     velocity: Values,
     spin: Values,
     release: Value,
+    pub(super) acting: Acting,
     /// Its way, if it goes its own. Those that do come last.
     pub(super) way: Option<Way>,
 }
@@ -175,7 +177,7 @@ impl Plan {
         let said = self.pairs.iter().flat_map(|(_, said)| said).flatten();
         let substances = self.substances.iter().flat_map(|one| one.contact.iter().chain([&one.density]));
         said.chain(substances).all(|value| value.is_fixed())
-            && self.bodies.iter().all(|body| body.form.is_fixed() && body.way.as_ref().is_none_or(Way::is_fixed))
+            && self.bodies.iter().all(Moving::is_fixed)
             && self.parts.iter().all(Standing::is_fixed)
     }
 
@@ -200,6 +202,9 @@ impl Plan {
         for (index, (body, made)) in self.bodies.iter().zip(&shapes).enumerate() {
             if let Some(way) = &body.way {
                 rigid.drive(index, &way.keyframes(numbers, made))?;
+            }
+            if let Some(forces) = body.acting.forces(numbers) {
+                rigid.act_on(index, forces)?;
             }
         }
         Ok(Built { rigid, shapes })
@@ -277,17 +282,22 @@ impl Moving {
         } else {
             Turned::Angles(angles)
         };
+        let form = Form::new(collector, &owner, &body.shape)?;
+        let velocity = collector.three(&owner, "velocity_m_s", ["vx", "vy", "vz"], &body.velocity_m_s)?;
+        let spin = collector.three(&owner, "spin_deg_s", ["wx", "wy", "wz"], &body.spin_deg_s)?;
+        let release = collector.number(&owner, "release_s", "release", &body.release_s)?;
         Ok(Self {
             name: owner.name.to_owned(),
             key: member.key.clone(),
             look,
-            form: Form::new(collector, &owner, &body.shape)?,
+            form,
             substance,
             at,
             turn,
-            velocity: collector.three(&owner, "velocity_m_s", ["vx", "vy", "vz"], &body.velocity_m_s)?,
-            spin: collector.three(&owner, "spin_deg_s", ["wx", "wy", "wz"], &body.spin_deg_s)?,
-            release: collector.number(&owner, "release_s", "release", &body.release_s)?,
+            velocity,
+            spin,
+            release,
+            acting: Acting::new(collector, &owner, body, [velocity, spin])?,
             way: None,
         })
     }
@@ -307,8 +317,13 @@ impl Moving {
         let (at, turn) = way.first();
         let [velocity, spin] = [[Value::Fixed(0.0); 3]; 2];
         let (name, key, turn) = (owner.name.to_owned(), member.key.clone(), Turned::Angles(turn));
-        let release = Value::Fixed(0.0);
-        Ok(Self { name, key, look, form, substance, at, turn, velocity, spin, release, way: Some(way) })
+        let (release, acting) = (Value::Fixed(0.0), Acting::default());
+        Ok(Self { name, key, look, form, substance, at, turn, velocity, spin, release, acting, way: Some(way) })
+    }
+
+    /// Whether it is the same for all draws, but for how it starts.
+    fn is_fixed(&self) -> bool {
+        self.form.is_fixed() && self.acting.is_fixed() && self.way.as_ref().is_none_or(Way::is_fixed)
     }
 
     /// Whether no axis of it is told from another.
