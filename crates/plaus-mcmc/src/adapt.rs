@@ -107,8 +107,9 @@ impl Scales {
         let begin = |parts: Vec<usize>| (!parts.is_empty()).then(|| Learning::start(parts));
         let learned: Vec<Option<Learning>> = moves.iter().map(|(_, kernel)| begin(kernel.learns())).collect();
         let is_any = of.iter().any(|scales| !scales.is_empty()) || learned.iter().any(Option::is_some);
-        let weighing = weighs.then(|| Weighing::start(moves));
-        (is_any || weighs).then_some(Self { until, frozen: false, of, learned, weighing })
+        // Of one move there is nothing to weigh: the first rung of tempered replicas has one.
+        let weighing = (weighs && of.len() > 1).then(|| Weighing::start(moves));
+        (is_any || weighing.is_some()).then_some(Self { until, frozen: false, of, learned, weighing })
     }
 
     /// Whether the warm-up is over, so that they no longer change.
