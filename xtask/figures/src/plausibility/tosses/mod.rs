@@ -25,12 +25,12 @@ const NUDGE: (f64, f64) = (1e-3, 0.009);
 
 const HEAD: [&str; 9] = [
     "",
-    "off, % of the width",
-    "half are within",
+    "distance, % of the width",
+    "median",
     "same face up, %",
-    "turned off, °",
-    "of those with the same face, °",
-    "way along the floor, widths",
+    "angle, °",
+    "angle if the same face is up, °",
+    "path along the floor, widths",
     "time to rest, s",
     "not at rest",
 ];
