@@ -66,7 +66,7 @@ fn turns_under_a_torque_and_angular_damping_are_those_of_the_closed_form() {
         let track = &world.animate(&draw).unwrap().tracks[0];
         let turn = track.orientation(time) * track.orientation(0.0).inverse();
         let found = 2.0 * math::atan2(turn.xyz().length(), turn.w.abs());
-        // A ball's leg may turn it otherwise by 1e-3.
+        // Half way of a leg the simulator may turn a ball otherwise by 1e-3.
         assert!((found - angle).abs() < 1e-3, "{found} for {angle}");
         of_twin = of_twin.max((found - spin * time).abs());
     }

@@ -85,7 +85,12 @@ fn pieces(rigid: &Rigid, index: usize, motions: &[Turning], axes: DQuat, (end, i
         let parts = if turns { (motion.spin.length() * span / TURN).ceil().clamp(1.0, MOST_PIECES) } else { 1.0 };
         for part in 0..parts as u32 {
             let time = motion.path.t + span * f64::from(part) / parts;
-            let piece = piece(&rigid.on_its_way(index, motion, time), axes);
+            let mut body = rigid.on_its_way(index, motion, time);
+            if motion.phase == Phase::Leg && part == 0 {
+                // A leg turns with its mean, not as fast as at its start.
+                body.spin = motion.spin;
+            }
+            let piece = piece(&body, axes);
             // Of motions that begin at one time the last is the one that is made.
             if pieces.last().is_some_and(|last| last.start >= piece.start) {
                 pieces.pop();
