@@ -3,7 +3,7 @@
 //! | tolerance | unit | draft | standard | fine | reference | usual range | danger | source |
 //! | --- | --- | --- | --- | --- | --- | --- | --- | --- |
 //! | `settle` | √(g·size) | 1e-1 | 3e-2 | 3e-3 | 3e-4 | 1e-6–1e-1 | large: bounces end early, visibly; small: many more impacts before rest | bounces of relative height `settle²/2` are unseen; convergence: `cargo xtask tradeoff` |
-//! | `rattle` | √(size/g) | 1e-3 | 1e-4 | 1e-6 | 1e-9 | 1e-9–1e-2 | large: quick successions of true bounces lose energy; small: a heavy ball on a light one needs millions of events | the t_c model of Luding & McNamara, Granular Matter 1 (1998), after sixteen in a row |
+//! | `rattle` | √(size/g) | 1e-3 | 1e-4 | 1e-6 | 1e-9 | 1e-9–1e-2 | large: quick successions of true bounces lose energy; small: a heavy ball on a light one needs millions of events | the t_c model of Luding & McNamara, Granular Matter 1 (1998), after forty in a row, of turning bodies sixteen |
 //! | `step` | √(ρ/g), rolling √((1+k)ρ/g), ρ/speed | 0.7 | 0.4 | 0.1 | 0.02 | 0.002–0.7 | large: lasting contact drifts in phase, error ∝ step²; between the ends of a step centres leave what they touch by up to step³/10 of ρ | second-order scheme, phase error ≈ step²/24 per radian; `tests/marble_truth.rs` |
 //! | `sweeps` | count | 20 | 60 | 500 | 1000 | 20–10⁴ | small: stacks sink or creep | Gauss–Seidel; each sweep carries the load one body further, those of marbles are combined (`marbles/relax.rs`) |
 //! | `sweep_tolerance` | g·step | 1e-2 | 3e-3 | 1e-6 | 1e-8 | 1e-12–1e-2 | as `sweeps` | change at which sweeps end: no contact is left approaching faster |
