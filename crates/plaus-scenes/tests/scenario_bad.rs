@@ -52,8 +52,8 @@ fn each_problem_has_its_place_key_range_and_nearest_name() {
             &["tempering needs exact acceptance", "set sampler.rules.preset = \"exact\", or rungs = 1"],
         ),
         (
-            "[sampler]\nadapt_weights = true\n[world.ball2d]",
-            (2, 17),
+            "[sampler]\nadapt = false\nadapt_weights = true\n[world.ball2d]",
+            (3, 17),
             "sampler.adapt_weights",
             &["only where scales are adapted", "set sampler.adapt = true"],
         ),

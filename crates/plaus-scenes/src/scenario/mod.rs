@@ -72,7 +72,7 @@ pub struct Sampler {
     pub adapt: Option<bool>,
     /// Whether the warm-up also learns how often to make each move, from how far it leads for its cost. This replaces
     /// part of the configured weights and is then kept. A move that was never accepted is hardly made any more. It
-    /// needs `adapt`. Unset: no.
+    /// turns `adapt` on where that is unset. Unset: no.
     pub adapt_weights: Option<bool>,
     /// How draws are made. Every method samples the same law. Unset: `chain`.
     pub method: Option<Method>,
@@ -196,7 +196,7 @@ impl Scenario {
     /// Whether moves' scales are adapted in the warm-up.
     #[must_use]
     pub fn adapts(&self) -> bool {
-        self.sampler.adapt.unwrap_or_else(|| self.world.adapts())
+        self.sampler.adapt.unwrap_or_else(|| self.world.adapts() || self.sampler.adapt_weights == Some(true))
     }
 
     /// Whether moves' weights are learnt in it too.
