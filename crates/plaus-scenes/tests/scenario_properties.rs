@@ -307,7 +307,8 @@ proptest! {
         let apart = ["sampler.tempering.rungs=1", "sampler.adapt_weights=false"].map(str::to_owned);
         let alone = [overrides.as_slice(), &apart].concat();
         let together = ["sampler.tempering.rungs", "sampler.adapt_weights"];
-        let refused = |error: &ScenarioError| error.problems.iter().all(|problem| together.contains(&problem.key.as_str()));
+        let is_known = |problem: &Problem| together.contains(&problem.key.as_str());
+        let refused = |error: &ScenarioError| error.problems.iter().all(is_known);
         let result = read(&overrides).or_else(|error| if refused(&error) { read(&alone) } else { Err(error) });
         match result {
             Ok(scenario) => same_when_written(&scenario)?,
