@@ -116,16 +116,23 @@ impl<'a, T: Target, R: Requirement<T>> Required<'a, T, R> {
         Ok(Start { snapshot, distinct })
     }
 
-    /// What the target's own constraint must exceed where this one's must exceed `floor`. Rounding is monotone, so that
-    /// own ≤ floor − most gives own + log ≤ floor, also in floating point.
+    /// What the target's own constraint must exceed so that this one can exceed `floor`.
     fn floor_seen(&self, floor: LogPotential) -> Result<LogPotential, ModelError> {
-        let Some(most) = self.requirement.most() else { return Ok(LogPotential::ZERO) };
-        if most == LogPotential::ONE || floor.is_zero() {
-            return Ok(floor);
-        }
-        let seen = (floor.value() - most.value()).next_down();
-        Ok(LogPotential::new(seen.min(f64::MAX))?)
+        self.requirement.most().map_or(Ok(LogPotential::ZERO), |most| floor_beside(floor, most))
     }
+}
+
+/// What a factor must exceed so that it can exceed `floor` together with another one, which is `most` at most. Rounding
+/// is monotone: one ≤ floor − most gives one + other ≤ floor, also in floating point.
+///
+/// # Errors
+///
+/// [`ModelError`] if the bounds are not numbers.
+pub fn floor_beside(floor: LogPotential, most: LogPotential) -> Result<LogPotential, ModelError> {
+    if most == LogPotential::ONE || floor.is_zero() {
+        return Ok(floor);
+    }
+    Ok(LogPotential::new((floor.value() - most.value()).next_down().min(f64::MAX))?)
 }
 
 impl<T: Target, R: Requirement<T>> Target for Required<'_, T, R> {

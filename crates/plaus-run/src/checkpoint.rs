@@ -9,8 +9,8 @@ use crate::codec::{self, FrameError, FrameProblem, Frames, Kind};
 use crate::disk::{Disk, for_each};
 use crate::error::{RunFileError, RunFileProblem};
 use crate::folder::Folder;
+use crate::{Draw, Outcome};
 use plaus_mcmc::Snapshot;
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::ErrorKind;
@@ -21,7 +21,7 @@ const KIND: Kind = Kind::new(*b"chkp", 6, "a checkpoint of a chain");
 
 /// The state from which a chain can continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Checkpoint<D, O> {
+pub struct Checkpoint {
     /// The run: see the records.
     pub run: u64,
     /// The chain.
@@ -29,10 +29,10 @@ pub struct Checkpoint<D, O> {
     /// Length of the chain's records, in bytes, at this checkpoint: anything after it is not valid.
     pub records: u64,
     /// Everything that determines the chain's future.
-    pub snapshot: Snapshot<D, O>,
+    pub snapshot: Snapshot<Draw, Outcome>,
 }
 
-impl<D: Serialize + DeserializeOwned, O: Serialize + DeserializeOwned> Checkpoint<D, O> {
+impl Checkpoint {
     /// Reads a chain's checkpoint; `None` if it has none yet.
     ///
     /// # Errors
@@ -102,10 +102,7 @@ impl Stored {
 ///
 /// # Errors
 /// [`RunFileError`] if it is too long.
-pub(crate) fn encode<D: Serialize, O: Serialize>(
-    path: &Path,
-    checkpoint: &Checkpoint<D, O>,
-) -> Result<Vec<u8>, RunFileError> {
+pub(crate) fn encode(path: &Path, checkpoint: &Checkpoint) -> Result<Vec<u8>, RunFileError> {
     codec::encode(KIND, checkpoint).map_err(|error| RunFileError::new(path, error.into()))
 }
 
@@ -113,11 +110,7 @@ pub(crate) fn encode<D: Serialize, O: Serialize>(
 ///
 /// # Errors
 /// [`RunFileError`] if the disk refuses; what was valid before then still is.
-pub fn replace<D: Serialize + Sync, O: Serialize + Sync>(
-    folder: &Folder,
-    disk: &dyn Disk,
-    checkpoints: &[Checkpoint<D, O>],
-) -> Result<(), RunFileError> {
+pub fn replace(folder: &Folder, disk: &dyn Disk, checkpoints: &[Checkpoint]) -> Result<(), RunFileError> {
     let written = for_each(checkpoints, |checkpoint| {
         let path = folder.next_checkpoint(checkpoint.chain);
         let bytes = encode(&path, checkpoint)?;
@@ -138,19 +131,10 @@ pub fn replace<D: Serialize + Sync, O: Serialize + Sync>(
 ///
 /// # Errors
 /// [`RunFileError`] if a checkpoint is damaged, or they do not fit each other.
-pub fn settle<D, O>(
-    folder: &Folder,
-    disk: &dyn Disk,
-    run: u64,
-    chains: Range<u32>,
-) -> Result<Vec<Checkpoint<D, O>>, RunFileError>
-where
-    D: Serialize + DeserializeOwned,
-    O: Serialize + DeserializeOwned,
-{
-    let read = |chain| Checkpoint::<D, O>::read(&folder.checkpoint(chain), run, chain);
+pub fn settle(folder: &Folder, disk: &dyn Disk, run: u64, chains: Range<u32>) -> Result<Vec<Checkpoint>, RunFileError> {
+    let read = |chain| Checkpoint::read(&folder.checkpoint(chain), run, chain);
     let valid: Vec<Option<_>> = chains.clone().map(read).collect::<Result<_, _>>()?;
-    let end = |checkpoint: &Checkpoint<D, O>| checkpoint.snapshot.end_iteration;
+    let end = |checkpoint: &Checkpoint| checkpoint.snapshot.end_iteration;
     let Some(newest) = valid.iter().flatten().map(end).max() else {
         return clear(folder, disk, chains).map(|()| Vec::new());
     };

@@ -61,7 +61,7 @@ impl<'a> Gauge<'a> {
         while draws >> self.shift >= MOST as u64 {
             self.shift += 1;
         }
-        for block in Blocks::<Draw, Outcome>::open(path, extent)? {
+        for block in Blocks::open(path, extent)? {
             self.note(extent.chain, &block?);
         }
         Ok(())

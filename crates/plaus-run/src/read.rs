@@ -37,7 +37,7 @@ struct ChainOf {
 
 /// Consecutive draws of one phase at the same state.
 #[derive(Debug, Clone, Copy)]
-pub struct Stretch<'a, D, O> {
+pub struct Stretch<'a> {
     /// Number of the first of them in its phase.
     pub draw: u64,
     /// How many.
@@ -45,11 +45,8 @@ pub struct Stretch<'a, D, O> {
     /// Proposals accepted since the recorded draw before the first of them.
     pub accepted: u32,
     /// What was recorded.
-    pub entry: &'a Entry<D, O>,
+    pub entry: &'a Entry<Draw, Outcome>,
 }
-
-/// A stretch of a run's draws.
-pub type StretchOf<'a> = Stretch<'a, Draw, Outcome>;
 
 impl Run {
     /// Opens a run.
@@ -203,7 +200,7 @@ impl<'a> RunReader<'a> {
     ///
     /// # Errors
     /// [`RunFileError`] if the records cannot be opened.
-    pub fn blocks(&self, chain: u32) -> Result<Blocks<Draw, Outcome>, RunFileError> {
+    pub fn blocks(&self, chain: u32) -> Result<Blocks, RunFileError> {
         let extent = self.chain(chain).map(|chain| chain.extent);
         let missing = || {
             let Range { start, end } = self.chains();
@@ -221,7 +218,7 @@ impl<'a> RunReader<'a> {
         &self,
         chain: u32,
         phase: Phase,
-        mut look: impl FnMut(StretchOf<'_>) -> Result<(), E>,
+        mut look: impl FnMut(Stretch<'_>) -> Result<(), E>,
     ) -> Result<(), E> {
         let mut failed = None;
         self.walk_until(chain, phase, &mut |stretch| {
@@ -231,12 +228,12 @@ impl<'a> RunReader<'a> {
         failed.map_or(Ok(()), Err)
     }
 
-    /// The same until `look` returns false. It is compiled once for each scene, not for each caller.
+    /// The same until `look` returns false. It is compiled once, not for each caller.
     fn walk_until(
         &self,
         chain: u32,
         phase: Phase,
-        look: &mut dyn FnMut(StretchOf<'_>) -> bool,
+        look: &mut dyn FnMut(Stretch<'_>) -> bool,
     ) -> Result<(), RunFileError> {
         let range = self.range(phase);
         if range.is_empty() {
@@ -297,7 +294,7 @@ impl ChainOf {
         let (id, thin) = (run.manifest.run_id(), run.manifest.plan.thin);
         let checkpoint = Checkpoint::read(&run.folder.checkpoint(chain), id, chain)?;
         let (bytes, end_iteration) =
-            checkpoint.as_ref().map_or((0, 0), |c: &Checkpoint<_, _>| (c.records, c.snapshot.end_iteration));
+            checkpoint.as_ref().map_or((0, 0), |c: &Checkpoint| (c.records, c.snapshot.end_iteration));
         let extent = Extent { run: id, chain, thin, bytes, end_iteration };
         Ok(Self { extent, lost: 0, snapshot: checkpoint.map(|checkpoint| checkpoint.snapshot) })
     }
@@ -309,8 +306,7 @@ impl ChainOf {
         let whole = records::length(&path)?;
         let bytes = whole;
         let mut extent = Extent { run: id, chain, thin, bytes, end_iteration: plan.end() };
-        let (bytes, end_iteration) =
-            if bytes == 0 { (0, 0) } else { Blocks::<Draw, Outcome>::open(&path, extent)?.intact() };
+        let (bytes, end_iteration) = if bytes == 0 { (0, 0) } else { Blocks::open(&path, extent)?.intact() };
         extent = Extent { bytes, end_iteration, ..extent };
         Ok(Self { extent, lost: whole - bytes, snapshot: None })
     }

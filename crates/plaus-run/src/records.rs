@@ -2,8 +2,8 @@
 
 use crate::codec::{self, EncodeError, FrameError, FrameProblem, Frames, Kind};
 use crate::error::{RunFileError, RunFileProblem};
+use crate::{Draw, Outcome};
 use plaus_mcmc::{Block, Distinct, FirstOfClass};
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::ErrorKind;
@@ -23,11 +23,7 @@ struct Stored<B> {
 ///
 /// # Errors
 /// [`EncodeError`] if it is too long.
-pub(crate) fn encode<D: Serialize, O: Serialize>(
-    run: u64,
-    chain: u32,
-    block: &Block<D, O>,
-) -> Result<Vec<u8>, EncodeError> {
+pub(crate) fn encode(run: u64, chain: u32, block: &Block<Draw, Outcome>) -> Result<Vec<u8>, EncodeError> {
     let mut out = Vec::with_capacity(128 + 96 * block.entries.len());
     codec::append(KIND, &Stored { run, chain, block }, &mut out)?;
     Ok(out)
@@ -46,8 +42,8 @@ pub(crate) struct Extent {
 }
 
 /// The blocks of one chain, read one after the other. After an error it ends.
-pub struct Blocks<D, O> {
-    frames: Frames<Stored<Block<D, O>>, File>,
+pub struct Blocks {
+    frames: Frames<Stored<Block<Draw, Outcome>>, File>,
     path: PathBuf,
     extent: Extent,
     next_iteration: u64,
@@ -55,7 +51,7 @@ pub struct Blocks<D, O> {
     over: bool,
 }
 
-impl<D: DeserializeOwned, O: DeserializeOwned> Blocks<D, O> {
+impl Blocks {
     pub(crate) fn open(path: &Path, extent: Extent) -> Result<Self, RunFileError> {
         let file = File::open(path).map_err(RunFileError::io(path, "read"))?;
         let present = file.metadata().map_err(RunFileError::io(path, "read"))?.len();
@@ -85,7 +81,7 @@ impl<D: DeserializeOwned, O: DeserializeOwned> Blocks<D, O> {
         missing.then(|| self.damage(present, FrameProblem::Truncated { needed: self.extent.bytes, present }))
     }
 
-    fn check(&self, offset: u64, stored: &Stored<Block<D, O>>) -> Result<u64, RunFileError> {
+    fn check(&self, offset: u64, stored: &Stored<Block<Draw, Outcome>>) -> Result<u64, RunFileError> {
         let Stored { run, chain, block } = stored;
         if (*run, *chain) != (self.extent.run, self.extent.chain) {
             let message = format!("the frame at byte {offset} belongs to chain {chain} of run {run:016x}");
@@ -105,8 +101,8 @@ impl<D: DeserializeOwned, O: DeserializeOwned> Blocks<D, O> {
     }
 }
 
-impl<D: DeserializeOwned, O: DeserializeOwned> Iterator for Blocks<D, O> {
-    type Item = Result<Block<D, O>, RunFileError>;
+impl Iterator for Blocks {
+    type Item = Result<Block<Draw, Outcome>, RunFileError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if self.over {
@@ -176,14 +172,10 @@ pub(crate) fn copy<E: From<RunFileError>>(
 }
 
 /// Rebuilds when a chain first recorded each class of solutions, starting at iteration `from`.
-pub(crate) fn distinct<D: DeserializeOwned, O: DeserializeOwned>(
-    path: &Path,
-    extent: Extent,
-    from: u64,
-) -> Result<Distinct, RunFileError> {
+pub(crate) fn distinct(path: &Path, extent: Extent, from: u64) -> Result<Distinct, RunFileError> {
     let mut distinct = Distinct::default();
     let first_counted = from.next_multiple_of(extent.thin);
-    for block in Blocks::<D, O>::open(path, extent)? {
+    for block in Blocks::open(path, extent)? {
         let block = block?;
         let mut iteration = block.first_iteration.next_multiple_of(extent.thin);
         for entry in &block.entries {

@@ -252,7 +252,7 @@ fn restore(folder: &Folder, manifest: &Manifest, scene: &Stage, sampling: &Sampl
         return Err(RunFileError::new(folder.manifest(), RunFileProblem::Differs(message)).into());
     }
     let (run, chains) = (manifest.run_id(), manifest.chains());
-    let checkpoints = checkpoint::settle::<Draw, Outcome>(folder, disk, run, chains.clone())?;
+    let checkpoints = checkpoint::settle(folder, disk, run, chains.clone())?;
     if checkpoints.is_empty() {
         chains.into_iter().try_for_each(|chain| cut(&folder.records(chain), disk, 0))?;
     }
@@ -272,7 +272,7 @@ fn restore_chain(
     manifest: &Manifest,
     scene: &Stage,
     disk: &dyn Disk,
-    checkpoint: Checkpoint<Draw, Outcome>,
+    checkpoint: Checkpoint,
 ) -> Result<Start<Draw, Outcome>, Error> {
     let Checkpoint { chain, records, snapshot, .. } = checkpoint;
     let states = snapshot.replicas.iter().flat_map(|replicas| &replicas.states).chain([&snapshot.state]);
@@ -285,7 +285,7 @@ fn restore_chain(
     let path = folder.records(chain);
     let end_iteration = snapshot.end_iteration;
     let extent = Extent { run: manifest.run_id(), chain, thin: manifest.plan.thin, bytes: records, end_iteration };
-    let distinct: Distinct = records::distinct::<Draw, Outcome>(&path, extent, manifest.plan.counts_from())?;
+    let distinct: Distinct = records::distinct(&path, extent, manifest.plan.counts_from())?;
     if snapshot.counts.len() != manifest.moves.len() {
         let message =
             format!("{} moves are counted, but the scene has {}", snapshot.counts.len(), manifest.moves.len());

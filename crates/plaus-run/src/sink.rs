@@ -106,7 +106,7 @@ impl<'a> FolderSink<'a> {
     }
 
     /// All chains as of the last round.
-    fn checkpoints(&self) -> Vec<Checkpoint<Draw, Outcome>> {
+    fn checkpoints(&self) -> Vec<Checkpoint> {
         let run = self.place.run;
         let chains = (self.place.first..).zip(&self.lengths).zip(self.snapshots.iter().cloned());
         chains.map(|((chain, &records), snapshot)| Checkpoint { run, chain, records, snapshot }).collect()

@@ -25,20 +25,20 @@ type Head = (u64, u64);
 type News = (u64, u64, Vec<FirstOfClass>);
 
 #[derive(Serialize, Deserialize)]
-struct Stored<D, O> {
+struct Stored {
     run: u64,
     end_iteration: u64,
     firsts: Vec<FirstOfClass>,
-    checkpoints: Vec<Checkpoint<D, O>>,
+    checkpoints: Vec<Checkpoint>,
 }
 
 /// Adds a round.
-pub(crate) fn append<D: Serialize, O: Serialize>(
+pub(crate) fn append(
     folder: &Folder,
     disk: &dyn Disk,
     run: u64,
     firsts: Vec<FirstOfClass>,
-    checkpoints: Vec<Checkpoint<D, O>>,
+    checkpoints: Vec<Checkpoint>,
 ) -> Result<(), RunFileError> {
     let Some(first) = checkpoints.first() else { return Ok(()) };
     let path = folder.trail();
@@ -113,14 +113,10 @@ pub(crate) fn length_until(path: &Path, run: u64, iteration: u64) -> Result<u64,
 ///
 /// # Errors
 /// [`RunFileError`] if the frame is damaged.
-pub(crate) fn read<D, O>(path: &Path, begin: u64, end: u64) -> Result<Vec<Checkpoint<D, O>>, RunFileError>
-where
-    D: Serialize + DeserializeOwned,
-    O: Serialize + DeserializeOwned,
-{
+pub(crate) fn read(path: &Path, begin: u64, end: u64) -> Result<Vec<Checkpoint>, RunFileError> {
     let mut file = File::open(path).map_err(RunFileError::io(path, "read"))?;
     file.seek(SeekFrom::Start(begin)).map_err(RunFileError::io(path, "read"))?;
-    let mut frames = Frames::<Stored<D, O>, _>::new(KIND, file, end - begin);
+    let mut frames = Frames::<Stored, _>::new(KIND, file, end - begin);
     match frames.next() {
         Some(Ok(stored)) => Ok(stored.checkpoints),
         _ => Err(RunFileError::new(path, RunFileProblem::Mixed("the trail changed while it was read".into()))),

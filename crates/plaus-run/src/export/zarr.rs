@@ -9,7 +9,7 @@
 use super::variables::{self, Variable};
 use crate::error::{Error, RunFileError, RunFileProblem};
 use crate::manifest::Manifest;
-use crate::read::{RunReader, StretchOf};
+use crate::read::{RunReader, Stretch};
 use crate::sample_id::Phase;
 use plaus_scenes::Scene;
 use serde_json::{Map, Value, json};
@@ -222,7 +222,7 @@ fn write_chain(
     let mut chunks = Chunks::create(out, groups, index)?;
     let thin = run.run().manifest().plan.thin as f64;
     let mut values = vec![0.0; run.scene().scalars().len()];
-    run.walk(chain, phase, |stretch: StretchOf<'_>| -> Result<(), Error> {
+    run.walk(chain, phase, |stretch: Stretch<'_>| -> Result<(), Error> {
         let state = &stretch.entry.state;
         run.scene().write_scalars(state.by_ref(), &mut values);
         let lp = state.log_p().value();

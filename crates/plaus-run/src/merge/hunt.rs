@@ -14,7 +14,6 @@ use crate::folder::Folder;
 use crate::read::{Run, RunReader};
 use crate::sample::{More, Sampling, resume};
 use crate::watch::Unwatched;
-use crate::{Draw, Outcome};
 use crate::{tally, trail};
 use plaus_mcmc::{Distinct, Ending, FirstOfClass, parallel};
 use rayon::ThreadPool;
@@ -123,8 +122,8 @@ fn copy(pieces: &Pieces, piece: &Piece, cut: u64, draft: &Folder, merging: &Merg
     let Some(&(_, begin, end)) = rounds.iter().find(|round| round.0 == cut) else {
         return Err(refuse(&piece.folder, format!("its trail has no round that ends at iteration {cut}")));
     };
-    let checkpoints = trail::read::<Draw, Outcome>(&path, begin, end)?;
-    let one_of = |one: &checkpoint::Checkpoint<Draw, Outcome>| -> Result<u64, Error> {
+    let checkpoints = trail::read(&path, begin, end)?;
+    let one_of = |one: &checkpoint::Checkpoint| -> Result<u64, Error> {
         copy_chain(pieces, piece, one.chain, (one.records, one.snapshot.end_iteration), draft, merging)?;
         let bytes = checkpoint::encode(&draft.checkpoint(one.chain), one)?;
         write(draft, merging.disk, one.chain, &bytes)?;

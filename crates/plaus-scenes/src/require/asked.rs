@@ -13,6 +13,7 @@ use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene, Until};
 use crate::world::PlainWorld;
 use plaus_dist::{LogDensity, LogPotential, Stream};
+use plaus_mcmc::required::floor_beside;
 use plaus_mcmc::view::{Sees, lent};
 use plaus_mcmc::{
     Goal, Mixture, ModelError, Recipe, Simulated, SolutionClass, StateRef, StateRefOf, Target, Variables, Vars,
@@ -132,15 +133,6 @@ impl<S: Scene> Asked<S> {
         Ok(most + ROUNDING * (1.0 + most.abs()) <= floor.value())
     }
 
-    /// What the scene's own constraint must exceed so that the whole can exceed `floor`.
-    fn own_floor(&self, floor: LogPotential) -> Result<LogPotential, ModelError> {
-        if self.asks.most == 0.0 || floor.is_zero() {
-            return Ok(floor);
-        }
-        // Rounding is monotone: own ≤ floor − most gives own + log ≤ floor.
-        Ok(LogPotential::new((floor.value() - self.asks.most).next_down().min(f64::MAX))?)
-    }
-
     /// The marks of a draw that the scene itself allows.
     fn marks(&self, draw: &S::Draw, own: LogPotential, scratch: &S::Scratch) -> Result<Vec<Mark>, ModelError> {
         if own.is_zero() {
@@ -182,7 +174,7 @@ impl<S: Scene> Target for Asked<S> {
             return Ok(Simulated::CannotExceedFloor);
         }
         self.scene.record_motions(scratch);
-        let own_floor = self.own_floor(floor)?;
+        let own_floor = floor_beside(floor, LogPotential::new(self.asks.most)?)?;
         let Simulated::Complete(outcome) = self.scene.simulate(draw, current, own_floor, scratch)? else {
             return Ok(Simulated::CannotExceedFloor);
         };
