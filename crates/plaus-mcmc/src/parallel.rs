@@ -1,7 +1,7 @@
 //! Jobs on all threads of the current pool.
 //!
-//! Rayon's iterators are compiled again for each closure, which was half of the machine code and of the build time. Here
-//! only the result of a job is generic, not the scheduling.
+//! Rayon's iterators are compiled again for each closure, which was half of the machine code and of the build time.
+//! Here only the result of a job is generic, not the scheduling.
 
 use rayon::ThreadPool;
 use rayon::prelude::*;
