@@ -12,6 +12,7 @@
 //! steps deal with those.
 
 use super::Spec;
+use super::advance::{bisect, flight};
 use super::body::{Pose, Turning};
 use super::scratch::TOUCHING;
 use crate::roots::earliest;
@@ -130,15 +131,6 @@ struct New {
     rate: f64,
 }
 
-/// The end of the last of [`BISECTIONS`] halves in which `is` becomes true.
-fn bisect(mut low: f64, mut high: f64, mut is: impl FnMut(f64) -> bool) -> f64 {
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if is(middle) { high = middle } else { low = middle }
-    }
-    high
-}
-
 /// Largest angular speed of a body within its current motion.
 fn fastest(spec: &Spec, body: &Turning) -> f64 {
     let now = body.spin.length();
@@ -186,15 +178,10 @@ impl Quest<'_> {
         let (mut time, mut clear) = (from, from);
         let mut last: Option<Meeting<P::Feature>> = None;
         for advance in 0..MOST_ADVANCES {
-            let offset = bodies[0].path.at(time) - bodies[1].path.at(time);
-            let distance = offset.length();
+            let distance = (bodies[0].path.at(time) - bodies[1].path.at(time)).length();
             let away = distance - reach - level;
             if away > 0.0 {
-                let dv = bodies[0].path.velocity_after(time - bodies[0].path.t)
-                    - bodies[1].path.velocity_after(time - bodies[1].path.t);
-                let step = earliest(away, offset.dot(dv) / distance, pull);
-                // Never less than a thousandth of the gap, so that it ends.
-                time += step + 1e-3 * level / (dv.length() + (pull * level).sqrt()).max(f64::MIN_POSITIVE);
+                time += flight(bodies, time, away, level, pull);
                 if time >= until || time.is_nan() {
                     return None;
                 }
@@ -214,7 +201,7 @@ impl Quest<'_> {
                 if new.rate < 0.0 {
                     return Some(if new.gap < -level && time > clear {
                         // A point outside the plane of contact turned into it: back to where it came.
-                        bisect(clear, time, |t| {
+                        bisect(BISECTIONS, clear, time, |t| {
                             let (a, b) = (pose(0, t), pose(1, t));
                             let placed = place([&a, &b]);
                             let newest = |c: P| held.newest(&c, &c.nearest(None), [&a, &b], level).gap;

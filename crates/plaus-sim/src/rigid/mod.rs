@@ -63,6 +63,7 @@
 //! # Ok::<(), plaus_sim::WorldError>(())
 //! ```
 
+mod advance;
 mod blocks;
 mod body;
 mod bound;

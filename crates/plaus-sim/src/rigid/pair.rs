@@ -5,6 +5,7 @@
 //! the nearest points' approach; should another pair of points have come first, the overlap is seen and the time
 //! bisected.
 
+use super::advance::{bisect, flight};
 use super::body::{Motion, Phase, Pose, Turning};
 use super::capsule::capsules;
 use super::coulomb::Member;
@@ -101,15 +102,10 @@ impl Rigid {
         // The last time at which they were apart, if they have been.
         let mut clear = None;
         for _ in 0..MOST_ADVANCES {
-            let dx = bodies[0].path.at(time) - bodies[1].path.at(time);
-            let distance = dx.length();
+            let distance = (bodies[0].path.at(time) - bodies[1].path.at(time)).length();
             let away = distance - s.reach - t.reach - level;
             if away > 0.0 {
-                let dv = bodies[0].path.velocity_after(time - bodies[0].path.t)
-                    - bodies[1].path.velocity_after(time - bodies[1].path.t);
-                // A convex distance: at least this long. Never less than a thousandth of the gap, so that it ends.
-                let step = earliest(away, dx.dot(dv) / distance, pull);
-                time += step + 1e-3 * level / (dv.length() + (pull * level).sqrt()).max(f64::MIN_POSITIVE);
+                time += flight(bodies, time, away, level, pull);
                 if time >= until || time.is_nan() {
                     return None;
                 }
@@ -133,13 +129,10 @@ impl Rigid {
                 && let Some(clear) = clear
             {
                 // Another pair of points came first: back to where they touch.
-                let (mut low, mut high) = (clear, time);
-                for _ in 0..BISECTIONS {
-                    let middle = 0.5 * (low + high);
-                    let (a, b) = (pose(0, middle), pose(1, middle));
-                    if self.pair_touch(pair, [&a, &b]).gap > 0.5 * level { low = middle } else { high = middle }
-                }
-                return Some(high);
+                return Some(bisect(BISECTIONS, clear, time, |t| {
+                    let (a, b) = (pose(0, t), pose(1, t));
+                    self.pair_touch(pair, [&a, &b]).gap <= 0.5 * level
+                }));
             }
             if f <= 0.5 * level && rate < 0.0 {
                 return Some(time);

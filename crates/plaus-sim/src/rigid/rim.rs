@@ -1,6 +1,7 @@
 //! The lowest point of a ring that turns with its body: not a point of the body, so its own second derivative has no
 //! bound, but every point of the ring has one.
 
+use super::advance::bisect;
 use crate::roots::earliest;
 use glam::DVec2;
 
@@ -74,12 +75,8 @@ impl Low {
         if fastest >= 0.0 {
             return earliest(self.at(0.0), fastest, self.m);
         }
-        let (mut low, mut high) = (0.0, if self.m > 0.0 { slope / self.m } else { self.p.length() / self.q.length() });
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if self.slope_at(middle) >= 0.0 { low = middle } else { high = middle }
-        }
-        high
+        let end = if self.m > 0.0 { slope / self.m } else { self.p.length() / self.q.length() };
+        bisect(BISECTIONS, 0.0, end, |time| self.slope_at(time) < 0.0)
     }
 }
 

@@ -72,6 +72,29 @@ const ROUNDING: f64 = 1e-9;
 /// Points of the first ring, a quarter turn apart from its lowest on; other rings have their lowest only.
 pub(crate) const RIM_POINTS: usize = 4;
 
+/// Whether a body can have such a mass and such moments of inertia.
+fn check(body: usize, b: &BodySpec) -> Result<(), WorldError> {
+    let bad = |field, value, expected| Err(WorldError::BadBody { body, field, value, expected });
+    let MassProperties { mass, inertia } = b.mass;
+    for (field, value) in [
+        ("mass", mass),
+        ("inertia", inertia.x),
+        ("inertia", inertia.y),
+        ("inertia", inertia.z),
+        ("reach", b.shape.reach()),
+    ] {
+        if !(value > 0.0 && value.is_finite()) {
+            return bad(field, value, "a positive number");
+        }
+    }
+    // Each moment is at most the sum of the two others: the integral of y² + z² at most that of x² + z² and x² + y².
+    let largest = inertia.max_element();
+    if largest > (inertia.x + inertia.y + inertia.z - largest) * (1.0 + ROUNDING) {
+        return bad("inertia", largest, "moments none of which exceeds the sum of the other two");
+    }
+    Ok(())
+}
+
 impl Spec {
     pub(super) fn new(
         body: usize,
@@ -80,26 +103,8 @@ impl Spec {
         spacing: f64,
         strength: f64,
     ) -> Result<Self, WorldError> {
-        let bad = |field, value| WorldError::BadBody { body, field, value, expected: "a positive number" };
         let MassProperties { mass, inertia } = b.mass;
-        for (field, value) in [
-            ("mass", mass),
-            ("inertia", inertia.x),
-            ("inertia", inertia.y),
-            ("inertia", inertia.z),
-            ("reach", b.shape.reach()),
-        ] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(bad(field, value));
-            }
-        }
-        // Each moment is at most the sum of the two others: the integral of y² + z² at most that of x² + z² and x² +
-        // y².
-        let largest = inertia.max_element();
-        if largest > (inertia.x + inertia.y + inertia.z - largest) * (1.0 + ROUNDING) {
-            let expected = "moments none of which exceeds the sum of the other two";
-            return Err(WorldError::BadBody { body, field: "inertia", value: largest, expected });
-        }
+        check(body, b)?;
         world.laws.require(b.material)?;
         let mut feelers = b.shape.feelers();
         let hull = feelers.len();

@@ -41,6 +41,9 @@ const SHORTENINGS: usize = 4;
 /// Least part that one shortening leaves of a step.
 const SHORTEST: f64 = 0.1;
 
+/// Part of the push out of overlaps that a jam is given where the whole brings too much energy. Default 1/16.
+const GENTLE: f64 = 0.0625;
+
 /// Decides how a group goes on.
 pub(super) fn settle(
     world: &Rigid,
@@ -49,17 +52,8 @@ pub(super) fn settle(
     links: &mut Links,
     scratch: &mut RigidScratch,
 ) {
-    let mut is_over = true;
-    for &k in group {
-        let body = &mut bodies[k as usize];
-        if body.path.x.z < world.sink && body.phase != Phase::Waiting && !world.specs[k as usize].is_driven() {
-            (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);
-            body.begin(Phase::Gone, DVec3::ZERO);
-            links.retain(|l| !l.contains(&k));
-        }
-        is_over &= matches!(body.phase, Phase::Rest | Phase::Gone);
-    }
-    if is_over {
+    lose_sunk(world, group, bodies, links);
+    if group.iter().all(|&k| matches!(bodies[k as usize].phase, Phase::Rest | Phase::Gone)) {
         return;
     }
     scratch.gather(world, group, bodies, links);
@@ -90,56 +84,69 @@ pub(super) fn settle(
         body.lie_still();
         return body.list(foot.iter().map(|t| t.surface));
     }
-    let mut is_forced = true;
-    scratch.push = 1.0;
-    let is_heap = heap::is_heap(group);
-    for _ in 0..SHORTENINGS {
-        let step = scratch.drift(world, h);
-        match scratch.returns().or_else(|| scratch.misses(world, h)).or_else(|| scratch.climbs(world)) {
-            // Shorter steps would have to lift the heap as high.
-            Some(_) if is_heap && scratch.climbs(world).is_some() => {
-                is_forced = true;
-                break;
-            }
-            Some(part) => {
-                is_forced = true;
-                h *= part;
-            }
-            None => {
-                is_forced = false;
-                if scratch.second_kick(world, &step) {
-                    return scratch.write(world, bodies, h);
-                }
-                // Energy that its impulses cannot be made to give back: a shorter step makes less of it.
-                h *= 0.5;
-            }
-        }
-    }
-    // What bodies are in each other is left as it is: pushing them apart brought the energy.
-    let mut pushes: &[f64] = &[0.0];
-    if is_forced {
-        // Bounces too fast for any step, which count as lasting; or a jam, in which the push lifts bodies too high.
-        scratch.loads.clear();
-        scratch.touches.append(&mut scratch.leaving);
-        scratch.pairs.append(&mut scratch.parting);
-        scratch.touches.sort_by_key(|t| t.0);
-        pushes = if is_heap { &[GENTLE, 0.0] } else { &[1.0, GENTLE, 0.0] };
-    }
-    for &push in pushes {
-        scratch.push = push;
-        let step = scratch.drift(world, h);
-        if scratch.second_kick(world, &step) || scratch.only_lifts(world) {
-            return scratch.write(world, bodies, h);
-        }
-    }
-    scratch.give_in(world, h);
-    scratch.write(world, bodies, h);
+    scratch.take_step(world, bodies, h, heap::is_heap(group));
 }
 
-/// Part of the push out of overlaps that a jam is given where the whole brings too much energy. Default 1/16.
-const GENTLE: f64 = 0.0625;
+/// Bodies that have sunk below the world's end are gone, with their contacts.
+fn lose_sunk(world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
+    for &k in group {
+        let body = &mut bodies[k as usize];
+        if body.path.x.z < world.sink && body.phase != Phase::Waiting && !world.specs[k as usize].is_driven() {
+            (body.path.v, body.spin) = (DVec3::ZERO, DVec3::ZERO);
+            body.begin(Phase::Gone, DVec3::ZERO);
+            links.retain(|l| !l.contains(&k));
+        }
+    }
+}
 
 impl RigidScratch {
+    /// A step of `h` seconds, shortened where points that just left would come back within it.
+    fn take_step(&mut self, world: &Rigid, bodies: &mut [Turning], mut h: f64, is_heap: bool) {
+        let mut is_forced = true;
+        self.push = 1.0;
+        for _ in 0..SHORTENINGS {
+            let step = self.drift(world, h);
+            match self.returns().or_else(|| self.misses(world, h)).or_else(|| self.climbs(world)) {
+                // Shorter steps would have to lift the heap as high.
+                Some(_) if is_heap && self.climbs(world).is_some() => {
+                    is_forced = true;
+                    break;
+                }
+                Some(part) => {
+                    is_forced = true;
+                    h *= part;
+                }
+                None => {
+                    is_forced = false;
+                    if self.second_kick(world, &step) {
+                        return self.write(world, bodies, h);
+                    }
+                    // Energy that its impulses cannot be made to give back: a shorter step makes less of it.
+                    h *= 0.5;
+                }
+            }
+        }
+        // What bodies are in each other is left as it is: pushing them apart brought the energy.
+        let mut pushes: &[f64] = &[0.0];
+        if is_forced {
+            // Bounces too fast for any step, which count as lasting; or a jam, in which the push lifts bodies too high.
+            self.loads.clear();
+            self.touches.append(&mut self.leaving);
+            self.pairs.append(&mut self.parting);
+            self.touches.sort_by_key(|t| t.0);
+            pushes = if is_heap { &[GENTLE, 0.0] } else { &[1.0, GENTLE, 0.0] };
+        }
+        for &push in pushes {
+            self.push = push;
+            let step = self.drift(world, h);
+            if self.second_kick(world, &step) || self.only_lifts(world) {
+                return self.write(world, bodies, h);
+            }
+        }
+        self.give_in(world, h);
+        self.write(world, bodies, h);
+    }
+
     /// A step within the present stretch of those that go their own way.
     fn until_driven_turn(&self, world: &Rigid, bodies: &[Turning], h: f64) -> f64 {
         let driven = self.places.iter().filter(|p| world.specs[p.body].is_driven());
