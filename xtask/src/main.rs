@@ -21,11 +21,13 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 usage: cargo xtask CHORE
 
-  test                 everything that must pass of the code
+  test                 the code: clippy, all tests, docs, examples
   test --quick         of that, what says within a minute or so whether a change is sound
-  clients              figures, and what other programs make of runs, exports and galleries
+  profiles             golden traces without any optimisation, and with all of it
+  clients              figures, distances beside another library, and what other programs make of runs, exports and
+                       galleries
   blender              whether Blender plays exports as they are (installs bpy, on Python 3.11 only)
-  ci                   both: what CI runs
+  ci                   test, profiles and clients: what CI runs
   godot                whether Godot 4 plays exports as they are, where it is on the path
   shown                every command that README, docs and scenario files show
   engines              pieces of runs on HyperQueue, OpenJD and Slurm, with accidents; speed, and what merges cost
@@ -52,6 +54,7 @@ fn main() -> ExitCode {
         Some((&"test", [])) => test::run(),
         Some((&"test", ["--quick"])) => test::quick(),
         Some((&"ci", [])) => test::ci(),
+        Some((&"profiles", [])) => test::profiles(),
         Some((&"clients", [])) => test::clients(),
         Some((&"shown", [])) => test::shown(),
         Some((&"blender", [])) => test::blender(),

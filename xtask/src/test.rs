@@ -1,5 +1,5 @@
-//! Everything that must pass: what `cargo xtask test` checks of the code, and what `cargo xtask clients` checks with
-//! other programs. CI runs both.
+//! Everything that must pass: what `cargo xtask test` checks of the code, what `cargo xtask profiles` checks of it in
+//! other profiles, and what `cargo xtask clients` checks with other programs and libraries. CI runs all of them.
 
 use crate::command::{Command, Failure, built, cargo, has_subcommand, target};
 use crate::steps::{self, Done, Step};
@@ -32,9 +32,15 @@ pub(crate) fn quick() -> Result<(), Failure> {
     ])
 }
 
-/// Both the code, and what other programs make of its output.
+/// Golden traces without any optimisation and with all of it.
+pub(crate) fn profiles() -> Result<(), Failure> {
+    steps::run(in_other_profiles())
+}
+
+/// The code, also in other profiles, and what other programs make of its output.
 pub(crate) fn ci() -> Result<(), Failure> {
     let mut all = code();
+    all.extend(in_other_profiles());
     all.extend(with_clients());
     steps::run(all)
 }
@@ -84,21 +90,25 @@ fn clippy() -> Step {
 }
 
 fn code() -> Vec<Step> {
-    let golden = ["--package", "plaus-tests", "--test", "golden"];
     vec![
         format(),
         clippy(),
         // Tests and examples. What else there is, benches and the extension for Python, clippy has looked at.
         Step::command("build", cargo(&["test"]).args(ALL).args(["--no-run"])),
         Step::command("tests", cargo(&["test"]).args(ALL)),
-        Step::command("distances beside another library", cargo(&["test", "--package", "plaus-oracle"])),
-        Step::command("golden traces, unoptimised", cargo(&["test", "--profile", "unoptimised"]).args(golden)),
-        Step::command("release", cargo(&["build"]).args(IN_RELEASE).args(["--bin", "plaus", "--test", "golden"])),
-        Step::command("golden traces, release", cargo(&["test"]).args(IN_RELEASE).args(["--test", "golden"])),
         Step::command("docs", cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings")),
         Step::new("examples", examples::run),
         Step::new("advisories", deny),
         crate::wheel::licences(),
+    ]
+}
+
+fn in_other_profiles() -> Vec<Step> {
+    let golden = ["--package", "plaus-tests", "--test", "golden"];
+    vec![
+        Step::command("golden traces, unoptimised", cargo(&["test", "--profile", "unoptimised"]).args(golden)),
+        Step::command("release", cargo(&["build"]).args(IN_RELEASE).args(["--bin", "plaus", "--test", "golden"])),
+        Step::command("golden traces, release", cargo(&["test"]).args(IN_RELEASE).args(["--test", "golden"])),
     ]
 }
 
@@ -113,6 +123,7 @@ fn with_clients() -> Vec<Step> {
     // A test is among them for the features of dev-dependencies.
     let programs = ["--bin", "plaus-figures", "--example", "tumbling", "--test", "golden"];
     let mut all = vec![
+        Step::command("distances beside another library", cargo(&["test", "--package", "plaus-oracle"])),
         Step::command("what draws figures, and every shape", cargo(&["build"]).args(ALL).args(programs)),
         figures("figures-quick", &[]),
         figures("plausibility-quick", &["plausibility"]),

@@ -7,8 +7,8 @@ use super::shape::{Kind, Shape, again, scenario};
 use super::tree::{Data, Tree, join};
 use super::value;
 use crate::require::DEEPEST;
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
-use toml::Value;
 
 /// The values of `tree` in the form that serde should read, without those in error; and the errors.
 pub(super) fn check(shape: &Shape, tree: &Tree) -> (Option<Value>, Vec<Problem>) {
@@ -82,7 +82,7 @@ impl Check {
     }
 
     fn table(&mut self, keys: &[(String, Shape)], entries: &BTreeMap<String, Tree>, tree: &Tree, path: &str) -> Value {
-        let mut table = toml::Table::new();
+        let mut table = Map::new();
         for (name, shape) in keys {
             let key = join(path, name);
             match entries.get(name) {
@@ -99,7 +99,7 @@ impl Check {
                 self.problems.push(inner.place.blame_key(problem.with_help(advice)));
             }
         }
-        Value::Table(table)
+        Value::Object(table)
     }
 
     /// Where the unknown `name` belongs, or which name was probably meant, or which names are known here.
@@ -143,7 +143,7 @@ impl Check {
         match *chosen {
             [(name, shape, inner)] => {
                 let value = self.value(shape, inner, &join(path, name))?;
-                Some(Value::Table(toml::Table::from_iter([(name.clone(), value)])))
+                Some(Value::Object(Map::from_iter([(name.clone(), value)])))
             }
             [] if !entries.is_empty() => None,
             [] => {
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn advice_stays_in_the_chosen_world() {
-        let meant = "world.ball.law: unknown key `law`; known in [world.ball]: at, size";
+        let meant = "world.ball.law: unknown key `law`; known in [world.ball]: size, at";
         assert_eq!(problems("[world.ball]\nlaw = \"fair\""), [meant]);
         assert_eq!(
             problems("law = 1\n[world.dice]\nlabel = \"\""),

@@ -25,6 +25,7 @@ use crate::rules::Rules;
 use crate::scene::{ConfigError, Scene};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use tree::Tree;
 
 /// A scenario: a world and how to sample it.
@@ -176,9 +177,9 @@ impl Scenario {
             return fail(problems);
         }
         let Some(value) = value else { return fail(vec![Problem::new("", "no scenario")]) };
-        let mut scenario: Self = match value.try_into() {
+        let mut scenario: Self = match serde_json::from_value(value) {
             Ok(scenario) => scenario,
-            Err(error) => return fail(vec![Problem::new("", error.message())]),
+            Err(error) => return fail(vec![Problem::new("", error.to_string())]),
         };
         match scenario.load(files).and_then(|()| scenario.try_building()) {
             Ok(()) => Ok(scenario),
@@ -243,14 +244,28 @@ impl Scenario {
     /// scenario.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        // Tables, numbers, booleans and strings can all be written, so this cannot fail; an empty text would be refused
-        // when read.
-        toml::to_string(self).unwrap_or_default()
+        // By way of a tree of values: `toml` would compile the code of every setting eight times. Tables, numbers,
+        // booleans and strings can all be written, so this cannot fail; an empty text would be refused when read.
+        let mut tree = serde_json::to_value(self).unwrap_or_default();
+        leave_out_unset(&mut tree);
+        toml::to_string(&tree).unwrap_or_default()
     }
 
     /// The scenario of a scene with all settings at their defaults; `None` if there is no such scene.
     #[must_use]
     pub fn default_of(scene: &str) -> Option<Self> {
         World::default_of(scene).map(|world| Self { sampler: Sampler::default(), require: Vec::new(), world })
+    }
+}
+
+/// Settings without a value are not written.
+fn leave_out_unset(tree: &mut Value) {
+    match tree {
+        Value::Object(entries) => {
+            entries.retain(|_, value| !value.is_null());
+            entries.values_mut().for_each(leave_out_unset);
+        }
+        Value::Array(items) => items.iter_mut().for_each(leave_out_unset),
+        _ => {}
     }
 }

@@ -2,10 +2,9 @@
 //! order of their definition.
 
 use super::bounds::Bounds;
+use super::nearest;
 use super::schema::schema;
-use super::tree::{Data, Tree, join};
-use super::{Scenario, nearest};
-use crate::registry;
+use super::tree::{Data, Tree};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -52,11 +51,7 @@ pub(super) fn scenario() -> &'static Shape {
     static SHAPE: OnceLock<Shape> = OnceLock::new();
     SHAPE.get_or_init(|| {
         let schema = schema();
-        let mut shape = Shape::of_schema(&schema, &schema, &[]);
-        let defaults = registry::NAMES.iter().filter_map(|name| Scenario::default_of(name));
-        let order: Vec<String> = defaults.flat_map(|scenario| Tree::parse(&scenario.to_toml()).0.keys()).collect();
-        shape.sort("", &order);
-        shape
+        Shape::of_schema(&schema, &schema, &[])
     })
 }
 
@@ -233,16 +228,6 @@ impl Shape {
             Kind::Unknown => "a value".into(),
         }
     }
-
-    /// Sorts keys in the order of `order`: plain values first, as TOML requires; keys that it lacks last.
-    fn sort(&mut self, path: &str, order: &[String]) {
-        let (Kind::Table(keys) | Kind::OneOf(keys)) = &mut self.kind else { return };
-        let position = |name: &str| order.iter().position(|key| *key == join(path, name)).unwrap_or(usize::MAX);
-        keys.sort_by_cached_key(|(name, shape)| (shape.is_table(), position(name), name.clone()));
-        for (name, shape) in keys {
-            shape.sort(&join(path, name), order);
-        }
-    }
 }
 
 impl Kind {
@@ -255,7 +240,10 @@ impl Kind {
         match named {
             Some("object") => {
                 let keys = part.get("properties").and_then(Value::as_object).into_iter().flatten();
-                let keys = keys.map(|(name, inner)| (name.clone(), Shape::of_schema(inner, root, open))).collect();
+                let keys = keys.map(|(name, inner)| (name.clone(), Shape::of_schema(inner, root, open)));
+                // As TOML requires: plain values before tables.
+                let (tables, values): (Vec<_>, Vec<_>) = keys.partition(|(_, shape)| shape.is_table());
+                let keys = [values, tables].concat();
                 if part.contains_key("minProperties") { Self::OneOf(keys) } else { Self::Table(keys) }
             }
             Some("integer") => Self::Integer(Bounds::of_schema(part)),

@@ -110,18 +110,6 @@ impl Tree {
         }
         (path, tree)
     }
-
-    /// All dotted keys in the order of the file, tables before their contents.
-    pub(super) fn keys(&self) -> Vec<String> {
-        let Data::Table(entries) = &self.data else { return Vec::new() };
-        let mut entries: Vec<_> = entries.iter().collect();
-        entries.sort_by_key(|(_, tree)| tree.place.key.clone().map(|span| span.start));
-        let with_inner = |(name, tree): (&String, &Self)| {
-            let inner = tree.keys().into_iter().map(|key| join(name, &key)).collect::<Vec<_>>();
-            std::iter::once(name.clone()).chain(inner)
-        };
-        entries.into_iter().flat_map(with_inner).collect()
-    }
 }
 
 impl Data {

@@ -4,7 +4,7 @@ use super::bounds::{Bounded, Bounds};
 use super::nearest::nearest;
 use super::shape::{Kind, Shape};
 use super::tree::Data;
-use toml::Value;
+use serde_json::{Number, Value};
 
 /// What is wrong with a value, wherever it is.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,9 +30,9 @@ pub(super) fn read(shape: &Shape, data: &Data) -> Result<Value, Wrong> {
         (Kind::Integer(bounds), Data::Integer(digits, radix)) => integer(bounds, digits, *radix, shape),
         (Kind::Number(bounds), Data::Integer(digits, radix)) => number_of_integer(bounds, digits, *radix, shape),
         (Kind::Number(bounds), Data::Float(digits)) => number(bounds, digits, shape),
-        (Kind::Boolean, Data::Boolean(value)) => Ok(Value::Boolean(*value)),
+        (Kind::Boolean, Data::Boolean(value)) => Ok(Value::Bool(*value)),
         (Kind::Text, Data::Text(text)) => Ok(Value::String(text.clone())),
-        (Kind::Unknown, data) => data.to_toml(),
+        (Kind::Unknown, data) => data.as_it_is(),
         (_, data) => Err(wrong_type(shape, data)),
     }
 }
@@ -49,7 +49,7 @@ fn word(words: &[(String, String)], text: &str, shape: &Shape) -> Result<Value, 
 fn integer(bounds: &Bounds<i128>, digits: &str, radix: u32, shape: &Shape) -> Result<Value, Wrong> {
     let value = i128::from_str_radix(digits, radix).ok().filter(|value| bounds.contains(*value));
     let value = value.and_then(|value| i64::try_from(value).ok());
-    value.map(Value::Integer).ok_or_else(|| out_of_range(&written(digits, radix), shape))
+    value.map(Value::from).ok_or_else(|| out_of_range(&written(digits, radix), shape))
 }
 
 /// An integer is also a number.
@@ -57,13 +57,13 @@ fn number_of_integer(bounds: &Bounds<f64>, digits: &str, radix: u32, shape: &Sha
     let exact = i128::from_str_radix(digits, radix).ok().map(|value| value as f64);
     let value = exact.or_else(|| digits.parse().ok().filter(|_| radix == 10));
     let value = value.filter(|value: &f64| value.is_finite() && bounds.contains(*value));
-    value.map(Value::Float).ok_or_else(|| out_of_range(&written(digits, radix), shape))
+    value.map(Value::from).ok_or_else(|| out_of_range(&written(digits, radix), shape))
 }
 
 fn number(bounds: &Bounds<f64>, digits: &str, shape: &Shape) -> Result<Value, Wrong> {
     let value = digits.parse::<f64>().ok();
     let value = value.filter(|value| value.is_finite() && bounds.contains(*value));
-    value.map(Value::Float).ok_or_else(|| out_of_range(digits, shape))
+    value.map(Value::from).ok_or_else(|| out_of_range(digits, shape))
 }
 
 /// States the allowed range, with its unit.
@@ -113,19 +113,22 @@ impl Data {
     }
 
     /// The value unchanged, for serde to judge.
-    fn to_toml(&self) -> Result<Value, Wrong> {
+    fn as_it_is(&self) -> Result<Value, Wrong> {
         let wrong = || Wrong::new(format!("{} is not allowed here", self.in_words()));
         Ok(match self {
             Self::Table(entries) => {
-                let entries = entries.iter().map(|(name, tree)| Ok((name.clone(), tree.data.to_toml()?)));
-                Value::Table(entries.collect::<Result<_, _>>()?)
+                let entries = entries.iter().map(|(name, tree)| Ok((name.clone(), tree.data.as_it_is()?)));
+                Value::Object(entries.collect::<Result<_, _>>()?)
             }
-            Self::List(items) => Value::Array(items.iter().map(|item| item.data.to_toml()).collect::<Result<_, _>>()?),
-            Self::Integer(digits, radix) => Value::Integer(i64::from_str_radix(digits, *radix).map_err(|_| wrong())?),
-            Self::Float(digits) => Value::Float(digits.parse().map_err(|_| wrong())?),
+            Self::List(items) => Value::Array(items.iter().map(|item| item.data.as_it_is()).collect::<Result<_, _>>()?),
+            Self::Integer(digits, radix) => i64::from_str_radix(digits, *radix).map_err(|_| wrong())?.into(),
+            Self::Float(digits) => {
+                let number = digits.parse().ok().and_then(Number::from_f64);
+                Value::Number(number.ok_or_else(|| Wrong::new(format!("{} is not a finite number", clipped(digits))))?)
+            }
             Self::Text(text) => Value::String(text.clone()),
-            Self::Boolean(value) => Value::Boolean(*value),
-            Self::Datetime(text) => Value::Datetime(text.parse().map_err(|_| wrong())?),
+            Self::Boolean(value) => Value::Bool(*value),
+            Self::Datetime(_) => return Err(wrong()),
         })
     }
 }
