@@ -83,8 +83,8 @@ pub(super) struct Memory {
     /// What the last sweep changed, and where it led.
     change: Vec<f64>,
     led_to: Vec<f64>,
-    /// How changes, and where they led, differed from sweep to sweep; `WINDOW` columns at most, the oldest is written
-    /// over.
+    /// How changes, and where they led, differed from sweep to sweep: at most `WINDOW` columns, of which the oldest is
+    /// overwritten.
     changes: Vec<Vec<f64>>,
     leads: Vec<Vec<f64>>,
     /// Orthonormal directions of the changes, and their coefficients.
@@ -134,10 +134,10 @@ impl Memory {
         self.kept = (self.kept + 1).min(WINDOW);
     }
 
-    /// Least squares by modified Gram–Schmidt, newest first; a column that is no new direction is left out.
+    /// Least squares by modified Gram–Schmidt, newest first. A column that adds no new direction is left out.
     fn subtract_what_is_known(&mut self) {
         let mut rest = self.change.clone();
-        // Row k of the triangle: what column k holds of the directions before it; last its own.
+        // Row k of the triangle: column k's parts along the directions before it, and then its own.
         let mut triangle: Vec<(usize, Vec<f64>, f64)> = Vec::new();
         let mut weights = Vec::new();
         for back in 1..=self.kept {

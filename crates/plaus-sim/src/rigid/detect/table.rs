@@ -111,7 +111,7 @@ impl Search<'_> {
             (p.z - value, pv.z - slope[0] * pv.x - slope[1] * pv.y)
         };
         let f = f - 0.5 * spec.gap;
-        // The way of a corner over the surface is level, that of a ball along it.
+        // A corner's path over the surface counts in the horizontal plane, a ball's along the surface.
         let (way, sideways) = if feeler.radius > 0.0 {
             (pv.length(), gravity.length())
         } else {
@@ -141,8 +141,8 @@ impl Search<'_> {
         }
     }
 
-    /// A body so large against the grid that its footprint is not looked at: it counts as touching where it comes down
-    /// to the field's highest value.
+    /// For a body so large compared with the grid that its footprint is not examined: it counts as touching when it
+    /// comes down to the field's greatest height.
     fn coarse(&mut self, part: u16, t: f64) {
         self.hit(t, part, 0);
     }
