@@ -148,7 +148,7 @@ mod tests {
 
     /// Compared with a scan of all boxes, while boxes change.
     #[test]
-    fn what_meets_is_found() {
+    fn boxes_that_meet_are_found() {
         let mut seed = 7_u64;
         let mut next = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

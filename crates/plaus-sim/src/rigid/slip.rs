@@ -146,7 +146,7 @@ mod tests {
     /// Where no force within the cone can hold a contact, the slip left after one visit points against the friction,
     /// and its normal part is as wanted.
     #[test]
-    fn what_is_left_obeys_coulomb() {
+    fn the_slip_that_is_left_obeys_coulomb() {
         let (n, friction) = (DVec3::Z, 0.3);
         let (mut slid, mut right) = (0, 0);
         for case in 1..2000 {

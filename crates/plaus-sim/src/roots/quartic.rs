@@ -247,7 +247,7 @@ mod tests {
         /// anywhere. Both give the same fall, or none, except where the quartic only just touches zero, which rounding
         /// decides.
         #[test]
-        fn short_ways_agree_with_the_general_one(
+        fn short_methods_agree_with_the_general_one(
             p in prop::array::uniform3(-2.0..2.0_f64), v in prop::array::uniform3(-3.0..3.0_f64),
             a in prop::array::uniform3(-10.0..10.0_f64), d in 0.01..3.0_f64, hollow in any::<bool>(),
             from in 0.0..0.5_f64, width in 0.001..1.0_f64, on_surface in any::<bool>(),

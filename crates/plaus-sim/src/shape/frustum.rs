@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_volume_is_refused() {
+    fn a_solid_without_volume_is_refused() {
         assert!(Frustum::cylinder(0.0, 1.0).is_err());
         assert!(Frustum::cylinder(1.0, 0.0).is_err());
         assert!(Frustum::cone(-1.0, 1.0).is_err());

@@ -256,7 +256,7 @@ mod tests {
     /// The grid (2°, 10°, 5 mm) finds least energies that are at most 0.01 J too high: a finer one (1°, 5°, 2.5 mm)
     /// finds 0.122, 0.198 and 0.743 J. The bounds are at least 0.02 J below these.
     #[test]
-    fn a_pin_in_a_gutter_reaches_no_farther_over_the_lane_than_its_energy_lets_it() {
+    fn a_pin_in_a_gutter_reaches_no_farther_over_the_lane_than_its_energy_allows() {
         let (skin, alley) = (skin(), Alley::default());
         let lying = super::super::verdict::lying(&alley.pin().unwrap(), f64::INFINITY);
         let mut least = INTRUSIONS.map(|_| f64::INFINITY);

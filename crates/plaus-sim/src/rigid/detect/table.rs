@@ -111,7 +111,7 @@ impl Search<'_> {
             (p.z - value, pv.z - slope[0] * pv.x - slope[1] * pv.y)
         };
         let f = f - 0.5 * spec.gap;
-        // A corner's path over the surface counts in the horizontal plane, a ball's along the surface.
+        // The path of a corner over the surface is measured in the horizontal plane, that of a ball along the surface.
         let (way, sideways) = if feeler.radius > 0.0 {
             (pv.length(), gravity.length())
         } else {

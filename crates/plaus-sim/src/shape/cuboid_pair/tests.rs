@@ -134,7 +134,7 @@ proptest! {
 
 /// A die on another, turned by 45°: the octagon of their faces. Not turned and moved by half an edge: the rectangle.
 #[test]
-fn faces_touch_at_the_corners_of_what_they_share() {
+fn faces_touch_at_the_corners_of_their_overlap() {
     let lower = cuboid([1.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0], 0.0);
     let count = |upper: Placed, offset: DVec3| {
         let pair = CuboidPair::new(offset, upper, lower);

@@ -58,7 +58,7 @@ fn a_cuboid_is_the_hull_of_its_corners() {
 
 /// For any tetrahedron, about its middle: `V/20 Σ v vᵀ`.
 #[test]
-fn axes_are_principal_and_told() {
+fn axes_are_principal_and_reported() {
     let points = [[0.3, 0.1, -0.2], [1.4, 0.2, 0.1], [0.2, 0.9, 0.3], [0.5, 0.4, 2.0]].map(DVec3::from);
     let body = hull(&points, 0.0);
     let middle = (points[0] + points[1] + points[2] + points[3]) * 0.25;
@@ -112,7 +112,7 @@ fn rounding_agrees_with_a_plain_sum() {
 }
 
 #[test]
-fn what_is_inside_or_on_a_face_does_no_harm() {
+fn points_inside_or_on_a_face_do_no_harm() {
     let cube = Solid::Cube.corners(2.0);
     let mut points = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.3, 1.0, -0.2), DVec3::new(1.0, 1.0, 0.5)];
     points.extend(&cube);

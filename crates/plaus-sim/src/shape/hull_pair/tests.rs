@@ -168,7 +168,7 @@ fn points(pair: &HullPair, within: f64) -> Vec<Meeting> {
 /// A cube on another, turned by 45°: the octagon of their faces. A pentagon on the square: corners over the square, and
 /// crossings of the sides.
 #[test]
-fn faces_touch_at_the_corners_of_what_they_share() {
+fn faces_touch_at_the_corners_of_their_overlap() {
     let cube = solid(Solid::Cube);
     let place = |core, axes| Placed { axes, core, rounding: 0.0 };
     let lower = place(&cube, DMat3::IDENTITY);
