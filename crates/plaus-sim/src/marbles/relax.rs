@@ -16,8 +16,8 @@ const PLAIN: u32 = 8;
 /// Sweeps always allowed, whatever the preset: a draft must not let heavy balls sink either. Default 60.
 const FEWEST: u32 = 60;
 
-/// Most changes that are combined. Default 12; danger: with few, long chains of unequal masses do not converge; with
-/// many, it takes time and diverges when contacts open and close.
+/// Maximum number of changes that are combined. Default 12; danger: with few, long chains of unequal masses do not
+/// converge; with many, it takes time and diverges when contacts open and close.
 const WINDOW: usize = 12;
 
 /// Part of a change that must be new for it to count. Dimensionless; default 1e-9: rounding of changes that are a

@@ -1,4 +1,4 @@
-//! Quartics `Σ c_k t^k`: squared distances along parabolas (edges, vertices, domes, spheres of which one rolls).
+//! Quartics `Σ c_k t^k`: squared distances along parabolas (edges, vertices, domes, and spheres one of which rolls).
 
 use super::{fall_of_quadratic, refine, roots_of_quadratic};
 use glam::DVec3;
