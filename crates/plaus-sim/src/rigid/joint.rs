@@ -149,7 +149,7 @@ pub(super) struct Bond {
     pub(super) joint: Joint,
     /// The axes of the two frames.
     axes: [DMat3; 2],
-    /// Distance from the anchor at which limits and friction act, in m.
+    /// Distance from the anchor at which rotations are held, in m.
     pub(super) lever: f64,
     /// The points that are held together, in the axes of the frames.
     pub(super) points: Vec<DVec3>,

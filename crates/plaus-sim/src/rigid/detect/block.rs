@@ -234,7 +234,7 @@ fn outside(bounds: &Aabb, p: DVec3) -> f64 {
     (bounds.min - p).max(p - bounds.max).max_element()
 }
 
-/// Gap of a ring's point, its rate, a lower bound on its rate, and a bound on its acceleration. The point moves round
+/// Gap of a ring's point, its rate, the rate used for the bound, and a bound on its acceleration. The point moves round
 /// the ring as the body leans, which adds `ρ ω²` over the sine of the lean. For bodies that hardly lean, the circle's
 /// own bound is used instead: the whole rim is taken to fall as fast as its fastest point.
 fn ring_gap(
