@@ -1,10 +1,10 @@
 //! How much energy the steps of lasting contact may keep.
 //!
 //! Contact must not gain energy. Resistance to rolling and to spinning takes some. A contact on a fixed part, with
-//! normal force N at distance R from the centre of gravity, resists the part of the angular velocity across its normal
-//! (rolling) with a torque of at most ρ N R, and the part along it (spinning) with at most σ N R. The law gives ρ and
-//! σ. Without this resistance, a nudged pin would circle on the rim of its foot for ever, and a lying pin would roll
-//! for ever: nothing else takes their energy.
+//! normal force N at distance R from the centre of gravity, resists rolling, which is the part of the angular velocity
+//! across its normal, with a torque of at most ρ N R. It resists spinning, the part along its normal, with at most σ N
+//! R. The law gives ρ and σ. Without this resistance, a nudged pin would circle on the rim of its foot for ever, and a
+//! lying pin would roll for ever: nothing else takes their energy.
 
 use super::coulomb::{Contact, Member};
 use super::drive::between;

@@ -3,10 +3,10 @@
 //! A rounded cuboid is its core (a smaller, sharp cuboid) and everything within its rounding of the core, so only cores
 //! are examined.
 //!
-//! Cores that are apart are best separated along a face's normal or the cross product of two edges, or else the nearest
-//! point of one of them is a corner. So the distance is exact after fifteen axes and the distances of sixteen corners
-//! from the other cuboid: no iteration, and no tolerance at which it ends. If cores overlap, the axis of least overlap
-//! gives the depth.
+//! Cores that are apart are best separated along a face's normal or along the cross product of two edges. If not, the
+//! nearest point of one of them is a corner. So the distance is exact after fifteen axes and the distances of sixteen
+//! corners from the other cuboid: there is no iteration, and no tolerance at which one would end. If cores overlap, the
+//! axis of least overlap gives the depth.
 //!
 //! The points of contact are those of the usual clipping of two support features: corners near a face of the other
 //! cuboid, and crossings of edges. Each is named by its [`Feature`], so that it can be followed to another pose

@@ -1,9 +1,10 @@
 //! The distance of two polyhedra.
 //!
-//! Cores that are apart are best separated along a face's normal or the common perpendicular of two edges, or else the
-//! nearest point of one of them is a corner, over an edge or a corner of the other. So the distance is exact after all
-//! faces, all pairs of edges that can face each other and, if these do not decide, all corners against all edges: no
-//! iteration. If cores overlap, the axis of least overlap gives the depth, which is the shortest way out.
+//! Cores that are apart are best separated along a face's normal or along the common perpendicular of two edges. If
+//! not, the nearest point of one of them is a corner, over an edge or a corner of the other. So the distance is exact
+//! after all faces, all pairs of edges that can face each other and, if these do not decide, all corners against all
+//! edges: there is no iteration. If cores overlap, the axis of least overlap gives the depth, which is the shortest way
+//! out.
 //!
 //! Two points prove themselves to be nearest: the planes through them across the line between them, each touching its
 //! core, are just as far apart. So a guess from a nearby pose needs only this proof ([`HullPair::nearest`]).
