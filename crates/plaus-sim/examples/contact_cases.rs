@@ -1,10 +1,10 @@
-//! Hard cases of contact at every preset: what is expected, what is found, and what it took.
+//! Hard cases of contact at every preset: the expected result, the result found, and what it took.
 //!
 //!     cargo run --release -p plaus-sim --example contact_cases -- \
 //!         [seconds for each run] [preset, or all] [part of a name] [file of tosses]
 //!
-//! By default each run gets 0.05 s only, and many are cut off: `-- 20` is the whole of it. The file of tosses holds
-//! real ones, a line each: see `read_tosses` in `tests/common/cases/throws.rs`.
+//! By default each run gets only 0.05 s, and many are cut off; `-- 20` runs everything. The file of tosses holds real
+//! ones, one per line: see `read_tosses` in `tests/common/cases/throws.rs`.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 #[path = "../tests/common/cases/mod.rs"]

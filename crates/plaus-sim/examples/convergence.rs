@@ -1,10 +1,11 @@
-//! How far each preset is from truths that the simulator has no part in, and how fast that falls: a table.
+//! How far each preset is from truths that are independent of the simulator, and how fast that distance falls: a table.
 //!
 //! `cargo run --release -p plaus-sim --example convergence -- [seconds for each run] [throws] [part of a name] [CSV]`
 //!
-//! Closed forms, laws of conservation and symmetry: `tests/common/cases`. Where there are none, another make of
-//! integrator in very small steps, its error of first order extrapolated away: `tests/common/small_steps`. By default
-//! each run gets 0.05 s and hardly any throws: `-- 20 20` is the whole of it. `cargo xtask accuracy` draws the CSV.
+//! The truths are closed forms, conservation laws and symmetry: `tests/common/cases`. Where there are none, another
+//! kind of integrator in very small steps, with its error of first order extrapolated away: `tests/common/small_steps`.
+//! By default each run gets 0.05 s and hardly any throws; `-- 20 20` runs everything. `cargo xtask accuracy` draws the
+//! CSV.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 #[path = "../tests/common/cases/mod.rs"]
@@ -21,14 +22,14 @@ use small_steps::tosses::{Look, Toss, dice, pin, smooth, wild};
 use std::error::Error;
 use std::io::Write as _;
 
-/// Cases of `contact_cases` in which presets are off by nothing that could converge.
+/// Cases of `contact_cases` in which presets have no error that could converge.
 const LEFT_OUT: [&str; 3] = ["tosses of a cube", "two cubes meet", "ball at rest, e 1"];
 
-/// Steps of the truth at first, in s; it is also run in half of these and in a quarter.
+/// Steps of the truth at first, in s; it is also run with half and with a quarter of these.
 const STEP: f64 = 4e-4;
 
-/// What is not known of a wave of dominoes, relative: halving the last steps of its truth moved it by 8e-4 (the example
-/// `truths`), and the cases have it to three decimals.
+/// Uncertainty of a wave of dominoes, relative: halving the last steps of its truth moved it by 8e-4 (the example
+/// `truths`), and the cases give it to three decimals.
 const DOMINOES: f64 = 1e-3;
 
 /// Errors below this are rounding.
@@ -40,7 +41,7 @@ struct Row {
     truth: &'static str,
     measure: String,
     off: [f64; 4],
-    /// What is not known of the truth, in the same measure.
+    /// Uncertainty of the truth, in the same measure.
     unknown: f64,
 }
 
@@ -111,7 +112,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut file = args.get(3).map(std::fs::File::create).transpose()?;
     let mut write = |line: &str| file.as_mut().map_or(Ok(()), |file| writeln!(file, "{line}"));
     write("case,truth,measure,draft,standard,fine,reference,unknown")?;
-    // Row by row, so that whoever stops waiting has what there is.
+    // Row by row, so that if you stop waiting you have the rows so far.
     let mut add = |row: Row| {
         println!("{}", row.markdown());
         write(&row.csv())

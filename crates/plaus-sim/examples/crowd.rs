@@ -1,5 +1,5 @@
-//! Many bodies: the cost of an event where they are far apart, and balls poured into a box. `cargo run --release -p
-//! plaus-sim --example crowd -- 1000`; 50 balls unless told otherwise.
+//! Many bodies: the cost of an event when they are far apart, and balls poured into a box.
+//! `cargo run --release -p plaus-sim --example crowd -- 1000`; 50 balls by default.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 #![allow(clippy::disallowed_methods, reason = "it measures time")]

@@ -1,10 +1,10 @@
-//! How often square cuboids x × y × y land on a square face, for several coefficients, beside a published experiment
+//! How often square cuboids x × y × y land on a square face, for several coefficients, next to a published experiment
 //! (Math. Gazette 97.16, 2013).
 //!
 //! `cargo run --release -p plaus-sim --example cuboids -- [throws per number]`
 //!
-//! Nothing here is fitted: the experiment's coefficients and throws are not known, and the rows show what they do to
-//! the law.
+//! Nothing here is fitted: the experiment's coefficients and throws are not known, and the rows show how they affect
+//! the probabilities.
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a measuring program: it prints")]
 
 use glam::DVec3;
@@ -50,7 +50,7 @@ fn main() {
     row("thrown at twice the speeds", &usual, 2.0, throws);
 }
 
-/// One row; the rounding of `die` is over its shorter edge here.
+/// One row; here `die` has its rounding over its shorter edge.
 fn row(name: &str, die: &DieOnTable, speed: f64, throws: u64) {
     print!("{name:<52}");
     let mut scratch = Scratch::default();

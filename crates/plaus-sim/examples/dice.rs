@@ -1,10 +1,10 @@
-//! Throws several dice together many times, and prints how it ended, how deep any two of them or a die and the table
-//! ever overlapped, and how long it took.
+//! Throws several dice together many times. Prints how it ended, how deep any two dice or a die and the table ever
+//! overlapped, and how long it took.
 //!
 //! `cargo run --release -p plaus-sim --example dice -- [throws] [dice] [bumps] [preset] [first throw]`
 //!
-//! Overlaps are looked for whenever a die begins a new motion, at that time and half way from the last one, by the
-//! distance of the skins: not only at the end.
+//! Whenever a die begins a new motion, overlaps are measured by the distance of the skins, at that time and half way
+//! from the last one: not only at the end.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stdout,
@@ -43,13 +43,13 @@ fn main() {
 #[derive(Default)]
 struct Tally {
     times: Vec<f64>,
-    /// Of the runs that are timed, in s.
+    /// Total for the timed runs, in s.
     on_processor: f64,
     events: u64,
     impacts: u64,
     /// At rest, time over, out of events, not finite.
     outcomes: [u64; 4],
-    /// Deepest overlaps over the size, of dice with each other and with the table.
+    /// Deepest overlaps over the size: of dice with each other, and with the table.
     deepest: [f64; 2],
     /// Throws in which dice overlapped by more than a hundredth of their size.
     deep: u64,
@@ -67,7 +67,7 @@ impl Tally {
         let outcome = world.run(&mut state, &mut scratch, 20.0, &mut ()).unwrap();
         self.times.push(clock.elapsed().as_secs_f64());
         self.on_processor += processor_time().unwrap_or(0.0) - cpu;
-        // Once more, watched.
+        // Once more, with an observer.
         let mut state = world.state(&starts).unwrap();
         let mut watch = Overlaps::new(&world);
         assert_eq!(world.run(&mut state, &mut scratch, 20.0, &mut watch).unwrap(), outcome);

@@ -1,5 +1,5 @@
-//! Throws a die many times on a flat and on bumpy tables, and prints how it fell, how much work that was, and how long
-//! it took. The first throw on a bumpy table is written as JSON, all its motions and impacts.
+//! Throws a die many times on a flat and on bumpy tables. Prints how it fell, how much work that was, and how long it
+//! took. The first throw on a bumpy table is written as JSON, with all its motions and impacts.
 //!
 //! `cargo run --release -p plaus-sim --example die -- [throws] [bumps] [preset] [--trace PATH]`
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]

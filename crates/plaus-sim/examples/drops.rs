@@ -1,8 +1,8 @@
 //! Random ten-marble drops into bins, checked for tunnelling and for valid rest, with timing:
 //! `cargo run --release -p plaus-sim --example drops -- 100000 standard`.
 //!
-//! Further arguments: how many marbles, seconds between them, and `time` for time alone, the fastest of nine runs of
-//! each draw: `-- 1000 standard 10 0.1 time`.
+//! Further arguments: the number of marbles, the seconds between them, and `time` to measure only time, the fastest of
+//! nine runs of each draw: `-- 1000 standard 10 0.1 time`.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stdout,
@@ -68,7 +68,7 @@ impl Tally {
     }
 }
 
-/// Runs of each draw where only time is asked for.
+/// Runs of each draw if only time is measured.
 const REPEATS: usize = 9;
 
 fn main() {
@@ -94,7 +94,7 @@ fn main() {
         let fresh = state.clone();
         let mut fastest = f64::INFINITY;
         let mut outcome = Outcome::TimeReached;
-        // The fastest of several: whatever else the machine does only ever adds.
+        // The fastest of several, because other programs on the machine can only add time.
         for _ in 0..if only_time { REPEATS } else { 1 } {
             state.clone_from(&fresh);
             let begin = Instant::now();

@@ -1,9 +1,9 @@
-//! Rolls a ball at ten pins many times, and counts how deep any two bodies, or a body and lane, walls or pit, ever were
-//! in each other: over the whole time, not only at the end.
+//! Rolls a ball at ten pins many times, and counts how deep any two bodies, or a body and the lane, walls or pit, ever
+//! were in each other: over the whole time, not only at the end.
 //!
 //! `cargo run --release -p plaus-sim --example overlaps_of_pins -- [shots] [preset] [first shot]`
 //!
-//! To pass through a pin's neck a body would have to be more than 20 mm in it.
+//! To pass through a pin's neck, a body would have to be more than 20 mm deep in it.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stdout,
@@ -20,7 +20,7 @@ use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::worlds::Alley;
 use plaus_sim::{Accuracy, Outcome, Preset, Scratch};
 
-/// Depths in m from which shots are counted.
+/// Depths in m above which shots are counted.
 const DEPTHS: [f64; 6] = [1e-6, 1e-5, 1e-4, 1e-3, 5e-3, 2e-2];
 
 fn argument<T: std::str::FromStr>(k: usize, usual: T) -> T {

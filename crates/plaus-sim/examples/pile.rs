@@ -1,5 +1,4 @@
-//! A cube of 6³ balls falls onto a floor (SimBenchmark's "666"); prints how deep balls reach into each other, and what
-//! the pile costs.
+//! A cube of 6³ balls falls onto a floor (SimBenchmark's "666"). Prints how far balls overlap, and what the pile costs.
 //!
 //! `cargo run --release -p plaus-sim --example pile -- [seconds] [preset]`
 #![allow(
@@ -33,7 +32,7 @@ fn world(preset: Preset) -> Marbles {
     .unwrap()
 }
 
-/// Gaps of 0.01 between balls, each off by up to 0.0005 an axis.
+/// Gaps of 0.01 between balls, each off by up to 0.0005 per axis.
 fn starts() -> Vec<Start> {
     let mut stream = Seed(1).chain(0).at(0, Purpose::START);
     let mut noise = || 0.001 * (open_unit(&mut stream) - 0.5);
@@ -46,8 +45,8 @@ fn starts() -> Vec<Start> {
         .collect()
 }
 
-/// Deepest overlaps of two balls over the radius: in lasting contact, where a step of theirs begins; in lasting
-/// contact, now; of others, now.
+/// Deepest overlaps of two balls over the radius: in lasting contact, where one of their steps begins; in lasting
+/// contact, now; other pairs, now.
 fn deepest(state: &State<Marble>) -> [f64; 3] {
     let mut worst = [0.0_f64; 3];
     let bodies = state.bodies();

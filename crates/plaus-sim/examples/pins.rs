@@ -1,5 +1,5 @@
-//! Rolls a ball at ten pins many times, to the end and until it is decided which pins stand, and prints how many fell,
-//! how much work that was, how long it took, and in how many shots the early end saw other pins stand. The first shot,
+//! Rolls a ball at ten pins many times, to the end and until it is decided which pins stand. Prints how many fell, how
+//! much work that was, how long it took, and in how many shots the early end gave other standing pins. The first shot,
 //! until it is decided, is written as JSON: all motions and impacts.
 //!
 //! `cargo run --release -p plaus-sim --example pins -- [shots] [preset] [--trace PATH]`

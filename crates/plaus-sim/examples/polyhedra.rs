@@ -1,7 +1,6 @@
-//! Throws a d4, a d8, a d20 and a random rock onto a flat and a bumpy table, each alone and then all together, and
-//! prints how they fell and what that cost. The first throw of all together is written as JSON, all its motions and
-//! impacts; with them go the corners and faces of the bodies, and where these are among the points that they were made
-//! from.
+//! Throws a d4, a d8, a d20 and a random rock onto a flat and a bumpy table, each alone and then all together. Prints
+//! how they fell and what that cost. The first throw of all together is written as JSON, with all its motions and
+//! impacts, the corners and faces of the bodies, and where these are among the points from which the bodies were made.
 //!
 //! `cargo run --release -p plaus-sim --example polyhedra -- [throws] [bumps] [--trace PATH]`
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
@@ -24,7 +23,7 @@ use std::sync::Arc;
 
 const MATERIAL: Material = Material(0);
 
-/// Distance of opposite faces of a cube that is as large, in m.
+/// Distance of opposite faces of a cube of the same size, in m.
 const EDGE: f64 = 0.016;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -66,7 +65,7 @@ fn solid(solid: Solid) -> Result<Arc<ConvexHull>, WorldError> {
     Ok(Arc::new(ConvexHull::new(&solid.corners(0.5 * EDGE / size), 0.0)?))
 }
 
-/// The hull of points in an ellipsoid, a little rounded.
+/// The hull of points in an ellipsoid, slightly rounded.
 fn rock() -> Result<Arc<ConvexHull>, WorldError> {
     let mut stream = Seed(4).chain(0).at(0, Purpose::START);
     let mut side = || 2.0 * open_unit(&mut stream) - 1.0;
@@ -102,7 +101,7 @@ fn world(bodies: &[Arc<ConvexHull>], bumps: f64) -> Result<Rigid, WorldError> {
     })
 }
 
-/// Thrown as dice are, with room for the largest.
+/// Thrown as dice are, with room for the largest body.
 fn starts(bodies: usize, throw: u64) -> Vec<Start> {
     let mut stream = Seed(1).chain(0).at(throw, Purpose::START);
     let die = DieOnTable { edges: DVec3::splat(2.0 * EDGE), ..DieOnTable::default() };
@@ -112,7 +111,7 @@ fn starts(bodies: usize, throw: u64) -> Vec<Start> {
     }
 }
 
-/// The face that points down most.
+/// The face that points down most steeply.
 fn down(hull: &ConvexHull, body: &Turning) -> usize {
     let height = |k: usize| hull.normal(k).map_or(0.0, |n| (body.turn * n).z);
     (0..hull.faces().count()).fold(0, |low, k| if height(k) < height(low) { k } else { low })
@@ -154,7 +153,7 @@ fn row(name: &str, bodies: &[Arc<ConvexHull>], bumps: f64, throws: u64) -> Resul
     Ok(())
 }
 
-/// A body as it can be drawn: its trace tells centre of gravity and orientation of these axes.
+/// A body in a form that can be drawn: its trace gives the centre of gravity and the orientation of these axes.
 #[derive(Serialize)]
 struct Drawn {
     name: String,

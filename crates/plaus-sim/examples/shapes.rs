@@ -1,5 +1,5 @@
-//! Every shape into every scenery, alone and in company: `cargo run --release -p plaus-sim --example shapes [throws per
-//! pair]`.
+//! Throws every shape into every scenery, alone and in company:
+//! `cargo run --release -p plaus-sim --example shapes [throws per pair]`.
 
 #![allow(clippy::print_stdout, reason = "an example prints")]
 

@@ -1,8 +1,8 @@
-//! How far each preset is from truths of another make: tosses and lasting contact in very small steps.
+//! How far each preset is from independent truths: tosses and lasting contact in very small steps.
 //!
 //! `cargo run --release -p plaus-sim --example truths -- [tosses of each kind] [step in µs] [file of tosses]`
 //!
-//! The file of tosses holds real ones, a line each: see `read_tosses` in `tests/common/cases/throws.rs`.
+//! The file of tosses holds real ones, one per line: see `read_tosses` in `tests/common/cases/throws.rs`.
 #![allow(clippy::print_stdout, reason = "a measuring program: it prints")]
 
 #[path = "../tests/common/cases/mod.rs"]
@@ -29,14 +29,14 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Real tosses of a cube, as their authors describe it; each is looked at in the end, and so is its truth.
+/// Real tosses of a cube, as their authors describe it; each is observed at the end, and so is its truth.
 fn real(path: &str) -> Result<Toss, Box<dyn Error>> {
     let starts = read_tosses(&std::fs::read_to_string(path)?)?.iter().map(|t| t.start).collect();
     let law = Law::new(0.18, 0.125);
     Ok(Toss { name: "a real cube's tosses", body: toss_body(), law, starts, looks: vec![0.2, 0.4, 3.0] })
 }
 
-/// One kind of toss: medians of how far presets are from the truth, and what is unknown of it.
+/// One kind of toss: medians of the presets' errors, and the uncertainty of the truth.
 fn table(toss: &Toss, dt: f64) {
     let mut watch = Stopwatch::start();
     let truths: Vec<_> = toss.starts.iter().map(|s| watch.time(|| toss.truth_and_doubt(s, dt))).collect();
@@ -61,7 +61,7 @@ fn table(toss: &Toss, dt: f64) {
     row("truth", &truths.iter().map(|t| t.0.clone()).collect::<Vec<_>>());
 }
 
-/// Speed of a wave of dominoes over √(g h): in small steps, and by each preset within `seconds` on the wall.
+/// Speed of a wave of dominoes over √(g h): in small steps, and by each preset within `seconds` of wall-clock time.
 fn dominoes(dt: f64, seconds: f64) {
     for gap in [0.1, 0.3, 0.5] {
         let half = DVec2::new(DOMINO.x, DOMINO.z) * 0.5;

@@ -15,12 +15,13 @@
 //!
 //! **Which preset to take.** `Standard` for sampling; `Draft` while looking for a scenario that works (a quarter less
 //! time); `Fine` for a trajectory to be shown (two to three times the time); `Reference` only to judge the others (six
+//! time); `Fine` for a trajectory to be shown (two to three times the time); `Reference` only to judge the others (six
 //! times, and far more for heaps). Free flight, bounces, sliding and rolling on planes are exact at every preset: a
 //! slide that turns into a roll, and a bounce from 1 m, agree with the exact answer to 2e-15. When chaos separates
-//! trajectories, the law of the outcomes stays. In up to 2,000 draws, no preset's outcomes could be distinguished from
-//! the reference's, except for a hundredth of the marbles' and the dice's. The table has medians of one thread in ms on
-//! a two-core machine; in brackets, the total variation from the reference's outcomes, and what chance alone gives on
-//! average (`cargo xtask tradeoff`; the report has the errors over time, all readings and plots):
+//! trajectories, the distribution of the outcomes stays the same. In up to 2,000 draws, no preset's outcomes could be
+//! distinguished from the reference's, except for a hundredth of the marbles' and the dice's. The table has medians of
+//! one thread in ms on a two-core machine; in brackets, the total variation from the reference's outcomes, and what
+//! chance alone gives on average (`cargo xtask tradeoff`; the report has the errors over time, all readings and plots):
 //!
 //! These figures were taken before contact of turning bodies was corrected, and have to be measured again for dice and
 //! pins; marbles take a fifth longer since then.
@@ -33,15 +34,15 @@
 //! | a die on a flat table: face and place | 0.062 (0.079, 0.075) | 0.087 (0.084, 0.075) | 0.20 (0.093, 0.076) | 0.59 | 0.58 (0.085, 0.076) |
 //! | a die on a bumpy table, likewise | 0.21 (0.079, 0.076) | 0.26 (0.082, 0.077) | 0.52 (0.081, 0.077) | 1.6 | 7.3 (0.14, 0.13) |
 //! | a ball at ten pins, 5 s: which pins stand | 3.8 (0.022, 0.020) | 4.4 (0.024, 0.020) | 11 (0.021, 0.020) | 50 | 98 (0.076, 0.017) |
+//! For ACM and the pins there was time for only 307 and 67 draws of the reference, so their distances say little.
+//! Marbles stay within a tenth of a radius of the reference for 0.6, 0.95 and 1.5 s in the median (`Draft`, `Standard`,
+//! `Fine`), and in 7, 5 and 2 of a hundred draws they fill a different number of bins than in the reference. A die
+//! stays within a twentieth of its edge for 0.3, 0.3 and 0.4 s, and one throw in two to four ends on another face or
+//! elsewhere.
 //!
-//! ACM and pins had only 307 and 67 draws of the reference in that time, so their distances say little. Marbles stay
-//! within a tenth of a radius of the reference for 0.6, 0.95 and 1.5 s in the median (`Draft`, `Standard`, `Fine`), and
-//! in 7, 5 and 2 of a hundred draws they fill another number of bins than in the reference. A die stays within a
-//! twentieth of its edge for 0.3, 0.3 and 0.4 s, and one throw in two to four ends on another face or elsewhere.
-//!
-//! **Against truths independent of the simulator** (`cargo xtask accuracy`; `docs/accuracy.md` says what each is and
-//! what is measured): closed forms, laws, and another kind of integrator in small steps. The order is that in `step`,
-//! from standard to reference.
+//! **Against truths independent of the simulator** (`cargo xtask accuracy`; `docs/accuracy.md` says what each truth is
+//! and what is measured): closed forms, laws, and another kind of integrator in small steps. The order is that in
+//! `step`, from standard to reference.
 //!
 //! | case | draft | standard | fine | reference | order |
 //! | --- | --- | --- | --- | --- | --- |
@@ -132,7 +133,7 @@ pub struct Accuracy {
     pub rattle: f64,
     /// Length of a step of lasting contact, over the contact's own time scales.
     pub step: f64,
-    /// Most Gauss–Seidel sweeps per step.
+    /// Maximum number of Gauss–Seidel sweeps per step.
     pub sweeps: u32,
     /// Velocity change over `g·step` at which sweeps end.
     pub sweep_tolerance: f64,
@@ -140,11 +141,11 @@ pub struct Accuracy {
     pub rest_speed: f64,
     /// Velocity over `g·step` that a static solution may leave.
     pub rest_residual: f64,
-    /// Largest turn of the slip within one step of an impact, in radians.
+    /// Largest rotation of the slip within one step of an impact, in radians.
     pub slip_turn: f64,
     /// Gap at which turning bodies touch, over their size.
     pub gap: f64,
-    /// Most events per body; a run that needs more ends as [`Outcome::OutOfEvents`](crate::Outcome).
+    /// Maximum number of events per body; a run that needs more ends as [`Outcome::OutOfEvents`](crate::Outcome).
     pub events: u64,
 }
 

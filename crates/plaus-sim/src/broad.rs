@@ -1,4 +1,4 @@
-//! The broad phase: which boxes meet a given box, without looking at all of them.
+//! The broad phase: which boxes meet a given box, without testing all of them.
 //!
 //! The boxes are in a binary tree whose leaves are sorted by place: halves of halves along the longest side. A box that
 //! changes is updated up to the root; after as many changes as there are boxes, the tree is sorted again. So a query
@@ -7,7 +7,7 @@
 
 use crate::scenery::Aabb;
 
-/// Up to this many boxes, all are looked at: a scan of so few costs no more than a tree.
+/// Up to this many boxes, all are tested: scanning so few costs no more than a tree.
 const FEW: usize = 24;
 
 /// A tree over boxes that its owner keeps.
@@ -146,9 +146,9 @@ mod tests {
     use super::*;
     use glam::DVec3;
 
-    /// Against a scan of all, while boxes change.
+    /// Compared with a scan of all boxes, while boxes change.
     #[test]
-    fn what_meets_is_found() {
+    fn boxes_that_meet_are_found() {
         let mut seed = 7_u64;
         let mut next = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -20,7 +20,7 @@ pub enum WorldError {
         field: &'static str,
         /// Its value.
         value: f64,
-        /// What it should be.
+        /// The value expected.
         expected: &'static str,
     },
     /// A coefficient of a pair law is NaN or out of range.
@@ -112,7 +112,7 @@ pub enum WorldError {
         field: &'static str,
         /// Its value.
         value: f64,
-        /// What it should be.
+        /// The value expected.
         expected: &'static str,
     },
     /// A field over a surface gave a value that is not finite.
@@ -134,7 +134,7 @@ pub enum WorldError {
         field: &'static str,
         /// Its value.
         value: f64,
-        /// What it should be.
+        /// The value expected.
         expected: &'static str,
     },
     /// A point of a hull that is not finite.
@@ -166,7 +166,7 @@ pub enum WorldError {
         what: &'static str,
         /// How many there are.
         count: usize,
-        /// The most allowed.
+        /// The largest number allowed.
         most: usize,
     },
     /// Points so nearly in one plane that rounding would decide the faces of their hull.
@@ -186,7 +186,7 @@ pub enum WorldError {
         field: &'static str,
         /// Its value.
         value: f64,
-        /// What it should be.
+        /// The value expected.
         expected: &'static str,
     },
     /// An invalid key of a body that follows keyframes.
@@ -202,10 +202,10 @@ pub enum WorldError {
         field: &'static str,
         /// Its value.
         value: f64,
-        /// What it should be.
+        /// The value expected.
         expected: &'static str,
     },
-    /// A joint that cannot be.
+    /// An invalid joint.
     #[error("joint {joint}: {field} is {value}, expected {expected}")]
     BadJoint {
         /// Its number: joints count from 0 in the order in which they were added.
@@ -214,7 +214,7 @@ pub enum WorldError {
         field: &'static str,
         /// Its value.
         value: f64,
-        /// What it should be.
+        /// The value expected.
         expected: &'static str,
     },
     /// A state made for another world.

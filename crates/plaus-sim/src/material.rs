@@ -46,8 +46,8 @@ impl Law {
         Self { tangential, ..self }
     }
 
-    /// Whether sliding friction cannot make a ball turn that does not turn yet, because the resistance to rolling is as
-    /// large.
+    /// Whether sliding friction cannot make a ball turn that does not turn yet, because the resistance to rolling is at
+    /// least as large.
     #[inline]
     pub(crate) fn holds_from_turning(&self) -> bool {
         self.rolling >= self.friction

@@ -60,7 +60,7 @@ pub trait Mechanics {
     }
     /// When the world's runs end, in s.
     fn duration(&self) -> f64;
-    /// Most events in a run.
+    /// Maximum number of events in a run.
     fn event_budget(&self) -> u64;
 
     /// The body's own clock.
@@ -102,7 +102,7 @@ pub trait Mechanics {
         surface: Surface,
         report: &mut dyn FnMut(&Impact),
     ) -> bool;
-    /// Collides two bodies in the same way; if they did collide, returns whether they should be linked. `linked` says
+    /// Collides two bodies in the same way. If they did collide, returns whether they should be linked. `linked` says
     /// whether they already are.
     fn hit_body(
         &self,
@@ -111,8 +111,8 @@ pub trait Mechanics {
         linked: bool,
         report: &mut dyn FnMut(&Impact),
     ) -> Option<bool>;
-    /// Collides a body with something, together with all that joints hold to either; `None` where there are none. Else
-    /// as [`hit_body`](Self::hit_body) says.
+    /// Collides a body with something, together with all that joints hold to either; `None` if there are no joints.
+    /// Otherwise it returns what [`hit_body`](Self::hit_body) does.
     #[inline]
     fn hit_joined(
         &self,

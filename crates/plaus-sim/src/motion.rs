@@ -48,8 +48,8 @@ impl Parabola {
     }
 }
 
-/// A motion with the times at which its coordinates turn, in seconds after its clock, and their values: for boxes
-/// around many parts of it.
+/// A motion with the times at which its coordinates turn, in seconds after its clock, and their values then: for boxes
+/// around many parts of the motion.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Course<'p> {
     path: &'p Parabola,
@@ -60,7 +60,7 @@ pub(crate) struct Course<'p> {
 impl<'p> Course<'p> {
     #[inline]
     pub(crate) fn new(path: &'p Parabola) -> Self {
-        // The coordinate turns where v + a τ = 0; where it never does, this is no number or infinite.
+        // The coordinate turns where v + a τ = 0; if it never does, this is NaN or infinite.
         let turns = -path.v / path.a;
         Self { path, turns, peaks: path.x + 0.5 * path.v * turns }
     }

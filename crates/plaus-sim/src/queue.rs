@@ -1,7 +1,7 @@
 //! The event queue: one slot per body, holding its earliest event, under a tournament tree.
 //!
 //! An event may become stale through a change elsewhere. The partner's generation shows that when the event comes up,
-//! and the body is looked at again. Nothing is lost: later events of that body were left out only because the stale one
+//! and the body is examined again. Nothing is lost: later events of that body were left out only because the stale one
 //! came first.
 
 use crate::scenery::Surface;
@@ -11,13 +11,13 @@ use std::cmp::Ordering;
 /// What happens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Happening {
-    /// The run's end; nothing before it.
+    /// The run ends, and nothing happens before that.
     End,
     /// The closed form of the motion ends.
     Expiry,
     /// The body touches a surface.
     Surface(Surface),
-    /// The body touches another, which had this generation when the event was found.
+    /// The body touches another body, which had this generation when the event was found.
     Body {
         /// The other's index.
         other: u32,
@@ -126,7 +126,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The tree against a plainly scanned list, through random updates.
+        /// The tree compared with a scan of a plain list, through random updates.
         #[test]
         fn first_is_the_least(
             times in prop::collection::vec(0_u8..6, 1..40),

@@ -18,7 +18,7 @@ pub enum Outcome {
     TimeReached,
     /// Every body is at rest: nothing will ever happen again.
     AllAtRest,
-    /// The observer said that it need not go on.
+    /// The observer asked to stop.
     Stopped,
     /// The event budget was spent. The state is the one at that time.
     OutOfEvents,
@@ -60,7 +60,7 @@ impl Marks {
         self.seen[body as usize] == self.epoch
     }
 
-    /// Marks a body; whether it is the first time.
+    /// Marks a body; returns whether it was unmarked before.
     fn mark(&mut self, body: u32) -> bool {
         let seen = &mut self.seen[body as usize];
         std::mem::replace(seen, self.epoch) != self.epoch
@@ -115,7 +115,7 @@ fn go<M: Mechanics>(
     if run.state.all_resting(mechanics) { Outcome::AllAtRest } else { Outcome::TimeReached }
 }
 
-/// Appends the bodies in lasting contact with `seed`, itself among them, in ascending order; nothing where it is marked
+/// Appends the bodies in lasting contact with `seed`, including itself, in ascending order; nothing if it is marked
 /// already.
 fn add_group(links: &Links, seed: u32, marks: &mut Marks, members: &mut Vec<u32>) {
     let start = members.len();
@@ -140,12 +140,12 @@ struct Run<'r, M: Mechanics, O> {
     observer: &'r mut O,
 }
 
-/// Most impacts resolved within one event before the rest of them is left to the queue: ten per contact of a body with
-/// eight.
+/// Maximum number of impacts resolved within one event before the rest is left to the queue: ten per contact of a body
+/// with eight contacts.
 const MOST_AT_ONCE: usize = 80;
 
 impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
-    /// Looks at every body for the first time, or restores the queue of a state that was paused.
+    /// Examines every body for the first time, or restores the queue of a state that was paused.
     fn start(&mut self) -> Option<Outcome> {
         self.scratch.tree.reset();
         if self.state.started {
@@ -163,13 +163,13 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         self.look_ahead()
     }
 
-    /// Resolves an event; where it concerns a heap, also those that other bodies have at the same time: what stands on
-    /// much else is struck at many places at once, and the heap is to settle once.
+    /// Resolves an event. If it concerns a heap, also resolves the events that other bodies have at the same time: a
+    /// body that stands on many others is struck at many places at once, and the heap should settle only once.
     fn take(&mut self, mut body: usize, mut event: Event) {
         self.scratch.concerned.clear();
         self.scratch.marks.wipe(self.state.bodies.len());
         loop {
-            // The end of a step is one event of all that it is of.
+            // The end of a step is a single event for all bodies of its group.
             if event.happening != Happening::Expiry || !self.scratch.marks.has(body as u32) {
                 self.state.counts.events += 1;
                 self.bring_to(body as u32, &event);
@@ -188,7 +188,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
     }
 
-    /// Takes an event out of the queue until its bodies are looked at anew.
+    /// Takes an event out of the queue until its bodies are examined anew.
     fn put_off(&mut self, body: usize, event: &Event) {
         let never = Event { time: f64::INFINITY, happening: Happening::End };
         self.state.events[body] = never;
@@ -211,12 +211,12 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         )
     }
 
-    /// Brings the bodies of an event, and all that are in lasting contact with them, to its time.
+    /// Brings the bodies of an event, and all bodies in lasting contact with them, to its time.
     fn bring_to(&mut self, body: u32, event: &Event) {
         let mut other = None;
         if let Happening::Body { other: partner, generation } = event.happening {
             if generation != self.state.generations[partner as usize] {
-                // Stale: its motion goes on as it is; it is only looked at anew.
+                // Stale: its motion goes on unchanged, and the body is only examined anew.
                 return;
             }
             other = Some(partner);
@@ -286,7 +286,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
     }
 
-    /// After an impact, the lasting contacts of those involved may have become approaching: they are next.
+    /// After an impact, the lasting contacts of the bodies involved may approach: they are next.
     fn add_neighbours(&mut self, meeting: Meeting) {
         let Self { mechanics, state, scratch, .. } = self;
         let order = |i: u32, j: u32| mechanics.order([i, j], [&state.bodies[i as usize], &state.bodies[j as usize]]);
@@ -337,7 +337,7 @@ impl<M: Mechanics, O: Observer<M>> Run<'_, M, O> {
         }
     }
 
-    /// Finds the next event of each concerned body; of the body of a stale event where none is concerned.
+    /// Finds the next event of each concerned body; if there is none, that of the body whose event was stale.
     fn look_ahead(&mut self) -> Option<Outcome> {
         if self.scratch.concerned.is_empty() {
             self.scratch.concerned.extend(self.scratch.queue.first().map(|k| k as u32));

@@ -29,7 +29,7 @@ pub struct State<B> {
     pub(crate) events: Vec<Event>,
     pub(crate) generations: Vec<u32>,
     pub(crate) boxes: Vec<Aabb>,
-    /// What orders bodies whose events are due at the same time.
+    /// The order of bodies whose events are due at the same time.
     pub(crate) places: Vec<Place>,
     pub(crate) counts: Counts,
     /// Whether the first predictions have been made.
@@ -51,7 +51,7 @@ impl<B: Clone> Clone for State<B> {
         }
     }
 
-    /// Copies without allocating where there is room: how a scene goes back to a saved beginning.
+    /// Copies without allocating if there is room: this is how a scene goes back to a saved beginning.
     fn clone_from(&mut self, source: &Self) {
         self.time = source.time;
         self.bodies.clone_from(&source.bodies);
@@ -66,7 +66,7 @@ impl<B: Clone> Clone for State<B> {
 }
 
 impl<B> State<B> {
-    /// A state of bodies that have not been looked at yet.
+    /// A state of bodies that have not been examined yet.
     pub(crate) fn new(bodies: Vec<B>) -> Self {
         let places = vec![Place::default(); bodies.len()];
         Self::with_places(bodies, places)
@@ -112,13 +112,13 @@ impl<B> State<B> {
         self.counts
     }
 
-    /// Replaces a body that nothing has looked at yet, so that no other body's events change.
+    /// Replaces a body that nothing has examined yet, so that no other body's events change.
     pub(crate) fn replace_unreleased(&mut self, index: usize, body: B, place: Place, release: f64) {
         (self.bodies[index], self.places[index]) = (body, place);
         self.events[index] = Event { time: release, happening: Happening::Expiry };
     }
 
-    /// Gives a body another next event, so that what others have found about it is looked at anew.
+    /// Gives a body a different next event, so that anything found about it by other bodies is examined anew.
     pub(crate) fn interrupt(&mut self, index: usize, event: Event) {
         self.events[index] = event;
         self.generations[index] = self.generations[index].wrapping_add(1);

@@ -94,7 +94,7 @@ impl<M: Mechanics, A: Observer<M>, B: Observer<M>> Observer<M> for (A, B) {
     }
 }
 
-/// One listener, or nobody, decided as the program runs.
+/// One listener, or nobody, decided at run time.
 impl<M: Mechanics, O: Observer<M>> Observer<M> for Option<O> {
     fn impact(&mut self, impact: &Impact) {
         if let Some(listener) = self {
@@ -113,7 +113,7 @@ impl<M: Mechanics, O: Observer<M>> Observer<M> for Option<O> {
     }
 }
 
-/// A listener that is lent.
+/// A borrowed listener.
 impl<M: Mechanics, O: Observer<M>> Observer<M> for &mut O {
     fn impact(&mut self, impact: &Impact) {
         (**self).impact(impact);

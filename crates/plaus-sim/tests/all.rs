@@ -1,5 +1,5 @@
-//! Everything that is tried of the simulator from outside, as one program:
-//! `cargo test -p plaus-sim --test all laws_random` runs one file's tests.
+//! All tests of the simulator from outside, as one program: `cargo test -p plaus-sim --test all laws_random` runs one
+//! file's tests.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 mod common;

@@ -1,5 +1,5 @@
-//! Random drops into bins: nothing tunnels, nothing freezes, and what rests is supported. `examples/drops.rs` does the
-//! same 10⁵ times.
+//! Random drops into bins: nothing tunnels, nothing freezes, and marbles at rest are supported. `examples/drops.rs`
+//! does the same 10⁵ times.
 
 use plaus_dist::{Purpose, Seed, open_unit};
 use plaus_sim::marbles::Phase;

@@ -1,4 +1,4 @@
-//! Numbers far out: energy never grows, nothing turns NaN, every run ends in an outcome.
+//! Extreme numbers: energy never grows, nothing becomes NaN, every run ends in an outcome.
 
 use crate::common::*;
 use glam::DVec3;
@@ -7,7 +7,7 @@ use plaus_sim::scenery::{Mesh, Plane};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Accuracy, Law, Outcome, Scratch, State};
 
-/// Checks finiteness after every event, and total energy where all clocks agree at the end.
+/// Checks finiteness after every event, and total energy if all clocks agree at the end.
 struct Finite;
 
 impl Observer<plaus_sim::marbles::Marbles> for Finite {
@@ -40,7 +40,7 @@ fn check(world: World, starts: &[Start]) -> State<plaus_sim::marbles::Marble> {
     let outcome = world.run(&mut state, &mut Scratch::default(), 4.0, &mut Finite);
     assert!(matches!(outcome, Outcome::TimeReached | Outcome::AllAtRest), "{outcome:?} {:?}", state.counts());
     let after = total_energy(&world, &run(&world, starts, 4.0).0);
-    // 1e-9: rounding over thousands of events; centres put back by less than the preset's unseen height.
+    // 1e-9: rounding over thousands of events, and centres put back by less than the preset's unseen height.
     assert!(after <= before + 1e-9 * scale, "{after} from {before}");
     state
 }
@@ -193,7 +193,7 @@ fn a_ball_over_a_groove_narrower_than_itself_rests_on_both_edges() {
 }
 
 #[test]
-fn no_body_and_five_hundred() {
+fn worlds_of_no_body_and_of_five_hundred() {
     let state = check(standard(Vec::new(), Law::new(0.1, 0.5)), &[]);
     assert_eq!(state.counts().events, 0);
     let mut world = standard(vec![MarbleSpec::solid(0.1, 1.0, M); 500], Law::new(0.0, 1.0));

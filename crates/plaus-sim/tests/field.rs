@@ -63,7 +63,8 @@ proptest! {
         let scale = 1.0 / SPACING;
         prop_assert!(((px.value - mx.value) / (2.0 * h) - s.slope[0]).abs() < 1e-6 * scale);
         prop_assert!(((py.value - my.value) / (2.0 * h) - s.slope[1]).abs() < 1e-6 * scale);
-        // The second derivative is continuous but has kinks at the grid lines: first order in h there.
+        // The second derivative is continuous but has kinks at the grid lines, so the error there is of first order in
+        // h.
         let tolerance = 1e-2 * scale * scale;
         prop_assert!(((px.slope[0] - mx.slope[0]) / (2.0 * h) - s.bend[0]).abs() < tolerance);
         prop_assert!(((py.slope[0] - my.slope[0]) / (2.0 * h) - s.bend[1]).abs() < tolerance);
@@ -133,7 +134,7 @@ fn each_point_is_asked_for_once_and_only_where_touched() {
 }
 
 #[test]
-fn a_large_table_costs_what_is_touched() {
+fn a_large_table_costs_only_what_is_touched() {
     let f = field();
     // A path right across a table of 1000 × 1000 points.
     for k in 0..100 {
@@ -144,7 +145,7 @@ fn a_large_table_costs_what_is_touched() {
 }
 
 #[test]
-fn setting_a_point_is_the_same_as_having_had_it() {
+fn setting_a_point_is_as_good_as_having_had_its_value() {
     let mut f = field();
     for k in 0..50 {
         let _ = f.at(0.1 * f64::from(k), 0.3);

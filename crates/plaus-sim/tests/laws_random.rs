@@ -1,13 +1,13 @@
-//! Conservation, Coulomb's bound and energy over random worlds of every shape, at every preset; and wrong twins of the
-//! records, which the same checks must refuse. Thousands of worlds: the example `laws`.
+//! Conservation, Coulomb's bound and energy over random worlds of every shape, at every preset; also wrong twins of the
+//! records, which the same checks must refuse. The example `laws` runs thousands of worlds.
 
 use crate::laws::campaign::{Case, OF_PIECES, tally};
 use plaus_sim::Preset;
 
-/// Worlds of each case and preset: every kind of body, or pair of kinds, comes up.
+/// Number of worlds for each case and preset: enough that every kind of body, or pair of kinds, comes up.
 const WORLDS: u64 = 24;
 
-/// Worlds of bodies of convex pieces, whose every look costs more.
+/// Number of worlds with bodies made of convex pieces, which cost more.
 const WORLDS_OF_PIECES: u64 = 10;
 
 fn holds(case: Case) {
@@ -38,7 +38,7 @@ fn holds_in(case: Case, presets: &[Preset], worlds: std::ops::Range<u64>) {
     }
     assert!(report.is_empty(), "{}\n{}", case.name(), report.join("\n"));
     assert!(
-        // A chatter so late in its step that the half kick was due leaves nothing to refuse: 1 of 69.
+        // If a chatter comes so late in its step that the half kick was due, there is nothing to refuse: 1 of 69.
         twins[0] >= number * presets.len() as u64 / 2 && 20 * twins[1] >= 19 * twins[0],
         "{}: {} of {} twins refused",
         case.name(),

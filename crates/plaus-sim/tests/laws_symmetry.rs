@@ -1,4 +1,4 @@
-//! What is symmetric stays so: points that are struck at one instant are resolved in no order of their own.
+//! Symmetric worlds stay symmetric: points that are struck at one instant are resolved without any order.
 
 use crate::laws::record::{Moment, Record, record};
 use crate::laws::worlds::{M, in_space, on_floor};
@@ -14,12 +14,12 @@ fn cuboid(edges: DVec3) -> BodySpec {
     BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0).unwrap()), 1000.0, M)
 }
 
-/// How far places may be off: the gap at which bodies touch is all that a preset tells apart, over a few impacts.
+/// How far positions may be off: a preset resolves no more than the gap at which bodies touch, over a few impacts.
 fn enough(preset: Preset) -> f64 {
     10.0 * Accuracy::preset(preset).gap
 }
 
-/// How far, over its edge, a body has left the vertical line on which it was dropped, or turned about it.
+/// How far, over its edge, a body has left the vertical line on which it was dropped, or turned about that line.
 fn off_its_spot(r: &Record) -> f64 {
     let first = &r.moments[0][0];
     let off = |m: &Moment| {
@@ -53,7 +53,7 @@ fn a_cuboid_dropped_flat_stays_on_its_spot() {
     }
 }
 
-/// The wrong twin: four corners that come down at once, each struck after the other in the order of its index.
+/// The wrong twin: four corners that come down at once are struck one after the other, in the order of their indices.
 fn struck_in_order(r: &Record, law: Law) -> Record {
     let mut twin = r.clone();
     let facts = r.facts[0];
@@ -100,14 +100,14 @@ fn an_order_by_index_would_be_seen() {
     }
 }
 
-/// How far a body has left the plane y = 0 in which it was dropped, or turned out of it: over its edge.
+/// How far a body has left the plane y = 0 in which it was dropped, or turned out of it, over its edge.
 fn out_of_plane(r: &Record) -> f64 {
     let off = |m: &Moment| (m.x.y.abs() / EDGE).max((m.turn * DVec3::Y - DVec3::Y).length());
     r.moments[0].iter().map(off).fold(0.0, f64::max)
 }
 
-/// A cube that is tilted about one edge only comes down on that edge, both corners at once, and never leaves its plane.
-/// Looked at for 0.35 s, which holds a few impacts: tumbling multiplies what is off by several at each.
+/// A cube that is tilted about one edge only comes down on that edge, on both corners at once, and never leaves its
+/// plane. It is followed for 0.35 s, which holds a few impacts: in tumbling, each impact multiplies errors by several.
 #[test]
 fn a_drop_with_a_mirror_plane_keeps_it() {
     for preset in Preset::ALL {
@@ -123,7 +123,7 @@ fn a_drop_with_a_mirror_plane_keeps_it() {
                 assert!(!r.impacts.is_empty());
                 let off = out_of_plane(&r);
                 assert!(off <= enough(preset), "{} tilt {tilt} e {e} mu {mu}: {off:.1e}", preset.name());
-                // The twin: the same, struck a little earlier at one end.
+                // The twin: the same cube, struck a little earlier at one end.
                 let mut twin = r.clone();
                 let at = twin.moments[0].iter().position(|m| m.impacts > 0).unwrap();
                 let lever = DVec3::Y * (0.5 * EDGE);
@@ -143,7 +143,8 @@ fn ball() -> BodySpec {
     BodySpec::solid(Shape::Ball(0.5 * EDGE), 1000.0, M)
 }
 
-/// Speeds of balls in a row after some have come in, of the others touching each other; in units of the first's.
+/// Speeds of balls in a row after some of them have come in, while the others touched each other; in units of the first
+/// ball's speed.
 fn row(balls: usize, coming: usize, preset: Preset) -> Vec<f64> {
     let starts: Vec<Start> = (0..balls)
         .map(|k| {

@@ -1,4 +1,5 @@
-//! Presets against truths of another make: the finer, the nearer. Many tosses, and how near: the example `truths`.
+//! Presets compared with independent truths: the finer, the nearer. The example `truths` shows how near, for many
+//! tosses.
 
 use crate::laws::worlds::Dice;
 use crate::small_steps::impact::impulse;
@@ -7,10 +8,10 @@ use glam::{DMat3, DVec3};
 use plaus_sim::resolve::{ContactMatrix, stronge_impulse};
 use plaus_sim::{Accuracy, Preset};
 
-/// Length of the truth's steps in s: what is unknown of it then is far below what presets are off.
+/// Length of the truth's steps in s: its uncertainty is then far below the presets' errors.
 const STEP: f64 = 1e-3;
 
-/// For each preset how far it is off, the worst of all looks and tosses; and what is unknown of the truth.
+/// The error of each preset, at the worst of all looks and tosses; and the uncertainty of the truth.
 fn errors(toss: &Toss) -> ([f64; 4], f64) {
     let (mut off, mut unknown) = ([0.0_f64; 4], 0.0_f64);
     for start in &toss.starts {
@@ -26,8 +27,8 @@ fn errors(toss: &Toss) -> ([f64; 4], f64) {
     (off, unknown)
 }
 
-/// Lasting contact without an impact: steps of it, and so errors, are of the first order at least. Draft and standard
-/// count as one, their steps being nearly as long.
+/// Lasting contact without an impact: its steps, and so its errors, are of the first order at least. Draft and standard
+/// count as one, because their steps are nearly equally long.
 #[test]
 fn lasting_contact_converges_to_the_truth() {
     for toss in smooth() {
@@ -38,8 +39,8 @@ fn lasting_contact_converges_to_the_truth() {
             let bound = coarse * (steps[k] / steps[1]) + 3.0 * unknown;
             assert!(off[k] <= bound, "{}: {off:?} at {}, truth known to {unknown:.1e}", toss.name, steps[k]);
         }
-        // A law that is off is seen: the truth of a floor with a twentieth more friction is farther away than
-        // reference.
+        // A wrong law is noticed: the truth for a floor with a twentieth more friction is farther away than the
+        // reference preset.
         let mut rough = toss.clone();
         rough.law.friction *= 1.05;
         let (twin, ..) = rough.truth_and_doubt(&toss.starts[0], STEP);
@@ -51,30 +52,31 @@ fn lasting_contact_converges_to_the_truth() {
     }
 }
 
-/// A few impacts, before chaos parts the ways.
+/// A few impacts, before chaos separates the trajectories.
 #[test]
 fn impacts_converge_to_the_truth() {
     for mut toss in wild(4) {
         toss.looks = vec![0.1, 0.15];
         let (off, unknown) = errors(&toss);
-        // From standard to reference the direction of a slip is found in ten times finer turns, to the third order, and
-        // the time of an impact to a thousandth of the gap. A quarter is what is left where an impact presses on other
-        // points that touch: which of them is struck next rigid bodies do not say, and the two makes choose otherwise.
+        // From standard to reference, the direction of a slip is found with ten times finer turns, to the third order,
+        // and the time of an impact to a thousandth of the gap. A quarter of the error remains where an impact presses
+        // on other points that touch: rigid-body mechanics does not say which of them is struck next, and the two
+        // methods choose differently.
         let bound = 0.25 * off[0].max(off[1]) + 3.0 * unknown;
         assert!(off[3] <= bound, "{}: {off:?}, truth known to {unknown:.1e}", toss.name);
     }
 }
 
-/// Bodies that touch the floor by rounded corners and by rings: a point of contact that goes round the body.
+/// Bodies that touch the floor with rounded corners and with rings: a point of contact that moves around the body.
 #[test]
 fn pins_and_dice_converge_to_the_truth() {
     let toss = pin();
     let (off, unknown) = errors(&toss);
-    // Of the first order at least, as in other lasting contact.
+    // At least of the first order, as in other lasting contact.
     let bound =
         off[0].max(off[1]) * (Accuracy::preset(Preset::Reference).step / Accuracy::preset(Preset::Standard).step);
     assert!(off[3] <= bound + 3.0 * unknown, "{off:?}, truth known to {unknown:.1e}");
-    // A body that is another is seen: a twentieth more inertia.
+    // A wrong body is noticed: a twentieth more inertia.
     let mut heavy = toss.clone();
     heavy.body.mass.inertia *= 1.05;
     let [(twin, ..), (truth, ..)] = [&heavy, &toss].map(|t| t.truth_and_doubt(&toss.starts[0], STEP));
@@ -87,11 +89,12 @@ fn pins_and_dice_converge_to_the_truth() {
     assert!(off[3] <= bound, "{}: {off:?}, truth known to {unknown:.1e}", toss.name);
 }
 
-/// The impact law itself, by two makes: random bodies struck at random points. Nine in ten agree to a tenth of the
-/// square of the turn that a preset allows the slip in one step: found so at all four presets. Where the slip nearly
-/// stops and then goes on another way, less is known: the last in a hundred is only asked to be within the turn.
+/// The impact law itself, by two methods: random bodies struck at random points. Nine in ten impacts agree to a tenth
+/// of the square of the angle by which a preset lets the slip turn in one step; this was found at all four presets.
+/// Where the slip nearly stops and then goes on in another direction, less is known: all but the last one in a hundred
+/// must agree to within that angle.
 #[test]
-fn two_makes_of_an_impact_agree() {
+fn two_methods_for_an_impact_agree() {
     let law = |turn: f64| (0..200).map(move |k| impact_off(k, turn, 1.0));
     for preset in Preset::ALL {
         let turn = Accuracy::preset(preset).slip_turn;
@@ -100,13 +103,14 @@ fn two_makes_of_an_impact_agree() {
         assert!(off[180] < 0.1 * turn * turn, "{turn}: {:.1e}", off[180]);
         assert!(off[197] < turn, "{turn}: {:.1e}", off[197]);
     }
-    // A law that is off is seen: a twentieth more friction.
+    // A wrong law is noticed: a twentieth more friction.
     let turn = Accuracy::preset(Preset::Reference).slip_turn;
     let seen = (0..200).filter(|&k| impact_off(k, turn, 1.05) > 0.1 * turn * turn).count();
     assert!(seen > 60, "{seen} of 200");
 }
 
-/// How far the two makes are from each other, over the impulse, in the k-th impact; the second has another friction.
+/// How far the two methods are from each other in the k-th impact, over the impulse; the second method has a different
+/// friction.
 fn impact_off(k: u64, turn: f64, rougher: f64) -> f64 {
     let mut dice = Dice::new(29, k);
     let (arm, inertia) = (dice.in_cube(), DVec3::splat(0.3) + dice.in_cube() * 0.2);

@@ -1,4 +1,4 @@
-//! What marbles in contact that lasts must do at every preset.
+//! What marbles in lasting contact must do at every preset.
 
 use crate::common::*;
 use glam::DVec3;
@@ -14,8 +14,8 @@ fn at(preset: Preset, mut world: World) -> Marbles {
     world.build()
 }
 
-/// Deepest overlap over the smaller radius after any event, and how many impacts there were of balls with each other
-/// and with planes that stand upright.
+/// The deepest overlap over the smaller radius after any event, and the number of impacts of balls with each other and
+/// with upright planes.
 struct Deepest<'w> {
     world: &'w Marbles,
     depth: f64,
@@ -60,7 +60,7 @@ fn a_heavy_ball_comes_to_rest_on_a_light_one() {
                 let starts = [0.1, 0.8].map(|z| Start::at_rest(DVec3::Z * z));
                 let (watch, outcome, state) = deepest(&world, &starts, 3.0);
                 assert_eq!(outcome, Outcome::AllAtRest, "{preset:?} {ratio:e} {e}");
-                // The path of a step may dip by less than 1e-4 radii; asked for is less than 1 %.
+                // The path of a step may dip by less than 1e-4 radii; the requirement is less than 1 %.
                 assert!(watch.depth < 1e-4, "{preset:?} {ratio:e} {e}: {:e}", watch.depth);
                 assert!((state.bodies()[1].path.x.z - 0.3).abs() < 1e-5, "{preset:?} {ratio:e} {e}");
             }
@@ -74,7 +74,7 @@ fn a_column_of_very_unequal_balls_between_walls_stands() {
     for preset in Preset::ALL {
         let specs = masses.map(|m| MarbleSpec::solid(0.1, m, M)).to_vec();
         let mut world = World::new(specs, Law::new(0.3, 0.4)).floor();
-        // A shaft a little wider than the balls: they lean against its sides by turns.
+        // A shaft a little wider than the balls: they lean against its sides in turn.
         for (p, n) in [(-0.105, DVec3::X), (0.105, -DVec3::X), (-0.1, DVec3::Y), (0.1, -DVec3::Y)] {
             world.planes.push(Plane::new(n.abs() * p, n, M).unwrap());
         }
@@ -89,8 +89,8 @@ fn a_column_of_very_unequal_balls_between_walls_stands() {
     }
 }
 
-/// Loads of three balls on a smooth floor that bear a fourth, as the accelerations that they give: from three equations
-/// for no gap.
+/// Loads of three balls on a smooth floor that carry a fourth, as the accelerations that the loads cause: from three
+/// equations that keep the gaps closed.
 fn loads(balls: &[(f64, DVec3)], heavy: f64, rise: f64) -> Vec<DVec3> {
     let normals: Vec<DVec3> = balls.iter().map(|(_, x)| (DVec3::Z * rise - *x).normalize()).collect();
     // (a_H − a_k)·n_k = 0 with a_H = g + Σ N n/M and a_k = −N_k n_k's level part/m_k.
@@ -114,7 +114,7 @@ fn balls_share_a_load_as_they_must() {
         let rise = (0.04_f64 - 0.0169).sqrt();
         let specs = balls.iter().map(|b| b.0).chain([ratio]).map(|m| MarbleSpec::solid(0.1, m, M)).collect();
         let mut world = World::new(specs, Law::new(0.0, 0.5)).floor();
-        // Sweeps and their tolerance of the standard preset, and a step so short that the balls stay where they are.
+        // Sweeps and their tolerance as in the standard preset, and a step so short that the balls stay where they are.
         world.accuracy = Accuracy { step: 1e-3, ..Accuracy::default() };
         let world = world.build();
         let places = balls.iter().map(|b| b.1 + DVec3::Z * 0.1).chain([DVec3::Z * (0.1 + rise)]);
@@ -128,7 +128,8 @@ fn balls_share_a_load_as_they_must() {
     }
 }
 
-/// Galperin's billiard: a ball of 100^n masses drives a light one against a wall. Their impacts count the digits of π.
+/// Galperin's billiard: a ball with 100^n times the mass drives a light one against a wall. The number of impacts shows
+/// the digits of π.
 #[test]
 fn balls_and_a_wall_count_the_digits_of_pi() {
     for preset in Preset::ALL {
@@ -148,8 +149,8 @@ fn balls_and_a_wall_count_the_digits_of_pi() {
     }
 }
 
-/// Newton's cradle on a floor: as many leave as come in, since impacts at one instant are resolved pair by pair (see
-/// `resolve`).
+/// Newton's cradle on a floor: as many balls leave as come in, because impacts at one instant are resolved pair by pair
+/// (see `resolve`).
 #[test]
 fn as_many_leave_a_cradle_as_come_in() {
     for preset in Preset::ALL {
@@ -168,7 +169,7 @@ fn as_many_leave_a_cradle_as_come_in() {
                 assert_eq!(outcome, Outcome::TimeReached);
                 for (k, b) in bodies.iter().enumerate() {
                     let exact = if k >= 5 - coming as usize { 1.0 } else { 0.0 };
-                    // Friction has a millionth of a second.
+                    // Friction acts for a millionth of a second.
                     let lost = friction * G * 1e-6;
                     assert!((b.path.v.x - exact).abs() <= lost + 1e-14, "{preset:?} {coming} ball {k}: {}", b.path.v);
                 }
@@ -212,14 +213,14 @@ fn an_elastic_ball_rolls_to_and_fro_in_a_bowl() {
         assert_eq!(outcome, Outcome::TimeReached);
         assert!(state.counts().impacts <= 1, "{preset:?} {:?}", state.counts());
         let lost = 1.0 - world.energy(0, &bodies[0]) / (G * start.position.z);
-        // Ten swings, of which each step may lose energy of the second order.
+        // Ten swings, in each of which the steps may lose energy of the second order.
         let step = Accuracy::preset(preset).step;
         assert!((-1e-12..step * step).contains(&lost), "{preset:?} {lost}");
     }
 }
 
-/// A slope a millionth steeper than the angle of friction, for a ball that cannot roll: for its inertia, or because
-/// rolling is resisted more than sliding.
+/// A slope a millionth steeper than the angle of friction, for a ball that cannot roll, because of its inertia or
+/// because its resistance to rolling exceeds that to sliding.
 #[test]
 fn a_slope_a_millionth_too_steep_lets_a_ball_slide_a_millionth() {
     let friction = 0.3_f64;
@@ -236,7 +237,7 @@ fn a_slope_a_millionth_too_steep_lets_a_ball_slide_a_millionth() {
                 let world = at(preset, world);
                 let (bodies, _, _) = run(&world, &[Start::at_rest(n * 0.1)], 10.0);
                 let way = (bodies[0].path.x - n * 0.1).length();
-                // One that is only hard to turn rolls by 1e-12 of its fall meanwhile.
+                // A ball that is only hard to turn rolls by 1e-12 of its fall in that time.
                 let exact = if excess > 0.0 { 0.5 * G * c * friction * excess * 100.0 } else { 0.0 };
                 assert!((way - exact).abs() < 1e-9, "{preset:?} {gyration:e} {excess:e}: {way:e} for {exact:e}");
             }
@@ -244,10 +245,10 @@ fn a_slope_a_millionth_too_steep_lets_a_ball_slide_a_millionth() {
     }
 }
 
-/// Ten balls of masses from 1 to 1000 in a bowl: whatever is said to be at rest does not overlap, and rests on
+/// Ten balls with masses from 1 to 1000 in a bowl: balls that are said to be at rest do not overlap, and they rest on
 /// something.
 #[test]
-fn what_is_at_rest_does_not_overlap() {
+fn bodies_at_rest_do_not_overlap() {
     for preset in [Preset::Draft, Preset::Standard] {
         for seed in 0..10 {
             let mut stream = Seed(5).chain(0).at(seed, Purpose::START);
@@ -265,14 +266,14 @@ fn what_is_at_rest_does_not_overlap() {
             let (watch, outcome, state) = deepest(&world, &starts, 20.0);
             assert!(matches!(outcome, Outcome::AllAtRest | Outcome::TimeReached), "{preset:?} {seed}: {outcome:?}");
             // Between the ends of a step a parabola leaves the bowl by step³ · 2/81 · 3 v v'/g, here about a tenth of
-            // the bowl's radius, which is ten of its own: third order.
+            // the bowl's radius, which is ten of the ball's: third order.
             let step = Accuracy::preset(preset).step;
             assert!(watch.depth < step * step * step, "{preset:?} {seed}: {:e}", watch.depth);
             let (bodies, resting) = (state.bodies(), |b: &&Marble| b.phase == Phase::Rest);
             for b in bodies.iter().filter(resting) {
                 let k = bodies.iter().position(|c| c.path == b.path).unwrap();
                 let sunk = world.scenery().deepest_overlap(b.path.x, world.specs()[k].radius);
-                // What rest may keep, 2e-5 of a radius.
+                // The overlap that rest may keep, 2e-5 of a radius.
                 assert!(
                     sunk.is_none_or(|(_, d): (Surface, f64)| d <= 2e-5 * world.specs()[k].radius),
                     "{preset:?} {seed}: {sunk:?}"

@@ -1,4 +1,4 @@
-//! Lasting contact of marbles against an integrator of another make: where there is no closed form, finer presets are
+//! Lasting contact of marbles compared with an independent integrator. Where there is no closed form, finer presets are
 //! nearer to the truth, by the square of the step.
 
 use crate::common::smooth::{Ball, Friction, Smooth, Touch, With};
@@ -21,7 +21,7 @@ struct Case {
 }
 
 impl Case {
-    /// Distances from the truth over the radius, of the ball that is farthest off; draft first. And the error of the
+    /// Distances from the truth over the radius, for the ball that is farthest off; draft first. Also the error of the
     /// truth itself.
     fn errors(&self) -> ([f64; 4], f64) {
         let smooth = Smooth { gravity: DVec3::new(0.0, 0.0, -G), touches: self.touches.clone() };
@@ -45,7 +45,7 @@ impl Case {
         } else {
             world = world.floor();
         }
-        // No rest at a turning point: that is another tolerance.
+        // No rest at a turning point: that depends on another tolerance.
         world.accuracy = Accuracy { rest_speed: 1e-12, ..Accuracy::preset(preset) };
         let world = world.build();
         let starts: Vec<Start> = self.balls.iter().map(|b| moving(b.x, b.v, b.w)).collect();
@@ -59,7 +59,7 @@ fn ball(radius: f64, mass: f64, x: DVec3, v: DVec3, w: DVec3) -> Ball {
     Ball { x, v, w, mass, radius }
 }
 
-/// A place in the bowl at an angle from its axis and about it, and the direction downhill.
+/// A place in the bowl, by its angle from the axis and its angle about it, and the direction downhill.
 fn in_bowl(radius: f64, angle: f64, about: f64) -> (DVec3, DVec3) {
     let ((s, c), (t, d)) = (plaus_dist::math::sin_cos(angle), plaus_dist::math::sin_cos(about));
     let outward = DVec3::new(s * d, s * t, -c);
@@ -76,7 +76,7 @@ fn cases() -> Vec<Case> {
     // Rolling: the touching point stands still.
     let rolling = |v: DVec3, r: f64| normal.cross(v) / r;
     let glide = across * 1.1 + down * 0.4;
-    // Two balls of unequal size, side by side in the bowl: both touch it, and each other.
+    // Two balls of unequal size, side by side in the bowl: both touch the bowl and each other.
     let (p, q) = (0.12, 0.08);
     let (far, near, reach) = (BOWL - p, BOWL - q, p + q);
     let gap = plaus_dist::math::acos((far * far + near * near - reach * reach) / (2.0 * far * near));
@@ -155,8 +155,8 @@ fn finer_presets_are_nearer_to_the_truth_by_the_square_of_the_step() {
     for case in cases() {
         let (errors, doubt) = case.errors();
         let [_, standard, fine, reference] = errors;
-        // Steps shrink by 4 and by 5: errors of second order by 16 and by 25. Half of it is asked for, since steps
-        // follow the motion and errors may cancel by chance.
+        // Steps shrink by 4 and by 5, so errors of second order shrink by 16 and by 25. The test asks for half of that,
+        // because steps follow the motion and errors may cancel by chance.
         assert!(doubt < 0.02 * reference, "{}: the truth is known to {doubt:e} only", case.name);
         assert!(standard > 8.0 * fine && fine > 12.0 * reference, "{}: {errors:?}", case.name);
     }

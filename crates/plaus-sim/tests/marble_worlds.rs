@@ -1,4 +1,4 @@
-//! What worlds of marbles at random must keep at every preset: each check fails on a twin that is a little wrong.
+//! What random worlds of marbles must keep at every preset. Each check fails for a twin that is slightly wrong.
 
 use crate::common::*;
 use glam::DVec3;
@@ -13,7 +13,7 @@ fn at(preset: Preset, mut world: World) -> Marbles {
     world.build()
 }
 
-/// What a world at random has after each of its events.
+/// The state of a random world after one of its events.
 #[derive(Clone, Copy)]
 struct Sample {
     time: f64,
@@ -44,8 +44,8 @@ fn sample(world: &Marbles, state: &State<Marble>) -> Sample {
     sum
 }
 
-/// A few balls of random sizes and masses thrown onto a floor, where they fall into heaps between walls of balls that
-/// come down with them.
+/// A few balls with random sizes and masses, thrown onto a floor. They fall into heaps between walls of balls that come
+/// down with them.
 struct Throw {
     world: Marbles,
     samples: Vec<Sample>,
@@ -80,13 +80,14 @@ fn throw(preset: Preset, seed: u64, friction: f64) -> Throw {
     Throw { world, samples, mass, weight, motion }
 }
 
-/// Level momentum over a smooth floor is kept to rounding: thousands of sums of numbers of the size of `motion`.
+/// Horizontal momentum over a smooth floor is kept to rounding: that of thousands of sums of numbers of the size of
+/// `motion`.
 fn keeps_momentum(throw: &Throw) -> bool {
     let first = throw.samples[0].momentum;
     throw.samples.iter().all(|s| (s.momentum - first).truncate().length() <= 1e-13 * throw.motion)
 }
 
-/// Coulomb's bound over a level floor: friction takes at most µ times what the floor has pushed up.
+/// Coulomb's bound over a level floor: friction takes at most µ times the momentum with which the floor has pushed up.
 fn keeps_the_bound_of_friction(throw: &Throw, friction: f64) -> bool {
     let first = throw.samples[0];
     throw.samples.iter().all(|s| {
@@ -96,8 +97,8 @@ fn keeps_the_bound_of_friction(throw: &Throw, friction: f64) -> bool {
     })
 }
 
-/// Energy never rises above what it has been, but within a step: there a centre is off its chord by up to v² h²/8ρ, for
-/// balls at the speed √(g r) a part step²/8 of a radius.
+/// Energy never rises above its earlier values, except within a step. There a centre is off its chord by up to v²
+/// h²/8ρ: for balls at the speed √(g r), the fraction step²/8 of a radius.
 fn never_gains_energy(throw: &Throw) -> bool {
     let step = Accuracy::preset(preset_of(throw)).step;
     let slack = throw.weight * (step * step / 8.0 + 1e-9);
@@ -113,7 +114,7 @@ fn preset_of(throw: &Throw) -> Preset {
     Preset::ALL.into_iter().find(|&p| Accuracy::preset(p) == accuracy).unwrap()
 }
 
-/// The data with every velocity that comes after the middle multiplied by `factor`.
+/// The data with every velocity after the middle multiplied by `factor`.
 fn scaled(throw: &Throw, factor: f64) -> Vec<Sample> {
     let middle = throw.samples.len() / 2;
     let scale =
@@ -143,7 +144,7 @@ fn friction_never_takes_more_than_its_bound() {
         let mut caught = 0;
         for seed in 0..THROWS {
             assert!(keeps_the_bound_of_friction(&throw(preset, seed, 0.05), 0.05), "{preset:?} throw {seed}");
-            // A world whose friction is a twentieth larger.
+            // A world whose friction is larger by a twentieth.
             caught += u64::from(!keeps_the_bound_of_friction(&throw(preset, seed, 0.05 * 1.05), 0.05));
         }
         assert!(caught > THROWS / 4, "{preset:?}: the twin is caught {caught} times");

@@ -50,7 +50,7 @@ fn slide_turns_into_roll() {
 
 #[test]
 fn sliding_with_side_spin_follows_a_parabola() {
-    // The slip of a bowling hook: its direction is constant, so the way is a parabola that ends in a straight line.
+    // The slip of a bowling hook: its direction is constant, so the path is a parabola that ends in a straight line.
     let (mu, r) = (0.2, 0.25);
     let world = World::new(vec![unit_ball()], Law::new(mu, 0.5)).floor().build();
     let (v, w) = (DVec3::new(3.0, 0.0, 0.0), DVec3::new(-8.0, 2.0, 5.0));
@@ -91,13 +91,13 @@ fn incline_rolls_or_slides() {
     relative(incline(alpha, limit * 0.9).1, 0.5 * G * (s - limit * 0.9 * c), 1e-13);
 }
 
-/// A bowl around the origin's axis whose lowest point is the origin.
+/// A bowl around the vertical axis through the origin, which is its lowest point.
 fn bowl(radius: f64) -> Dome {
     let clip = Aabb { min: DVec3::splat(-2.0 * radius), max: DVec3::new(2.0 * radius, 2.0 * radius, 0.9 * radius) };
     Dome::new(DVec3::new(0.0, 0.0, radius), radius, true, clip, M).unwrap()
 }
 
-/// Time between the first two passages of the lowest point in the same direction, by linear interpolation in one step.
+/// Time between the first two passages of the lowest point in the same direction, interpolated within one step.
 fn bowl_period(step: f64, amplitude: f64) -> f64 {
     let (big, r) = (1.25, 0.25);
     let mut world = World::new(vec![unit_ball()], Law::new(10.0, 0.5));
@@ -221,8 +221,8 @@ fn six_cubed_balls_do_not_penetrate() {
     for until in [0.5, 1.0] {
         let (at, outcome, state) = run(&world, &starts, until);
         assert!(matches!(outcome, Outcome::TimeReached | Outcome::AllAtRest), "{outcome:?} {:?}", state.counts());
-        // The collapse interrupts steps before their corrections take effect (see the module `group`); a pair that only
-        // bounces is exact, but may have just left a step. Both bounds are twice what was seen.
+        // The collapse interrupts steps before their corrections take effect (see the module `group`). A pair that only
+        // bounces is exact, but may have just left a step. Both bounds are twice the values that were seen.
         let [lasting, others, floor] = deepest(&at, &state);
         assert!(lasting < 5e-3 && others < 1e-3 && floor < 1e-4, "{lasting} {others} {floor} at {until}");
     }

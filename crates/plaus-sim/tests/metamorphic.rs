@@ -1,4 +1,4 @@
-//! Worlds that must behave alike to the last bit.
+//! Worlds that must behave the same to the last bit.
 
 use crate::common::*;
 use glam::DVec3;
@@ -8,7 +8,7 @@ use plaus_sim::scenery::{Aabb, Dome, Mesh, Plane, Scenery};
 use plaus_sim::worlds::{Bins, drops};
 use plaus_sim::{Accuracy, Law, Laws, Outcome, Scratch};
 
-/// Balls of several sizes over a floor with walls, a bowl and a tetrahedron; every length times `scale`.
+/// Balls of several sizes over a floor with walls, a bowl and a tetrahedron; every length is multiplied by `scale`.
 fn garden(scale: f64, order: &[usize]) -> (Marbles, Vec<Start>) {
     let radii = [0.25, 0.125, 0.1875, 0.25, 0.3125];
     let x = [-1.0, -0.4, 0.1, 0.7, 1.4];
@@ -67,7 +67,7 @@ fn relabelling_permutes_the_result() {
     }
 }
 
-/// Ten marbles dropped into two bins lie on and roll over each other: whatever their labels, they do the same to the
+/// Ten marbles dropped into two bins lie on and roll over each other. Whatever their labels, they do the same to the
 /// last bit.
 #[test]
 fn relabelling_ten_marbles_in_contact_permutes_the_result() {
@@ -136,7 +136,7 @@ fn elastic_frictionless_runs_go_back() {
     let turned: Vec<Start> = there.iter().map(|b| moving(b.path.x, -b.path.v, DVec3::ZERO)).collect();
     let (back, _, _) = run(&world, &turned, 2.0);
     for (b, s) in back.iter().zip(&starts) {
-        // Each collision of curved bodies multiplies rounding by about 2 d / r: ten of them by 10⁵ or so.
+        // Each collision of curved bodies multiplies rounding by about 2 d / r: ten of them by about 10⁵.
         assert!((b.path.x - s.position).length() < 1e-9, "{} for {}", b.path.x, s.position);
         assert!((b.path.v + s.velocity).length() < 1e-9);
     }

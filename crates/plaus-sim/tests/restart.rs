@@ -75,7 +75,7 @@ fn a_trace_replays_the_run() {
             assert!(world.clock(&pair[0]) <= time);
             let mut end = pair[0];
             world.advance(k, &mut end, time);
-            // Centres never jump, except that rest may put a centre where it stands: both are the same bits.
+            // Centres never jump, except that rest may put a centre in its place: both are the same bits.
             assert_eq!(end.path.x, pair[1].path.x);
         }
         let halfway = trace.body_at(&world, k, 1.234_5).unwrap();

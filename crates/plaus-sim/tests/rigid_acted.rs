@@ -1,4 +1,4 @@
-//! Damping and torque beside closed forms and another integrator; what is done to a state between runs.
+//! Damping and torque compared with closed forms and another integrator; changes to a state between runs.
 
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
@@ -56,8 +56,8 @@ fn angle(a: DQuat, b: DQuat) -> f64 {
     2.0 * (a.conjugate() * b).xyz().length()
 }
 
-/// Velocities and angular momenta to rounding of a thousand legs, places and orientations within the half gap by which
-/// a leg may stray; an undamped body is as far away as one expects.
+/// Velocities and angular momenta agree to the rounding of a thousand legs, positions and orientations to within the
+/// half gap by which a leg may stray. An undamped body is as far away as expected.
 #[test]
 fn damped_flight_is_its_closed_form() {
     let (c, d, t) = (0.7, 1.3, 1.2);
@@ -83,10 +83,10 @@ fn damped_flight_is_its_closed_form() {
     }
 }
 
-/// `Forces::angular_damping` says between which bounds; in the time the spin falls by a fifth, and so the legs by a
+/// `Forces::angular_damping` states the bounds. In the time, the spin falls by a fifth, and so the number of legs by a
 /// tenth.
 #[test]
-fn legs_are_as_many_as_is_said() {
+fn the_number_of_legs_is_as_documented() {
     for shape in &shapes()[1..] {
         let mut world = world(std::slice::from_ref(shape), 0.3, Preset::Standard);
         world.act_on(0, Forces { angular_damping: 1.0, ..Forces::default() }).unwrap();
@@ -120,10 +120,10 @@ fn by_small_steps(inertia: DVec3, s: &Start, torque: DVec3, d: f64, t: f64, n: u
     (r, l)
 }
 
-/// The angular momentum is exact; the orientation's error falls as the square of the legs, which follow the root of the
-/// gap: between draft and fine the gap falls by 100, and so does the error.
+/// The angular momentum is exact. The orientation's error falls as the square of the legs' length, which is
+/// proportional to the root of the gap: between draft and fine the gap falls by a factor of 100, and so does the error.
 #[test]
-fn a_torque_turns_as_another_integrator_has_it() {
+fn a_torque_turns_a_body_as_another_integrator_says() {
     let (t, d) = (0.6, 0.4);
     for shape in &shapes()[1..] {
         let inertia = shape.mass_properties(1000.0).inertia;
@@ -144,7 +144,7 @@ fn a_torque_turns_as_another_integrator_has_it() {
 
 /// A block that slides: `v̇ = −µ g − c v`. The error is that of the steps, of second order.
 #[test]
-fn damping_acts_on_what_slides() {
+fn damping_acts_on_a_sliding_block() {
     let cuboid = [shapes().remove(1)];
     let (c, mu, t) = (0.8, 0.2, 0.7);
     for preset in [Preset::Draft, Preset::Standard] {
@@ -160,9 +160,9 @@ fn damping_acts_on_what_slides() {
     }
 }
 
-/// On ice a torque turns a block that lies as fast as in the air; where there is friction enough it stays.
+/// On ice, a torque turns a lying block as fast as in the air; where there is enough friction, the block stays.
 #[test]
-fn a_torque_turns_what_lies() {
+fn a_torque_turns_a_lying_block() {
     let shape = shapes().remove(1);
     let inertia = shape.mass_properties(1000.0).inertia.z;
     for (friction, turns) in [(0.0, true), (0.5, false)] {
@@ -175,8 +175,8 @@ fn a_torque_turns_what_lies() {
     }
 }
 
-/// Random throws onto ice: momentum along it falls as damping says, at every preset, to rounding; energy never grows
-/// beyond what steps may bring. A twin with a thousandth more damping is found out.
+/// Random throws onto ice: momentum along it falls as damping says, at every preset, to rounding; energy never grows by
+/// more than steps may add. A twin with a thousandth more damping is found out.
 #[test]
 fn random_throws_lose_what_damping_takes() {
     let mut seed = 11_u64;
@@ -212,7 +212,7 @@ fn random_throws_lose_what_damping_takes() {
 }
 
 #[test]
-fn what_acts_must_be_numbers() {
+fn forces_must_be_finite() {
     let mut world = world(&shapes(), 0.3, Preset::Standard);
     for forces in [
         Forces { damping: -0.1, ..Forces::default() },
@@ -224,7 +224,7 @@ fn what_acts_must_be_numbers() {
     }
 }
 
-/// A block at rest that is kicked flies as if it had been thrown; one in the air goes on with what it is given.
+/// A block at rest that is kicked flies as if it had been thrown; a block in the air goes on with the added velocity.
 #[test]
 fn a_kick_is_a_throw() {
     let shape = shapes().remove(1);
@@ -250,7 +250,7 @@ fn a_kick_is_a_throw() {
     assert!(outcome == Outcome::AllAtRest && (bodies[0].path.x.z - 0.05).abs() < 1e-5);
 }
 
-/// What stands on a body that is taken out falls, and a body may be put where there is room.
+/// A body that stands on one that is taken out falls, and a body may be put where there is room.
 #[test]
 fn bodies_come_and_go_between_runs() {
     let cube = Shape::Cuboid(Cuboid::new(DVec3::splat(0.2), 0.0).unwrap());
@@ -264,7 +264,7 @@ fn bodies_come_and_go_between_runs() {
     assert_eq!((outcome, bodies[0].phase), (Outcome::AllAtRest, Phase::Gone));
     assert!((bodies[1].path.x.z - 0.1).abs() < 1e-5, "{}", bodies[1].path.x);
     assert!(world.kick(&mut state, 0, DVec3::ZERO, DVec3::ZERO).is_err());
-    // It lies where that would be put.
+    // It lies where the other would be put.
     let now = state.time();
     let inside = world.put(&mut state, 0, &Start { time: now, ..starts[0] });
     assert!(matches!(inside, Err(WorldError::BodiesOverlap { a: 0, b: 1, .. })), "{inside:?}");
@@ -273,7 +273,7 @@ fn bodies_come_and_go_between_runs() {
     let (outcome, bodies) = go(&world, &mut state, 6.0);
     assert_eq!(outcome, Outcome::AllAtRest);
     assert!((bodies[0].path.x.z - 0.3).abs() < 1e-5, "{}", bodies[0].path.x);
-    // From a copy the same is done to the same bits.
+    // The same changes to a copy give the same bits.
     let again = |mut state: State<Turning>| {
         world.remove(&mut state, 0).unwrap();
         go(&world, &mut state, 1.2);

@@ -1,4 +1,4 @@
-//! Cuboids against cuboids: when they touch, what an impact keeps, stacks, piles, and nothing inside anything.
+//! Cuboids against cuboids: when they touch, what an impact conserves, stacks, piles, and nothing inside anything else.
 
 use crate::common::turning::Overlaps;
 use glam::{DQuat, DVec3};
@@ -12,7 +12,7 @@ use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State, 
 
 const M: Material = Material(0);
 
-/// Cuboids of these edges and roundings; a table below where there is gravity.
+/// Cuboids with these edges and roundings; with a table below if there is gravity.
 fn world(edges: &[(DVec3, f64)], law: Law, gravity: f64, preset: Preset) -> Rigid {
     let body = |&(edges, r): &(DVec3, f64)| BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, r).unwrap()), 1000.0, M);
     let table = Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap());
@@ -33,8 +33,8 @@ fn dice(count: usize, law: Law) -> Rigid {
     world(&vec![(DVec3::splat(0.016), 0.0); count], law, 9.81, Preset::Standard)
 }
 
-/// A cuboid that spins about z with its middle fixed sweeps its corner over a circle: it meets a wall of another when
-/// `ρ cos θ` is the wall's distance.
+/// A cuboid that spins about z with its middle fixed sweeps its corner over a circle. It meets the wall of another
+/// cuboid when `ρ cos θ` is the wall's distance.
 #[test]
 fn a_turning_corner_meets_a_face_when_it_should() {
     for rounding in [0.0, 0.1] {
@@ -58,10 +58,10 @@ fn a_turning_corner_meets_a_face_when_it_should() {
     }
 }
 
-/// Without friction and with restitution 1 an impact keeps energy, and any impact keeps momentum and angular momentum,
-/// but for what a gap between the two points of contact times a tangential impulse turns.
+/// Without friction and with restitution 1, an impact conserves energy. Any impact conserves momentum and angular
+/// momentum, except for the product of the gap between the two points of contact and a tangential impulse.
 #[test]
-fn impacts_keep_what_they_must() {
+fn impacts_keep_energy_and_momentum() {
     for (law, rounding) in [(Law::new(0.0, 1.0), 0.0), (Law::new(0.0, 1.0), 0.002), (Law::new(0.4, 0.6), 0.0)] {
         let edges: Vec<_> = (0..6).map(|k| (DVec3::new(0.016, 0.014 + 0.001 * f64::from(k), 0.02), rounding)).collect();
         let world = world(&edges, law, 0.0, Preset::Fine);
@@ -91,7 +91,7 @@ fn impacts_keep_what_they_must() {
             let after = sums(&state, state.time());
             let scale = 6.0 * 0.005 * 2.0;
             assert!((after.1 - before.1).length() < 1e-13 * scale, "{before:?} {after:?}");
-            // Gap 1e-6 of 7 mm, times at most the whole momentum, per impact.
+            // A gap of 1e-6 of 7 mm, times at most the whole momentum, for each impact.
             assert!((after.2 - before.2).length() < 1e-8 * scale * state.counts().impacts as f64);
             if law.friction == 0.0 {
                 assert!((after.0 / before.0 - 1.0).abs() < 1e-11, "{before:?} {after:?}");
@@ -102,7 +102,7 @@ fn impacts_keep_what_they_must() {
     }
 }
 
-/// Where a die ends that is put down gently on the edge of another, with its middle `over` edges from the other's.
+/// Where a die ends that is put down gently on the edge of another, with its middle `over` edges away from the other's.
 fn put_on(over: f64, turn: f64) -> (State<Turning>, Rigid) {
     let world = dice(2, Law::new(0.4, 0.3));
     let upper =
@@ -122,10 +122,10 @@ fn a_die_rests_on_another_while_its_middle_is_over_it() {
             assert_eq!((upper.path.x.z - 0.024).abs() < 1e-6, stays, "over {over}: {}", upper.path.x);
             let gap = world.gap([0, 1], [lower, upper]);
             if stays {
-                // On it, not in it but for rounding, and not farther off than the preset's gap.
+                // On it, not in it except for rounding, and not farther off than the preset's gap.
                 assert!((-1e-16..=1e-5 * 0.008).contains(&gap), "{gap}");
                 assert!((upper.turn * DVec3::Z).z > 1.0 - 1e-9);
-                // Not a bit of drift over a minute.
+                // Not a bit of drift in a minute.
                 let later = world.at(1, upper, state.time() + 60.0);
                 assert_eq!((later.path.x, later.turn), (upper.path.x, upper.turn));
             }
@@ -133,7 +133,7 @@ fn a_die_rests_on_another_while_its_middle_is_over_it() {
     }
 }
 
-/// What rests on a die falls when the die is knocked away, and a die that is hit at rest moves.
+/// A body that rests on a die falls when the die is knocked away, and a die that is hit at rest moves.
 #[test]
 fn resting_bodies_wake() {
     let world = dice(3, Law::new(0.4, 0.3));
@@ -154,19 +154,19 @@ fn a_die_pushes_another() {
     let (mu, v) = (0.2, 0.3);
     let world = dice(2, Law::new(mu, 0.0));
     let at = |x: f64| Start { velocity: DVec3::X * v, ..Start::at_rest(DVec3::new(x, 0.0, 0.008)) };
-    // The second stands: the impact leaves both half of the speed, and the rest of the way goes by their common
-    // friction.
+    // The second die stands still: the impact leaves both with half of the speed, and their common friction determines
+    // the rest of the way.
     let mut state = world.state(&[at(0.0), Start::at_rest(DVec3::new(0.0161, 0.0005, 0.008))]).unwrap();
     let outcome = world.run(&mut state, &mut Scratch::default(), 5.0, &mut ()).unwrap();
     assert_eq!(outcome, Outcome::AllAtRest);
     let way = v * v / 4.0 / (2.0 * mu * 9.81);
     let moved = state.bodies()[1].path.x.x - 0.0161;
-    // Not exactly central, and tilted a little by friction below: a tenth.
+    // Not exactly central, and tilted a little by friction below: a tenth is allowed.
     assert!((moved / way - 1.0).abs() < 0.1, "{moved} for {way}");
 }
 
-/// The example counts many more. 5e-3: five times the sag that a step of lasting contact may have half way (`SAG` of
-/// the steps).
+/// The example counts many more. 5e-3 is five times the sag that a step of lasting contact may have half way (`SAG` in
+/// the code of the steps).
 #[test]
 fn thrown_together_dice_end_at_rest_and_are_never_in_each_other() {
     for (bumps, throws) in [(0.0, 40), (0.1, 8)] {
@@ -192,17 +192,17 @@ fn overlaps_at_the_start_are_named() {
         matches!(error, WorldError::BodiesOverlap { a: 1, b: 2, depth } if (depth - 0.001).abs() < 1e-12),
         "{error}"
     );
-    // Those that are released at another time are not there yet.
+    // Bodies that are released at another time are not there yet.
     let later = Start { time: 1.0, ..at(0.115, 0.02) };
     assert!(world.state(&[at(0.0, 0.02), at(0.1, 0.02), later]).is_ok());
     let sunk = world.state(&[at(0.0, 0.02), at(0.1, 0.007), at(0.2, 0.02)]).unwrap_err();
     assert!(matches!(sunk, WorldError::OverlapsScenery { body: 1, .. }), "{sunk}");
 }
 
-/// Two shots in which a pin once went through another: its far end came first while its nearest point receded. 20 mm
-/// would be through the neck.
+/// Two shots in which a pin once went through another: its far end came first while its nearest point receded. An
+/// overlap of 20 mm would be through the neck.
 #[test]
-fn pins_are_seen_whose_far_ends_meet() {
+fn pins_whose_far_ends_meet_are_seen() {
     let alley = Alley::default();
     let world = alley.world().unwrap();
     for shot in [13, 21] {

@@ -1,4 +1,4 @@
-//! Chains of random bodies with random joints, in space and on a floor; joints that cannot be.
+//! Chains of random bodies with random joints, in space and on a floor; invalid joints.
 
 use crate::common::{G, M};
 use crate::rigid_joints::{cuboid, point, world};
@@ -8,7 +8,7 @@ use plaus_sim::scenery::Plane;
 use plaus_sim::shape::Shape;
 use plaus_sim::{Accuracy, Law, Laws, Outcome, Preset, Scratch, State, WorldError};
 
-/// Numbers evenly in [0, 1) from a seed.
+/// Numbers spread evenly over [0, 1), from a seed.
 struct Numbers(u64);
 
 impl Numbers {
@@ -27,8 +27,8 @@ impl Numbers {
     }
 }
 
-/// A chain of random bodies, each joined to the one before it by a random joint, that moves as one; its first body is
-/// where it is said.
+/// A chain of random bodies, each joined to the one before it by a random joint, that moves as one; `chain` is told
+/// where its first body is.
 fn chain(
     numbers: &mut Numbers,
     count: usize,
@@ -42,7 +42,7 @@ fn chain(
         let half = DVec3::new(0.03, 0.03, 0.03) + DVec3::new(numbers.next(), numbers.next(), numbers.next()) * 0.05;
         let shape = if numbers.next() < 0.3 { Shape::Ball(half.x) } else { cuboid(half.x, half.y, half.z) };
         let orientation = numbers.turn();
-        // Next to the one before, with the joint between them.
+        // Next to the previous body, with the joint between them.
         let way = (DVec3::X + numbers.vector()).normalize() * (0.12 + 0.08 * numbers.next());
         let x = starts.last().map_or(at, |s| s.position + way);
         let start = Start { position: x, orientation, velocity: v + w.cross(x - at), spin: w, time: 0.0 };
@@ -61,7 +61,7 @@ fn chain(
     (shapes, starts, joints)
 }
 
-/// What joints hold is together: how far their anchors are apart at most.
+/// Whether bodies are together at their joints: the largest distance between the anchors of a joint.
 fn apart(joints: &[Joint], bodies: &[Turning]) -> f64 {
     let anchor = |k: usize, j: &Joint| {
         let body = if k == 0 { Some(j.body) } else { j.other };
@@ -83,8 +83,8 @@ fn totals(shapes: &[Shape], bodies: &[Turning]) -> (DVec3, DVec3, f64) {
     all
 }
 
-/// What became of a chain in space whose last body is kicked: momentum and angular momentum, by how much they have
-/// changed over what bodies have of them, kinetic energy, and how far joints are apart. None where it lay in itself.
+/// The result for a chain in space whose last body is kicked: how far momentum and angular momentum have changed, over
+/// what the bodies have of them; kinetic energy; and how far joints are apart. `None` if the chain overlapped itself.
 fn kicked(seed: u64, friction: f64, missing: bool, until: f64) -> Option<([f64; 2], f64, f64)> {
     let mut numbers = Numbers(seed);
     let count = 2 + (seed % 4) as usize;
@@ -103,7 +103,7 @@ fn kicked(seed: u64, friction: f64, missing: bool, until: f64) -> Option<([f64; 
     let own = shapes[count - 1].mass_properties(1000.0);
     let twist = numbers.vector() * (10.0 * own.inertia.min_element());
     world.kick(&mut state, count - 1, numbers.vector() * own.mass, twist).unwrap();
-    // By then the joints have taken up the kick.
+    // By this time, the joints have taken up the kick.
     let before = totals(&shapes, &go(&mut state, 0.1));
     let bodies = go(&mut state, until);
     let after = totals(&shapes, &bodies);
@@ -113,10 +113,10 @@ fn kicked(seed: u64, friction: f64, missing: bool, until: f64) -> Option<([f64; 
     Some((kept, after.2 / before.2 - 1.0, apart(&joints, &bodies)))
 }
 
-/// Random chains in space, of two to five bodies, whose joints hold what a kick would part: linear and angular momentum
-/// stay to the rounding of their steps, also half way through one; energy, with elastic impacts too, to the square
-/// of the step, a tenth of a radian; joints are open by the sag of a step's curve. Twins are caught: a chain of which
-/// one joint is missing, and one whose hinges rub.
+/// Random chains in space, of two to five bodies, whose joints hold them together after a kick. Linear and angular
+/// momentum are kept to the rounding of their steps, also half way through one. Energy is kept to the square of the
+/// step, a tenth of a radian, with elastic impacts too. Joints are open by the sag of a step's curve. Twins are caught:
+/// a chain with a joint missing, and one whose hinges rub.
 #[test]
 fn free_chains_keep_momentum_and_energy() {
     let (mut chains, mut caught) = (0, [0, 0]);
@@ -127,18 +127,19 @@ fn free_chains_keep_momentum_and_energy() {
         worst = [worst[0].max(energy.abs()), worst[1].max(off), worst[2].max(kept[0].max(kept[1]))];
         assert!(kept.iter().all(|k| *k < 1e-11), "{seed}: {kept:?}");
         assert!(energy.abs() < 5e-3, "{seed}: {energy}");
-        // (ω h)²/8 of the longest arm, 0.1 m, is 1.3e-4; what is kicked turns twice as fast at first.
+        // (ω h)²/8 of the longest arm, 0.1 m, is 1.3e-4; a kicked body turns twice as fast at first.
         assert!(off < 5e-4, "{seed}: {off}");
         caught[0] += u32::from(kicked(seed, 0.0, true, 0.25).is_none_or(|t| t.2 > 1e-2));
         caught[1] += u32::from(kicked(seed, 4e-3, false, 0.6).is_none_or(|t| t.1 < -5e-3));
     }
     println!("{chains} chains: energy, joints, momentum {worst:?}; twins {caught:?}");
-    // A first joint that is missing shows where the kick pulls at it; chains of welds and balls do not rub.
+    // A missing first joint shows if the kick pulls at it; chains of welds and balls do not rub.
     assert!(chains > 55 && caught[0] > 45 && caught[1] >= 15, "{caught:?} of {chains}");
 }
 
-/// Random chains thrown onto a floor: at no event is their energy above what it was by more than the steps' error, they
-/// do not fall through, joints hold, and nothing ends but by time or rest. The same bodies without joints come apart.
+/// Random chains thrown onto a floor: at no event is their energy above its earlier value by more than the steps'
+/// error, they do not fall through, joints hold, and every run ends by time or rest. The same bodies without joints
+/// come apart.
 #[test]
 fn chains_thrown_onto_a_floor_hold() {
     let (mut worst, mut parted) = ([0.0_f64; 3], 0);
@@ -219,7 +220,7 @@ fn bad_joints_are_named() {
     world.join(good).unwrap();
     let mut state = world.state(&[a, b]).unwrap();
     assert!(world.put_to_sleep(&mut state, 0).is_err() && world.put(&mut state, 0, &a).is_err());
-    // A joint lets go of what is taken out.
+    // A body that is taken out is released from its joint.
     world.remove(&mut state, 1).unwrap();
     assert!(!world.is_held(0, &state));
     world.run(&mut state, &mut Scratch::default(), 1.0, &mut ()).unwrap();

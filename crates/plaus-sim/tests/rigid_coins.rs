@@ -1,4 +1,4 @@
-//! Tossed coins: each comes to lie, in a number of events that its wobbling does not spend.
+//! Tossed coins: each comes to lie flat, without spending all its events on wobbling.
 
 use crate::common::zoo::{Dice, G, M};
 use glam::{DQuat, DVec3};
@@ -35,8 +35,8 @@ fn toss(k: u64, preset: Preset) -> (Rigid, Start) {
     (Rigid::new(world).unwrap(), start)
 }
 
-/// A disk that wobbles does so faster and faster; before it was laid flat where its energy is below that of the
-/// preset's rest speed, a quarter of the tosses spent their 20,000 events on that.
+/// A wobbling disk wobbles faster and faster. Before disks were laid flat when their energy falls below that of the
+/// preset's rest speed, a quarter of the tosses spent their 20,000 events on wobbling.
 #[test]
 fn tossed_coins_come_to_lie() {
     let mut flat = 0;
@@ -61,10 +61,10 @@ fn tossed_coins_come_to_lie() {
     assert!(flat > 10, "{flat}");
 }
 
-/// Half of the energy that lays a coin flat: with it there is no more than a preset says; with ten times as much it
-/// goes on.
+/// With half of the energy at which a coin is laid flat, the coin is laid flat; with ten times as much energy it goes
+/// on.
 #[test]
-fn a_coin_is_laid_flat_only_where_little_is_left() {
+fn a_coin_is_laid_flat_only_with_little_energy_left() {
     for (preset, part, lies) in [(Preset::Standard, 0.5, true), (Preset::Standard, 10.0, false)] {
         let (world, _) = toss(0, preset);
         let speed = Accuracy::preset(preset).rest_speed;

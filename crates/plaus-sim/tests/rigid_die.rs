@@ -42,7 +42,7 @@ fn a_die_lands_flat_and_stays() {
         assert!(heights[0] > -1e-15, "{heights:?}");
         assert!(heights[3] <= 1e-5 * 0.008, "{heights:?}");
         assert!(heights[4] > 0.0159);
-        // Not a bit of drift over a minute.
+        // Not a bit of drift in a minute.
         let later = world.at(0, &body, state.time() + 60.0);
         assert_eq!((later.path.x, later.turn), (body.path.x, body.turn));
     }
@@ -58,7 +58,7 @@ fn a_bumpy_table_ends_in_rest_on_three_points_or_more() {
             let world = die.world(noise).unwrap();
             let mut state = world.state(&[start]).unwrap();
             let outcome = world.run(&mut state, &mut scratch, 20.0, &mut ()).unwrap();
-            // Bumps higher than the die may wedge it for ever in slow motion; an outcome it is all the same.
+            // Bumps higher than the die may wedge it for ever in slow motion; that is also an outcome.
             if bumps < 1.0 {
                 assert_eq!(outcome, Outcome::AllAtRest);
             }
@@ -79,7 +79,8 @@ fn a_bumpy_table_ends_in_rest_on_three_points_or_more() {
     }
 }
 
-/// 1,200 throws: χ² with five degrees of freedom exceeds 35.9 once in a million. The example throws as many as wanted.
+/// 1,200 throws: χ² with five degrees of freedom exceeds 35.9 once in a million. The example throws as many as you
+/// like.
 #[test]
 fn a_fair_die_shows_each_face_equally_often() {
     let die = DieOnTable { accuracy: Accuracy::preset(Preset::Draft), ..DieOnTable::default() };
@@ -114,8 +115,8 @@ struct Energy<'w> {
 impl Observer<Rigid> for Energy<'_> {
     fn motion(&mut self, index: usize, body: &Turning) {
         let now = self.world.energy(index, body);
-        // What a step left in the table is pushed out again, which lifts the body: by less than a thousandth of its
-        // size at the standard preset, and never into motion.
+        // An overlap that a step left in the table is pushed out again, which lifts the body: by less than a thousandth
+        // of its size at the standard preset, and never into motion.
         assert!(now <= self.last + 1e-3 * self.scale, "{} to {now} at {}: {body:?}", self.last, body.path.t);
         self.last = now;
     }

@@ -1,4 +1,4 @@
-//! Bodies that go their own way by keyframes, and what they do to others.
+//! Bodies that are driven by keyframes, and their effect on others.
 
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
@@ -14,7 +14,7 @@ fn cuboid(x: f64, y: f64, z: f64) -> Shape {
     Shape::Cuboid(Cuboid::new(DVec3::new(x, y, z), 0.0).unwrap())
 }
 
-/// Bodies in space, or under gravity, of which the first goes its own way.
+/// Bodies in space, or under gravity, of which the first is driven.
 fn world(shapes: &[Shape], law: Law, gravity: f64, keys: &Keyframes) -> Rigid {
     let mut world = Rigid::new(RigidWorld {
         bodies: shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
@@ -50,9 +50,10 @@ fn straight(velocity: DVec3) -> Keyframes {
     upright(Track::linear([(0.0, DVec3::ZERO), (2.0, velocity * 2.0)]))
 }
 
-/// What a paddle hits leaves with `1 + e` times its speed, however fast it is and however thin; the paddle goes on.
+/// A ball that a paddle hits leaves with `1 + e` times the paddle's speed, however fast and however thin the paddle is;
+/// the paddle goes on.
 #[test]
-fn what_is_hit_leaves_as_from_a_wall_that_moves() {
+fn a_ball_leaves_a_paddle_as_it_leaves_a_moving_wall() {
     for shape in [Shape::Ball(0.02), cuboid(0.04, 0.04, 0.04), Frustum::cylinder(0.02, 0.04).unwrap().into()] {
         for (e, speed) in [(1.0, 1.5), (0.5, 3.0), (0.25, 900.0)] {
             let paddle = cuboid(0.002, 0.3, 0.3);
@@ -65,9 +66,9 @@ fn what_is_hit_leaves_as_from_a_wall_that_moves() {
     }
 }
 
-/// A bar that turns steadily hits with the speed that it has there.
+/// A bar that turns steadily hits with the speed of its point of contact.
 #[test]
-fn a_bar_that_turns_hits_with_the_speed_of_its_point() {
+fn a_turning_bar_hits_with_the_speed_of_its_point_of_contact() {
     let (spin, r) = (7.0, 0.02);
     let turned = |time: f64| (time, DQuat::from_rotation_z(spin * time));
     let keys = Keyframes {
@@ -75,7 +76,7 @@ fn a_bar_that_turns_hits_with_the_speed_of_its_point() {
         rotation: Track::linear((0..8).map(|k| turned(f64::from(k) * 0.2))),
     };
     let world = world(&[cuboid(1.0, 0.02, 0.1), Shape::Ball(r)], Law::new(0.0, 0.5), 0.0, &keys);
-    // At rest before the bar, 0.3 m from its axis when the bar's face is there.
+    // At rest in front of the bar, 0.3 m from its axis when the bar's face arrives.
     let state = run(&world, &[Start::at_rest(DVec3::ZERO), Start::at_rest(DVec3::new(0.3, 0.1, 0.0))], 0.5);
     let v = at(&world, &state, 1, 0.5).path.v;
     // The face's normal when its distance from the ball's centre is a radius: sin α (0.3) − cos α (0.1) = −(r + 0.01).
@@ -85,7 +86,7 @@ fn a_bar_that_turns_hits_with_the_speed_of_its_point() {
     let normal = DVec3::new(-s, c, 0.0);
     let along = 0.3 * c + 0.1 * s;
     let expected = normal * (1.5 * spin * along);
-    // It is met half a gap early.
+    // The bar meets it half a gap early.
     assert!((v - expected).length() < 2.0 * Accuracy::default().gap * spin * r, "{v} for {expected}");
 }
 
@@ -98,7 +99,8 @@ fn pushed(a: f64, until: f64) -> Keyframes {
     upright(Track { between: Between::Cubic, keys: vec![key(0.0), key(0.5 * until), key(until)] })
 }
 
-/// A tray that speeds up carries what friction holds on it, and else pulls it with all the friction there is.
+/// A tray that accelerates carries a body that friction can hold on it, and otherwise pulls it with all the friction
+/// available.
 #[test]
 fn a_tray_carries_what_friction_holds() {
     let (mu, until) = (0.4, 0.5);
@@ -112,7 +114,7 @@ fn a_tray_carries_what_friction_holds() {
         let load = at(&world, &state, 1, until);
         let expected = if slides { mu * G } else { a };
         let way = 0.5 * expected * until * until;
-        // By the time that it takes to settle on the tray: a few times √(2 gap / g).
+        // Late by the time that the body takes to settle on the tray: a few times √(2 gap / g).
         let late = 4.0 * (2.0 * Accuracy::default().gap * size / G).sqrt();
         assert!((load.path.x.x - way).abs() < expected * until * late, "{} for {way}", load.path.x.x);
         assert!((load.path.v.x - expected * until).abs() < expected * late, "{} slides: {slides}", load.path.v.x);
@@ -120,8 +122,8 @@ fn a_tray_carries_what_friction_holds() {
     }
 }
 
-/// By cubics, between keys a body is nowhere off the cubic by more than a tenth of the gap at which bodies touch, which
-/// is less than the preset's.
+/// Between the keys of a cubic, a body is nowhere off the cubic by more than a tenth of the gap at which bodies touch,
+/// which is less than the preset's.
 #[test]
 fn cubics_are_followed() {
     let key = |time: f64, x: [f64; 3], v: [f64; 3]| Key {
@@ -170,10 +172,10 @@ fn cubics_are_followed() {
     assert_eq!((end.path.x, end.path.v), (keys[1].value, DVec3::ZERO));
 }
 
-/// What lies on a lift that stands is at rest, goes up with it, and comes to rest again; paused or not, with the same
-/// bits.
+/// A body that lies on a standing lift is at rest, goes up with the lift, and comes to rest again; with the same bits
+/// whether the run is paused or not.
 #[test]
-fn a_lift_takes_up_what_lies_on_it() {
+fn a_lift_carries_up_a_body_that_lies_on_it() {
     let track = Track::linear([(0.0, DVec3::ZERO), (2.0, DVec3::ZERO), (3.0, DVec3::Z * 0.2)]);
     let plate = cuboid(0.3, 0.3, 0.02);
     let shapes = [plate, cuboid(0.05, 0.05, 0.05), Frustum::cylinder(0.02, 0.04).unwrap().into()];
@@ -222,9 +224,9 @@ fn bad_keys_are_named() {
     assert!(world.drive(1, &straight(DVec3::X)).is_err());
 }
 
-/// What is driven goes through what stands still.
+/// Driven bodies go through fixed parts.
 #[test]
-fn a_driven_body_ignores_what_stands_still() {
+fn a_driven_body_ignores_fixed_parts() {
     let mut world = Rigid::new(RigidWorld {
         bodies: vec![BodySpec::solid(cuboid(0.1, 0.1, 0.1), 1000.0, M)],
         parts: vec![Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())],

@@ -1,5 +1,5 @@
-//! Turning bodies with numbers far out: energy never grows, nothing turns NaN, every run ends in an outcome; and worlds
-//! that must behave alike to the last bit.
+//! Turning bodies with extreme numbers: energy never grows, nothing becomes NaN, every run ends in an outcome; and
+//! worlds that must behave the same to the last bit.
 
 use crate::common::turning::same_when_relabelled;
 use glam::{DQuat, DVec3};
@@ -35,14 +35,14 @@ fn world(bodies: Vec<BodySpec>, law: Law) -> RigidWorld {
     }
 }
 
-/// Sums the bodies' energies whenever the time has moved on, each at its own clock: flight keeps it, and bodies of a
-/// group share one.
+/// Sums the bodies' energies whenever the time has moved on, each at its own clock: flight conserves energy, and the
+/// bodies of a group share a clock.
 struct Energy<'w> {
     world: &'w Rigid,
     each: Vec<f64>,
     time: f64,
     last: f64,
-    /// What a sum may seem to grow.
+    /// By how much a sum may seem to grow.
     slack: f64,
 }
 
@@ -63,7 +63,7 @@ fn check(world: RigidWorld, starts: &[Start]) -> State<Turning> {
     check_within(world, starts, 0.4 * 0.4 / 20.0)
 }
 
-/// The same where energy may rise by another part of the bodies' weights times their sizes.
+/// The same if energy may rise by another fraction of the bodies' weights times their sizes.
 fn check_within(world: RigidWorld, starts: &[Start], rise: f64) -> State<Turning> {
     let specs: Vec<(f64, f64)> = world.bodies.iter().map(|b| (b.mass.mass, b.shape.reach())).collect();
     let world = Rigid::new(world).unwrap();
@@ -107,7 +107,7 @@ fn mass_ratio_of_a_million() {
         for e in [0.0, 0.5] {
             let (mut bodies, starts) = three(0.01);
             bodies[heavy].mass = bodies[heavy].mass.with_mass(bodies[heavy].mass.mass * 1e6);
-            // 0.041 was seen: a light body under a heavy one is pushed out of it.
+            // A rise of 0.041 was seen: a light body under a heavy one is pushed out of it.
             check_within(world(bodies, Law::new(0.3, e)), &starts, 0.05);
         }
     }
@@ -160,8 +160,8 @@ fn a_die_exactly_on_an_edge_and_on_a_corner() {
     }
 }
 
-/// Four dice fly face to face into a fifth at once, which stands exactly on the table: all at the same instant, all
-/// faces parallel.
+/// Four dice fly face to face into a fifth at once, which stands exactly on the table: all at the same instant, with
+/// all faces parallel.
 #[test]
 fn exactly_simultaneous_impacts() {
     for e in [0.0, 0.5, 1.0] {
@@ -205,7 +205,7 @@ fn scaling_keeps_the_bits_of_dice_that_meet() {
     }
 }
 
-/// Two relabelled bodies do the same to the last bit. Of more, each other's stale predictions decide from where a
+/// Two relabelled bodies do the same to the last bit. With more bodies, each other's stale predictions decide where a
 /// search starts, and it ends anywhere within the preset's gap.
 #[test]
 fn relabelling_permutes_flights_and_impacts() {
@@ -247,7 +247,7 @@ fn a_saved_pile_goes_on_to_the_same_bits() {
     }
 }
 
-/// What is wrong with a world or a start is named before any stepping.
+/// Faults of a world or a start are named before any stepping.
 #[test]
 fn bad_numbers_are_named() {
     use plaus_sim::WorldError::{BadBody, BadNumber, BadSurface, BodiesOverlap, OverlapsScenery};

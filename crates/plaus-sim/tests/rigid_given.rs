@@ -1,4 +1,4 @@
-//! What users give: meshes with faults, sizes from micrometres to a thousand kilometres, forces, sleepers.
+//! Input from users: meshes with faults, sizes from micrometres to a thousand kilometres, forces, sleepers.
 
 use glam::{DQuat, DVec3};
 use plaus_dist::math;
@@ -28,7 +28,7 @@ fn floor() -> Part {
     Part::Plane(Plane::new(DVec3::ZERO, DVec3::Z, M).unwrap())
 }
 
-/// A level square of `2 n²` triangles about the origin, without those of the squares left out.
+/// A level square of `2 n²` triangles about the origin, without those in the squares that are left out.
 fn square(edge: f64, n: u32, left_out: &[[u32; 2]]) -> Mesh {
     let along = |k: u32| edge * (f64::from(k) / f64::from(n) - 0.5);
     let vertices = (0..=n).flat_map(|i| (0..=n).map(move |j| DVec3::new(along(i), along(j), 0.0))).collect();
@@ -56,7 +56,7 @@ fn faults_of_meshes_are_named_by_their_triangle() {
     };
     let good = [[0, 1, 2], [0, 2, 3]];
     assert_eq!(mesh(&good), Ok(2));
-    // Given twice, turned over, flat, a corner twice, one that is not there.
+    // Given twice, turned over, flat, with a corner twice, with a corner that does not exist.
     assert!(matches!(mesh(&[good[0], good[1], [1, 2, 0]]), Err(WorldError::BadEdge { triangle: 2, .. })));
     assert!(matches!(mesh(&[good[0], [0, 3, 2]]), Err(WorldError::BadEdge { triangle: 1, .. })));
     assert!(matches!(mesh(&[good[1], [0, 1, 4]]), Err(WorldError::DegenerateTriangle { triangle: 1, .. })));
@@ -71,9 +71,9 @@ fn faults_of_meshes_are_named_by_their_triangle() {
     assert!(matches!(error, WorldError::DegenerateTriangle { triangle: 1, .. }), "{error}");
 }
 
-/// A mesh need not be closed: what is over a hole falls through, what is beside it stays.
+/// A mesh need not be closed: a body over a hole falls through, a body beside it stays.
 #[test]
-fn holes_let_through_what_is_over_them() {
+fn bodies_fall_through_holes() {
     let mesh = Part::Mesh(Arc::new(square(1.0, 5, &[[2, 2]])));
     let ball = || Shape::Ball(0.03);
     let world = world(&[ball(), ball(), Frustum::cylinder(0.03, 0.05).unwrap().into()], vec![mesh]).unwrap();
@@ -101,10 +101,10 @@ fn solids_without_volume_are_refused() {
     }
 }
 
-/// Lengths by 4ⁿ and times by 2ⁿ with the same gravity: the same motion to the last bit, from a micrometre to a
-/// thousand kilometres. No tolerance is a length.
+/// Lengths multiplied by 4ⁿ and times by 2ⁿ with the same gravity: the same motion to the last bit, from a micrometre
+/// to a thousand kilometres. No tolerance is a length.
 #[test]
-fn sizes_do_not_count() {
+fn size_does_not_matter() {
     let shapes = |s: f64| -> Vec<Shape> {
         let head = Convex::Frustum(Frustum::cylinder(0.3 * s, 0.8 * s).unwrap());
         let handle = Convex::Cuboid(Cuboid::new(DVec3::new(1.5, 0.2, 0.2) * s, 0.0).unwrap());
@@ -139,8 +139,8 @@ fn sizes_do_not_count() {
     }
 }
 
-/// A body that floats, one that rises, one that is pushed: as their closed forms say; and what is pushed along the
-/// floor rests against its friction, or does not.
+/// A body that floats, one that rises, one that is pushed: as their closed forms say. A body pushed along the floor is
+/// held by friction, or slides.
 #[test]
 fn forces_act_on_one_body() {
     let mut world = world(&vec![Shape::Ball(0.1); 3], vec![floor()]).unwrap();
@@ -162,7 +162,7 @@ fn forces_act_on_one_body() {
 }
 
 #[test]
-fn a_box_that_is_pushed_less_than_friction_holds_stays() {
+fn a_box_pushed_less_than_friction_holds_stays() {
     let cuboid = Shape::Cuboid(Cuboid::new(DVec3::new(0.2, 0.2, 0.1), 0.0).unwrap());
     for (part, moves) in [(0.8, false), (1.5, true)] {
         let mut world = world(std::slice::from_ref(&cuboid), vec![floor()]).unwrap();
@@ -172,9 +172,9 @@ fn a_box_that_is_pushed_less_than_friction_holds_stays() {
         let outcome = world.run(&mut state, &mut Scratch::default(), 1.0, &mut ()).unwrap();
         let x = world.at(0, &state.bodies()[0], 1.0).path.x.x;
         assert_eq!(outcome == Outcome::TimeReached, moves, "{outcome:?}");
-        // Pushed by half of the friction more than what holds: 0.5·0.4·g.
+        // Pushed by half as much again as friction holds: 0.5·0.4·g.
         let expected = if moves { 0.5 * 0.5 * 0.4 * G } else { 0.0 };
-        // By what a fall of 0.1 mm takes.
+        // The tolerance is the effect of a fall of 0.1 mm.
         assert!((x - expected).abs() < 0.02, "{x} for {expected}");
     }
 }

@@ -1,4 +1,4 @@
-//! Bodies that stand on each other come to rest where they stand, at once.
+//! Bodies that stand on each other come to rest at once, where they stand.
 
 use crate::common::zoo::{Dice, G, M};
 use glam::DVec3;
@@ -8,7 +8,7 @@ use plaus_sim::shape::{Cuboid, Frustum, Shape};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Accuracy, Law, Laws, Material, Outcome, Preset, Scratch, State};
 
-/// Lets bodies of one shape go where they stand; says how many events it took until all were at rest.
+/// Releases bodies of one shape where they stand; returns how many events it took until all were at rest.
 fn comes_to_rest(shape: Shape, places: &[DVec3], preset: Preset, most: u64) -> u64 {
     let size = shape.size();
     let world = RigidWorld {
@@ -27,7 +27,7 @@ fn comes_to_rest(shape: Shape, places: &[DVec3], preset: Preset, most: u64) -> u
     let outcome = world.run(&mut state, &mut Scratch::default(), 10.0, &mut ()).unwrap();
     let told = format!("{} bodies, {preset:?}: {outcome:?} at {}, {:?}", places.len(), state.time(), state.counts());
     assert_eq!(outcome, Outcome::AllAtRest, "{told}");
-    // A fall through the gap at which bodies touch, for each that is below.
+    // A fall through the gap at which bodies touch, for each body below.
     let gap = Accuracy::preset(preset).gap * size;
     for (k, (body, place)) in state.bodies().iter().zip(places).enumerate() {
         let moved = (body.path.x - *place).length();
@@ -41,8 +41,8 @@ fn comes_to_rest(shape: Shape, places: &[DVec3], preset: Preset, most: u64) -> u
 }
 
 /// Rims of cans that stand half over each other cross. A point there is as near to the side of the other can as to its
-/// top: when it was taken for one on the side, five cans found no rest in 170 events and ten seconds, their clock
-/// having got to 0.1 ms.
+/// top. When it was taken for a point on the side, five cans found no rest in 170 events and ten seconds, while their
+/// clock had reached 0.1 ms.
 #[test]
 fn cans_that_stand_half_over_each_other_rest() {
     let (radius, height) = (0.033, 0.115);
@@ -59,8 +59,8 @@ fn cans_that_stand_half_over_each_other_rest() {
     }
 }
 
-/// Cubes that are let go on each other are struck at all their corners at one time, and a heap settles once for all of
-/// them.
+/// Cubes that are released on each other are struck at all their corners at one time, and a heap settles once for all
+/// of them.
 #[test]
 fn a_pyramid_of_cubes_rests() {
     let (edge, mut places) = (0.05, Vec::new());
@@ -102,8 +102,9 @@ impl Observer<Rigid> for Ledger<'_> {
     }
 }
 
-/// Sixteen slabs on each other, each shoved its own way, on a floor with this friction: what of their momentum along it
-/// is lost, over all that they have; what energy is gained, over a slab's weight times its size; the largest group.
+/// Sixteen slabs on each other, each shoved in its own direction, on a floor with this friction. Returns how much of
+/// their momentum along the floor is lost, over all that they have; how much energy is gained, over a slab's weight
+/// times its size; and the largest group.
 fn shoved(floor: f64) -> (f64, f64, usize) {
     let (edges, ground) = (DVec3::new(0.08, 0.08, 0.02), Material(1));
     let mut laws = Laws::new(2, Law::new(0.3, 0.0)).unwrap();
@@ -134,8 +135,8 @@ fn shoved(floor: f64) -> (f64, f64, usize) {
     (ledger.lost / start.length(), ledger.gained / unit, ledger.largest)
 }
 
-/// What a heap on ice has of momentum along it stays, whatever its bodies do to each other; on a floor that rubs, the
-/// same test sees it go. Energy grows by no more than a step may err at the standard preset, a thousandth.
+/// On ice, a heap keeps its momentum along the ice, whatever its bodies do to each other; on a floor with friction, the
+/// same test sees the momentum go. Energy grows by no more than a step's error at the standard preset, a thousandth.
 #[test]
 fn a_heap_keeps_momentum_on_ice_and_gains_no_energy() {
     let (lost, gained, largest) = shoved(0.0);

@@ -1,5 +1,5 @@
-//! Convex polyhedra: as cuboids where they are cuboids; rest, energy, outcomes, scale; against balls, cuboids and each
-//! other.
+//! Convex polyhedra: the same as cuboids if they are cuboids; rest, energy, outcomes, scale; against balls, cuboids and
+//! each other.
 
 use crate::common::turning::{Overlaps, noise, same_when_relabelled};
 use glam::{DQuat, DVec3};
@@ -19,13 +19,13 @@ fn hull(points: &[DVec3], rounding: f64) -> Shape {
     Shape::Hull(ConvexHull::new(points, rounding).unwrap().into())
 }
 
-/// With an insphere like a die's, so that all are about as large.
+/// With an insphere like a die's, so that all are of about the same size.
 fn solid(solid: Solid) -> Shape {
     let unit = hull(&solid.corners(1.0), 0.0);
     hull(&solid.corners(0.5 * EDGE / unit.size()), 0.0)
 }
 
-/// A stone: random points in a ball, and what hull they have.
+/// A stone: the hull of random points in a ball.
 fn rock(seed: u64, scale: f64) -> Shape {
     let mut stream = Seed(17).chain(0).at(seed, Purpose::START);
     let mut side = || 2.0 * open_unit(&mut stream) - 1.0;
@@ -74,7 +74,7 @@ fn throws(seed: u64, count: u64) -> impl Iterator<Item = Start> {
 
 fn together(seed: u64, count: usize) -> Vec<Start> {
     let mut stream = Seed(19).chain(0).at(seed, Purpose::START);
-    // Room for what is a third larger than a die.
+    // Room for bodies a third larger than a die.
     let die = DieOnTable { edges: DVec3::splat(1.8 * EDGE), ..DieOnTable::default() };
     die.throw_together(count, || open_unit(&mut stream))
 }
@@ -85,8 +85,8 @@ fn traced(world: &Rigid, starts: &[Start], until: f64) -> (Trace<Turning>, State
     (trace, state)
 }
 
-/// The hull of a cuboid's corners flies, hits the table and hits another just as the cuboid does. Masses and moments
-/// differ by rounding, so do times: by 1e-12 of 0.1 s.
+/// The hull of a cuboid's corners flies, hits the table and hits another hull just as the cuboid does. Masses and
+/// moments differ by rounding, and so do times: by 1e-12 of 0.1 s.
 #[test]
 fn a_cuboid_of_points_moves_as_a_cuboid() {
     for edges in [DVec3::splat(EDGE), DVec3::new(0.9, 1.0, 1.2) * EDGE] {
@@ -193,7 +193,7 @@ fn throws_end_in_an_outcome_and_none_goes_through_the_table() {
                 }
             }
         }
-        // A tetrahedron on two points of a bumpy table may rock, too little to be seen, for as long as it is looked at.
+        // A tetrahedron on two points of a bumpy table may rock, too little to be seen, for as long as it is followed.
         assert!(rest > 1140, "{kind:?}: {rest} of 1150 at rest");
     }
 }
@@ -237,8 +237,8 @@ fn energy_never_grows() {
             let (shapes, starts) = four();
             let mut plain = plain(shapes, vec![flat()], Law::new(mu, e));
             plain.accuracy = Accuracy { events: 400, ..Accuracy::preset(Preset::Standard) };
-            // As for dice: pushed out of the overlaps that steps leave, bodies rise by less than a thousandth of their
-            // size.
+            // As for dice: bodies that are pushed out of the overlaps that steps leave rise by less than a thousandth
+            // of their size.
             let scale: f64 = plain.bodies.iter().map(|b| b.mass.mass * 9.81 * b.shape.reach()).sum::<f64>() * 1e-3;
             let world = Rigid::new(plain).unwrap();
             let mut state = world.state(&starts).unwrap();
@@ -329,8 +329,8 @@ fn relabelling_permutes_flights_and_impacts() {
     assert!(impacts > 20, "{impacts}");
 }
 
-/// A ball falls onto the middle of a resting d20's upper face: it meets it when a ball meets a plane there, and keeps
-/// what an impact keeps.
+/// A ball falls onto the middle of a resting d20's upper face: it meets the face when a ball meets a plane there, and
+/// the impact conserves what it must.
 #[test]
 fn a_ball_meets_a_face_when_it_should() {
     let d20 = solid(Solid::Icosahedron);
@@ -342,15 +342,15 @@ fn a_ball_meets_a_face_when_it_should() {
     let upper = Start::at_rest(DVec3::Z * (2.0 * d20.size() + 0.25 * EDGE + height));
     let (trace, _) = traced(&world, &[lower, upper], 0.2);
     let hit = trace.impacts.iter().find(|i| i.approach > 0.5).unwrap();
-    // Early by less than the time in which the preset's gap of the smaller body closes.
+    // Early by less than the time in which the preset's gap for the smaller body closes.
     let (time, speed) = ((2.0 * height / 9.81_f64).sqrt(), (2.0 * height * 9.81_f64).sqrt());
     let gap = 1e-5 * 0.25 * EDGE;
     assert!((-2.0 * gap / speed..=1e-15).contains(&(hit.time - time)), "{hit:?} for {time}");
     assert!(hit.normal.z.abs() > 1.0 - 1e-9 && (hit.approach - speed).abs() < 1e-4 * speed, "{hit:?}");
 }
 
-/// A thousand metres a second and ten thousand radians, from a tenth of a millimetre to a hundred metres, a million
-/// times heavier or lighter: what is on its way into another hits it.
+/// A thousand metres a second and ten thousand radians a second, from a tenth of a millimetre to a hundred metres, a
+/// million times heavier or lighter: a body on its way into another hits it.
 #[test]
 fn nothing_fast_or_small_or_heavy_passes() {
     for size in [1e-4, 1e-2, 1.0, 1e2] {
@@ -380,8 +380,8 @@ fn nothing_fast_or_small_or_heavy_passes() {
 }
 
 #[test]
-fn overlaps_at_the_start_are_said() {
-    // A hull in another at the start is named as dice are.
+fn overlaps_at_the_start_are_reported() {
+    // A hull that is in another at the start is named as dice are.
     let world = world(vec![solid(Solid::Octahedron); 2], vec![flat()], WOOD);
     let at = |x: f64| Start::at_rest(DVec3::new(x, 0.0, 0.1));
     assert!(matches!(world.state(&[at(0.0), at(0.5 * EDGE)]), Err(WorldError::BodiesOverlap { a: 0, b: 1, .. })));

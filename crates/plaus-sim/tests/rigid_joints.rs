@@ -1,4 +1,4 @@
-//! Joints beside closed forms and an integrator of another make.
+//! Joints compared with closed forms and an independent integrator.
 
 use crate::common::{G, M};
 use glam::{DQuat, DVec3};
@@ -13,7 +13,7 @@ pub(crate) fn cuboid(x: f64, y: f64, z: f64) -> Shape {
     Shape::Cuboid(Cuboid::new(DVec3::new(x, y, z), 0.0).unwrap())
 }
 
-/// Bodies without anything around them, that would part as they met.
+/// Bodies with no surroundings, which rebound without loss or friction if they meet.
 pub(crate) fn world(shapes: &[Shape], gravity: f64, preset: Preset) -> Rigid {
     Rigid::new(RigidWorld {
         bodies: shapes.iter().map(|s| BodySpec::solid(s.clone(), 1000.0, M)).collect(),
@@ -35,7 +35,7 @@ fn trace(world: &Rigid, starts: &[Start], until: f64) -> Trace<Turning> {
     trace
 }
 
-/// A body's place in the axes of the world.
+/// A point of a body, given in its own axes, in the axes of the world.
 pub(crate) fn point(body: &Turning, own: DVec3) -> DVec3 {
     body.path.x + body.turn * own
 }
@@ -86,13 +86,14 @@ fn crossings(motions: &[Turning]) -> Vec<f64> {
     times
 }
 
-/// Length of a step with joints of a body of this size: what `accuracy.step` and `SWING` of the simulator say.
+/// Length of a step with joints for a body of this size, from `accuracy.step` and the simulator's `SWING`.
 fn step(size: f64, preset: Preset) -> f64 {
     0.25 * Accuracy::preset(preset).step * (size / G).sqrt()
 }
 
-/// The leapfrog's period is off by `(ω h)²/24` of itself where the swing is small; where it is wide, its quickest part
-/// counts, at most twice as fast, and that its period depends on its energy: eight times as much is allowed.
+/// The leapfrog's period is off by the fraction `(ω h)²/24` for small swings. For wide ones, the quickest part of the
+/// swing counts, which is at most twice as fast, and so does the dependence of the period on the energy: eight times as
+/// much is allowed.
 #[test]
 fn a_pendulum_has_the_elliptic_period() {
     for angle in [0.1, 1.0, 2.0, 3.0] {
@@ -114,13 +115,14 @@ fn a_pendulum_has_the_elliptic_period() {
             assert!(small > 4e-4 && thin > 0.1, "{small} {thin}");
         }
         let [_, standard, fine, reference] = errors[..] else { unreachable!() };
-        // Steps are to each other as 4 and 5: 16 and 25 at the second order, at the first 4 and 5.
+        // Step lengths are in the ratios 4 and 5: the errors' ratios are 16 and 25 at the second order, 4 and 5 at the
+        // first.
         assert!(standard > 8.0 * fine && fine > 12.0 * reference, "{angle}: {errors:?}");
     }
 }
 
-/// Two rods on hinges in a plane, by their angles from hanging down: each `[angle, rate]`, as Lagrange's equations have
-/// them. `l` is the way from hinge to hinge, `c` from each hinge to the centre of gravity.
+/// Two rods on hinges in a plane, by their angles from hanging down: each is `[angle, rate]`, as in Lagrange's
+/// equations. `l` is the distance from hinge to hinge, `c` from each hinge to the centre of gravity.
 struct Double {
     mass: [f64; 2],
     inertia: [f64; 2],
@@ -139,7 +141,7 @@ impl Double {
         [u, w, (f * e - g * b) / det, (g * a - f * b) / det]
     }
 
-    /// The state after a time, by Runge and Kutta's rule of fourth order in so many steps.
+    /// The state after a time, by the Runge–Kutta method of fourth order in this many steps.
     fn after(&self, mut y: [f64; 4], time: f64, steps: u32) -> [f64; 4] {
         let h = time / f64::from(steps);
         let plus = |y: [f64; 4], k: [f64; 4], h: f64| std::array::from_fn(|i| y[i] + k[i] * h);
@@ -179,8 +181,8 @@ fn angles(world: &Rigid, motions: &Trace<Turning>, time: f64) -> [f64; 2] {
     })
 }
 
-/// A double pendulum against Lagrange's equations, solved to 1e-11 (by halving their steps): the error falls as the
-/// square of the step.
+/// A double pendulum compared with Lagrange's equations, solved to 1e-11 (checked by halving their steps): the error
+/// falls as the square of the step.
 #[test]
 fn a_double_pendulum_agrees_with_lagrange() {
     for start in [[0.4, -0.3], [1.2, 0.5], [1.5, 2.0]] {
@@ -193,7 +195,7 @@ fn a_double_pendulum_agrees_with_lagrange() {
             assert!((0..2).all(|k| (exact[k] - coarse[k]).abs() < 1e-11));
             let motions = trace(&world, &starts, time);
             let found = angles(&world, &motions, time);
-            // Angles count round.
+            // Angles are compared modulo a full turn.
             let off = |k: usize, exact: &[f64; 4]| 2.0 * math::sin(0.5 * (found[k] - exact[k])).abs();
             errors.push(off(0, &exact).max(off(1, &exact)));
             // A twin without the second rod's moment of inertia is far away.
@@ -205,9 +207,9 @@ fn a_double_pendulum_agrees_with_lagrange() {
     }
 }
 
-/// A wheel on an axle with dry friction τ stops after I ω/τ, having turned by I ω²/(2 τ), and is at rest then; twins
-/// with a tenth more or less friction are told apart. A rod is held where the friction is more than its weight's
-/// torque, and else falls.
+/// A wheel on an axle with dry friction τ stops after I ω/τ, having turned by I ω²/(2 τ), and is then at rest. Twins
+/// with a tenth more or less friction are told apart. A rod is held if the friction is larger than its weight's torque;
+/// otherwise it falls.
 #[test]
 fn friction_stops_a_hinge() {
     let shape = cuboid(0.2, 0.2, 0.05);
@@ -226,7 +228,7 @@ fn friction_stops_a_hinge() {
         let (outcome, stopped, angle) = turned(inertia * spin / time);
         let expected = 0.5 * spin * time;
         let off = |angle: f64| math::sin(0.5 * (angle - expected)).abs() * 2.0;
-        // The last step is straight, however little of it was left: half of it at its speed.
+        // The last step is straight, however little of it was left: half of it is at the step's speed.
         let last = 0.25 * Accuracy::preset(preset).step * (0.025 / G).sqrt();
         let bound = 0.5 * spin / time * last * last + 1e-9;
         assert_eq!(outcome, Outcome::AllAtRest);
@@ -245,8 +247,9 @@ fn friction_stops_a_hinge() {
     }
 }
 
-/// A door that swings without friction comes to its stop when it has turned so far, goes back with e times its speed,
-/// and comes to the other stop when that says; of the two angles it keeps between them. One without restitution stays.
+/// A door that swings without friction reaches its stop when it has turned that far, goes back at e times its speed,
+/// and reaches the other stop when that speed says; it stays between the two angles. A door without restitution stays
+/// at the stop.
 #[test]
 fn a_door_rebounds_from_its_stop() {
     let shape = cuboid(0.8, 0.04, 2.0);
@@ -267,7 +270,7 @@ fn a_door_rebounds_from_its_stop() {
             t if t < second => 1.1 - e * rate * (t - first),
             t => -0.3 + e * e * rate * (t - second),
         };
-        // A stop is touched 2 of the body's gaps before it, at its reach.
+        // A stop counts as touched 2 of the body's gaps before it, at its reach.
         let (gap, h) = (Accuracy::preset(preset).gap * 0.02, step(0.02, preset));
         let mut worst = 0.0_f64;
         for time in (0..60).map(|k| 0.05 * f64::from(k)).filter(|t| *t < second + 1.4 / (e * e * rate)) {
@@ -279,13 +282,13 @@ fn a_door_rebounds_from_its_stop() {
         let angles = || motions.motions[0].iter().map(|m| m.turn * DVec3::X).map(|x| math::atan2(x.y, x.x));
         assert!(angles().all(|a| (-0.3..=1.1).contains(&a)), "{} {e}: beyond a stop", preset.name());
         let spin = motions.body_at(&world, 0, 0.5 * (first + second.min(3.0))).unwrap().spin.z;
-        // What stays is pushed to the gap that contacts keep.
+        // A door that stays is pushed to the gap that contacts keep.
         let push = if e == 0.0 { gap / h } else { 0.0 };
         assert!((spin + e * rate).abs() < 1e-6 + push, "{spin} {e}");
     }
 }
 
-/// Two welded cubes are one cuboid: thrown, they move as it does, to the square of the step.
+/// Two welded cubes are one cuboid: when thrown, they move as it does, to the square of the step.
 #[test]
 fn a_weld_makes_one_body_of_two() {
     let mut errors = Vec::new();
@@ -308,14 +311,14 @@ fn a_weld_makes_one_body_of_two() {
         let (body, pair) = (t[0].body_at(&one, 0, time).unwrap(), [0, 1].map(|k| t[1].body_at(&two, k, time).unwrap()));
         let off = [0, 1].map(|k| {
             let arm = DVec3::X * [-0.05, 0.05][k];
-            // The middle's place, and two of the corners.
+            // The position of the middle, and of two of the corners.
             [DVec3::ZERO, DVec3::Y * 0.05, DVec3::Z * 0.05]
                 .map(|own| (point(&body, arm + own) - point(&pair[k], own)).length())
                 .into_iter()
                 .fold(0.0, f64::max)
         });
         let middle = (pair[0].path.x + pair[1].path.x) * 0.5;
-        // Within a step the middle is on a chord of its parabola.
+        // Within a step, the middle is on a chord of its parabola.
         let h = step(0.05, preset);
         assert!((middle - body.path.x).length() < G * h * h / 8.0 + 1e-10, "{}", preset.name());
         errors.push(off[0].max(off[1]));
@@ -324,8 +327,8 @@ fn a_weld_makes_one_body_of_two() {
     assert!(standard < 5e-3 && standard > 8.0 * fine && fine > 12.0 * reference, "{errors:?}");
 }
 
-/// A ball hits two that are welded, in line: the weld passes on half of the impulse, and breaks where that is more than
-/// it bears. Once broken, a body that is kicked goes alone.
+/// A ball hits two welded balls in line. The weld passes on half of the impulse, and breaks if that is more than it can
+/// bear. Once it is broken, a kicked body moves alone.
 #[test]
 fn a_weld_breaks_at_its_impulse() {
     let (r, speed) = (0.05, 2.0);
@@ -354,9 +357,9 @@ fn a_weld_breaks_at_its_impulse() {
     }
 }
 
-/// Over a minute the joints of a double pendulum stay as near as at its start: at the ends of steps by a thousandth of
-/// the gap at which bodies touch, between them by the sag of a step's curve. Its energy stays within the square of the
-/// step, and a run that is paused has the same bits.
+/// Over a minute, the joints of a double pendulum stay as close as at the start: at the ends of steps within a
+/// thousandth of the gap at which bodies touch, between them within the sag of a step's curve. Its energy stays within
+/// the square of the step, and a run that is paused has the same bits.
 #[test]
 fn joints_do_not_drift_apart() {
     for (preset, until) in [(Preset::Draft, 60.0), (Preset::Standard, 60.0), (Preset::Fine, 4.0)] {
@@ -367,7 +370,7 @@ fn joints_do_not_drift_apart() {
             point(bodies[0], DVec3::Z * truth.c[0]).length().max(elbow.length())
         };
         let energy = |k: usize| -> f64 { (0..2).map(|b| world.energy(b, &motions.motions[b][k])).sum() };
-        // Twice the reach of what holds at the hinges, each a thousandth of half the preset's gap times a half width.
+        // Twice the reach of the bodies at the hinges, each a thousandth of half the preset's gap times a half width.
         let (mut worst, bound) = (0.0_f64, 2.0 * 0.5e-3 * Accuracy::preset(preset).gap * 0.03);
         let mut swing = 0.0_f64;
         for k in 1..motions.motions[0].len() {

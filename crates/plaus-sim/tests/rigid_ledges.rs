@@ -1,4 +1,4 @@
-//! Convex polyhedra at edges and corners of boxes, where no corner of theirs is: posts, walls and ledges.
+//! Convex polyhedra at edges and corners of boxes, away from their own corners: posts, walls and ledges.
 
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, open_unit};
@@ -34,9 +34,9 @@ fn world(shapes: Vec<Shape>, parts: Vec<Part>, law: Law) -> Result<Rigid, WorldE
     })
 }
 
-/// A cube put down on a wall or a post narrower than itself has no corner on it, and rests on it all the same.
+/// A cube put down on a wall or a post narrower than itself has no corner on it, but still rests on it.
 #[test]
-fn a_cube_rests_on_what_is_narrower() {
+fn a_cube_rests_on_a_narrower_support() {
     let wall = block([-0.1, -4.0, -2.0], [0.1, 4.0, 0.0]);
     let post = block([-0.3, -0.2, -2.0], [0.2, 0.3, 0.0]);
     for (part, turn) in [(wall.clone(), 0.0), (wall, 0.4), (post.clone(), 0.0), (post, 0.5)] {
@@ -48,7 +48,7 @@ fn a_cube_rests_on_what_is_narrower() {
         let body = &state.bodies()[0];
         assert!((body.path.x.z - 0.5 * EDGE).abs() < 1e-5 * EDGE && (body.turn * DVec3::Z).z > 1.0 - 1e-9, "{body:?}");
         assert!(body.touching().len() >= 3);
-        // Where it comes down level it does so when a cube comes down on a plane, early by the preset's gap at most.
+        // If it comes down level, it does so when a cube comes down on a plane, early by the preset's gap at most.
         let first = &trace.impacts[0];
         let (height, gap) = (0.2 * EDGE, 1e-5 * 0.5 * EDGE);
         let late = first.time - (2.0 * height / 9.81_f64).sqrt();
@@ -57,17 +57,17 @@ fn a_cube_rests_on_what_is_narrower() {
     }
 }
 
-/// The face of a tilted cube comes down on the corner of a post: at the time and with the normal that the plane of the
-/// face says.
+/// The face of a tilted cube comes down on the corner of a post, at the time and with the normal that follow from the
+/// plane of the face.
 #[test]
 fn a_corner_of_a_box_meets_a_face() {
     let post = block([-0.5, -0.5, -2.0], [0.0, 0.0, 0.0]);
     let world = world(vec![solid(Solid::Cube)], vec![post], Law::new(0.2, 0.5)).unwrap();
-    // The lower face leans out over the corner, whose place is at the origin.
+    // The lower face leans out over the corner, which is at the origin.
     let turn = DQuat::from_rotation_arc(-DVec3::Z, -DVec3::new(0.2, 0.3, 1.0).normalize());
     let normal = turn * DVec3::Z;
     let height = 0.3 * EDGE;
-    // The face's plane through the origin after a fall by `height`.
+    // The face's plane passes through the origin after a fall by `height`.
     let position = DVec3::new(0.0, 0.0, 0.5 * EDGE / normal.z + height);
     let start = Start { orientation: turn, ..Start::at_rest(position) };
     let (mut state, mut trace) = (world.state(&[start]).unwrap(), Trace::default());
@@ -79,7 +79,7 @@ fn a_corner_of_a_box_meets_a_face() {
     assert!((-2.0 * gap / speed..=1e-15).contains(&(first.time - time)), "{first:?} for {time}");
 }
 
-/// Looks at every new motion and half way before it how deep bodies are in the parts.
+/// At every new motion and half way before it, checks how deep bodies are in the parts.
 struct Depths<'w> {
     world: &'w Rigid,
     last: Vec<Turning>,

@@ -1,5 +1,5 @@
-//! A mirrored shot gives the mirrored result: to the bit until an order among equals decides, which the mirror turns
-//! around.
+//! A mirrored shot gives the mirrored result: to the bit, until it depends on an order among equals, which the mirror
+//! reverses.
 
 use glam::{DQuat, DVec3};
 use plaus_sim::mechanics::{Impact, Other};
@@ -8,7 +8,7 @@ use plaus_sim::trace::Trace;
 use plaus_sim::worlds::Alley;
 use plaus_sim::{Outcome, Scratch};
 
-/// Where each body stands in the mirror: the ball, then the pins by their numbers.
+/// The place of each body in the mirror: the ball, then the pins by their numbers.
 const TWIN: [usize; 11] = [0, 1, 3, 2, 6, 5, 4, 10, 9, 8, 7];
 
 fn place(x: DVec3) -> DVec3 {
@@ -45,7 +45,7 @@ fn twin_of(i: &Impact) -> (usize, Option<usize>) {
     }
 }
 
-/// Impacts that are the same to the bit, among all, and which pins stand on either side.
+/// The number of impacts that are the same to the bit, the number of all impacts, and which pins stand on either side.
 fn compare(shot: u32) -> (usize, usize, [u16; 2]) {
     let alley = Alley::default();
     let world = alley.world().unwrap();
@@ -76,8 +76,8 @@ fn compare(shot: u32) -> (usize, usize, [u16; 2]) {
     (count, here.len(), [mask(&|k| standing[k]), mask(&|k| mirror[TWIN[k]])])
 }
 
-/// What turns around in the mirror is the order of contacts and bodies in a group's equations, whose rounding (1e-16,
-/// which impacts magnify) then parts the two ways: never within the first ten impacts.
+/// The mirror reverses the order of contacts and bodies in a group's equations. Their rounding (1e-16, which impacts
+/// magnify) then separates the two runs: never within the first ten impacts.
 #[test]
 fn a_mirrored_shot_goes_the_mirrored_way() {
     for shot in 0..8 {

@@ -29,7 +29,8 @@ fn ten_pins_stand_for_a_minute_and_do_not_move_a_bit() {
     }
 }
 
-/// One pin leaning by `angle` on its rim, at rest; the others and the ball out of its way. How upright it ends.
+/// One pin leaning by `angle` on its rim, at rest, with the others and the ball out of its way. Returns how upright it
+/// ends.
 fn leaning(angle: f64, preset: Preset) -> f64 {
     let alley = Alley { accuracy: Accuracy::preset(preset), duration: 6.0, ..Alley::default() };
     let world = alley.world().unwrap();
@@ -47,8 +48,8 @@ fn leaning(angle: f64, preset: Preset) -> f64 {
     (body.turn * DVec3::Z).z
 }
 
-/// The centre of gravity stands over the rim's circle at `atan(circle / height over it)`: below it returns, above it
-/// falls.
+/// The centre of gravity is over the rim's circle at `atan(circle / height over it)`: at smaller angles the pin
+/// returns, at larger ones it falls.
 #[test]
 fn a_pin_tips_at_its_static_angle() {
     let pin = alley().pin().unwrap();
@@ -64,7 +65,7 @@ fn a_pin_tips_at_its_static_angle() {
     }
 }
 
-/// Looks for overlaps of ball and pins and of pins with one another, by their skins' balls, at every new motion.
+/// Checks at every new motion for overlaps of ball and pins and of pins with one another, by the balls of their skins.
 struct Overlaps<'w> {
     world: &'w Rigid,
     last: Vec<Option<Turning>>,
@@ -138,16 +139,18 @@ fn nothing_goes_through_anything() {
         };
         let outcome = world.run(&mut state, &mut Scratch::default(), 3.0, &mut overlaps).unwrap();
         assert!(matches!(outcome, Outcome::TimeReached | Outcome::AllAtRest), "{outcome:?}");
-        // A millimetre: what a step of lasting contact may leave; to go through a pin's neck takes 46.
+        // A millimetre: the overlap that a step of lasting contact may leave; it takes 46 mm to go through a pin's
+        // neck.
         assert!(overlaps.worst < 1e-3, "{} m in shot {shot}", overlaps.worst);
     }
 }
 
-/// Pins that jam each other between the side of the lane and the wall are where energy came from: pushing them out of
-/// overlaps of micrometres once gave a pin 240 km/s.
+/// Pins jammed between the side of the lane and the wall once gained energy: pushing them out of overlaps of
+/// micrometres gave a pin 240 km/s.
 #[test]
 fn pins_gain_no_energy_until_they_rest() {
-    // A body that is lifted out of an overlap rises by it: by a thousandth of its size at most, and there are ten.
+    // A body that is lifted out of an overlap rises by its depth: by a thousandth of its size at most, and there are
+    // ten.
     let tolerance = 10.0 * 1e-3;
     let rise = shots::rises(120, Preset::Standard).unwrap().largest;
     assert!(rise <= tolerance, "a rise of {rise} of a pin's weight times its foot");

@@ -43,7 +43,7 @@ fn start(velocity: DVec3, spin: DVec3) -> Start {
 
 /// PHYSICS: t = 2 v₀/(7 μ g), v = 5 v₀/7, x = 12 v₀²/(49 μ g); rounding of a handful of operations.
 #[test]
-fn a_sliding_solid_ball_comes_to_roll() {
+fn a_sliding_solid_ball_begins_to_roll() {
     let world = lane(Vec::new(), RADIUS * 0.4_f64.sqrt());
     let v0 = 3.0;
     let mut state = world.state(&[start(DVec3::new(0.0, v0, 0.0), DVec3::ZERO)]).unwrap();
@@ -150,12 +150,12 @@ fn grounds() -> [(&'static str, Part); 5] {
     ]
 }
 
-/// A torque of c m g R against a ball that rolls takes c g/(1 + k) from it, k = I/(m R²): it rolls out over
-/// `v²(1 + k)/(2 c g)` in `v (1 + k)/(c g)`. On planes and boxes to rounding; elsewhere in steps of 0.4 √(R/g) at the
-/// standard preset, at whose ends the resistance acts: late by at most one, in which the ball goes 1 % of the way; it
-/// is known to rest two more after that.
+/// A torque of c m g R against a rolling ball slows it by c g/(1 + k), where k = I/(m R²): it rolls out over
+/// `v²(1 + k)/(2 c g)` in `v (1 + k)/(c g)`. This is exact to rounding on planes and boxes. Elsewhere there are steps
+/// of 0.4 √(R/g) at the standard preset, at whose ends the resistance acts: it is late by at most one step, in which
+/// the ball goes 1 % of the way. Two steps after that, the ball is known to rest.
 #[test]
-fn a_ball_that_rolls_comes_to_rest_where_resistance_has_it() {
+fn a_rolling_ball_comes_to_rest_where_resistance_says() {
     let (c, v) = (0.02, 1.2);
     let more = 1.0 + GYRATION * GYRATION / (RADIUS * RADIUS);
     let (way, time) = (v * v * more / (2.0 * c * G), v * more / (c * G));
@@ -174,8 +174,8 @@ fn a_ball_that_rolls_comes_to_rest_where_resistance_has_it() {
     }
 }
 
-/// Sliding first: as without resistance, and from where it rolls on as above. Where resistance is at least friction a
-/// ball that does not turn slides to a stop: `v²/(2 µ g)`.
+/// First sliding, as without resistance, and rolling after that as above. If resistance is at least friction, a ball
+/// that does not turn slides to a stop: `v²/(2 µ g)`.
 #[test]
 fn a_ball_that_slides_and_then_rolls_comes_to_rest() {
     let (mu, c, v) = (0.1, 0.02, 1.2);
@@ -195,7 +195,7 @@ fn a_ball_that_slides_and_then_rolls_comes_to_rest() {
     assert!((found / way - 1.0).abs() < 1e-12, "{found} for {way}");
 }
 
-/// A spin about the normal ends after `ω k R/(σ g)`, whether the ball rolls on or stands by then.
+/// A spin about the normal ends after `ω k R/(σ g)`, whether the ball is still rolling or standing by then.
 #[test]
 fn a_spin_about_the_normal_ends() {
     let (sigma, w) = (0.03, 25.0);
@@ -213,7 +213,7 @@ fn a_spin_about_the_normal_ends() {
             assert!((body.path.t / time - 1.0).abs() < 1e-12, "{} for {time}", body.path.t);
         }
     }
-    // Half way it has half of it.
+    // Half way, it has half of its spin left.
     let world = on(block(Vec::new()), GYRATION, Law::new(0.1, 0.3).with_resistance(0.02, sigma));
     let mut state = world.state(&[start(DVec3::ZERO, DVec3::Z * w)]).unwrap();
     world.run(&mut state, &mut Scratch::default(), 0.5 * time, &mut ()).unwrap();

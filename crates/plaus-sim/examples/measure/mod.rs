@@ -1,5 +1,5 @@
-//! What the measuring examples share: a clock, quantiles, a digest of outcomes, heights of bumps, and where a trace
-//! goes.
+//! Shared by the measuring examples: a clock, quantiles, a digest of outcomes, heights of bumps, and the path of a
+//! trace.
 #![allow(
     clippy::disallowed_methods,
     dead_code,
@@ -11,8 +11,8 @@ use serde::Serialize;
 use std::error::Error;
 use std::time::Instant;
 
-/// Time on the wall per piece of work, and on the processor over all of it: other programs make the first longer, not
-/// the second.
+/// Wall-clock time for each piece of work, and processor time over all of it: other programs make the first longer, but
+/// not the second.
 pub struct Stopwatch {
     pieces: Vec<f64>,
     on_processor: Option<f64>,
@@ -30,15 +30,15 @@ impl Stopwatch {
         result
     }
 
-    /// Part `p` of the pieces took no longer, in s.
+    /// The fraction `p` of the pieces took no longer than this, in s.
     pub fn quantile(&self, p: f64) -> f64 {
         let mut sorted = self.pieces.clone();
         sorted.sort_by(f64::total_cmp);
         sorted.get((p * sorted.len() as f64) as usize).copied().unwrap_or(f64::NAN)
     }
 
-    /// Processor time per piece in s, everything between the pieces included; wall-clock time where the system does not
-    /// say.
+    /// Processor time per piece in s, including everything between the pieces; wall-clock time if the system does not
+    /// tell.
     pub fn mean(&self) -> f64 {
         let all = match (self.on_processor, processor_time()) {
             (Some(from), Some(to)) => to - from,
@@ -54,7 +54,7 @@ pub fn processor_time() -> Option<f64> {
     Some(1e-9 * text.split(' ').next()?.parse::<f64>().ok()?)
 }
 
-/// FNV-1a over the bits of outcomes: two builds whose digests agree made the same outcomes.
+/// FNV-1a over the bits of outcomes: two builds with equal digests made the same outcomes.
 pub struct Digest(u64);
 
 impl Digest {
@@ -77,7 +77,7 @@ impl Digest {
     }
 }
 
-/// The arguments, and the path after `--trace` taken out of them, or `default`.
+/// The arguments, without `--trace` and the path after it; and that path, or `default`.
 pub fn arguments(default: &str) -> Result<(Vec<String>, String), Box<dyn Error>> {
     let mut args: Vec<String> = std::env::args().skip(1).collect();
     let Some(at) = args.iter().position(|a| a == "--trace") else { return Ok((args, default.to_owned())) };
@@ -94,7 +94,7 @@ pub fn write_trace(path: &str, trace: &impl Serialize) -> Result<(), Box<dyn Err
     Ok(())
 }
 
-/// Near enough to a Gaussian: a sum of four uniforms.
+/// Approximately Gaussian: a sum of four uniforms.
 pub fn noise(i: i64, j: i64) -> f64 {
     let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
     h ^= h >> 31;

@@ -1,16 +1,15 @@
-//! What the examples that count overlaps share: an observer that looks for bodies in each other or in what stands
-//! still.
+//! Shared by the examples that count overlaps: an observer that looks for bodies in each other or in fixed parts.
 
 use plaus_sim::rigid::{Phase, Rigid, Turning};
 use plaus_sim::trace::Observer;
 
-/// Looks whenever a body begins a new motion, at that time and half way from the last one: not only at the end.
+/// Examines bodies whenever one begins a new motion, at that time and half way from the last one: not only at the end.
 pub(crate) struct Overlaps<'w> {
     world: &'w Rigid,
     last: Vec<Option<Turning>>,
-    /// Deepest of two bodies and of a body and a fixed part so far, in m; below 0 where they only came near.
+    /// Deepest overlap so far of two bodies, and of a body and a fixed part, in m; below 0 if they only came near.
     pub(crate) deepest: [f64; 2],
-    /// When and between which the first of those was.
+    /// The time and the bodies of the first of those two.
     pub(crate) worst: (f64, [usize; 2]),
 }
 

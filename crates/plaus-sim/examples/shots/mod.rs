@@ -1,4 +1,4 @@
-//! Shots at ten pins until all is at rest, and what energy they bring.
+//! Shots at ten pins until everything is at rest, and the energy that they add.
 
 use glam::DVec3;
 use plaus_dist::{Purpose, Seed, open_unit};
@@ -11,7 +11,7 @@ use std::error::Error;
 /// Rises of the energy of all bodies together from one time to the next, over a pin's weight times its foot's radius.
 #[derive(Debug, Default)]
 pub(crate) struct Tally {
-    /// How many are above [`Tally::LEAST`].
+    /// How many rises are above [`Tally::LEAST`].
     pub(crate) above: [u64; 3],
     pub(crate) largest: f64,
     pub(crate) times: u64,
@@ -29,7 +29,7 @@ impl Tally {
     }
 }
 
-/// Sums what the bodies have, whenever time has gone on: all that one event concerns is told with the same clock.
+/// Sums the bodies' energies whenever time has gone on: all reports of one event have the same clock.
 struct Ledger<'w> {
     world: &'w Rigid,
     each: Vec<f64>,
@@ -57,7 +57,7 @@ impl Observer<Rigid> for Ledger<'_> {
             self.clock = body.path.t;
         }
         if body.phase == Phase::Gone {
-            // What leaves takes its energy, negative below the deck, along.
+            // A body that leaves takes its energy along, which is negative below the deck.
             (self.each[index], self.before) = (0.0, f64::INFINITY);
         } else {
             self.each[index] = self.world.energy(index, body);
@@ -65,7 +65,7 @@ impl Observer<Rigid> for Ledger<'_> {
     }
 }
 
-/// Rises of energy in so many shots of five seconds, or until all is at rest. Shots are the same every time.
+/// Rises of energy in this many shots of five seconds, or until all is at rest. The shots are always the same.
 pub(crate) fn rises(shots: usize, preset: Preset) -> Result<Tally, Box<dyn Error>> {
     let alley = Alley { accuracy: Accuracy::preset(preset), ..Alley::default() };
     let world = alley.world()?;

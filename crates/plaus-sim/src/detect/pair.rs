@@ -7,8 +7,8 @@ use crate::roots::{first_fall_of_quartic, squared_distance};
 /// while approaching; `reach` is the sum of their radii.
 ///
 /// The time depends only on the two motions: the search begins at the later of their clocks, and covers all of the time
-/// in which both are valid. So if a pair is looked at again, because something else that was expected did not happen,
-/// the time found is the same to the last bit.
+/// in which both are valid. So if a pair is examined again, because some other expected event did not happen, the time
+/// found is the same to the last bit.
 #[inline]
 pub(crate) fn sphere_pair(a: &Parabola, b: &Parabola, reach: f64, [from, until, horizon]: [f64; 3]) -> Option<f64> {
     let start = a.t.max(b.t);
@@ -16,9 +16,9 @@ pub(crate) fn sphere_pair(a: &Parabola, b: &Parabola, reach: f64, [from, until, 
     let p = a.after(da) - b.after(db);
     let v = a.velocity_after(da) - b.velocity_after(db);
     let c = squared_distance(p, v, a.a - b.a, reach);
-    // A little more than until: what is due at that very time counts, however it is rounded.
+    // A little more than until: a touch at exactly that time counts, however it is rounded.
     let limit = until - start + 4.0 * f64::EPSILON * until;
-    // What was before `from` has been dealt with; what rounding puts there is due now.
+    // A touch before `from` has been dealt with; one that rounding puts there is due now.
     let time = (start + first_fall_of_quartic(&c, limit, horizon - start)?).max(from);
     (time <= until).then_some(time)
 }

@@ -16,15 +16,15 @@ pub(crate) fn next_surface(
     until: f64,
 ) -> Option<(f64, Surface)> {
     let grid = scenery.grid();
-    // A little more than the radius, so that rounding cannot hide what touches.
+    // A little more than the radius, so that rounding cannot hide a surface that touches.
     let near = radius * radius * (1.0 + 1e-9);
     let (course, mut cell) = (Course::new(path), grid.cell_of(path.x));
     let stretch = Stretch { path, from: 0.0, x: path.x, v: path.v };
     let mut search = Search { scenery, radius, skip, stretch, limit: until, best: None };
-    // The time from which nothing matters any more: the first touch that is known.
+    // From this time on nothing matters: it is the first touch that is known.
     let mut limit = until;
-    // A coordinate that moves with its acceleration never turns again. Knowing that, rounding cannot send the walk to
-    // and fro.
+    // A coordinate that moves with its acceleration never turns again. With that knowledge, rounding cannot send the
+    // walk to and fro.
     let mut onward = [0.0; 3];
     loop {
         let (walls, from, x) = (grid.walls(cell), search.stretch.from, search.stretch.x);
@@ -38,10 +38,10 @@ pub(crate) fn next_surface(
             let swept = if stays { way } else { course.bounds(from, x, search.limit) };
             let probe = Probe::new(&swept.grown(radius * (1.0 + 1e-8)));
             for &item in items {
-                // Most are ruled out by the first comparison.
+                // The first comparison rules out most of them.
                 if scenery.may_meet(item, &probe) && scenery.bounds(item).distance_squared(&swept) <= near {
-                    // A hit within this cell bounds the rest of the search, here and beyond; what is hit beyond it is
-                    // listed there.
+                    // A hit within this cell bounds the rest of the search, here and beyond. A surface hit beyond this
+                    // cell is listed there.
                     search.consider(scenery.surface(item));
                 }
             }
@@ -87,7 +87,7 @@ impl Search<'_> {
 }
 
 /// When a centre leaves a cell during a stretch, along which axis and in which direction; infinite and none if it stays
-/// until `limit`. `way` holds the centre until then.
+/// until `limit`. `way` is the box that holds the centre until then.
 #[inline]
 fn exit(
     (low, high): (DVec3, DVec3),

@@ -44,8 +44,7 @@ impl Bounds {
 /// Control values over a cell, the second index along y.
 pub(super) type Values = [[f64; 4]; 4];
 
-/// A cell: its bounds are computed at once, its polynomial when something first looks into it. Most cells are only
-/// passed over.
+/// A cell: its bounds are computed at once, its polynomial when it is first evaluated. Most cells are only passed over.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cell {
     /// Control values; once it is prepared, coefficients: those of `vᵇ` in row `b`, from `u⁰` to `u³`.
@@ -104,7 +103,7 @@ impl Cell {
         Self { numbers: *points, is_ready: false, bounds: bounds(&along_y, spacing) }
     }
 
-    /// Computes the polynomial; to be called before the first look.
+    /// Computes the polynomial; to be called before the first evaluation.
     #[inline]
     pub(super) fn prepare(&mut self) {
         if !self.is_ready {

@@ -34,7 +34,7 @@ impl Lookup {
         (slot.place != FREE).then_some(slot.place)
     }
 
-    /// The slot of the key or the free one where it belongs; at least a quarter of the slots is free.
+    /// The slot of the key, or the free slot where it belongs; at least a quarter of the slots are free.
     #[inline]
     fn find(&self, key: [i64; 2]) -> usize {
         let mask = self.slots.len() - 1;
@@ -60,7 +60,7 @@ impl Lookup {
         self.slots[at] = Slot { key, place };
     }
 
-    /// In no order that means anything.
+    /// In no meaningful order.
     pub(super) fn keys(&self) -> impl Iterator<Item = [i64; 2]> {
         self.slots.iter().filter(|slot| slot.place != FREE).map(|slot| slot.key)
     }

@@ -1,10 +1,10 @@
-//! Random fields over a table: uniform cubic tensor-product b-splines whose control points are made only when something
-//! looks at them.
+//! Random fields over a table: uniform cubic tensor-product b-splines. Their control points are made only when
+//! something examines them.
 //!
-//! Over cell `(i, j)` the value is `Σ B_a(u) B_b(v) P(i+a, j+b)`, `a, b = 0…3`, with the uniform cubic basis `B =
-//! ((1−u)³, 3u³−6u²+4, −3u³+3u²+3u+1, u³)/6`; it is twice continuously differentiable and lies within the hull of its
-//! 16 control points. The caller gives a function for the control points. It is called once per point, and only for
-//! points of cells that were looked at, so memory grows with what is touched, not with the table. A value that is not
+//! Over cell `(i, j)` the value is `Σ B_a(u) B_b(v) P(i+a, j+b)`, `a, b = 0…3`, with the uniform cubic basis
+//! `B = ((1−u)³, 3u³−6u²+4, −3u³+3u²+3u+1, u³)/6`; it is twice continuously differentiable and lies within the hull of
+//! its 16 control points. The caller gives a function for the control points. It is called once per point, and only for
+//! points of cells that are examined, so memory grows with what is touched, not with the table. A value that is not
 //! finite, or is outside the promised range, is kept as a [fault](Spline::fault).
 //!
 //! Source: de Boor, *A Practical Guide to Splines* (2001), ch. IX; bounds by conversion to Bernstein form (Farin,

@@ -16,7 +16,7 @@ pub struct Grid {
     pub spacing: f64,
 }
 
-/// A field over the plane. It can be sent to another thread, but two threads cannot look at it at once: each chain has
+/// A field over the plane. It can be sent to another thread, but two threads cannot evaluate it at once: each chain has
 /// its own.
 #[derive(Clone)]
 pub struct Spline {
@@ -54,7 +54,7 @@ struct Made {
     points: Vec<([i64; 2], f64)>,
     cell_places: Lookup,
     cells: Vec<Cell>,
-    /// The cells last looked into, by the low bits of their indices.
+    /// The cells last evaluated, by the low bits of their indices.
     recent: [Option<([i64; 2], u32)>; RECENT],
     /// The last rectangle of cells for which bounds were asked.
     window: Option<([[i64; 2]; 2], Bounds)>,
@@ -68,8 +68,8 @@ impl fmt::Debug for Spline {
 }
 
 impl Spline {
-    /// A field whose control values come from `source(i, j)`, a pure function with values in `range` (a promise that is
-    /// checked whenever a point is made; tight ranges make detection faster, ±8σ is fine for a Gaussian).
+    /// A field whose control values come from `source(i, j)`, a pure function with values in `range`. That promise is
+    /// checked whenever a point is made. Tight ranges make detection faster; ±8σ is fine for a Gaussian.
     ///
     /// # Errors
     /// [`WorldError::BadNumber`] if the spacing is not positive or a number is not finite.
@@ -165,7 +165,8 @@ impl Spline {
         made.cells[place as usize].value(u, v)
     }
 
-    /// What holds over a rectangle: all the cells that meet it are made, up to [`MOST_CELLS`]; beyond that `None`.
+    /// Bounds over a rectangle. All the cells that meet it are made, up to [`MOST_CELLS`]; beyond that the result is
+    /// `None`.
     #[must_use]
     pub fn bounds(&self, min: [f64; 2], max: [f64; 2]) -> Option<Bounds> {
         let (low, ..) = self.locate(min[0], min[1]);
@@ -216,8 +217,8 @@ impl Spline {
         self.made.borrow().points.len()
     }
 
-    /// Forgets everything computed so far, and says which control points it used: nothing else of the field had any
-    /// influence on what was looked at.
+    /// Forgets everything computed so far, and returns the control points that were used: nothing else of the field had
+    /// any influence on the results.
     pub fn take_touched(&mut self) -> Points {
         Points(std::mem::take(self.made.get_mut()).point_places)
     }
@@ -232,8 +233,8 @@ impl Spline {
             + size_of_val(&made.cells[..])
     }
 
-    /// Gives one control point another value; computed cells that depend on it are computed again. The source is not
-    /// asked for this point again.
+    /// Gives one control point another value; cells that depend on it are computed again. The source is not asked for
+    /// this point again.
     pub fn set(&mut self, key: [i64; 2], value: f64) {
         let made = &mut *self.made.borrow_mut();
         let value = checked(self.range, made, key, value);
@@ -265,7 +266,7 @@ impl Spline {
         }
     }
 
-    /// Makes a cell. `near` holds the control values of the last cell made here, of which a neighbour shares three
+    /// Makes a cell. `near` holds the control values of the last cell made here, with which a neighbour shares three
     /// rows.
     #[cold]
     fn add(&self, made: &mut Made, key: [i64; 2], near: &mut Option<([i64; 2], Values)>) -> u32 {
@@ -281,7 +282,7 @@ impl Spline {
     /// The control values over a cell.
     fn points(&self, made: &mut Made, [i, j]: [i64; 2], near: Option<([i64; 2], Values)>) -> Values {
         let mut points = [[0.0; 4]; 4];
-        // How many of the first along x and along y are known.
+        // The number of points known, first along x and then along y.
         let known = match near {
             Some((key, last)) if key == [i, j.wrapping_sub(1)] => {
                 for (row, last) in points.iter_mut().zip(&last) {
@@ -313,10 +314,10 @@ impl Spline {
     }
 }
 
-/// Cells kept at hand: four by four, as many as a die covers whose edge is two of them.
+/// Cells kept at hand: four by four, as many as a die covers whose edge is as long as two cells.
 const RECENT: usize = 16;
 
-/// The largest whole number not above `x`, by a cast: a call of the library's is slower on processors without an
+/// The largest whole number not above `x`, by a cast: calling the library is slower on processors without an
 /// instruction for it.
 #[inline]
 fn floor(x: f64) -> i64 {
@@ -340,6 +341,6 @@ impl Made {
     }
 }
 
-/// Most cells that one request for bounds may make. Default 4096, a square of 64 cells; larger footprints are asked for
-/// in pieces.
+/// Maximum number of cells that one request for bounds may make. Default 4096, a square of 64 by 64 cells; larger
+/// footprints are requested in pieces.
 pub const MOST_CELLS: i64 = 4096;

@@ -32,7 +32,7 @@ struct Alone<'w> {
     world: &'w Marbles,
     ball: &'w Ball,
     law: &'w Law,
-    /// Speed that a fall over one radius gives, up to √2.
+    /// Speed after a fall over one radius, up to a factor of √2.
     scale: f64,
     surface: Surface,
     /// Where the surface is at the start.
@@ -40,7 +40,7 @@ struct Alone<'w> {
 }
 
 impl Alone<'_> {
-    /// Approach stopped, velocity and spin after the contact's impulse.
+    /// The approach that was stopped, and velocity and spin after the contact's impulse.
     #[inline]
     fn respond(&self, push: &Push, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
         respond(self.ball, self.law, push, v, w)

@@ -108,7 +108,7 @@ pub(crate) enum Ending {
     Leaves(u8),
 }
 
-/// Most surfaces that one marble can be in lasting contact with; it bounces off further ones.
+/// Maximum number of surfaces that one marble can be in lasting contact with; it bounces off further ones.
 pub(crate) const MOST_CONTACTS: usize = 8;
 
 /// A marble's state: a parabola, a spin that changes linearly, and its lasting contacts.

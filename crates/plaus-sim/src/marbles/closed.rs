@@ -168,7 +168,7 @@ impl Plane {
         }
         let along = v / speed;
         if self.pull.cross(along).length() > PARALLEL * steepness {
-            // Without resistance the way may curve and still be a parabola.
+            // Without resistance the path may curve and still be a parabola.
             let needed = steepness * self.gyration / (1.0 + self.gyration);
             let free = self.rolling == 0.0 && needed <= self.friction * self.load;
             let acceleration = self.pull / (1.0 + self.gyration);
@@ -184,7 +184,8 @@ impl Plane {
         let rate = (pull - self.rolling * self.load) / (1.0 + self.gyration);
         let friction = rate - pull;
         if friction.abs() > self.friction * self.load {
-            // Rolling would need more friction than there is: from rest on a steep slope it slides down at once.
+            // Rolling would need more friction than is available: from rest on a steep slope the ball slides down at
+            // once.
             let slides = pull > (1.0 + 1.0 / self.gyration) * self.friction * self.load;
             return if slides { self.slide(along) } else { None };
         }

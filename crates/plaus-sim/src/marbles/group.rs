@@ -200,7 +200,7 @@ impl MarbleScratch {
             m.set_free(world.gravity * h, DVec3::ZERO);
             m.x = m.start;
         }
-        // Where they can't, the step begins with the impulses found: they are about those that it needs.
+        // If they cannot, the step starts from the impulses found, which are close to those that it needs.
         if !self.can_hold(world.accuracy.sweeps, world.accuracy.rest_residual * world.strength * h) {
             return false;
         }

@@ -34,9 +34,9 @@ pub struct Marbles {
     pub(crate) strength: f64,
     /// Each marble's response to an impulse.
     balls: Vec<Ball>,
-    /// Speed in m/s that a fall over one radius gives, up to √2, of each marble.
+    /// For each marble, the speed in m/s after a fall over one radius, up to a factor of √2.
     scales: Vec<f64>,
-    /// Time in s between impacts within which each marble rattles.
+    /// For each marble, the time in s between impacts within which it rattles.
     rattles: Vec<f64>,
     /// Gap over the radius at which a lasting contact ends: the height of a bounce that settles.
     pub(crate) unseen: f64,
@@ -232,7 +232,7 @@ impl Marbles {
         s.mass * (0.5 * (body.path.v.length_squared() + turning) - self.gravity.dot(body.path.x))
     }
 
-    /// Speed in m/s that a fall over one radius gives, up to √2: the scale of all speeds of a marble.
+    /// Speed in m/s after a fall over one radius, up to a factor of √2: the scale of all speeds of a marble.
     #[inline]
     pub(crate) fn speed_scale(&self, index: usize) -> f64 {
         self.scales[index]

@@ -16,8 +16,8 @@ const PLAIN: u32 = 8;
 /// Sweeps always allowed, whatever the preset: a draft must not let heavy balls sink either. Default 60.
 const FEWEST: u32 = 60;
 
-/// Most changes that are combined. Default 12; danger: with few, long chains of unequal masses do not converge; with
-/// many, it takes time and diverges when contacts open and close.
+/// Maximum number of changes that are combined. Default 12; danger: with few, long chains of unequal masses do not
+/// converge; with many, it takes time and diverges when contacts open and close.
 const WINDOW: usize = 12;
 
 /// Part of a change that must be new for it to count. Dimensionless; default 1e-9: rounding of changes that are a
@@ -83,8 +83,8 @@ pub(super) struct Memory {
     /// What the last sweep changed, and where it led.
     change: Vec<f64>,
     led_to: Vec<f64>,
-    /// How changes, and where they led, differed from sweep to sweep; `WINDOW` columns at most, the oldest is written
-    /// over.
+    /// How changes, and where they led, differed from sweep to sweep: at most `WINDOW` columns, of which the oldest is
+    /// overwritten.
     changes: Vec<Vec<f64>>,
     leads: Vec<Vec<f64>>,
     /// Orthonormal directions of the changes, and their coefficients.
@@ -134,10 +134,10 @@ impl Memory {
         self.kept = (self.kept + 1).min(WINDOW);
     }
 
-    /// Least squares by modified Gram–Schmidt, newest first; a column that is no new direction is left out.
+    /// Least squares by modified Gram–Schmidt, newest first. A column that adds no new direction is left out.
     fn subtract_what_is_known(&mut self) {
         let mut rest = self.change.clone();
-        // Row k of the triangle: what column k holds of the directions before it; last its own.
+        // Row k of the triangle: column k's parts along the directions before it, and then its own.
         let mut triangle: Vec<(usize, Vec<f64>, f64)> = Vec::new();
         let mut weights = Vec::new();
         for back in 1..=self.kept {

@@ -308,7 +308,8 @@ impl Push {
     }
 }
 
-/// Approach stopped, velocity and spin of a ball after a surface has stopped it, with friction. Mass does not matter.
+/// The approach that was stopped, and velocity and spin of a ball after a surface has stopped it, with friction. Mass
+/// does not matter.
 #[inline(always)]
 pub(super) fn respond(ball: &Ball, law: &Law, push: &Push, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {
     let approach = -v.dot(push.last) - push.slack;
@@ -322,7 +323,7 @@ pub(super) fn respond(ball: &Ball, law: &Law, push: &Push, v: DVec3, w: DVec3) -
 }
 
 /// Friction, rolling and spinning resistance on a ball with tangential velocity `v` and spin `w`, under a load that
-/// stopped `approach`. Slip is that at the end of the step; friction's lever is the normal half-way, so that a spin
+/// stopped `approach`. Slip is taken at the end of the step. Friction's lever is the normal half-way, so that a spin
 /// about the normal follows it.
 #[inline(always)]
 fn rub(ball: &Ball, law: &Law, push: &Push, approach: f64, v: DVec3, w: DVec3) -> (f64, DVec3, DVec3) {

@@ -70,7 +70,7 @@ fn follow_contacts(world: &Marbles, index: usize, body: &mut Marble) -> Option<F
             }
             _ => world.scenery.follow(old, x)?,
         };
-        // Two contacts never merge: what one of them then lacks would be found again at once.
+        // Two contacts never merge: the one that is then missing would be found again at once.
         if surface != old && before[..count].contains(&surface) {
             (surface, foot) = (old, world.scenery.foot(old, x));
         }

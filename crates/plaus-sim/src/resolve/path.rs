@@ -22,7 +22,7 @@ pub(super) enum End {
     Released,
 }
 
-/// A point of the way.
+/// A point of the path.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     slip: DVec2,
@@ -40,14 +40,14 @@ struct Rate {
     friction: DVec2,
 }
 
-/// The way so far.
+/// The path so far.
 pub(super) struct Path<'k> {
     k: &'k ContactMatrix,
     friction: f64,
     turn: f64,
     /// Relative speed at the start.
     speed: f64,
-    /// The force that holds a stuck contact, if friction can.
+    /// The force that holds a stuck contact, if friction can hold it.
     holding: Option<DVec2>,
     at: Place,
     /// Rates there for a slipping contact; computed when needed.
@@ -64,9 +64,9 @@ struct Leg {
     h: f64,
     ends: [Place; 2],
     rates: [Rate; 2],
-    /// Coefficients of the normal velocity over the part of the step, from that of the first power on.
+    /// Coefficients of the normal velocity as a polynomial in the fraction of the step, from the first power on.
     cubic: [f64; 3],
-    /// The part of it that is behind.
+    /// The fraction of the step that is done.
     from: f64,
 }
 
@@ -75,7 +75,7 @@ struct Leg {
 /// the steps.
 const STOPS: f64 = 1e-2;
 
-/// Part of the slip that a step may take. Default 0.5.
+/// Fraction of the slip that a step may take away. Default 0.5.
 const SHRINKS: f64 = 0.5;
 
 /// A step goes this much farther than is probably necessary. Default 1.1; falling short costs another step.
@@ -118,7 +118,7 @@ impl<'k> Path<'k> {
     /// most `tiny` counts as none.
     pub(super) fn step(&mut self, tiny: f64, released: Option<f64>) -> End {
         if let Some(leg) = self.leg {
-            // Halves of an impact are alike but for what is lost.
+            // The two halves of an impact are alike except for the loss.
             return self.along(leg, leg.from * (1.0 + self.restitution), released);
         }
         if self.friction == 0.0 {
@@ -141,7 +141,7 @@ impl<'k> Path<'k> {
         let (along, across) = (u.dot(rate.slip), u.perp_dot(rate.slip).abs());
         let is_straight = across <= STRAIGHT * rate.slip.length();
         let stop = if along < 0.0 { -speed / along } else { f64::INFINITY };
-        // Friction that can hold draws the slip to its end ever straighter.
+        // If friction can hold the contact, the slip gets straighter and straighter towards its end.
         let closes = self.holding.is_some() && across * stop <= STOPS * self.turn * self.turn * self.speed;
         if is_straight || closes {
             return self.straight(&rate, stop, released);
@@ -176,11 +176,11 @@ impl<'k> Path<'k> {
         if expected == 0.0 {
             return why;
         }
-        // What was compressed comes back on the same way.
+        // Decompression follows the same path back.
         let on = if released.is_none() { 1.0 + self.restitution } else { 1.0 };
         let mut h = longest.min(FARTHER * on * expected);
         let mut ahead = self.kutta(&first, h);
-        // The rate at which it turns may grow on the way.
+        // The slip's rate of turning may grow along the path.
         while self.at.slip.perp_dot(ahead.slip).abs() > WIDEST * self.turn * self.at.slip.dot(ahead.slip) {
             h *= 0.5;
             ahead = self.kutta(&first, h);
@@ -235,7 +235,7 @@ impl<'k> Path<'k> {
 }
 
 impl Leg {
-    /// Normal velocity after a part `x` of the step.
+    /// Normal velocity after the fraction `x` of the step.
     fn normal(&self, x: f64) -> f64 {
         let [a, b, c] = self.cubic;
         self.ends[0].normal + x * (a + x * (b + x * c))
@@ -246,14 +246,14 @@ impl Leg {
         a + x * (2.0 * b + x * (3.0 * c))
     }
 
-    /// Work by then: its integral.
+    /// Work up to then: the integral of the normal velocity.
     fn work(&self, x: f64) -> f64 {
         let [a, b, c] = self.cubic;
         let mean = self.ends[0].normal + x * (a * (1.0 / 2.0) + x * (b * (1.0 / 3.0) + x * (c * (1.0 / 4.0))));
         self.ends[0].work + self.h * x * mean
     }
 
-    /// The place after a part of the step, by cubics through its ends.
+    /// The place after a fraction of the step, by cubics through its ends.
     fn at(&self, x: f64, has_turned: bool, coefficient: f64) -> Place {
         let ([a, b], [p, q], y) = (self.ends, self.rates, 1.0 - x);
         let (way, from, to) = (x * x * (3.0 - 2.0 * x), self.h * x * y * y, -self.h * x * x * y);
@@ -262,7 +262,7 @@ impl Leg {
         Place {
             slip: between(a.slip, b.slip, p.slip, q.slip),
             normal: if has_turned { 0.0 } else { self.normal(x) },
-            // Between its ends a cubic may leave the cone by as much as it is off.
+            // Between its ends, a cubic may leave the cone by as much as its own error.
             friction: friction.clamp_length_max(coefficient * load),
             work: self.work(x),
             load,
@@ -288,7 +288,8 @@ fn crossing(eval: impl Fn(f64) -> (f64, f64), [from, near]: [f64; 2], falls: boo
 /// Rounds of Newton's rule before the search is bracketed.
 const ROUNDS: usize = 4;
 
-/// Last change of a part of a step after which the next would be rounding, Newton's rule being quadratic. Default 1e-9.
+/// Last change of the fraction of a step after which the next change would be rounding, because Newton's rule is
+/// quadratic. Default 1e-9.
 const NEAR: f64 = 1e-9;
 
 impl Place {
@@ -301,7 +302,7 @@ impl Place {
         }
     }
 
-    /// Until the work reaches `released`; or, if the bodies begin to approach again before that, until then.
+    /// Until the work reaches `released`, or until the bodies begin to approach again, if that comes first.
     fn until_released(&self, rate: f64, released: f64) -> (f64, End) {
         // W + u p + r p²/2 = released, with u ≥ 0: the positive root in the form that does not cancel.
         let missing = released - self.work;

@@ -85,7 +85,8 @@ pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: 
         return DVec3::ZERO;
     }
     let mut path = Path::new(k, u, restitution, friction, turn);
-    // The normal work at which all that is to come back has come back, and the work at the begin of the compression.
+    // The normal work at which all the energy that returns has returned, and the work at the beginning of the
+    // compression.
     let mut released = 0.0;
     let mut begin = 0.0;
     let mut compresses = true;
@@ -114,9 +115,9 @@ pub fn stronge_impulse(k: &ContactMatrix, u: DVec3, restitution: f64, friction: 
 }
 
 /// A slip that winds round and round while it dies would take endless steps. When it has turned by this many radians
-/// (eight rounds), it counts as stuck below a fraction of the relative velocity; default 1e-6, far less than steps that
-/// turn by `turn` resolve. If a round hardly reduces the slip, that fraction grows with each step, by a factor of
-/// 20,000 in eight more rounds.
+/// (eight rounds), it counts as stuck below a fraction of the relative velocity. The default of that fraction is 1e-6,
+/// far less than steps that turn by `turn` resolve. If a round hardly reduces the slip, the fraction grows with each
+/// step, by a factor of 20,000 in eight more rounds.
 const MANY_TURNS: f64 = 51.2;
 const WOUND: f64 = 1e-6;
 const WIDENS: f64 = 10.0;
@@ -200,13 +201,13 @@ mod tests {
             (1..=500).map(error).sum::<f64>() / 500.0
         };
         let errors = [0.4, 0.2, 0.1, 0.05].map(mean);
-        // Third order would be an eighth each time; slip that nearly stops and goes on is slower to come, and has most
-        // of the mean.
+        // Third order would be an eighth each time. Cases in which the slip nearly stops and goes on converge more
+        // slowly, and make up most of the mean.
         assert!(errors[0] < 5e-3, "{errors:?}");
         assert!(errors.windows(2).all(|e| e[1] < 0.45 * e[0]), "{errors:?}");
     }
 
-    /// Against Darboux and Keller's equations in 20,000 steps of Euler's rule.
+    /// Compared with Darboux and Keller's equations in 20,000 steps of Euler's rule.
     #[test]
     fn corners_agree_with_tiny_steps() {
         for n in 1..60 {
@@ -228,7 +229,8 @@ mod tests {
                     break;
                 }
             }
-            // Euler's rule is off by some steps' impulse, and by the slip below which it holds.
+            // Euler's rule is off by the impulse of a few steps, and by the slip below which it treats the contact as
+            // stuck.
             assert!(
                 (impulse - sum).length() < 2e-3 * sum.length().max(u.length() / k.0.z_axis.z),
                 "{n}: {impulse} {sum}"
@@ -236,7 +238,7 @@ mod tests {
         }
     }
 
-    /// The slip spirals inwards: it shrinks by a hundredth per step. The impact must come to its end all the same.
+    /// The slip spirals inwards: it shrinks by a hundredth per step. The impact must still come to an end.
     #[test]
     fn slip_that_winds_into_sticking_ends() {
         let r = DVec3::new(-0.896_100_684_939_962_4, -0.048_564_373_434_830_63, 0.464_968_417_468_366_2);

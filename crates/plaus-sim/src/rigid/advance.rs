@@ -1,14 +1,14 @@
-//! What all searches for a first contact share: the way before two bodies can meet, and bisection.
+//! Shared by all searches for a first contact: the time before two bodies can meet, and bisection.
 
 use super::body::Turning;
 use crate::roots::earliest;
 
-/// Least advancement, in gaps at which the bodies touch: with it, every search ends.
+/// Least advancement, over the gap at which the bodies touch: it makes every search end.
 const LEAST_FLIGHT: f64 = 1e-3;
 
-/// How long, in s, two bodies at `time` may move unseen. The balls around them are `away` metres apart, beyond the gap
-/// `level` at which they touch; `pull` is their relative acceleration in m/s². That distance is convex in time, so it
-/// falls no faster than by its rate and the pull.
+/// How long, in s, two bodies may move from `time` on without being examined. The balls around them are `away` metres
+/// apart, beyond the gap `level` at which they touch; `pull` is their relative acceleration in m/s². That distance is
+/// convex in time, so it falls no faster than its rate and the pull allow.
 #[inline]
 pub(super) fn flight(bodies: [&Turning; 2], time: f64, away: f64, level: f64, pull: f64) -> f64 {
     let [p, q] = bodies.map(|b| &b.path);
@@ -18,7 +18,7 @@ pub(super) fn flight(bodies: [&Turning; 2], time: f64, away: f64, level: f64, pu
     safe + LEAST_FLIGHT * level / (dv.length() + (pull * level).sqrt()).max(f64::MIN_POSITIVE)
 }
 
-/// The end of the last of so many halves of an interval in which `is` becomes true.
+/// The end of the last of `halvings` halves of an interval in which `is` becomes true.
 pub(super) fn bisect(halvings: usize, mut low: f64, mut high: f64, mut is: impl FnMut(f64) -> bool) -> f64 {
     for _ in 0..halvings {
         let middle = 0.5 * (low + high);

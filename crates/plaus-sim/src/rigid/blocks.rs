@@ -1,12 +1,12 @@
-//! Sparse matrices of blocks of six: one for the momentum of each body and for each pair in contact, eliminated in
-//! order of least degree.
+//! Sparse matrices of 6 × 6 blocks: one block for the momentum of each body and one for each pair in contact,
+//! eliminated in order of least degree.
 
 #![allow(clippy::needless_range_loop, reason = "rows and columns of matrices go by their numbers")]
 
 use super::coulomb::Contact;
 use glam::{DMat3, DVec3};
 
-/// A pivot over the largest entry of its block below which a matrix counts as singular.
+/// A matrix counts as singular if a pivot is below this fraction of the largest entry of its block.
 const SINGULAR: f64 = 1e-14;
 
 type Block = [[f64; 6]; 6];
@@ -15,7 +15,7 @@ type Column = [f64; 6];
 /// A system of equations for the velocities of bodies.
 #[derive(Debug, Default)]
 pub(super) struct Blocks {
-    /// Which block stands where, by place in the order of elimination; [`NONE`] where it is zero.
+    /// The index of each block, by its places in the order of elimination; [`NONE`] where the block is zero.
     slots: Vec<u32>,
     blocks: Vec<Block>,
     right: Vec<Column>,
@@ -23,7 +23,7 @@ pub(super) struct Blocks {
     place: Vec<usize>,
     degree: Vec<Option<usize>>,
     neighbours: Vec<bool>,
-    /// Pairs of bodies that the order was made for.
+    /// The pairs of bodies for which the order was made.
     pairs: Vec<[usize; 2]>,
 }
 
@@ -32,7 +32,7 @@ const NONE: u32 = u32::MAX;
 impl Blocks {
     /// Makes room for `n` bodies with these contacts.
     ///
-    /// The order of elimination fills few blocks: always a body with the fewest neighbours left.
+    /// The order of elimination fills few blocks: the next body is always one with the fewest neighbours left.
     pub(super) fn order(&mut self, contacts: &[Contact], n: usize) {
         let pairs = || contacts.iter().filter_map(|c| Some([c.a, c.b?]));
         if self.right.len() == n && pairs().eq(self.pairs.iter().copied()) {
@@ -91,13 +91,13 @@ impl Blocks {
         self.right.resize(n, [0.0; 6]);
     }
 
-    /// Empties it.
+    /// Sets all blocks and the right side to zero.
     pub(super) fn clear(&mut self) {
         self.blocks.fill([[0.0; 6]; 6]);
         self.right.fill([0.0; 6]);
     }
 
-    /// Adds a body's own mass and inertia, and what there is of momentum and angular momentum on the right side.
+    /// Adds a body's own mass and inertia, and its momentum and angular momentum on the right side.
     pub(super) fn add_body(&mut self, k: usize, mass: f64, inertia: &DMat3, [p, l]: [DVec3; 2]) {
         let (n, place) = (self.right.len(), self.place[k]);
         let block = &mut self.blocks[self.slots[place * n + place] as usize];
@@ -106,7 +106,7 @@ impl Blocks {
         self.add_right(k, p, l);
     }
 
-    /// Adds to the right side of a body.
+    /// Adds to a body's right side.
     fn add_right(&mut self, k: usize, p: DVec3, l: DVec3) {
         let right = &mut self.right[self.place[k]];
         for axis in 0..3 {
@@ -115,7 +115,7 @@ impl Blocks {
         }
     }
 
-    /// Adds a contact that answers to a change `u` of its velocity by the impulse `force − stiffness · u`.
+    /// Adds a contact that responds to a change `u` of its velocity with the impulse `force − stiffness · u`.
     pub(super) fn add_contact(&mut self, c: &Contact, force: DVec3, stiffness: &DMat3) {
         let n = self.right.len();
         let sides = [Some((c.a, c.arms[0], 1.0)), c.b.map(|b| (b, c.arms[1], -1.0))];
@@ -140,13 +140,13 @@ impl Blocks {
         }
     }
 
-    /// What the solution has for a body.
+    /// A body's part of the solution.
     pub(super) fn solution(&self, k: usize) -> [DVec3; 2] {
         let x = &self.right[self.place[k]];
         [DVec3::new(x[0], x[1], x[2]), DVec3::new(x[3], x[4], x[5])]
     }
 
-    /// Gauss's elimination by blocks; the solution takes the right side's place.
+    /// Gaussian elimination by blocks. The solution replaces the right side.
     pub(super) fn eliminate(&mut self) -> Option<()> {
         let n = self.right.len();
         for k in 0..n {
@@ -207,7 +207,8 @@ fn add(block: &mut Block, row: usize, column: usize, m: &DMat3) {
     }
 }
 
-/// Triangular factors of a block, without exchange of rows: a body's own mass keeps it regular. `None` where it is not.
+/// Triangular factors of a block, without exchanging rows: a body's own mass keeps the block regular. `None` if it is
+/// not regular.
 fn factor(block: &Block) -> Option<Block> {
     let mut f = *block;
     for k in 0..6 {

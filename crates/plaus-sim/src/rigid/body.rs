@@ -39,13 +39,13 @@ pub enum Phase {
     Flight,
     /// A step of lasting contact: straight, with free rotation.
     Step,
-    /// A ball slides or rolls on level ground: a parabola, and an angular velocity that changes evenly.
+    /// A ball slides or rolls on level ground: a parabola, and an angular velocity that changes at a constant rate.
     Glide,
     /// At rest until something hits it.
     Rest,
     /// Fallen below the world's sink: it takes no further part.
     Gone,
-    /// Goes its own way, by keyframes.
+    /// Driven: follows keyframes.
     Driven,
     /// Free flight with damping or a torque, in legs: a parabola and free rotation that stray from the closed form by
     /// less than half of the gap at which bodies touch.
@@ -66,7 +66,8 @@ pub(crate) struct Momentum {
     pub(crate) l: DVec3,
 }
 
-/// Most points of a body that may touch fixed parts at once; those beyond are left out. A cuboid in a corner has 7.
+/// Maximum number of points of a body that may touch fixed parts at once; further ones are left out. A cuboid in a
+/// corner has 7.
 pub(crate) const MOST_TOUCHES: usize = 16;
 
 /// A turning body with the closed form of its current motion.
@@ -76,28 +77,30 @@ pub struct Turning {
     pub path: Parabola,
     /// Orientation at the clock: turns body axes into world axes.
     pub turn: DQuat,
-    /// Angular velocity at the clock in rad/s, in world axes. Within a step that of its drift, within a leg the mean.
+    /// Angular velocity at the clock in rad/s, in world axes. Within a step it is that of the drift, within a leg the
+    /// mean.
     pub spin: DVec3,
     /// Kind of motion.
     pub phase: Phase,
     pub(crate) expiry: f64,
-    /// Rate of the angular velocity of a ball that glides, in rad/s².
+    /// Rate of change of a gliding ball's angular velocity, in rad/s².
     pub(crate) spin_rate: DVec3,
-    /// Whether it rolls when its slide ends.
+    /// Whether the ball rolls when its slide ends.
     pub(crate) rolls_after: bool,
-    /// The line that a ball's centre reaches at the end of its stretch: axis and place.
+    /// The line that a ball's centre reaches at the end of its stretch: axis and position.
     pub(crate) line: Option<(u8, f64)>,
-    /// Velocity and angular momentum at the start and the end of a step; of a leg at its start.
+    /// Velocity and angular momentum at the start and the end of a step; for a leg, at its start.
     pub(crate) ends: [Momentum; 2],
-    /// What is added to the angular momentum between the ends of a step, times 4 in its middle: the impulses between
-    /// two bodies that pass each other count at where both are then, so that what they have together is kept.
+    /// Four times what is added to the angular momentum in the middle of a step; nothing is added at its ends. Impulses
+    /// between two bodies that pass each other act where both are at that time, so that their total angular momentum is
+    /// kept.
     pub(crate) passing: DVec3,
-    /// Whether it is to sleep from its release on.
+    /// Whether it will sleep from its release on.
     pub(super) sleeps: bool,
-    /// Which of its joints are torn, one a bit.
+    /// Which of its joints are torn, one bit each.
     #[serde(default)]
     pub(super) torn: u32,
-    /// Whether the group that it last settled with is a heap.
+    /// Whether its group was a heap when it last settled.
     #[serde(default)]
     pub(super) in_heap: bool,
     /// Events since `hurried_from`, all within `accuracy.rattle`.
@@ -106,16 +109,17 @@ pub struct Turning {
     /// Points that touch fixed parts at the clock.
     touching: [Surface; MOST_TOUCHES],
     touching_count: u8,
-    /// Forces in N at the first of the points that a step was made with: where the next begins to look.
+    /// Forces in N at the first few of the points with which a step was made: the initial guess for the next step.
     loads: [DVec3; MOST_LOADS],
     /// The clock at which `touching` was found.
     pub(crate) listed: f64,
 }
 
-/// Events within the window from which contacts last. Default 16: no chain of real bounces of one body is so fast.
+/// Number of events within the window after which contacts count as lasting. Default 16: no sequence of real bounces of
+/// one body is that fast.
 const MOST_HURRIED: u32 = 16;
 
-/// Points whose forces are kept: those of a die on a face.
+/// Number of points whose forces are kept: as many as a die on a face has.
 pub(crate) const MOST_LOADS: usize = 4;
 
 /// A time that never comes; finite, so that every format can hold a state.
@@ -155,7 +159,7 @@ impl Turning {
         &self.touching[..usize::from(self.touching_count)]
     }
 
-    /// The force at a point at the end of the last step, if it was among those kept.
+    /// The force at a point at the end of the last step, if it was kept.
     pub(super) fn load(&self, surface: Surface) -> DVec3 {
         let at = self.touching().iter().take(MOST_LOADS).position(|&s| s == surface);
         at.filter(|_| self.phase == Phase::Step).map_or(DVec3::ZERO, |k| self.loads[k])
@@ -178,8 +182,9 @@ impl Turning {
 
     /// Velocities `dt` after the clock.
     ///
-    /// Within a step the impulses of its contacts count evenly over time, so what frictionless contacts cannot change
-    /// is kept at every time, Coulomb's law holds up to every time, and as kinetic energy is convex no energy is made.
+    /// Within a step, the impulses of its contacts act evenly over time. So a quantity that frictionless contacts
+    /// cannot change is kept at every time, and Coulomb's law holds up to every time. No energy is made, because
+    /// kinetic energy is convex.
     pub(super) fn motion_after(&self, spec: &Spec, dt: f64) -> Motion {
         match self.phase {
             Phase::Step => {
@@ -209,7 +214,7 @@ impl Turning {
             return b;
         }
         if let Some(drag) = &spec.drag {
-            // What damping takes is taken as in flight, whatever the contacts do.
+            // Damping takes what it takes in flight, whatever the contacts do.
             let [now, all] = [dt, self.expiry - self.path.t].map(|dt| spec.dragged(drag, &a, dt));
             let l = now.l + (b.l - all.l) * part + self.passing * (part * (1.0 - part));
             return Momentum { v: now.v + (b.v - all.v) * part, l };
@@ -217,7 +222,7 @@ impl Turning {
         Momentum { v: a.v.lerp(b.v, part), l: a.l.lerp(b.l, part) + self.passing * (part * (1.0 - part)) }
     }
 
-    /// Angular velocity of the path that is taken, `dt` after the clock.
+    /// Angular velocity along the actual path, `dt` after the clock.
     pub(super) fn drift_spin(&self, spec: &Spec, dt: f64) -> DVec3 {
         match self.phase {
             Phase::Flight | Phase::Leg | Phase::Step if spec.wobble != 0.0 => {
@@ -252,7 +257,7 @@ impl Turning {
             return drive.follow(self, time);
         }
         let dt = time - self.path.t;
-        // That one leg follows another is no event of the body.
+        // It is no event of the body when one leg follows another.
         self.hurried += u32::from(self.phase != Phase::Leg || time < self.expiry);
         if time - self.hurried_from > spec.rattle {
             (self.hurried, self.hurried_from) = (0, time);
@@ -270,12 +275,12 @@ impl Turning {
                     let now = if time >= self.expiry { self.ends[1] } else { self.within_step(spec, dt) };
                     self.ends[0] = now;
                     (self.path.v, self.spin) = (now.v, spec.inertia.spin(self.turn, now.l));
-                    // What is left of the step is no longer straight in the same way; settling decides anew.
+                    // The rest of the step is no longer straight in the same way; settling decides anew.
                     self.expiry = time;
                 }
                 Phase::Glide => {
                     let motion = self.motion_after(spec, dt);
-                    // Only a picture of the ball needs its orientation: the mean angular velocity will do.
+                    // Only a picture of the ball needs its orientation, so the mean angular velocity is good enough.
                     self.turn = (super::tumble::rotation((self.spin + self.spin_rate * (0.5 * dt)) * dt) * self.turn)
                         .normalize();
                     (self.path.v, self.spin) = (motion.v, motion.w);
@@ -293,7 +298,7 @@ impl Turning {
         }
     }
 
-    /// Whether so much has happened within so little time that its contacts are to last, however fast they part.
+    /// Whether so much has happened in so little time that its contacts count as lasting, however fast they part.
     pub(super) fn is_hurried(&self) -> bool {
         self.hurried > MOST_HURRIED
     }
@@ -349,9 +354,9 @@ impl Rigid {
         moved
     }
 
-    /// A body on its way at any time within its current motion, for pictures of it: like [`Rigid::at`], but within a
-    /// step it goes on along the step, with the velocities of its drift. Those that [`Rigid::at`] gives there are what
-    /// it would have if the step ended.
+    /// A body at any time within its current motion, for pictures of it. Like [`Rigid::at`], but within a step it stays
+    /// on the step's drift, with the drift's velocities. [`Rigid::at`] gives the velocities that the body would have if
+    /// the step ended then.
     #[must_use]
     pub fn on_its_way(&self, index: usize, body: &Turning, time: f64) -> Turning {
         if body.phase != Phase::Step {

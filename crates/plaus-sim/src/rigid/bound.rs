@@ -1,17 +1,17 @@
-//! A lower bound on the gap of two pieces along a direction, while their bodies move: what conservative advancement
-//! goes by (see `hunt.rs`).
+//! A lower bound on the gap of two pieces along a direction while their bodies move, for conservative advancement (see
+//! `hunt.rs`).
 
 use super::body::Pose;
 use crate::roots::earliest;
 use glam::DVec3;
 
-/// Where both are.
+/// Where both bodies are.
 pub(super) struct Scene {
     pub(super) a: Pose,
     pub(super) b: Pose,
 }
 
-/// Rounds of closing in on the root of a bound.
+/// Rounds of approaching the root of a bound.
 const ROUNDS: usize = 4;
 
 /// The lower bound on a gap along a direction.
@@ -30,8 +30,8 @@ impl Bound {
         Self { f, normal, turns, rate: normal.dot(scene.a.v - scene.b.v), m }
     }
 
-    /// A time before which the bound is positive; not more than `limit` needs to be known. `rate` is that of the
-    /// nearest points, whose own bound is above; the supports are about the centres of gravity.
+    /// A time up to which the bound is positive, limited to `limit`. `rate` is that of the nearest points, whose own
+    /// bound is higher; the supports are about the centres of gravity.
     pub(super) fn root(
         &self,
         rate: f64,

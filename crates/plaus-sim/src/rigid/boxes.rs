@@ -61,8 +61,8 @@ impl Rigid {
         Some(CuboidPair::new(a.x - b.x, placed(i, a)?, placed(j, b)?))
     }
 
-    /// First time in `[from, until]` at which two cuboids touch while approaching. Of bodies in lasting contact
-    /// (`linked`) only at points that are not part of it yet.
+    /// First time in `[from, until]` at which two cuboids touch while approaching. For bodies in lasting contact
+    /// (`linked`), only points that are not yet part of it count.
     pub(super) fn first_of_cuboids(
         &self,
         pair: [usize; 2],

@@ -1,4 +1,4 @@
-//! The capsules around two bodies, which are looked at before their skins.
+//! The capsules around two bodies, which are tested before their skins.
 
 use super::Spec;
 use super::body::Pose;
@@ -6,8 +6,8 @@ use crate::roots::earliest;
 use glam::DVec3;
 
 /// Distance of the capsules around two bodies, a lower bound on their gap, and a time within which they do not come
-/// nearer than `level`: along the direction between them no end of one gets so near to an end of the other,
-/// accelerations being at most `m`.
+/// nearer than `level`. During that time, no end of one comes so near to an end of the other along the direction
+/// between them; accelerations are at most `m`.
 pub(super) fn capsules([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], level: f64, m: f64) -> (f64, f64) {
     let ends =
         |spec: &Spec, pose: &Pose| [pose.x + pose.r.z_axis * spec.capsule[0], pose.x + pose.r.z_axis * spec.capsule[1]];

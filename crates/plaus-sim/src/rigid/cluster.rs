@@ -1,8 +1,8 @@
-//! Impacts of bodies that joints hold: with all that hangs together in one solve, so that no joint is left with a
-//! velocity.
+//! Impacts of bodies that joints hold. All bodies that hang together are solved at once, so that no joint is left with
+//! a velocity.
 //!
-//! At the points that are struck Newton's and Coulomb's laws hold, as where several points of a body are struck at once
-//! (`strike.rs`); joints keep their points together, and limits that are touched let nothing through.
+//! At the points that are struck, Newton's and Coulomb's laws hold, as they do where several points of a body are
+//! struck at once (`strike.rs`). Joints keep their points together, and limits that are touched let nothing through.
 
 use super::Rigid;
 use super::body::{Motion, Phase, Pose, Turning};
@@ -23,7 +23,7 @@ struct Cluster {
 }
 
 impl Cluster {
-    /// All that joints hold together with these bodies. What goes its own way passes nothing on.
+    /// All bodies that joints connect to these. A driven body passes nothing on.
     fn of(world: &Rigid, seeds: &[usize], bodies: &[Turning]) -> Self {
         let mut all = seeds.to_vec();
         let mut next = 0;
@@ -48,7 +48,7 @@ impl Cluster {
             for j in world.bonds_of(k, bodies).filter(|&j| world.joints.bonds[j].joint.body == k) {
                 let bond = &world.joints.bonds[j];
                 let row = |part| Row { joint: j, part, a, b: bond.joint.other.and_then(at) };
-                // Two of which one goes its own way, and the other is not part of this.
+                // One of the two is driven, and the other is not part of this cluster.
                 if bond.joint.other.is_some_and(|other| at(other).is_none()) {
                     continue;
                 }
@@ -68,9 +68,9 @@ impl Cluster {
 }
 
 impl Rigid {
-    /// An impact of a body that joints hold, or of its partner: on what stands still, or of two bodies. `None` where no
-    /// joint holds either; then what an impact of single bodies returns: whether there was one, and whether their
-    /// contact lasts.
+    /// An impact of a body that joints hold, or of its partner: on a fixed part, or between two bodies. `None` if no
+    /// joint holds either. Otherwise it returns what an impact of single bodies returns: whether there was one, and
+    /// whether their contact lasts.
     pub(super) fn hit_cluster(
         &self,
         index: usize,
@@ -96,7 +96,7 @@ impl Rigid {
         };
         let is_hurried = seeds.iter().any(|&k| bodies[k].is_hurried());
         if !points.iter().any(Point::is_struck) {
-            // Found again and again without an approach: their group is to deal with it.
+            // Found again and again without an approach, so their group has to deal with it.
             let is_stuck = matches!(other, Other::Body(_)) && !linked && is_hurried && !points.is_empty();
             return Some(is_stuck.then_some(true));
         }
@@ -113,15 +113,15 @@ impl Rigid {
         Some(Some(lasts))
     }
 
-    /// What hangs together with one or two bodies, besides these.
+    /// The bodies that hang together with one or two bodies, without these.
     pub(super) fn cluster_beside(&self, a: u32, b: Option<u32>, bodies: &[Turning]) -> Vec<u32> {
         let seeds: Vec<usize> = [a].into_iter().chain(b).map(|k| k as usize).collect();
         let all = Cluster::of(self, &seeds, bodies).bodies;
         all.into_iter().filter(|k| !seeds.contains(k)).map(|k| k as u32).collect()
     }
 
-    /// Strikes points of a cluster's bodies together with its joints: their velocities after, and what breaks. The
-    /// points' members count within `seeds`.
+    /// Strikes points of a cluster's bodies together with its joints; gives the bodies their velocities after the
+    /// impact, and breaks welds. The points' member indices refer to `seeds`.
     fn strike_cluster(
         &self,
         cluster: &Cluster,
@@ -172,7 +172,8 @@ impl Rigid {
         points
     }
 
-    /// Has joints of a group that are at a limit and go on rebound from it. Whether there were any.
+    /// Makes joints of a group rebound from a limit that they have reached and still approach. Returns whether there
+    /// were any.
     pub(super) fn strike_stops(&self, group: &RigidScratch, bodies: &mut [Turning]) -> bool {
         let mut any = false;
         for row in &group.stops {
@@ -182,7 +183,7 @@ impl Rigid {
             let mut poses = poses.chain([FIXED]);
             let poses: [Pose; 2] = std::array::from_fn(|_| poses.next().unwrap_or(FIXED));
             let (room, rate, restitution) = bond.stop(is_high, [&poses[0], &poses[1]]);
-            // Those that stay are rows of the group; velocities may have changed since.
+            // Joints that stay at the limit are rows of the group; velocities may have changed since.
             if room > TOUCHING * self.stop_gap(bond) || -rate * restitution <= self.stop_settle_speed(bond, restitution)
             {
                 continue;

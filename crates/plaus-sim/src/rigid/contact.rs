@@ -1,4 +1,4 @@
-//! Which points of a body touch what stands still, and its impact there.
+//! Which points of a body touch fixed parts, and its impact there.
 
 use super::body::{MOST_TOUCHES, Motion, Phase, Pose, Turning};
 use super::coulomb::{Contact, Member, response};
@@ -76,7 +76,8 @@ impl Rigid {
                 }
                 Part::Block { bounds, .. } => {
                     if bounds.grown(spec.reach + within).contains(pose.x) {
-                        // The box is part of the half space behind a side: what is not near that is not near the box.
+                        // The box is part of the half space behind a side, so a point that is not near the half space
+                        // is not near the box.
                         let side = farthest_side(bounds, pose.x);
                         let (normal, height) = side.map_or((DVec3::ZERO, 0.0), |s| (s.normal, s.beyond));
                         let lever = pose.r.transpose() * normal;
@@ -121,12 +122,12 @@ impl Rigid {
         }
     }
 
-    /// Calls `each` for the points of a body that touch: those noted at its clock, where all were, or else those found
-    /// now.
+    /// Calls `each` for the points of a body that touch: those noted at its clock if all were noted, otherwise those
+    /// found now.
     pub(super) fn for_known_touches(&self, index: usize, body: &Turning, pose: &Pose, mut each: impl FnMut(Touch)) {
         let spec = &self.specs[index];
         let noted = body.touching();
-        // Which point of a ring is the lowest goes with the velocities, and those an impact has changed.
+        // Which point of a ring is lowest depends on the velocities, and an impact has changed these.
         let moves = |s: &Surface| matches!(s, Surface::Spot { .. });
         if body.listed != body.path.t
             || noted.len() == MOST_TOUCHES
@@ -166,20 +167,20 @@ impl Rigid {
         }
     }
 
-    /// Rebound speed up to which a contact lasts.
+    /// Rebound speed up to which a contact counts as lasting.
     #[inline]
     pub(super) fn settle_speed(&self, spec: &Spec, law: &Law) -> f64 {
         self.slowest_bounce(law) * spec.speed
     }
 
-    /// Rebound over `√(g · size)` up to which a contact lasts. A bounce that is not higher than the gap at which bodies
-    /// touch is none, however elastic.
+    /// Rebound speed over `√(g · size)` up to which a contact counts as lasting. A bounce no higher than the gap at
+    /// which bodies touch is not counted as one, however elastic.
     #[inline]
     pub(super) fn slowest_bounce(&self, law: &Law) -> f64 {
         (self.accuracy.settle * (1.0 - law.restitution)).max((2.0 * self.accuracy.gap).sqrt())
     }
 
-    /// Notes which points touch, once per time.
+    /// Notes which points touch, once for each time.
     pub(super) fn list_touches(&self, index: usize, body: &mut Turning) {
         if body.listed == body.path.t {
             return;
@@ -197,7 +198,7 @@ impl Rigid {
         body.listed = body.path.t;
     }
 
-    /// Impact of a body on what stands still, at this point and at all others that are struck at once. Whether there
+    /// Impact of a body on a fixed part, at this point and at all others that are struck at once. Returns whether there
     /// was one.
     pub(super) fn hit_part(
         &self,
@@ -224,7 +225,7 @@ impl Rigid {
         true
     }
 
-    /// The points at which a body strikes a part, or touches one; none where the first is not struck.
+    /// The points at which a body strikes or touches a part; none if the first is not struck.
     pub(super) fn points_on_part(
         &self,
         index: usize,

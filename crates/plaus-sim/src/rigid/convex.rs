@@ -1,14 +1,14 @@
-//! Two bodies with flat faces, cuboids or other convex polyhedra: when they first touch, and what is new in a contact
-//! that lasts.
+//! Two bodies with flat faces, cuboids or other convex polyhedra: when they first touch, and which points are new in a
+//! lasting contact.
 //!
-//! Along a direction that turns evenly, every corner of one keeps a distance from every corner of the other that can
-//! shrink only so fast: its rate is known, and its acceleration is bounded by what gravity, the bodies' rotations and
-//! the direction's own turning can do. While all these distances are positive the direction separates the bodies. So
-//! they are advanced by the first root of those parabolas, along the normal of the nearest features, turning as that
-//! normal does; this cannot overshoot, and converges quadratically (conservative advancement: Mirtich, *Impulse-based
-//! Dynamic Simulation* (1996), ch. 2.3, with corners' own second-order bounds in the place of one bound on the speed).
+//! Along a direction that turns evenly, the distance of any corner of one body from any corner of the other can shrink
+//! only so fast: its rate is known, and its acceleration is bounded by what gravity, the bodies' rotations and the
+//! direction's own turning can do. While all these distances are positive, the direction separates the bodies. So they
+//! are advanced by the first root of those parabolas, along the normal of the nearest features, turning as that normal
+//! does. This cannot overshoot, and converges quadratically (conservative advancement: Mirtich, *Impulse-based Dynamic
+//! Simulation* (1996), ch. 2.3, with second-order bounds for each corner instead of one bound on the speed).
 //!
-//! Bodies in lasting contact are looked at in the same way, without the pairs of corners that span their contact: the
+//! Bodies in lasting contact are examined in the same way, without the pairs of corners that span their contact: the
 //! steps deal with those.
 
 use super::Spec;
@@ -19,31 +19,32 @@ use crate::roots::earliest;
 use crate::shape::cuboid_pair::Meeting;
 use glam::DVec3;
 
-/// Most advancements of one search; then the time reached is handed on as an event, and the bodies are looked at anew.
+/// Maximum number of advancements of one search. After that the time reached is handed on as an event, and the bodies
+/// are examined anew.
 const MOST_ADVANCES: usize = 200;
 
-/// Least advancement near contact: the time in which corners move by this part of the gap at which bodies touch.
+/// Least advancement near contact: the time in which corners move by this fraction of the gap at which bodies touch.
 /// Default 0.1.
 const LEAST: f64 = 0.1;
 
-/// Least number of looks at bodies in lasting contact within one of their steps. Default 8: a point whose corners are
-/// held can come into contact only by turning.
+/// Least number of times that bodies in lasting contact are examined within one of their steps. Default 8: a point
+/// whose corners are held can come into contact only by turning.
 const LOOKS: f64 = 8.0;
 
-/// Halvings of the time between two such looks.
+/// Halvings of the time between two such times.
 const BISECTIONS: usize = 30;
 
-/// Most points of a contact that are remembered while bodies stay in touch: an octagon has eight, two faces of twelve
-/// corners have 24.
+/// Maximum number of points of a contact that are remembered while bodies stay in touch: an octagon has eight, two
+/// faces of twelve corners have 24.
 const MOST_POINTS: usize = 24;
 
-/// Two bodies where they are, as the search looks at them.
+/// Two bodies in their places, as the search sees them.
 pub(super) trait ConvexPair: Sized {
-    /// What meets at a point of contact.
+    /// The elements that meet at a point of contact.
     type Feature: Copy + PartialEq;
     /// A set of corners of the second for every corner of the first.
     type Sets: AsRef<[u64]> + AsMut<[u64]>;
-    /// Where the corners of one are along two directions.
+    /// Where the corners of one body are along two directions.
     type Along: AsRef<[(f64, f64)]>;
 
     /// Empty sets.
@@ -54,9 +55,9 @@ pub(super) trait ConvexPair: Sized {
     fn touching(&self, nearest: &Meeting<Self::Feature>, within: f64, each: impl FnMut(Meeting<Self::Feature>));
     /// Rate of a feature's normal while the bodies turn at these angular velocities.
     fn turning(&self, feature: Self::Feature, normal: DVec3, spins: [DVec3; 2]) -> DVec3;
-    /// The corners of each that span a feature.
+    /// The corners of each body that span a feature.
     fn corners(&self, feature: Self::Feature) -> [u64; 2];
-    /// Where the corners of the first (0) or the second (1) are along two directions, about its centre.
+    /// Where the corners of the first (0) or the second (1) body are along two directions, about its centre.
     fn corners_along(&self, of: usize, first: DVec3, second: DVec3) -> Self::Along;
     /// From the second centre to the first, along a direction.
     fn offset_along(&self, direction: DVec3) -> f64;
@@ -73,10 +74,10 @@ fn rate<F>(m: &Meeting<F>, [a, b]: [&Pose; 2]) -> f64 {
 struct Held<P: ConvexPair> {
     features: [Option<P::Feature>; MOST_POINTS],
     count: usize,
-    /// The corners of each that span them.
+    /// The corners of each body that span these points.
     corners: [u64; 2],
-    /// Which pairs of those corners lie in the plane of contact: bit j of entry i for corner i of the first and j of
-    /// the second.
+    /// Which pairs of those corners lie in the plane of contact: bit j of entry i is set for corner i of the first body
+    /// and corner j of the second.
     flat: P::Sets,
 }
 
@@ -111,10 +112,10 @@ impl<P: ConvexPair> Held<P> {
         self.features[..self.count].contains(&Some(feature))
     }
 
-    /// Of the points that touch and are not held, the least gap and the least rate.
+    /// The least gap and the least rate of the points that touch and are not held.
     fn newest(&self, bodies: &P, nearest: &Meeting<P::Feature>, poses: [&Pose; 2], level: f64) -> New {
         let mut new = New { gap: f64::INFINITY, rate: f64::INFINITY };
-        // The same points as steps see, of which those within the gap count.
+        // The same points that steps see; those within the gap count.
         bodies.touching(nearest, TOUCHING * level, |m| {
             if m.gap <= level && !self.has(m.feature) {
                 new.gap = new.gap.min(m.gap);
@@ -125,7 +126,7 @@ impl<P: ConvexPair> Held<P> {
     }
 }
 
-/// What is new among points of contact.
+/// The new points among the points of contact.
 struct New {
     gap: f64,
     rate: f64,
@@ -140,7 +141,7 @@ fn fastest(spec: &Spec, body: &Turning) -> f64 {
     spec.inertia.momentum(body.turn, body.spin).length() / spec.inertia.moments.min_element()
 }
 
-/// What a search is about.
+/// One search for the time at which two bodies touch.
 pub(super) struct Quest<'w> {
     pub(super) specs: [&'w Spec; 2],
     pub(super) bodies: [&'w Turning; 2],
@@ -148,20 +149,20 @@ pub(super) struct Quest<'w> {
     pub(super) level: f64,
     pub(super) from: f64,
     pub(super) until: f64,
-    /// Whether the bodies are in lasting contact: then only points count that are not part of it yet.
+    /// Whether the bodies are in lasting contact: then only points count that are not yet part of it.
     pub(super) linked: bool,
     /// Largest distances of corners from the centres of gravity, in m.
     pub(super) arms: [f64; 2],
 }
 
 impl Quest<'_> {
-    /// First time in `[from, until]` at which two bodies touch while approaching; `place` puts them where they are.
+    /// First time in `[from, until]` at which two bodies touch while approaching; `place` moves them to poses.
     pub(super) fn first<P: ConvexPair>(&self, place: impl Fn([&Pose; 2]) -> Option<P>) -> Option<f64> {
         let Quest { specs: [s, t], bodies, level, from, until, linked, arms } = *self;
         let pull = (bodies[0].path.a - bodies[1].path.a).length();
         let swing = [fastest(s, bodies[0]), fastest(t, bodies[1])];
         let reach = s.reach + t.reach;
-        // Longest advancement, and what it can add to the relative speed.
+        // Longest advancement, and how much it can add to the relative speed.
         let (longest, gain) = ((reach / pull).sqrt(), (pull * reach).sqrt());
         let swings = |k: usize, spec: &Spec| swing[k] * swing[k] * (1.0 + spec.wobble) * arms[k];
         let bound = pull + (swings(0, s) + swings(1, t));
@@ -192,7 +193,7 @@ impl Quest<'_> {
             let nearest = placed.nearest(last.as_ref());
             last = Some(nearest);
             if linked && advance == 0 {
-                // The points that the step was made with.
+                // The points with which the step was made.
                 let sag = super::heap::sag(bodies.iter().all(|b| b.in_heap), s.size.min(t.size));
                 held = Held::new(&placed, &nearest, TOUCHING * level + sag);
             }
@@ -200,7 +201,7 @@ impl Quest<'_> {
                 let new = held.newest(&placed, &nearest, [&a, &b], level);
                 if new.rate < 0.0 {
                     return Some(if new.gap < -level && time > clear {
-                        // A point outside the plane of contact turned into it: back to where it came.
+                        // A point outside the plane of contact has turned into it: go back to when it touched.
                         bisect(BISECTIONS, clear, time, |t| {
                             let (a, b) = (pose(0, t), pose(1, t));
                             let placed = place([&a, &b]);
@@ -223,7 +224,7 @@ impl Quest<'_> {
             } else {
                 longest
             });
-            // Nothing that touches approaches: an overlap may grow to twice what it is until then.
+            // Nothing that touches approaches: an overlap may at most double until then.
             let least = (LEAST * level).max(-nearest.gap);
             time += step.max(least / speed.max(f64::MIN_POSITIVE));
             if time >= until || time.is_nan() {
@@ -239,14 +240,14 @@ struct Advance<'c, P> {
     bodies: &'c P,
     poses: [&'c Pose; 2],
     normal: DVec3,
-    /// The direction's rate.
+    /// The direction's rate of change.
     across: DVec3,
     level: f64,
 }
 
 impl<P: ConvexPair> Advance<'_, P> {
-    /// How long at least no corner of one gets to the half gap over a corner of the other, but for the pairs held; `m`
-    /// bounds the accelerations.
+    /// A lower bound on the time in which no corner of one body comes within half the gap over a corner of the other,
+    /// except for the pairs held; `m` bounds the accelerations.
     fn time(&self, m: f64, held: &[u64]) -> f64 {
         let [a, b] = self.poses;
         let (n, across) = (self.normal, self.across);
@@ -263,7 +264,7 @@ impl<P: ConvexPair> Advance<'_, P> {
                     continue;
                 }
                 let (f, rate) = (base + (p - q), base_rate + (p_rate - q_rate));
-                // Cheap test first: whether it can be gone before the others at all.
+                // A quick test first: whether this distance can vanish before the others at all.
                 if f > 0.0 && step.is_finite() && f + (rate - 0.5 * m * step) * step > 0.0 {
                     continue;
                 }

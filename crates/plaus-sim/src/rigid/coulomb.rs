@@ -1,4 +1,5 @@
-//! A contact of bodies in a group, and the impulse there that obeys Coulomb's law with all others as they are.
+//! A contact of bodies in a group, and the impulse there that obeys Coulomb's law while all other impulses stay as they
+//! are.
 
 use super::slip::{Asked, Slip, WEDGED};
 use glam::{DMat3, DVec3};
@@ -12,7 +13,7 @@ pub(crate) struct Member {
     pub(crate) w: DVec3,
     /// Largest distance of a point from the centre of gravity.
     pub(crate) reach: f64,
-    /// Velocities a round ago.
+    /// Velocities one round ago.
     pub(crate) last: [DVec3; 2],
 }
 
@@ -23,7 +24,7 @@ pub(crate) enum Hold {
     Coulomb,
     /// Any: a point of a joint.
     Point,
-    /// Along the normal, either way, at most of this size in N s: a brake.
+    /// Along the normal, in either direction, at most this large in N s: a brake.
     Brake(f64),
 }
 
@@ -39,31 +40,31 @@ pub(crate) struct Contact {
     pub(crate) hold: Hold,
     /// Least normal velocity after solving.
     pub(crate) target: f64,
-    /// What is added to the velocity at the point to get the one that is meant: its mean over a drift, say.
+    /// Added to the velocity at the point to get the velocity that counts: for example its mean over a drift.
     pub(crate) bias: DVec3,
-    /// The direction of the slip that friction is to oppose as long as it slides that way; else that of what slip is
-    /// left.
+    /// The direction of slip that friction opposes as long as the contact slides that way; if none, friction opposes
+    /// the slip that is left.
     pub(crate) held_slip: Option<DVec3>,
     /// Velocity change per impulse.
     k: DMat3,
     k_inverse: DMat3,
     kn: DVec3,
     along: f64,
-    /// At least the largest response across the normal.
+    /// An upper bound on the response across the normal.
     stiff: f64,
     /// Impulse on `a` so far.
     pub(crate) impulse: DVec3,
     slip: Option<Slip>,
-    /// Whether it slid when it was looked at last.
+    /// Whether it slid when it was last solved.
     slides: bool,
-    /// Whether it obeyed Coulomb's law after that, the direction of its slip included.
+    /// Whether it obeyed Coulomb's law after that, including the direction of its slip.
     pub(super) is_right: bool,
 }
 
-/// How near to the edge of its cone an impulse counts as sliding: rounding of the projection.
+/// How near to the edge of its cone an impulse must be to count as sliding: rounding of the projection.
 const AT_EDGE: f64 = 1e-12;
 
-/// How well a slip's direction is looked for: the angle in radians by which it may be off, and rounds.
+/// How accurately a slip's direction is sought: the angle in radians by which it may be off, and the number of rounds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Look {
     pub(super) turn: f64,
@@ -114,7 +115,7 @@ impl Contact {
         self.relative(|k| [members[k].v, members[k].w])
     }
 
-    /// The same of members with these velocities.
+    /// The same for members with these velocities.
     #[inline]
     pub(super) fn relative(&self, of: impl Fn(usize) -> [DVec3; 2]) -> DVec3 {
         let at = |k: usize, arm: DVec3| {
@@ -125,7 +126,8 @@ impl Contact {
         self.b.map_or(u, |b| u - at(b, self.arms[1]))
     }
 
-    /// What of the velocity at the contact is not to be: slip, and what the normal part differs from its target by.
+    /// The velocity at the contact that must be removed: the slip, and the difference between the normal velocity and
+    /// its target.
     #[inline]
     pub(super) fn wrong(&self, members: &[Member]) -> DVec3 {
         self.velocity(members) + self.bias - self.normal * self.target
@@ -143,8 +145,8 @@ impl Contact {
         }
     }
 
-    /// Gives this contact the impulse that it needs with all others as they are; returns the change of velocity that
-    /// this meant.
+    /// Gives this contact the impulse that it needs while all others stay as they are. Returns the resulting change of
+    /// velocity.
     #[inline]
     pub(crate) fn solve(&mut self, members: &mut [Member], look: Look) -> f64 {
         let u = self.velocity(members) + self.bias;
@@ -167,7 +169,7 @@ impl Contact {
             return 0.0;
         }
         let next = self.sliding_as_held(u).or_else(|| self.still_sliding(u, look)).unwrap_or_else(|| {
-            // No slip is left, and the impulse lies in the cone; or else it slides.
+            // It sticks if the impulse that leaves no slip lies in the cone; otherwise it slides.
             let next = self.impulse + self.k_inverse * wanted;
             let load = next.dot(n);
             let across = (next - n * load).length_squared();
@@ -181,7 +183,7 @@ impl Contact {
         change.length() * self.along
     }
 
-    /// The nearest impulse that a joint's contact may have, and whether it gives way along its normal.
+    /// The nearest impulse that a joint's contact allows, and whether the contact gives way along its normal.
     pub(super) fn held(&self, impulse: DVec3) -> (DVec3, bool) {
         match self.hold {
             Hold::Brake(most) => {
@@ -192,14 +194,14 @@ impl Contact {
         }
     }
 
-    /// The unit vector of its slip, where it slides under load.
+    /// The unit vector of its slip, if it slides under load.
     pub(crate) fn slip_direction(&self) -> Option<DVec3> {
         let load = self.impulse.dot(self.normal);
         let across = self.impulse - self.normal * load;
         if self.slides && load > 0.0 { (-across).try_normalize() } else { None }
     }
 
-    /// Notes whether its impulse is at the edge of its cone, where it slides.
+    /// Notes whether its impulse is at the edge of its cone, which means that it slides.
     pub(super) fn note_slide(&mut self) {
         let load = self.impulse.dot(self.normal);
         let across = self.impulse - self.normal * load;
@@ -208,13 +210,13 @@ impl Contact {
         self.is_right = true;
     }
 
-    /// Has friction oppose the slip in this direction as long as there is any.
+    /// Makes friction oppose slip in this direction as long as there is any.
     pub(crate) fn hold_slip(&mut self, direction: Option<DVec3>) {
         let n = self.normal;
         self.held_slip = direction.and_then(|d| (d - n * d.dot(n)).try_normalize());
     }
 
-    /// The impulse against the slip that is held, if it goes on.
+    /// The impulse against the held slip, if that slip goes on.
     fn sliding_as_held(&mut self, u: DVec3) -> Option<DVec3> {
         let s = self.held_slip?;
         let free = u - self.k * self.impulse;
@@ -235,8 +237,7 @@ impl Contact {
         None
     }
 
-    /// The impulse of a contact that slid when it was looked at last and goes on sliding: Coulomb's law then holds with
-    /// it.
+    /// The impulse of a contact that slid when it was last solved and goes on sliding; Coulomb's law holds with it.
     #[inline]
     fn still_sliding(&mut self, u: DVec3, look: Look) -> Option<DVec3> {
         let mut slip = self.slip.filter(|_| self.slides)?;
@@ -255,8 +256,8 @@ impl Contact {
         Asked { friction: self.friction, missing, along: self.along, stiff: self.stiff, turn, rounds }
     }
 
-    /// The impulse after which a contact with velocity `free`, that cannot stick, obeys Coulomb's law: the friction
-    /// opposes the slip that is left.
+    /// The impulse after which a contact with velocity `free` that cannot stick obeys Coulomb's law: friction opposes
+    /// the slip that is left.
     fn sliding(&mut self, free: DVec3, look: Look) -> DVec3 {
         let n = self.normal;
         let missing = self.target - free.dot(n);
@@ -274,7 +275,7 @@ impl Contact {
         (n - slide.slip * self.friction) * slide.load
     }
 
-    /// The sticking impulse where the cone allows its normal part at all, else one without friction: neither gains
+    /// The sticking impulse if the cone allows its normal part, otherwise an impulse without friction: neither gains
     /// energy.
     fn wedged(&self, free: DVec3, missing: f64) -> DVec3 {
         let n = self.normal;
@@ -285,7 +286,7 @@ impl Contact {
     }
 }
 
-/// The matrix that takes the cross product with a vector from the left.
+/// The matrix that gives the cross product of this vector with another.
 #[inline]
 fn cross(r: DVec3) -> DMat3 {
     DMat3::from_cols(DVec3::new(0.0, r.z, -r.y), DVec3::new(-r.z, 0.0, r.x), DVec3::new(r.y, -r.x, 0.0))

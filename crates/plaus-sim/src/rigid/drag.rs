@@ -1,13 +1,14 @@
 //! Damping and constant torque.
 //!
-//! With rates `c` and `d`, `v̇ = a − c v` and `L̇ = T − d L` have closed forms, `v = a/c + (v₀ − a/c) e^(−ct)` and
-//! alike for the angular momentum; without a torque a body turns as it would without damping, but its time runs as `(1
-//! − e^(−dt))/d`. What looks for contacts knows parabolas and free rotation alone, so such a flight is cut into legs:
-//! on each the body is on a parabola through the closed form's places at both ends with its velocity at the start, and
-//! turns freely with the leg's mean angular momentum. Legs are so short that no point of the body is farther than
-//! [`STRAY`] of the gap at which it touches from where the closed form has it. At the ends of legs velocity, place and
-//! angular momentum are those of the closed form to rounding, and the orientation too where there is no torque, or
-//! where it does not change the axis; otherwise the orientation has an error that falls as the square of the legs.
+//! With rates `c` and `d`, `v̇ = a − c v` and `L̇ = T − d L` have closed forms: `v = a/c + (v₀ − a/c) e^(−ct)`, and
+//! similarly for the angular momentum. Without a torque a body turns as it would without damping, but its time runs as
+//! `(1 − e^(−dt))/d`. The search for contacts knows only parabolas and free rotation, so such a flight is cut into
+//! legs. On each leg the body follows a parabola through the closed form's positions at both ends with its velocity at
+//! the start, and turns freely with the leg's mean angular momentum. Legs are so short that the distance of any point
+//! of the body from its place in the closed form is at most [`STRAY`] of the gap at which it touches. At the ends of
+//! legs, velocity, position and angular momentum are those of the closed form to rounding. So is the orientation if
+//! there is no torque, or if the torque does not change the axis; otherwise the orientation has an error that falls as
+//! the square of the legs' length.
 
 use super::body::{Momentum, Phase, Turning};
 use super::tumble::drift;
@@ -26,14 +27,15 @@ pub(crate) struct Drag {
     pub(super) torque: DVec3,
 }
 
-/// Part of the gap at which a body touches by which a leg may stray from the closed form. Default 0.5: a first contact
-/// is found as early as that.
+/// Fraction of the gap at which a body touches by which a leg may stray from the closed form. Default 0.5: a first
+/// contact may be found that much early.
 const STRAY: f64 = 0.5;
 
-/// Angle in radians by which a ball may be turned otherwise half way of a leg. Default 1e-3: no contact depends on it.
+/// Angle in radians by which a ball's orientation may be off half way through a leg. Default 1e-3: no contact depends
+/// on it.
 const UNSEEN: f64 = 1e-3;
 
-/// Decay `z` below which series stand for differences of nearly equal numbers. Default 0.5: their twelve terms leave
+/// Decay `z` below which series replace differences of nearly equal numbers. Default 0.5: their twelve terms leave
 /// `0.5¹²/14!`, which is below rounding.
 const SMALL: f64 = 0.5;
 
@@ -42,7 +44,7 @@ fn mean_decay(z: f64) -> f64 {
     if z == 0.0 { 1.0 } else { -math::exp_m1(-z) / z }
 }
 
-/// `(z − 1 + e^(−z))/z²`: the mean over `s` of what an even gain has become, 1/2 without decay.
+/// `(z − 1 + e^(−z))/z²`: the mean over `s` of what a steady gain has become; 1/2 without decay.
 fn mean_gain(z: f64) -> f64 {
     if z >= SMALL {
         return (z + math::exp_m1(-z)) / (z * z);
@@ -51,26 +53,26 @@ fn mean_gain(z: f64) -> f64 {
     (3..=14).rev().fold(1.0, |sum, n| 1.0 - z / f64::from(n) * sum) * 0.5
 }
 
-/// A quantity that `gain` feeds and that decays at `rate`, after `dt`.
+/// A quantity that grows by `gain` and decays at `rate`, after `dt`.
 fn after(start: DVec3, gain: DVec3, rate: f64, dt: f64) -> DVec3 {
     let z = rate * dt;
     start * math::exp(-z) + gain * (mean_decay(z) * dt)
 }
 
-/// Its integral over `dt`.
+/// The integral of that quantity over `dt`.
 fn summed(start: DVec3, gain: DVec3, rate: f64, dt: f64) -> DVec3 {
     let z = rate * dt;
     start * (mean_decay(z) * dt) + gain * (mean_gain(z) * dt * dt)
 }
 
 impl Spec {
-    /// Velocity and angular momentum in flight, `dt` after these.
+    /// Velocity and angular momentum in flight, `dt` later than `from`.
     pub(super) fn dragged(&self, drag: &Drag, from: &Momentum, dt: f64) -> Momentum {
         Momentum { v: after(from.v, self.pull, drag.linear, dt), l: after(from.l, drag.torque, drag.angular, dt) }
     }
 
-    /// Velocities `dt` later of a body turned by `r` that stays where it is: with which a step of lasting contact
-    /// begins or ends.
+    /// Velocities `dt` later of a body with orientation `r` that stays where it is. A step of lasting contact begins
+    /// and ends with them.
     #[inline]
     pub(super) fn kicked(&self, r: &DMat3, [v, w]: [DVec3; 2], dt: f64) -> (DVec3, DVec3) {
         match &self.drag {
@@ -90,8 +92,7 @@ impl Spec {
     /// How long a leg may be.
     fn leg(&self, drag: &Drag, from: &Momentum) -> f64 {
         let stray = STRAY * self.gap;
-        // The third derivative of the way is at most this, and a parabola through both ends strays by 2/81 of it times
-        // h³.
+        // The third derivative of the path is at most this. A parabola through both ends strays by 2/81 of it times h³.
         let jerk = drag.linear * (self.pull - from.v * drag.linear).length();
         let straight = math::cbrt(stray * 40.5 / jerk);
         let turning = (drag.torque - from.l * drag.angular).length() / self.inertia.moments.min_element();
@@ -116,7 +117,7 @@ impl Turning {
 }
 
 impl Rigid {
-    /// Has a body that touches nothing fly on.
+    /// Lets a body that touches nothing fly on.
     pub(super) fn fly(&self, index: usize, body: &mut Turning) {
         let spec = &self.specs[index];
         let Some(drag) = &spec.drag else { return body.begin(Phase::Flight, spec.pull) };
@@ -134,7 +135,7 @@ impl Rigid {
 mod tests {
     use super::*;
 
-    /// Beside sums of a thousand terms of Simpson's rule, whose error is of the order of 1e-13.
+    /// Compared with sums of a thousand terms of Simpson's rule, whose error is of the order of 1e-13.
     #[test]
     fn means_are_those_of_their_integrands() {
         for z in [0.0, 1e-9, 1e-3, 0.3, 0.499, 0.501, 2.0, 20.0] {

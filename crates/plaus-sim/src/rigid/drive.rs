@@ -2,9 +2,9 @@
 //!
 //! Between keys a track stands still, is straight, or is a cubic, like animations in glTF. A body's path is cut into
 //! pieces of the simulator's own closed form, a parabola with a steady rotation. Straight tracks are represented
-//! exactly; cubics by pieces so short that no point of the body is off by more than a tenth of the gap at which bodies
-//! touch. At the ends of the pieces, places and velocities are those of the tracks; angular velocities are means over
-//! each piece.
+//! exactly. Cubics are cut into pieces so short that no point of the body is off by more than a tenth of the gap at
+//! which bodies touch. At the ends of the pieces, positions and velocities are those of the tracks; angular velocities
+//! are means over each piece.
 
 use super::Spec;
 use super::body::{Phase, Turning};
@@ -13,15 +13,15 @@ use crate::error::WorldError;
 use glam::{DQuat, DVec3, DVec4};
 use plaus_dist::math;
 
-/// How a track goes from a key to the next.
+/// How a track goes from one key to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Between {
-    /// It stands still and jumps at the next key. What the body is then in is pushed out as of any overlap; a jump
+    /// It stands still and jumps at the next key. A body that it jumps into is pushed out as from any overlap; the jump
     /// itself hits nothing.
     Step,
-    /// Straight, at a steady rate; rotations the shorter way.
+    /// Straight, at a steady rate; rotations take the shorter way.
     Linear,
-    /// By the cubic with the keys' slopes.
+    /// On the cubic with the keys' slopes.
     Cubic,
 }
 
@@ -32,7 +32,7 @@ pub struct Key<T> {
     pub time: f64,
     /// The value.
     pub value: T,
-    /// Its rates per second before and after the key, for cubics.
+    /// Its rates of change per second before and after the key, for cubics.
     pub slopes: [T; 2],
 }
 
@@ -45,9 +45,10 @@ pub struct Track<T> {
     pub keys: Vec<Key<T>>,
 }
 
-/// A body's way: its centre of gravity in m, and the rotation that turns its axes into those of the world.
+/// The motion of a driven body: its centre of gravity in m, and the rotation that turns its axes into those of the
+/// world.
 ///
-/// Of rotations by cubics the quaternions' parts follow the cubic, which is then brought back to length 1.
+/// For rotations on cubics, the quaternion's components follow the cubic, and the quaternion is then normalised.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keyframes {
     /// Where the centre of gravity is.
@@ -57,20 +58,20 @@ pub struct Keyframes {
 }
 
 impl<T: Copy> Track<T> {
-    /// A value that stays.
+    /// A constant value.
     #[must_use]
     pub fn fixed(value: T) -> Self {
         Self { between: Between::Step, keys: vec![Key { time: 0.0, value, slopes: [value; 2] }] }
     }
 
-    /// Straight between these times and values.
+    /// Linear between these times and values.
     #[must_use]
     pub fn linear(keys: impl IntoIterator<Item = (f64, T)>) -> Self {
         let key = |(time, value)| Key { time, value, slopes: [value; 2] };
         Self { between: Between::Linear, keys: keys.into_iter().map(key).collect() }
     }
 
-    /// The key before a time, and that after.
+    /// The key before a time, and the key after it.
     fn around(&self, time: f64) -> (&Key<T>, Option<&Key<T>>) {
         let after = self.keys.partition_point(|k| k.time <= time);
         if after == 0 { (&self.keys[0], None) } else { (&self.keys[after - 1], self.keys.get(after)) }
@@ -94,7 +95,7 @@ impl<T: Copy> Track<T> {
     }
 }
 
-/// A vector on the cubic between two keys, `part` of the way, and its rate.
+/// A vector on the cubic between two keys at the fraction `part` of the time, and its rate.
 fn cubic(from: &Key<DVec4>, to: &Key<DVec4>, part: f64) -> [DVec4; 2] {
     let (h, s) = (to.time - from.time, part);
     let (m, n) = (from.slopes[1] * h, to.slopes[0] * h);
@@ -118,7 +119,7 @@ pub(super) fn between(from: DQuat, to: DQuat) -> DVec3 {
 }
 
 impl Keyframes {
-    /// Place and velocity within the stretch of keys that holds `inside`.
+    /// Position and velocity, from the pair of keys whose times enclose `inside`.
     fn place(&self, time: f64, inside: f64) -> [DVec3; 2] {
         let (from, to) = self.position.around(inside);
         let Some(to) = to else { return [from.value, DVec3::ZERO] };
@@ -186,7 +187,7 @@ impl Keyframes {
     }
 }
 
-/// A stretch of a body's way.
+/// A stretch of a driven body's path.
 #[derive(Debug, Clone, Copy)]
 struct Stretch {
     t: f64,
@@ -197,20 +198,20 @@ struct Stretch {
     spin: DVec3,
 }
 
-/// A body's way, in stretches.
+/// A driven body's path, in stretches.
 #[derive(Debug, Clone)]
 pub(super) struct Drive {
     stretches: Vec<Stretch>,
 }
 
-/// Most halvings of the time between keys.
+/// Maximum number of halvings of the time between keys.
 const HALVINGS: u32 = 16;
 
-/// Part of the gap at which bodies touch by which a way may be off. Default 0.1.
+/// Fraction of the gap at which bodies touch by which a path may be off. Default 0.1.
 const OFF: f64 = 0.1;
 
 impl Drive {
-    /// The way of the body with this index.
+    /// The path of the body with this index.
     pub(super) fn new(body: usize, spec: &Spec, keys: &Keyframes) -> Result<Self, WorldError> {
         keys.check(body)?;
         let mut drive = Self { stretches: Vec::new() };
@@ -224,13 +225,13 @@ impl Drive {
         Ok(drive)
     }
 
-    /// Adds the way between two times that no key is between.
+    /// Adds the path between two times that have no key between them.
     fn add(&mut self, spec: &Spec, keys: &Keyframes, [from, to]: [f64; 2], halvings: u32) {
         let (h, inside) = (to - from, 0.5 * (from + to));
         let ([x, v], [y, w]) = (keys.place(from, inside), keys.place(to, inside));
         let (turn, end) = (keys.turn(from, inside), keys.turn(to, inside));
         let spin = between(turn, end) / h;
-        // Two parabolas that meet half way, with places and velocities right at both ends.
+        // Two parabolas that meet half way, with exact positions and velocities at both ends.
         let middle = (y - x) * (2.0 / h) - (v + w) * 0.5;
         let is_cubic = keys.position.between == Between::Cubic;
         let (a, b) =
@@ -258,7 +259,7 @@ impl Drive {
         }
     }
 
-    /// Has a body follow its way at a time.
+    /// Puts a body where its path is at a time.
     pub(super) fn follow(&self, body: &mut Turning, time: f64) {
         let next = self.stretches.partition_point(|s| s.t <= time).max(1);
         let s = &self.stretches[next - 1];

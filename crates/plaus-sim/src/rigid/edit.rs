@@ -1,4 +1,4 @@
-//! What may be done to a state between two runs: bodies are kicked, taken out, and put in.
+//! Changes to a state between two runs: bodies are kicked, taken out, and put in.
 
 use super::Rigid;
 use super::body::{Motion, Phase, Start, Turning};
@@ -8,12 +8,11 @@ use crate::state::State;
 use glam::DVec3;
 
 impl Rigid {
-    /// Gives a body an impulse in N s at its centre of gravity, and an angular impulse in N m s, at the state's time.
-    /// One that sleeps or rests wakes, one that has not been released starts with what they bring.
+    /// Gives a body an impulse in N s at its centre of gravity, and an angular impulse in N m s, at the state's time. A
+    /// body that sleeps or rests wakes. For a body that has not been released, they are added to its start.
     ///
     /// # Errors
-    /// [`WorldError::BadBody`] for a body that is not there, is gone or goes its own way, and for numbers that are
-    /// none.
+    /// [`WorldError::BadBody`] for a body that is not there, is gone or is driven, and for numbers that are not finite.
     pub fn kick(
         &self,
         state: &mut State<Turning>,
@@ -43,10 +42,10 @@ impl Rigid {
         Ok(())
     }
 
-    /// Takes a body out at the state's time. What rested on it wakes, joints let go of it.
+    /// Takes a body out at the state's time. Bodies that rested on it wake, and its joints no longer hold.
     ///
     /// # Errors
-    /// [`WorldError::BadBody`] for a body that is not there or goes its own way.
+    /// [`WorldError::BadBody`] for a body that is not there or is driven.
     pub fn remove(&self, state: &mut State<Turning>, index: usize) -> Result<(), WorldError> {
         self.check_edited(state, index)?;
         let time = state.time;
@@ -66,13 +65,13 @@ impl Rigid {
         Ok(())
     }
 
-    /// Puts a body in anew, wherever it was, or although it had been taken out: it is released as its start says. A
-    /// world holds all bodies that are ever put in; take those out that are to come later.
+    /// Puts a body in anew, wherever it was, even if it had been taken out: it is released as its start says. A world
+    /// holds all bodies that are ever put in, so take out those that come later.
     ///
     /// # Errors
-    /// [`WorldError`] where its start lies before the state's time, is not finite, or overlaps scenery, or, where it is
-    /// released at the state's time, a body that is there; [`WorldError::BadBody`] for a body that is not there, goes
-    /// its own way or has joints. Nothing has changed then.
+    /// [`WorldError`] if its start lies before the state's time, is not finite, or overlaps scenery, or if it is
+    /// released at the state's time and overlaps a body that is there; [`WorldError::BadBody`] for a body that is not
+    /// there, is driven or has joints. The state is then unchanged.
     pub fn put(&self, state: &mut State<Turning>, index: usize, start: &Start) -> Result<(), WorldError> {
         self.check_edited(state, index)?;
         if !self.joints.of(index).is_empty() {
@@ -112,7 +111,7 @@ impl Rigid {
         }
     }
 
-    /// Has a body at the state's time, and what it touches, look anew at what they do.
+    /// Makes a body and the bodies that it touches decide anew, at the state's time, how they go on.
     fn wake(&self, state: &mut State<Turning>, index: usize) {
         let body = &mut state.bodies[index];
         if !body.flies() && body.phase != Phase::Gone {

@@ -1,10 +1,10 @@
 //! How much energy the steps of lasting contact may keep.
 //!
-//! Nothing may gain any. Resistance to rolling and to spinning takes some. A contact on a fixed part, with normal force
-//! N at distance R from the centre of gravity, resists the part of the angular velocity across its normal (rolling)
-//! with a torque of at most ρ N R, and the part along it (spinning) with at most σ N R, where ρ and σ are the law's.
-//! Without this, a pin that was nudged circles on the rim of its foot, and a lying one rolls, for ever: nothing else
-//! takes their energy.
+//! Contact must not gain energy. Resistance to rolling and to spinning takes some. A contact on a fixed part, with
+//! normal force N at distance R from the centre of gravity, resists rolling, which is the part of the angular velocity
+//! across its normal, with a torque of at most ρ N R. It resists spinning, the part along its normal, with at most σ N
+//! R. The law gives ρ and σ. Without this resistance, a nudged pin would circle on the rim of its foot for ever, and a
+//! lying pin would roll for ever: nothing else takes their energy.
 
 use super::coulomb::{Contact, Member};
 use super::drive::between;
@@ -15,16 +15,16 @@ use super::{Rigid, Spec};
 use glam::{DQuat, DVec3};
 
 impl RigidScratch {
-    /// Whether a step was so long that keeping its points out of the ground lifted bodies higher than their energy can:
-    /// a pin that rocks over its foot's rim, say. Then a shorter one must see where it touches.
+    /// Whether a step was so long that keeping its points out of the ground lifted bodies higher than their energy
+    /// allows: for example a pin that rocks over the rim of its foot. A shorter step must then see where it touches.
     pub(super) fn climbs(&self, world: &Rigid) -> Option<f64> {
         (!self.is_open(world) && self.energy_to_keep(world) < 0.0).then_some(0.5)
     }
 
-    /// Takes back what a step's error has brought: along the first kick's impulses, whose part `α` is moved to the
-    /// second kick, where the contacts bring back what they need. No other momentum is touched, impulses stay in their
-    /// cones. `firsts` are the contacts with the impulses of the first kick, of which what is left stays. What cannot
-    /// be had in this way is left; whether all was.
+    /// Takes back the energy that a step's error has added. It acts along the first kick's impulses: a part `α` of them
+    /// is moved to the second kick, where the contacts return what they need. No other momentum is touched, and
+    /// impulses stay in their cones. `firsts` are the contacts with the impulses of the first kick; they keep the
+    /// remaining part. Energy that cannot be taken back in this way is left. Returns whether all was taken back.
     pub(super) fn keep_energy(&mut self, world: &Rigid, firsts: &mut [Contact], enough: Enough) -> bool {
         if self.is_open(world) {
             return true;
@@ -54,7 +54,7 @@ impl RigidScratch {
                 }
                 return true;
             }
-            // A little farther than the chord says: below is what counts.
+            // A little farther than the chord says, because the result should lie below.
             let next = part - now * (part - last) / (now - over) * FARTHER;
             (last, over) = (part, now);
             if !next.is_finite() || next.abs() > MOST_PART {
@@ -67,8 +67,8 @@ impl RigidScratch {
         false
     }
 
-    /// Whether what a step brings is no more than lifting its bodies out of what they are in each other and in the
-    /// ground takes.
+    /// Whether the energy that a step adds is no more than lifting its bodies out of each other and out of the ground
+    /// needs.
     pub(super) fn only_lifts(&self, world: &Rigid) -> bool {
         let fixed = self.touches.iter().map(|(k, t)| KEEP * world.specs[self.places[*k].body].gap - t.gap);
         let pairs = self.pairs.iter().map(|(ab, t)| KEEP * world.pair_gap(ab.map(|k| self.places[k].body)) - t.gap);
@@ -87,8 +87,8 @@ impl RigidScratch {
         self.places.iter().map(|p| spec(p).mass * world.strength * spec(p).gap).sum()
     }
 
-    /// Kinetic energy that the drift of a step leaves of what was there, negative where it lifted bodies higher than
-    /// that.
+    /// Kinetic energy that remains after the drift of a step; negative if the drift lifted bodies higher than their
+    /// energy allows.
     fn energy_to_keep(&self, world: &Rigid) -> f64 {
         let left = |p: &Place| {
             let spec = &world.specs[p.body];
@@ -100,25 +100,25 @@ impl RigidScratch {
     }
 }
 
-/// Energy over the weight times the gap at which bodies touch that a step may bring. Default 0.01: rounding and what
-/// the solver leaves.
+/// Energy that a step may add, over the weight times the gap at which bodies touch. Default 0.01: rounding and the
+/// solver's error.
 const TINY: f64 = 0.01;
 
-/// The part of the first kick that is moved at first, the most, and how often another is tried.
+/// The part of the first kick that is moved at first, the largest such part, and the number of attempts.
 const FIRST_PART: f64 = 0.02;
 const MOST_PART: f64 = 0.9;
 const ROUNDS: usize = 4;
 
-/// How much farther than the chord says. Default 1.05.
+/// How much farther to go than the chord says. Default 1.05.
 const FARTHER: f64 = 1.05;
 
 fn kinetic(spec: &Spec, turn: DQuat, v: DVec3, w: DVec3) -> f64 {
     0.5 * (spec.mass * v.length_squared() + w.dot(spec.inertia.momentum(turn, w)))
 }
 
-/// Takes from the members' angular velocities what the contacts' resistance takes over a step whose halves have the
-/// contacts' impulses. Energy only falls, and no rotation is reversed: the contacts' friction, found afterwards, brings
-/// the velocities of what rolls into line.
+/// Takes from the members' angular velocities what the contacts' resistance takes over a step; each half of the step
+/// has the contacts' impulses. Energy only falls, and no rotation is reversed. The contacts' friction, which is found
+/// afterwards, makes the velocities of rolling bodies fit again.
 pub(super) fn resist(
     world: &Rigid,
     places: &[Place],
@@ -151,8 +151,8 @@ pub(super) fn resist(
 /// Slip over the speed up to which a ball counts as rolling. Default 1e-3.
 const ROLLS: f64 = 1e-3;
 
-/// Whether resistance with this angular impulse stops a ball that rolls, its way along the ground too, which friction
-/// with this impulse then does. Else its spin would be stopped alone, and the way turn it again.
+/// Whether resistance with this angular impulse stops a rolling ball altogether: friction with this impulse then stops
+/// its motion along the ground too. If only the spin were stopped, that motion would start it again.
 fn stops(spec: &Spec, member: &Member, n: DVec3, impulse: f64, friction: f64) -> bool {
     let v = member.v - n * member.v.dot(n);
     let spin = (member.w - n * member.w.dot(n)).length();
@@ -164,7 +164,8 @@ fn stops(spec: &Spec, member: &Member, n: DVec3, impulse: f64, friction: f64) ->
         && spec.mass * v.length() <= friction
 }
 
-/// Takes an angular impulse of this size from a part of the angular velocity, or as much as that part has.
+/// Removes a part of the angular velocity by an angular impulse of this size, or all of that part if the impulse is
+/// large enough.
 fn slow_down(member: &mut Member, part: DVec3, impulse: f64) {
     let speed = part.length();
     if impulse <= 0.0 || speed <= 0.0 {

@@ -11,20 +11,20 @@ use glam::DVec3;
 /// closed form too, which is followed in legs: see [`Phase::Leg`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forces {
-    /// How much of the world's gravity it feels. Default 1; 0 for what floats, negative for what rises.
+    /// How much of the world's gravity it feels. Default 1; 0 for a body that floats, negative for one that rises.
     pub gravity: f64,
     /// A constant force at the centre of gravity, in N. Default none.
     pub force: DVec3,
     /// A constant torque in world axes, in N m. Default none.
     pub torque: DVec3,
-    /// Rate at which velocity is lost, in 1/s: by a factor of e in `1/damping` seconds. Default 0; usual 0–1. Of a body
-    /// in flight it is exact; in lasting contact it has the error of the steps.
+    /// Rate at which velocity is lost, in 1/s: by a factor of e in `1/damping` seconds. Default 0; usual 0–1. It is
+    /// exact for a body in flight; in lasting contact it has the error of the steps.
     pub damping: f64,
-    /// The same of the angular momentum. Of a body that turns at ω rad/s, `√(damping · ω · reach/(2 · gap · size))`
-    /// legs are followed in a second, `gap` being the preset's, `size` its least half width and `reach` its farthest
-    /// point's distance from its centre of gravity; times up to `√r` where its moments of inertia are as 1 to r. Of a
-    /// cube that is 930 at 10 rad/s, a damping of 1/s and the standard preset. Each counts as an event of the run's
-    /// budget.
+    /// The same for the angular momentum. A body that turns at ω rad/s takes `√(damping · ω · reach/(2 · gap · size))`
+    /// legs per second, where `gap` is the preset's, `size` is the body's least half width, and `reach` is the distance
+    /// of its farthest point from its centre of gravity. If its moments of inertia have the ratio 1 to r, it takes up
+    /// to `√r` times as many. For a cube that is 930 at 10 rad/s, a damping of 1/s and the standard preset. Each leg
+    /// counts as an event of the run's budget.
     pub angular_damping: f64,
 }
 
@@ -38,7 +38,7 @@ impl Rigid {
     /// Sets what acts on a body.
     ///
     /// # Errors
-    /// [`WorldError::BadBody`] for numbers that are none, and for damping below 0.
+    /// [`WorldError::BadBody`] for numbers that are not finite, and for damping below 0.
     pub fn act_on(&mut self, body: usize, forces: Forces) -> Result<(), WorldError> {
         let numbers = [forces.gravity].into_iter().chain(forces.force.to_array());
         if let Some(value) = numbers.into_iter().find(|x| !x.is_finite()) {
@@ -60,7 +60,7 @@ impl Rigid {
         let Forces { torque, damping: linear, angular_damping: angular, .. } = forces;
         let is_free = torque == DVec3::ZERO && linear == 0.0 && angular == 0.0;
         spec.drag = (!is_free).then_some(Drag { linear, angular, torque });
-        // Time scales are those of the strongest pull.
+        // Time scales follow from the strongest pull.
         let strength = self.specs.iter().map(|s| s.strength).fold(self.gravity.length(), f64::max);
         if strength != self.strength {
             self.strength = strength;
@@ -71,11 +71,11 @@ impl Rigid {
         Ok(())
     }
 
-    /// Puts a body to sleep that has not been released yet: from its release on it stays where it is, in the air too,
+    /// Puts a body to sleep that has not been released yet. From its release on it stays where it is, even in the air,
     /// until another body hits it.
     ///
     /// # Errors
-    /// [`WorldError::BadBody`] for a body that is not there, has been released, goes its own way, or has joints.
+    /// [`WorldError::BadBody`] for a body that is not there, has been released, is driven, or has joints.
     pub fn put_to_sleep(&self, state: &mut State<Turning>, body: usize) -> Result<(), WorldError> {
         let known = self.specs.get(body).is_some_and(|s| !s.is_driven()) && self.joints.of(body).is_empty();
         match state.bodies.get_mut(body).filter(|b| known && b.phase == Phase::Waiting) {

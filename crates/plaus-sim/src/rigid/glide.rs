@@ -2,8 +2,8 @@
 //!
 //! While it slides, friction points against the slip `u = v − R ω × n` of its lowest point, whose direction does not
 //! change: `v̇ = −μ g û`, `ω̇ = μ m g R (n × û)/I`, `|u̇| = −μ g (1 + m R²/I)`. So its path is a parabola until the
-//! slip is gone, and straight after that. If the friction changes (oil, then dry boards), a new parabola begins: that
-//! is a hook.
+//! slip is gone, and straight after that. If the friction changes (oil, then dry boards), a new parabola begins: the
+//! ball hooks.
 //!
 //! Resistance to rolling, a torque of ρ m g R, slows a rolling ball by `ρ g/(1 + I/(m R²))` until it stops; resistance
 //! to spinning slows its spin about the normal by `σ m g R/I`. A sliding ball has no resistance to rolling, with one
@@ -22,10 +22,10 @@ use glam::DVec3;
 /// Sine of the slope up to which ground counts as level. Default 1e-12, rounding of a normal.
 const LEVEL: f64 = 1e-12;
 
-/// Slip over `√(g R)` that counts as none. Default 1e-14, rounding of speeds.
+/// Slip over `√(g R)` that counts as no slip. Default 1e-14, rounding of speeds.
 const NO_SLIP: f64 = 1e-14;
 
-/// Times over the clock's that it does not tell apart. Default 1e-15, some of its last digits.
+/// Times, as a fraction of the clock's time, that the clock cannot tell apart. Default 1e-15, some of its last digits.
 const UNSEEN: f64 = 1e-15;
 
 /// Starts a closed form, if the body is a ball on one level part.
@@ -46,7 +46,7 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     if body.path.v.dot(n).abs() > world.settle_speed(spec, &law) {
         return false;
     }
-    // Slow approach is stopped, slow parting too: the contact lasts.
+    // Slow approach is stopped, and so is slow parting: the contact lasts.
     body.path.v -= n * body.path.v.dot(n);
     let friction = friction_ahead(part, law.friction, body.path.x, body.path.v);
     let Some((pull, turn, until)) = along(spec, body, n, &Law { friction, ..law }) else { return false };
@@ -70,7 +70,7 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
         body.expiry = (body.path.t + until).min(NEVER);
     }
     if body.expiry <= body.path.t {
-        // So short a stretch that the clock does not show it.
+        // The stretch is so short that the clock cannot show it.
         end(spec, body);
         body.expiry = body.path.t + f64::EPSILON * body.path.t.max(spec.rattle);
     }
@@ -78,8 +78,8 @@ pub(super) fn begin(world: &Rigid, index: usize, body: &mut Turning, touch: &Tou
     true
 }
 
-/// Acceleration of a ball on level ground, the rate of its angular velocity, and how long both last; none where it
-/// rolls and would need more friction than there is to be slowed down.
+/// Acceleration of a ball on level ground, the rate of change of its angular velocity, and how long both last. `None`
+/// if the ball rolls and would need more friction than is available to be slowed down.
 fn along(spec: &Spec, body: &mut Turning, n: DVec3, law: &Law) -> Option<(DVec3, DVec3, f64)> {
     let radius = spec.reach;
     let slip = body.path.v - body.spin.cross(n) * radius;
@@ -94,7 +94,7 @@ fn along(spec: &Spec, body: &mut Turning, n: DVec3, law: &Law) -> Option<(DVec3,
         let until = if force > 0.0 { speed / (force * stiff) } else { f64::INFINITY };
         return Some((u * -force, n.cross(u) * (force * (stiff - 1.0) / radius), until));
     }
-    // Rolling exactly: the spin across the normal follows from the velocity.
+    // Exact rolling: the spin across the normal follows from the velocity.
     body.spin = n * body.spin.dot(n) + n.cross(body.path.v) / radius;
     let speed = body.path.v.length();
     if speed == 0.0 || law.rolling == 0.0 {
@@ -106,7 +106,7 @@ fn along(spec: &Spec, body: &mut Turning, n: DVec3, law: &Law) -> Option<(DVec3,
     (brake <= law.friction * spec.strength).then(|| (pull, n.cross(pull) / radius, speed / brake))
 }
 
-/// The rate at which resistance takes the spin about the normal, and how long that lasts.
+/// The rate at which resistance reduces the spin about the normal, and how long that lasts.
 fn drill(spec: &Spec, body: &Turning, n: DVec3, law: &Law) -> (DVec3, f64) {
     let about = body.spin.dot(n);
     let rate = law.spinning * spec.strength * spec.mass * spec.reach / spec.inertia.moments.x;
@@ -116,12 +116,12 @@ fn drill(spec: &Spec, body: &Turning, n: DVec3, law: &Law) -> (DVec3, f64) {
     (n * (-rate * about.signum()), about.abs() / rate)
 }
 
-/// Ends a stretch at its time: what rounding has left of the slip, of the speed or of the spin about the normal is
-/// taken away, and the ball is exactly on the line that it reached.
+/// Ends a stretch at its time. It removes what rounding has left of the slip, of the speed or of the spin about the
+/// normal, and puts the ball exactly on the line that it reached.
 pub(super) fn end(spec: &Spec, body: &mut Turning) {
     let n = -spec.pull / spec.strength;
     if body.rolls_after {
-        // Friction turns a ball that slides against the way in which one turns that is slowed down while it rolls.
+        // Friction turns a sliding ball in the opposite sense to that of a rolling ball that slows down.
         if n.cross(body.path.a).dot(body.spin_rate) >= 0.0 {
             body.path.v = DVec3::ZERO;
         }
@@ -137,7 +137,7 @@ pub(super) fn end(spec: &Spec, body: &mut Turning) {
     }
 }
 
-/// Whether the ball's centre is at an edge of what bears it and on its way out, or beyond.
+/// Whether the ball's centre is at an edge of the part that supports it and moving outward, or beyond the edge.
 fn is_leaving(part: &Part, body: &Turning) -> bool {
     let Part::Block { bounds, .. } = part else { return false };
     let (x, v) = (body.path.x, body.path.v);
@@ -156,8 +156,8 @@ fn friction_ahead(part: &Part, usual: f64, at: DVec3, v: DVec3) -> f64 {
     stretches.iter().rev().find(|s| entered(s.from)).and_then(|s| s.friction).unwrap_or(usual)
 }
 
-/// Time until the ball's centre comes over another stretch or over the edge of what bears it, and the line that it
-/// reaches then: axis and place.
+/// Time until the ball's centre reaches another stretch or an edge of the part that supports it, and the line that it
+/// reaches then: axis and position.
 fn next_line(part: &Part, body: &Turning) -> Option<(f64, (u8, f64))> {
     let Part::Block { bounds, stretches, .. } = part else { return None };
     let (x, v, a) = (body.path.x, body.path.v, body.path.a);

@@ -1,7 +1,7 @@
 //! What a group touches, and what is different in a heap, which is many bodies in lasting contact.
 //!
-//! Half way through a step, corners leave what they touch by its [`SAG`]. In a heap, each event interrupts a step of
-//! all its bodies. If contacts counted as over by then, all would be struck anew, one after the other, and each would
+//! Half way through a step, corners leave what they touch by [`SAG`] of their size. In a heap, each event interrupts a
+//! step of all its bodies. If such contacts counted as over, all would be struck again one by one, and each would
 //! interrupt a step again. So in a heap, points up to that distance are part of the lasting contact.
 
 use super::Rigid;
@@ -11,11 +11,12 @@ use super::scratch::{Place, RigidScratch, TOUCHING};
 use super::touch::Touch;
 use crate::links::Links;
 
-/// Members from which a group counts as a heap. Default 13: more than ten pins and a ball.
+/// Number of members from which a group counts as a heap. Default 13: more than ten pins and a ball.
 pub(super) const HEAP: usize = 13;
 
-/// Part of [`SAG`] over which points of a heap that separate half way through a step belong to its contacts. Default
-/// 0.5: a straight drift leaves a curve by half of what steps are shortened for, an eighth of 4 times `SAG`.
+/// Fraction of [`SAG`] up to which points of a heap that separate half way through a step belong to its contacts.
+/// Default 0.5: a straight drift leaves a curve by half of the bound to which steps are shortened, an eighth of 4 times
+/// `SAG`.
 const FARTHEST: f64 = 0.5;
 
 /// Whether bodies in lasting contact with each other are a heap.
@@ -23,13 +24,13 @@ pub(super) fn is_heap(group: &[u32]) -> bool {
     group.len() >= HEAP
 }
 
-/// How far beyond touching points of bodies of this size belong to the contacts of a heap, in m.
+/// How far beyond touching a point of bodies of this size may be and still belong to the contacts of a heap, in m.
 pub(super) fn sag(is_heap: bool, size: f64) -> f64 {
     if is_heap { FARTHEST * SAG * size } else { 0.0 }
 }
 
 impl RigidScratch {
-    /// Finds the lasting contacts of a group. Bodies without any fly.
+    /// Finds the lasting contacts of a group. Bodies without any contact fly.
     pub(super) fn gather(&mut self, world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
         self.places.clear();
         self.touches.clear();
@@ -76,7 +77,7 @@ impl RigidScratch {
         let within = near + sag(is_heap, world.specs[i].size.min(world.specs[j].size));
         world.for_pair_touches([i, j], [&a, &b], within, |touch| {
             let rate = touch.rate(&a, &b);
-            // What is farther would bounce, or leaves.
+            // A point that is farther would bounce, or is leaving.
             if touch.gap > near && (rate > limit || -rate * restitution > limit) {
                 return;
             }
@@ -131,7 +132,7 @@ impl RigidScratch {
         self.places.push(Place::of(body, index));
     }
 
-    /// Leaves out, of contacts that are tried whether they can hold a heap, those that do not touch yet.
+    /// When contacts are tested for whether they can hold a heap: leaves out those that do not touch yet.
     pub(super) fn leave_out_distant(&mut self, world: &Rigid) {
         if self.places.len() < HEAP {
             return;

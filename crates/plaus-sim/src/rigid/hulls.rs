@@ -67,7 +67,8 @@ impl ConvexPair for HullPair<'_> {
     }
 }
 
-/// A body's core as a polyhedron and what is round it, if it has one; only asked for where it meets a polyhedron.
+/// A body's core as a polyhedron, and the rounding around it, if it has one; only asked for where it meets a
+/// polyhedron.
 pub(super) fn core(shape: &Shape) -> Option<(Arc<Polyhedron>, f64)> {
     match shape {
         Shape::Ball(radius) => Some((Arc::new(Polyhedron::point()), *radius)),

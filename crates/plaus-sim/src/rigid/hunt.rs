@@ -1,14 +1,14 @@
-//! When convex pieces first touch: those of two bodies, or of a body and what stands still.
+//! When convex pieces first touch: those of two bodies, or of a body and a fixed part.
 //!
-//! Along a fixed direction every point of a body keeps a height that can shrink only so fast: its rate is known, and
-//! its acceleration is bounded by what gravity and the body's rotation can do. The lowest of the heights `p·n + (p·(n ×
-//! ω) + n·v) τ` is minus the support function in the direction `−(n + τ n × ω)`, so a lower bound on the gap of two
-//! pieces along the normal of their nearest points follows from two support functions, whatever the pieces are; it is
-//! concave in τ, and its first root cannot be overshot. The bodies are advanced by the least of those roots
-//! (conservative advancement: Mirtich, *Impulse-based Dynamic Simulation* (1996), ch. 2.3, here of second order).
+//! Along a fixed direction, the height of every point of a body can shrink only so fast: its rate is known, and its
+//! acceleration is bounded by what gravity and the body's rotation can do. The lowest of the heights
+//! `p·n + (p·(n × ω) + n·v) τ` is minus the support function in the direction `−(n + τ n × ω)`. So two support
+//! functions give a lower bound on the gap of two pieces along the normal of their nearest points, whatever the pieces
+//! are. The bound is concave in τ, and its first root cannot be overshot. The bodies are advanced by the least of those
+//! roots (conservative advancement: Mirtich, *Impulse-based Dynamic Simulation* (1996), ch. 2.3, here of second order).
 //!
-//! Bodies in lasting contact are looked at [`LOOKS`] times within a step, for points away from those that it is made
-//! of: the steps deal with these.
+//! Bodies in lasting contact are examined [`LOOKS`] times within a step, for points away from the contacts of the step:
+//! the steps deal with those contacts.
 
 use super::Spec;
 use super::body::{Pose, Turning};
@@ -22,30 +22,31 @@ use crate::roots::earliest;
 use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use glam::{DMat3, DVec3};
 
-/// Most advancements of one search; then the time reached is handed on as an event, and the bodies are looked at anew.
+/// Maximum number of advancements of one search. After that the time reached is handed on as an event, and the bodies
+/// are examined anew.
 const MOST_ADVANCES: usize = 400;
 
-/// Least advancement near contact: the time in which points move by this part of the gap at which bodies touch. Default
-/// 0.1.
+/// Least advancement near contact: the time in which points move by this fraction of the gap at which bodies touch.
+/// Default 0.1.
 const LEAST: f64 = 0.1;
 
-/// Looks at bodies in lasting contact within one of their steps. Default 8.
+/// Number of times that bodies in lasting contact are examined within one of their steps. Default 8.
 const LOOKS: u32 = 8;
 
-/// Halvings of the time between two such looks.
+/// Halvings of the time between two such times.
 const HALVINGS: usize = 12;
 
-/// Distance over the size within which a point counts as part of the contact that lasts. Default 0.25.
+/// Distance over the size within which a point counts as part of the lasting contact. Default 0.25.
 const PART_OF_IT: f64 = 0.25;
 
-/// Cosine of the angle between the normals of points that are part of one contact. Default 0.995.
+/// Least cosine of the angle between the normals of points that are part of one contact. Default 0.995.
 const ALIKE: f64 = 0.995;
 
-/// How far ahead what stands still is looked at at once, over the body's reach. Default 2.
+/// Distance, over the body's reach, for which the fixed parts ahead are collected at once. Default 2.
 const AHEAD: f64 = 2.0;
 
-/// Way over the size that a body may go between two looks where it is below the plane of a triangle, beside it. Default
-/// 0.01.
+/// Distance, over the size, that a body may move between two looks while it is below the plane of a triangle, beside
+/// it. Default 0.01.
 const CREEP: f64 = 0.01;
 
 /// What a body may touch.
@@ -68,9 +69,9 @@ pub(super) struct Hunt<'w> {
     pub(super) linked: bool,
 }
 
-/// What pieces that are looked at do next.
+/// How pieces that are examined go on.
 struct Next {
-    /// How long at least nothing new touches.
+    /// For how long at least nothing new touches.
     step: f64,
     /// The point that approaches fastest, and its rate.
     struck: Option<(f64, Spot)>,
@@ -86,7 +87,7 @@ impl Hunt<'_> {
         }
     }
 
-    /// The first touch in `[from, until]` while approaching, and of which points.
+    /// The first touch in `[from, until]` while approaching, and its points.
     pub(super) fn first(&self) -> Option<(f64, Spot)> {
         let mut tumbles = [Some(self.body.tumble(self.spec)), self.other().map(|(spec, body)| body.tumble(spec))];
         if self.linked {
@@ -111,7 +112,7 @@ impl Hunt<'_> {
                 if away > 0.0 {
                     let dv = velocity(self.body, time) - velocity(b, time);
                     let step = earliest(away, offset.dot(dv) / offset.length(), pull);
-                    // Never less than a thousandth of the gap, so that it ends.
+                    // Never less than a thousandth of the gap, so that the search ends.
                     time +=
                         step + 1e-3 * self.level / (dv.length() + (pull * self.level).sqrt()).max(f64::MIN_POSITIVE);
                     if time >= self.until || time.is_nan() {
@@ -143,7 +144,7 @@ impl Hunt<'_> {
                 return Some((time, spot));
             }
             last = next.nearest.map(|n| n.1).or(last);
-            // Nothing that touches approaches: an overlap may grow to twice what it is until then.
+            // Nothing that touches approaches: an overlap may at most double until then.
             let least = self.slack(next.nearest.map_or(0.0, |n| n.0));
             time += next.step.max(least / speed.max(f64::MIN_POSITIVE));
             if time >= self.until || time.is_nan() {
@@ -153,14 +154,14 @@ impl Hunt<'_> {
         last.or_else(|| self.lowest(&mut tumbles, time)).map(|spot| (time, spot))
     }
 
-    /// By how much points with this gap may come nearer between two looks where none of them approaches: an overlap may
-    /// grow to twice what it is.
+    /// How much nearer points with this gap may come between two looks if none of them approaches: an overlap may at
+    /// most double.
     fn slack(&self, gap: f64) -> f64 {
         (LEAST * self.level).max((-gap).min(CREEP * self.spec.size))
     }
 
-    /// How much nearer a body may come before it is looked at anew. In an overlap hardly any: while its deepest points
-    /// leave it others may go deeper, and each bounce within it would make it larger.
+    /// How much nearer a body may come before it is examined anew. In an overlap the answer is hardly any: while its
+    /// deepest points come out, others may go deeper, and each bounce inside would enlarge the overlap.
     fn room(&self, gap: f64) -> f64 {
         (gap - 0.5 * self.level).max(LEAST * self.level)
     }
@@ -199,7 +200,7 @@ impl Hunt<'_> {
         Scene { a, b }
     }
 
-    /// Looks at all pairs of pieces.
+    /// Examines all pairs of pieces.
     fn look(&self, scene: &Scene, near: &[u32], (speed, m): (f64, f64), next: &mut Next) {
         for (own, piece) in self.spec.pieces.iter().enumerate() {
             match self.target {
@@ -263,7 +264,7 @@ impl Hunt<'_> {
         false
     }
 
-    /// Looks at one pair of pieces.
+    /// Examines one pair of pieces.
     fn pair(&self, scene: &Scene, own: usize, other: u32, both: &Both, m: f64, next: &mut Next) {
         let shift = scene.b.x - scene.a.x;
         let still = if let Target::Ground(Ground::Still(still)) = self.target { Some(still) } else { None };
@@ -289,11 +290,11 @@ impl Hunt<'_> {
                 None => both.touching(&found, self.level, |m| touch(&m)),
             }
         } else if let Some(still) = still {
-            // Beyond a hollow edge of a triangle, farther from it than from its plane.
+            // Beyond a hollow edge of a triangle, farther from the triangle than from its plane.
             still.for_over(other, both, scene.a.x, self.level, &mut touch);
         }
         if !is_one && self.facet(other).is_some() {
-            // What is beside the triangle is nearer.
+            // The part beside the triangle is nearer.
             return self.over_facet(scene, other, both, m, next);
         }
         let bound = Bound::new(self.room(found.gap), found.normal, scene, m);
@@ -301,14 +302,14 @@ impl Hunt<'_> {
         next.step = next.step.min(bound.root(rate(&found), next.step, |d| both.first.support(d), second));
     }
 
-    /// The plane of a triangle says when it can be touched.
+    /// The plane of a triangle says when the triangle can be touched.
     fn over_facet(&self, scene: &Scene, other: u32, both: &Both, m: f64, next: &mut Next) {
         let Some(facet) = self.facet(other) else { return };
         let p = both.first.farthest(-facet) - facet * both.first.rounding;
         let gap = facet.dot(p - both.second.centre);
         let rate = scene.a.velocity(p).dot(facet);
         if gap <= 0.5 * self.level && rate <= 0.0 {
-            // Below the plane beside the triangle: what is over it comes so near at most until the next look.
+            // Below the plane beside the triangle: this is how near a point over it may come until the next look.
             let speed = scene.a.v.length() + scene.a.w.length() * self.spec.reach;
             next.step = next.step.min(CREEP * self.spec.size / speed.max(f64::MIN_POSITIVE));
             return;
@@ -329,7 +330,7 @@ impl Hunt<'_> {
         }
     }
 
-    /// Calls `each` for all points within a gap: where they are from the first's centre of gravity and their normal,
+    /// Calls `each` for all points within a gap: their position from the first body's centre of gravity, their normal,
     /// rate and name.
     fn for_points(&self, scene: &Scene, near: &mut Vec<u32>, within: f64, mut each: impl FnMut([DVec3; 2], f64, Spot)) {
         let shift = scene.b.x - scene.a.x;
@@ -372,7 +373,7 @@ impl Hunt<'_> {
         }
     }
 
-    /// Bodies in lasting contact: looks within the step for a point that is no part of it.
+    /// For bodies in lasting contact: looks within the step for a point that is not part of the contact.
     fn looked(&self, tumbles: &mut [Option<Tumble>; 2]) -> Option<(f64, Spot)> {
         let (mut near, mut held) = (Vec::new(), Vec::new());
         let scene = self.scene(tumbles, self.from);

@@ -1,4 +1,4 @@
-//! Joints: what holds bodies together, or to what stands still.
+//! Joints: they hold bodies together, or hold a body to the fixed world.
 
 use super::body::{Phase, Pose, Start, Turning};
 use super::{OVERLAP, Rigid, not_finite};
@@ -27,10 +27,10 @@ pub struct Joint {
     pub body: usize,
     /// The body that it is held to; none for the fixed world.
     pub other: Option<usize>,
-    /// Where the joint is in the axes of the body and of what it is held to. The two coincide as far as the joint
-    /// holds them.
+    /// Where the joint is in the axes of the body, and in the axes of the other body or the fixed world. The two
+    /// coincide in all that the joint holds.
     pub frames: [Frame; 2],
-    /// What is held.
+    /// What the joint holds.
     pub kind: JointKind,
 }
 
@@ -46,27 +46,28 @@ pub struct Frame {
 /// What a joint holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum JointKind {
-    /// The anchors stay together; all turns are free.
+    /// The anchors stay together; all rotations are free.
     Ball,
     /// The anchors and the axes stay together.
     Hinge(Hinge),
     /// Nothing moves, until it breaks.
     Weld {
-        /// Impulse in N s above which an impact breaks the weld: that of the impulses which the weld passes on, summed
-        /// as vectors. It has passed them on then. What contact or gravity bring over time never breaks it. Default ∞.
+        /// Impulse in N s above which an impact breaks the weld: the vector sum of the impulses that the weld
+        /// transmits, which it still transmits when it breaks. Impulses that contact or gravity build up over time
+        /// never break it. Default ∞.
         breaks_at: f64,
     },
 }
 
-/// How a hinge turns. Its angle is that by which the body's frame is turned from the other's, about their z axis: 0 at
-/// the starts that a joint is made with.
+/// How a hinge turns. Its angle says by how much the body's frame is turned from the other's, about their z axis. It is
+/// 0 at the starts with which a joint is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hinge {
     /// Least and largest angle in radians, in [−π, π] and at most 6 apart. Default none.
     pub limits: Option<[f64; 2]>,
     /// Restitution at the limits, in [0, 1]: by Newton's rule. Default 0.
     pub restitution: f64,
-    /// Torque of dry friction in N m, the same at rest and in motion and whatever the load; in [0, ∞). Default 0.
+    /// Torque of dry friction in N m, in [0, ∞): the same at rest and in motion, and under any load. Default 0.
     pub friction: f64,
 }
 
@@ -82,7 +83,8 @@ impl Joint {
         Self::new(JointKind::Ball, at, DQuat::IDENTITY, body, start)
     }
 
-    /// A hinge about a line through `at` along `axis`, of any length but 0, that holds a body to the fixed world.
+    /// A hinge about a line through `at` along `axis` that holds a body to the fixed world. `axis` may have any length
+    /// but 0.
     #[must_use]
     pub fn hinge(at: DVec3, axis: DVec3, body: usize, start: &Start) -> Self {
         let hinge = Hinge { limits: None, restitution: 0.0, friction: 0.0 };
@@ -95,26 +97,26 @@ impl Joint {
         Self::new(JointKind::Weld { breaks_at: f64::INFINITY }, at, DQuat::IDENTITY, body, start)
     }
 
-    /// The same joint to another body in place of the fixed world.
+    /// The same joint, to another body instead of the fixed world.
     #[must_use]
     pub fn to(self, other: usize, start: &Start) -> Self {
         let [own, world] = self.frames;
         Self { other: Some(other), frames: [own, world.seen_by(start)], ..self }
     }
 
-    /// A hinge with limits in radians, and its restitution there. Of other joints nothing changes.
+    /// Gives a hinge limits in radians, and a restitution there. Does not change other joints.
     #[must_use]
     pub fn with_limits(self, limits: [f64; 2], restitution: f64) -> Self {
         self.with_hinge(|hinge| Hinge { limits: Some(limits), restitution, ..hinge })
     }
 
-    /// A hinge with dry friction of a torque in N m. Of other joints nothing changes.
+    /// Gives a hinge dry friction with a torque in N m. Does not change other joints.
     #[must_use]
     pub fn with_friction(self, friction: f64) -> Self {
         self.with_hinge(|hinge| Hinge { friction, ..hinge })
     }
 
-    /// A weld that an impact with a larger impulse in N s breaks. Of other joints nothing changes.
+    /// Makes a weld break at impacts with a larger impulse in N s. Does not change other joints.
     #[must_use]
     pub fn that_breaks_at(self, breaks_at: f64) -> Self {
         let is_weld = matches!(self.kind, JointKind::Weld { .. });
@@ -147,7 +149,7 @@ pub(super) struct Bond {
     pub(super) joint: Joint,
     /// The axes of the two frames.
     axes: [DMat3; 2],
-    /// Distance from the anchor at which what turns is held, in m.
+    /// Distance from the anchor at which rotations are held, in m.
     pub(super) lever: f64,
     /// The points that are held together, in the axes of the frames.
     pub(super) points: Vec<DVec3>,
@@ -159,19 +161,19 @@ pub(super) struct Bond {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Joints {
     pub(super) bonds: Vec<Bond>,
-    /// Those of each body; empty where there is none at all.
+    /// The joints of each body; empty if the world has none at all.
     of: Vec<Vec<usize>>,
 }
 
-/// Most joints of one body: which of them are torn is noted in as many bits.
+/// Maximum number of joints of one body: one bit each notes whether it is torn.
 const MOST_JOINTS: usize = 32;
 
-/// Largest range of a hinge with limits, in radians. Default 6: beyond its ends there is room enough to tell which was
-/// passed.
+/// Largest range of a hinge with limits, in radians. Default 6: this leaves enough room outside the range to tell which
+/// limit was passed.
 const WIDEST: f64 = 6.0;
 
 impl Joints {
-    /// Bodies that are joined.
+    /// Pairs of bodies that are joined.
     pub(super) fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
         self.bonds.iter().filter_map(|b| Some([b.joint.body, b.joint.other?]))
     }
@@ -203,8 +205,8 @@ pub(super) struct Row {
     pub(super) b: Option<usize>,
 }
 
-/// Where a row of a joint is: arms from the two centres of gravity to its points, what is between these, and the
-/// direction of a row that is about one direction only.
+/// Where a row of a joint is: arms from the two centres of gravity to its points, the offset between these points, and
+/// the direction, for a row that has only one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seat {
     pub(super) arms: [DVec3; 2],
@@ -227,7 +229,7 @@ impl Bond {
         Seat { arms, apart: (poses[0].x + arms[0]) - (poses[1].x + arms[1]), normal: DVec3::ZERO }
     }
 
-    /// The hinge's angle: near the middle of its limits, where it has any.
+    /// The hinge's angle; if it has limits, the value nearest to their middle.
     pub(super) fn angle(&self, poses: [&Pose; 2]) -> f64 {
         let [a, b] = [0, 1].map(|k| poses[k].r * self.axes[k]);
         let angle = math::atan2(a.x_axis.dot(b.y_axis), a.x_axis.dot(b.x_axis));
@@ -241,8 +243,8 @@ impl Bond {
         }
     }
 
-    /// A point at the lever from the hinge's axis that moves with its body, on both: `normal` is the way along which
-    /// the angle grows.
+    /// A point at the lever from the hinge's axis, as a point of both bodies: `normal` is the direction in which the
+    /// angle grows.
     pub(super) fn lever(&self, poses: [&Pose; 2]) -> Seat {
         let axes = poses[0].r * self.axes[0];
         let arm = self.anchors(poses)[0] + axes.x_axis * self.lever;
@@ -275,12 +277,11 @@ impl Bond {
 }
 
 impl Rigid {
-    /// Adds a joint; its number, for errors.
+    /// Adds a joint. Returns its number, for errors.
     ///
     /// # Errors
-    /// [`WorldError::BadJoint`] naming the joint and what is wrong with it: a body that is not there, the same body
-    /// twice, nothing that can move, numbers that are none, limits without an angle between them, more than 32 joints
-    /// of a body.
+    /// [`WorldError::BadJoint`] naming the joint and its fault: a body that is not there, the same body twice, no body
+    /// that can move, numbers that are not finite, limits with no angle between them, or more than 32 joints on a body.
     pub fn join(&mut self, joint: Joint) -> Result<usize, WorldError> {
         let number = self.joints.bonds.len();
         let bad = |field, value, expected| Err(WorldError::BadJoint { joint: number, field, value, expected });
@@ -345,13 +346,13 @@ impl Rigid {
         Ok(number)
     }
 
-    /// Whether a joint, by its number, still holds in a state: until it breaks, or a body of it is gone.
+    /// Whether the joint with this number still holds in a state: until it breaks, or one of its bodies is gone.
     #[must_use]
     pub fn is_held(&self, joint: usize, state: &State<Turning>) -> bool {
         joint < self.joints.bonds.len() && self.holds(joint, &state.bodies)
     }
 
-    /// Whether a joint still holds: it does until it breaks, or a body of it is gone.
+    /// Whether a joint still holds: until it breaks, or one of its bodies is gone.
     pub(super) fn holds(&self, joint: usize, bodies: &[Turning]) -> bool {
         let bond = &self.joints.bonds[joint];
         let own = &bodies[bond.joint.body];
@@ -380,7 +381,7 @@ impl Rigid {
         })
     }
 
-    /// Whether joints of a start fit its bodies.
+    /// Whether the joints fit the bodies at the start.
     pub(super) fn check_joints(&self, bodies: &[Turning]) -> Result<(), WorldError> {
         for (number, bond) in self.joints.bonds.iter().enumerate() {
             let bad = |field, value, expected| Err(WorldError::BadJoint { joint: number, field, value, expected });
@@ -394,7 +395,7 @@ impl Rigid {
             }
             let poses = [&pose, &to];
             let worst = (0..bond.points.len()).map(|p| bond.point(p, poses).apart.length()).fold(0.0, f64::max);
-            // The arms may be long, and what they are turned by has been rounded.
+            // The arms may be long, and their orientations have been rounded.
             let arms = bond.anchors(poses).map(DVec3::length);
             if worst > OVERLAP * (self.specs[body].size + arms[0].max(arms[1])) {
                 let (field, expected) = if kind == JointKind::Ball {

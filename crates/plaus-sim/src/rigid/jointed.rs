@@ -1,13 +1,14 @@
-//! Joints within the steps of lasting contact: rows beside those of contacts, which hold whatever the load.
+//! Joints within the steps of lasting contact: rows beside those of contacts, which hold under any load.
 //!
-//! The impulses of the first kick are such that what a joint holds together is together where the drift ends, to
-//! [`CLOSED`] of the gap at which bodies touch, wherever it was before: so nothing drifts apart, however long. Those of
-//! the second kick leave it no velocity. That is RATTLE (Andersen, J. Comput. Phys. 52 (1983)), of second order and
-//! symplectic as long as steps are even; both bodies get their impulses at one point, so linear and angular momentum
-//! stay to rounding. Half way through a step what is held is apart by the sag of a curve, `(ω h)²/8` of its arm.
+//! The impulses of the first kick bring together what a joint holds at the end of the drift, to within [`CLOSED`] of
+//! the gap at which bodies touch, wherever it was before. So nothing drifts apart, however long the run. The impulses
+//! of the second kick remove the velocity between the joint's points. This method is RATTLE (Andersen, J. Comput. Phys.
+//! 52 (1983)), of second order, and symplectic as long as steps are equal. Both bodies get their impulses at one point,
+//! so linear and angular momentum stay constant to rounding. Half way through a step, the points of a joint are apart
+//! by the sag of a curve, `(ω h)²/8` of its arm.
 //!
-//! A hinge holds two points of its axis, a weld three; their redundant parts share the load. Dry friction is a row
-//! along one direction at a lever from the axis, of limited size; a limit is a contact without friction there.
+//! A hinge holds two points of its axis, a weld three; their redundant parts share the load. Dry friction is a row of
+//! limited size along one direction, at a lever from the axis. A limit is a contact without friction there.
 
 use super::Rigid;
 use super::body::{Pose, Turning};
@@ -17,22 +18,22 @@ use super::scratch::{KEEP, PUSH, Place, RigidScratch, TOUCHING};
 use super::touch::to_middle;
 use glam::{DMat3, DVec3};
 
-/// Distance that a step may leave between what a joint holds together, over the gap at which its bodies touch. Default
-/// 1e-3; what the solver leaves is below.
+/// Distance that a step may leave between the points that a joint holds together, over the gap at which its bodies
+/// touch. Default 1e-3; the solver's error is smaller.
 const CLOSED: f64 = 1e-3;
 
-/// Passes over the end of a step with joints: each leaves about half of the angle that a step turns by.
+/// Passes over the end of a step with joints: each leaves about half of the angle that the step turns by.
 pub(super) const PASSES_OF_JOINTS: usize = 12;
 
-/// Length of a step with joints over that of other steps. Default 0.25: half way through a step at the standard preset
-/// a joint is apart by about a thousandth of its arm.
+/// Length of a step with joints over that of other steps. Default 0.25: at the standard preset, a joint is then apart
+/// by about a thousandth of its arm half way through a step.
 pub(super) const SWING: f64 = 0.25;
 
-/// How often a step that would pass a limit is aimed at it anew.
+/// How often a step that would pass a limit is aimed at the limit again.
 const AIMS: usize = 8;
 
-/// How near to where a limit counts as touched a step aims, over the gap. Default 0.5: below [`KEEP`], so that it is
-/// touched then.
+/// How near to a limit a step aims, over the gap. Default 0.5: below [`KEEP`], so that the limit then counts as
+/// touched.
 const AIMED: f64 = 0.5;
 
 /// A row of a joint between members, or a member and the fixed world.
@@ -46,7 +47,7 @@ pub(super) fn row_contact(members: &[Member], row: &Row, seat: &Seat, hold: Hold
 }
 
 impl Bond {
-    /// Where a row is with its bodies in these places; both get their impulse at one point.
+    /// Where a row is when its bodies are in these places; both get their impulse at one point.
     pub(super) fn seat(&self, part: Part, poses: [&Pose; 2]) -> Seat {
         let seat = match part {
             Part::Point(k) => Seat { normal: DVec3::Z, ..self.point(k, poses) },
@@ -59,7 +60,7 @@ impl Bond {
         Seat { arms: to_middle(seat.arms, poses.map(|p| p.x)), ..seat }
     }
 
-    /// What impulses a row may have within so many seconds.
+    /// Which impulses a row may have within this many seconds.
     pub(super) fn hold(&self, part: Part, time: f64) -> Hold {
         match part {
             Part::Point(_) => Hold::Point,
@@ -68,7 +69,7 @@ impl Bond {
         }
     }
 
-    /// How far a limit is, and how fast it comes nearer or goes away, at the lever; and its restitution.
+    /// The distance to a limit and its rate of change, at the lever, and the restitution there.
     pub(super) fn stop(&self, is_high: bool, poses: [&Pose; 2]) -> (f64, f64, f64) {
         let rate = self.rate(poses) * self.lever;
         let restitution = self.hinge().map_or(0.0, |h| h.restitution);
@@ -82,7 +83,7 @@ impl Rigid {
         self.specs[bond.joint.body].gap
     }
 
-    /// Rebound at its lever up to which a joint stays at a limit.
+    /// Rebound speed at its lever up to which a joint stays at a limit.
     pub(super) fn stop_settle_speed(&self, bond: &Bond, restitution: f64) -> f64 {
         let settle = (self.accuracy.settle * (1.0 - restitution)).max((2.0 * self.accuracy.gap).sqrt());
         settle * self.specs[bond.joint.body].speed
@@ -96,7 +97,7 @@ impl RigidScratch {
     }
 
     /// Finds the rows of the joints that hold a group's bodies: all of their points, their brakes, and the limits that
-    /// stay touched. Those that do not are left in `stops`.
+    /// stay touched. All other limits are put in `stops`.
     pub(super) fn gather_joints(&mut self, world: &Rigid, group: &[u32], bodies: &[Turning]) {
         let (mut rows, mut stops) = (std::mem::take(&mut self.rows), std::mem::take(&mut self.stops));
         let at = |k: usize| self.places.iter().position(|p| p.body == k);
@@ -123,13 +124,13 @@ impl RigidScratch {
         (self.rows, self.stops) = (rows, stops);
     }
 
-    /// How far at most the ends of a step may be off where joints hold, in m.
+    /// How large the error at the ends of a step may be where joints hold, in m.
     pub(super) fn closed(&self, world: &Rigid) -> f64 {
         let gap = |row: &Row| CLOSED * world.stop_gap(&world.joints.bonds[row.joint]);
         self.rows.iter().map(gap).fold(f64::INFINITY, f64::min)
     }
 
-    /// Adds the rows of joints to the contacts of members at their starts; brakes act for so many seconds.
+    /// Adds the rows of joints to the contacts of members at their starts; brakes act for `time` seconds.
     pub(super) fn prepare_joints(&mut self, world: &Rigid, time: f64) {
         for row in &self.rows {
             let bond = &world.joints.bonds[row.joint];
@@ -138,8 +139,8 @@ impl RigidScratch {
         }
     }
 
-    /// Says what each row is to bring about over a drift of `h` seconds whose ends are `ends`: that its points meet
-    /// there. By how much, over what is allowed, they do not.
+    /// Says what each row has to achieve over a drift of `h` seconds that ends at `ends`: its points must meet there.
+    /// Returns the largest error, over the allowed one.
     pub(super) fn aim_joints(&mut self, world: &Rigid, h: f64, ends: impl Fn(&Place, &Member) -> Pose) -> f64 {
         let first = self.contacts.len() - self.rows.len();
         let mut worst = 0.0_f64;
@@ -170,8 +171,8 @@ impl RigidScratch {
         worst
     }
 
-    /// A row of a joint at the end of a drift, and whether it goes on: a limit does that is still touched. `time` is
-    /// how long a brake acts.
+    /// A row of a joint at the end of a drift, and whether it goes on: a limit goes on if it is still touched. `time`
+    /// is how long a brake acts.
     pub(super) fn row_at_end(&self, world: &Rigid, row: &Row, time: f64) -> (Contact, bool) {
         let bond = &world.joints.bonds[row.joint];
         let poses = self.poses(row, |p| &p.end);
@@ -183,8 +184,8 @@ impl RigidScratch {
         (contact, goes_on)
     }
 
-    /// A step that ends where the first of the limits is reached that it would pass. Within a step the room is nearly a
-    /// parabola of time.
+    /// Shortens a step so that it ends at the first limit that it would pass. Within a step, the room is nearly a
+    /// parabola in time.
     pub(super) fn until_stop(&mut self, world: &Rigid, mut h: f64) -> f64 {
         if self.stops.is_empty() {
             return h;
@@ -201,7 +202,7 @@ impl RigidScratch {
                 if end >= 0.0 {
                     continue;
                 }
-                // room + rate t + bend t² is the aim, for the last time before the end.
+                // room + rate t + bend t² reaches the aim, for the last time before the end.
                 let (room, bend) = (room - aim, ((end - room) / h - rate) / h);
                 let root = (rate * rate - 4.0 * bend * room).max(0.0).sqrt();
                 let late = if rate > 0.0 { -(rate + root) / (2.0 * bend) } else { 2.0 * room / (root - rate) };
@@ -215,7 +216,7 @@ impl RigidScratch {
         h
     }
 
-    /// Notes what the impulses of joints between two bodies add to their angular momenta on the way.
+    /// Notes what the impulses of joints between two bodies add to their angular momenta during the step.
     pub(super) fn pass_joints(&self, bodies: &mut [Turning], h: f64) {
         let first = self.contacts.len() - self.rows.len();
         for ((c, early), row) in self.contacts[first..].iter().zip(&self.firsts[first..]).zip(&self.rows) {

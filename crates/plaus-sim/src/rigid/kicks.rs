@@ -12,7 +12,7 @@ use super::touch::{PairTouch, Touch, to_middle};
 use crate::shape::Feeler;
 use glam::DVec3;
 
-/// A step that is under way.
+/// A step in progress.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Step {
     enough: Enough,
@@ -20,8 +20,8 @@ pub(super) struct Step {
 }
 
 impl RigidScratch {
-    /// The first half of a step of `h` seconds from the starts: a kick and the drift, whose ends are left in `places`.
-    /// It is to be done with where the second half, whose velocities are left in `members`, is worth doing.
+    /// The first half of a step of `h` seconds from the starts: a kick, and a drift whose ends are left in `places`.
+    /// Call the second half, whose velocities are left in `members`, only if it is worth doing.
     pub(super) fn drift(&mut self, world: &Rigid, h: f64) -> Step {
         let (push, fine) = (world.strength * h, self.fine(world).min(self.closed(world)) / h);
         let enough = Enough::new((world.accuracy.sweep_tolerance * push).min(fine), push);
@@ -31,7 +31,7 @@ impl RigidScratch {
             if spec.is_driven() { (v + p.drive * (0.5 * h), w) } else { spec.kicked(&p.start.r, [v, w], 0.5 * h) }
         });
         self.aim(world, h);
-        // The last step's forces are a good guess.
+        // The last step's forces are a good initial guess.
         for (c, &load) in self.contacts.iter_mut().zip(&self.loads) {
             if load != DVec3::ZERO {
                 c.impulse = load * (0.5 * h);
@@ -58,8 +58,8 @@ impl RigidScratch {
         step
     }
 
-    /// Says what each contact is to bring about over a drift of `h` seconds, and guesses by how much its mean velocity
-    /// will differ from that at the start.
+    /// Says what each contact has to achieve over a drift of `h` seconds, and guesses by how much its mean velocity
+    /// will differ from its velocity at the start.
     fn aim(&mut self, world: &Rigid, h: f64) {
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
             let (p, spec) = (&self.places[*k], &world.specs[self.places[*k].body]);
@@ -90,8 +90,8 @@ impl RigidScratch {
         }
     }
 
-    /// Learns from where the drift leads how the mean velocities at the contacts differ from those at its start.
-    /// Whether that is not near enough to what they were to be.
+    /// Learns from the end of the drift how the mean velocities at the contacts differ from those at its start. Returns
+    /// whether they are still too far from their targets.
     fn correct(&mut self, world: &Rigid, h: f64) -> bool {
         let mut off = false;
         for (c, (k, t)) in self.contacts.iter_mut().zip(&self.touches) {
@@ -116,8 +116,8 @@ impl RigidScratch {
         off | (!self.rows.is_empty() && self.aim_joints(world, h, |p, _| p.end) > 1.0)
     }
 
-    /// A step whose impulses all come at its start, plastic, wherever the drift leads then: what is left where bodies
-    /// are so deep in an edge that no drift goes the way that its start says. Contacts only take energy.
+    /// A step whose impulses all act at its start, plastic, wherever the drift then leads. It is the last resort when
+    /// bodies are so deep in an edge that no drift goes where its start says. Contacts only take energy.
     pub(super) fn give_in(&mut self, world: &Rigid, h: f64) {
         self.prepare(world, h, |spec, p| {
             let (v, w) = (p.start.v, p.start.w);
@@ -134,11 +134,11 @@ impl RigidScratch {
         self.firsts.clone_from(&self.contacts);
     }
 
-    /// The second kick, over the points that still touch at the ends. Whether energy is kept.
+    /// The second kick, over the points that still touch at the ends. Returns whether energy is kept.
     pub(super) fn second_kick(&mut self, world: &Rigid, step: &Step) -> bool {
         for (m, p) in self.members.iter_mut().zip(&self.places) {
             let spec = &world.specs[p.body];
-            // What goes its own way has had half of its velocity's change by then.
+            // By then, a driven body has had half of its change of velocity.
             let (v, w) = (p.end.v, p.end.w);
             let (v, w) =
                 if spec.is_driven() { (v + (v - p.start.v), w) } else { spec.kicked(&p.end.r, [v, w], 0.5 * step.h) };
@@ -184,7 +184,7 @@ impl RigidScratch {
                 next.impulse = old.impulse;
                 next.push(&mut self.members, next.impulse);
             } else {
-                // It has left: no impulse, whatever its velocity.
+                // The point has left: no impulse, whatever its velocity.
                 next.target = -f64::MAX;
             }
             self.contacts[c] = next;
@@ -192,7 +192,7 @@ impl RigidScratch {
         solve(&mut self.contacts, &mut self.members, &mut self.newton, step.enough, world.accuracy.sweeps);
         let mut firsts = std::mem::take(&mut self.firsts);
         for (first, (ab, _)) in firsts[self.touches.len()..].iter_mut().zip(&self.pairs) {
-            // What is taken back of an impulse between bodies that have moved on acts on both at one point too.
+            // Taking back an impulse between bodies that have moved on acts on both at one point too.
             first.arms = to_middle(first.arms, ab.map(|k| self.places[k].end.x));
         }
         let is_kept = self.keep_energy(world, &mut firsts, step.enough);
@@ -202,7 +202,7 @@ impl RigidScratch {
 }
 
 impl Rigid {
-    /// The ball at a point of contact, where it is fixed in its body: not a point of a ring, nor of an edge.
+    /// The ball at a point of contact if it is fixed in its body, so not a point of a ring or of an edge.
     fn fixed_feeler(&self, body: usize, t: &Touch) -> Option<&Feeler> {
         let (spec, point) = (&self.specs[body], t.point()?);
         let moves = spec.is_ball || spec.ring_of(point).is_some() || self.is_at_ledge(body, t);
@@ -212,11 +212,11 @@ impl Rigid {
 
 impl Touch {
     /// Mean velocity at the point over a drift of `h` seconds to `after`: along the normal that of the gap, across it
-    /// that with which it slips.
+    /// the velocity of the slip.
     fn mean_velocity(&self, after: &Self, feeler: Option<&Feeler>, [begin, end]: [&Pose; 2], h: f64) -> DVec3 {
         let n = self.normal;
         let mean = match feeler {
-            // A ball fixed in the body: its middle's way is known, and it rolls.
+            // A ball fixed in the body: the path of its centre is known, and it rolls.
             Some(f) => {
                 let middle = |t: &Self| t.arm + t.normal * f.radius;
                 let way = end.x - begin.x + (middle(after) - middle(self));

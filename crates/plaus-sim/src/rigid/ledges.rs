@@ -1,4 +1,4 @@
-//! Polyhedra at the edges and corners of boxes, where no corner of theirs need be.
+//! Polyhedra at the edges and corners of boxes, where the polyhedron need not have a corner.
 //!
 //! A box is a polyhedron that stands still, so first contact and points of contact are those of two polyhedra. The
 //! points of a body on a box are numbered: its corners, then the box's corners on each of its faces, edges and corners,
@@ -32,7 +32,7 @@ const CORNERS: usize = 8;
 const EDGES: usize = 12;
 
 impl Ledge {
-    /// Of the parts of a world those that are boxes, where there are polyhedra that may meet them.
+    /// The parts of a world that are boxes, if there are polyhedra that may meet them.
     pub(super) fn all(world: &RigidWorld) -> Result<Vec<Option<Self>>, WorldError> {
         let has_hulls = world.bodies.iter().any(|b| matches!(b.shape, Shape::Hull(_)));
         let of = |(k, part): (usize, &Part)| match part {
@@ -88,7 +88,7 @@ fn number(core: &Polyhedron, feature: Feature) -> u16 {
     number as u16
 }
 
-/// The point of that number, if it is not a corner of the body.
+/// The point with that number, if it is not a corner of the body.
 fn feature(core: &Polyhedron, number: u16) -> Option<Feature> {
     let [corners, faces, edges] = counts(core);
     let k = usize::from(number).checked_sub(corners)?;
@@ -118,8 +118,8 @@ impl Rigid {
         }
     }
 
-    /// Whether a point of a body on a part is not fixed in the body: a corner of a box, where edges cross, or whatever
-    /// pieces touch with.
+    /// Whether a point of a body on a part is not fixed in the body: a corner of a box, a crossing of edges, or any
+    /// point at which pieces touch.
     pub(super) fn is_at_ledge(&self, index: usize, t: &Touch) -> bool {
         let Some(point) = t.point() else { return true };
         point >= self.specs[index].hull && self.ledge(index, t.part).is_some()
@@ -131,7 +131,7 @@ impl Rigid {
         let pair = ledge.pair(spec, pose)?;
         let feature = feature(&spec.core.as_ref()?.0, point)?;
         let out = match feature {
-            // Edges as lines know no side: that on which the box's own faces are.
+            // Edges, as lines, have no side: take the side on which the box's own faces are.
             Feature::Edges(_, j) => {
                 let [f, g] = ledge.core.edge(j).faces.map(|k| ledge.core.face(k).normal);
                 f + g
@@ -142,7 +142,7 @@ impl Rigid {
         Some(Touch::of_point(part, point, meeting.arms[0], meeting.normal, meeting.gap))
     }
 
-    /// Calls `each` for the points at edges and corners of a box that are within `within` of it.
+    /// Calls `each` for the points at edges and corners of a box with a gap of at most `within`.
     pub(super) fn for_ledge_touches(
         &self,
         index: usize,
@@ -173,7 +173,7 @@ impl Search<'_> {
         }
         let mut from = 0.0;
         if let Some(side) = farthest_side(bounds, body.path.x) {
-            // As for other bodies: the box is behind that side's plane.
+            // As for other bodies, the box is behind that side's plane.
             let Some((time, point)) = self.half_space(part, (side.normal, side.offset), Some((bounds, side.axis)))
             else {
                 return;
@@ -190,7 +190,7 @@ impl Search<'_> {
             specs: [spec, &ledge.spec],
             bodies: [body, &ledge.still],
             level: spec.gap,
-            // What lasts is known at the clock.
+            // Lasting contacts are known at the clock.
             from: start + if linked { 0.0 } else { from },
             until: start + self.until,
             linked,

@@ -130,7 +130,7 @@ impl Mechanics for Rigid {
 }
 
 impl Rigid {
-    /// Whether two bodies cannot meet now: both are at rest, go their own ways, or are joined.
+    /// Whether two bodies cannot meet now: both are at rest or driven, or they are joined.
     fn ignores(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> bool {
         bodies.iter().all(|b| b.phase == Phase::Rest)
             || pair.iter().all(|&k| self.specs[k].is_driven())

@@ -1,4 +1,4 @@
-//! When bodies that are met by their convex pieces first touch: each other, and what stands still.
+//! When bodies that meet others by their convex pieces first touch: each other, and fixed parts.
 
 use super::Rigid;
 use super::body::{Phase, Turning};
@@ -8,8 +8,8 @@ use super::still::Ground;
 use crate::scenery::Surface;
 
 impl Rigid {
-    /// First time in `[from, until]` at which pieces of two bodies touch while approaching. Of bodies in lasting
-    /// contact (`linked`) only at points that are not part of it yet.
+    /// First time in `[from, until]` at which pieces of two bodies touch while approaching. For bodies in lasting
+    /// contact (`linked`), only points that are not yet part of it count.
     pub(super) fn first_of_pieces(
         &self,
         [i, j]: [usize; 2],

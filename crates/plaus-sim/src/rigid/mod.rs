@@ -2,53 +2,56 @@
 //! compounds of them among planes, boxes, tables with a spline surface, solids at any angle and triangle meshes.
 //!
 //! A body in the air is on a parabola and rotates freely, both in closed form; a ball on level ground slides and rolls
-//! in closed form. A body touches when the first of its [feelers](crate::shape::Feeler) comes within half of
-//! `accuracy.gap` of a part. An impact at one point follows Stronge's law. Points of one body, or of one pair, that are
-//! struck at one instant are struck at once (Moreau's law), so their order plays no part; several pairs are struck one
-//! after the other, as an impact goes on from body to body: a cradle hands it on. A contact whose rebound would be
-//! slower than `accuracy.settle`, or not higher than `accuracy.gap`, lasts: the body, with all bodies in lasting
+//! in closed form. A body touches a part when the first of its [feelers](crate::shape::Feeler) comes within half of
+//! `accuracy.gap` of it. An impact at one point follows Stronge's law. Points of one body, or of one pair, that are
+//! struck at one instant are resolved at once (Moreau's law), so their order plays no part. Several pairs are struck
+//! one after the other, as an impact passes from body to body: so a cradle passes it on. A contact lasts if its rebound
+//! would be slower than `accuracy.settle`, or no higher than `accuracy.gap`. The body, with all bodies in lasting
 //! contact with it, then moves in steps whose impulses are found together, until it leaves the ground or is at rest.
 //!
-//! What holds at every preset: contacts without friction change no momentum along their plane, linear or angular;
-//! friction stays within Coulomb's bound, but for the velocity below `accuracy.rest_speed` that rest takes; impacts
-//! make no energy. Tests throw random bodies for each (`tests/laws_*.rs`), each with a wrong twin that they catch.
+//! At every preset, contacts without friction change no momentum along their plane, linear or angular. Friction stays
+//! within Coulomb's bound, except for the velocity below `accuracy.rest_speed` that is removed at rest. Impacts make no
+//! energy. Tests throw random bodies for each of these laws (`tests/laws_*.rs`), each with a wrong twin that they
+//! catch.
 //!
-//! What is approximate: a body of revolution is a row of balls and rings (see [`crate::shape::Revolution`]); bumps of a
-//! table are felt at the feelers only ([`RigidWorld::skin`]); half way through a step of lasting contact corners may be
-//! in what they touch, two cuboids in each other by about a thousandth of their size; the direction of a slip within an
-//! impact and the steps of lasting contact follow the preset, with an error that falls as the square of the step.
-//! Within a step energy may rise by that error: about 1e-3 of a body's weight times its size at the standard preset,
-//! 1e-6 at reference. A ring is felt at its lowest point, in lasting contact also at three others of the rim, so that
-//! it may be some millimetres in the edge of a box.
+//! Some things are approximate. A body of revolution is a row of balls and rings (see [`crate::shape::Revolution`]).
+//! Bumps of a table are felt at the feelers only ([`RigidWorld::skin`]). Half way through a step of lasting contact,
+//! corners may be inside what they touch; for two cuboids the overlap is about a thousandth of their size. The
+//! direction of a slip within an impact and the steps of lasting contact follow the preset, with an error that falls as
+//! the square of the step. Within a step, energy may rise by that error: about 1e-3 of a body's weight times its size
+//! at the standard preset, 1e-6 at reference. A ring is felt at its lowest point, in lasting contact also at three
+//! other points of the rim, so it may be some millimetres inside the edge of a box.
 //!
-//! Every shape meets every other; which row of the table serves a pair is in `rows.rs`. A convex polyhedron touches
-//! boxes with faces and edges too, not only with its corners as a cuboid does. One that is wedged between boxes so that
-//! each pushes it into the other may find no rest: it sinks, by a fifth of its size at worst in the tests, until its
-//! run is out of events.
+//! Every shape meets every other; `rows.rs` says which row of the table serves a pair. A convex polyhedron touches
+//! boxes with its faces and edges too, not only with its corners as a cuboid does. A polyhedron that is wedged between
+//! boxes, so that each pushes it into the other, may find no rest. It sinks, by a fifth of its size at worst in the
+//! tests, until its run has no events left.
 //!
-//! Convex pieces in lasting contact are looked at eight times within a step for points that are not part of it, and
-//! beside a triangle that a body hangs below by each hundredth of its size: so deep a new point may be seen. Turning
-//! bodies on meshes and in corners are young: in the example `shapes` a cone left a box of triangles in 1 of 6 throws,
-//! and a coin was seen to lie 3.7 of its half thicknesses deep in planes where three of them meet.
+//! Convex pieces in lasting contact are examined eight times within a step for points that are not part of the contact.
+//! Beside a triangle whose plane it is below, a body is examined each time it has moved a hundredth of its size. So a
+//! new point may be as deep as the body moves between two looks before it is seen. Turning bodies on meshes and in
+//! corners are a recent addition: in the example `shapes`, a cone left a box of triangles in 1 of 6 throws, and a coin
+//! was seen to lie 3.7 times half its thickness deep in planes, where three of them meet.
 //!
 //! Rolling and spinning resistance act in the steps of lasting contact on fixed parts, with the distance of the point
 //! from the centre of gravity as the radius; not between bodies, nor on a ball that glides: that goes on until it meets
 //! something or the run ends.
 //!
-//! A body may go its own way by keyframes ([`Rigid::drive`]): to contact it has no inverse mass, nothing that stands
-//! still holds it, and energy is not kept in a group that it is part of. Per body there are also a constant force and
-//! torque, damping, and more or less gravity ([`Rigid::act_on`]), and sleep until it is hit ([`Rigid::put_to_sleep`]).
-//! Between two runs bodies may be kicked, taken out and put in ([`Rigid::kick`], [`Rigid::remove`], [`Rigid::put`]).
+//! A body may be driven by keyframes ([`Rigid::drive`]). In contact its inverse mass is zero, no fixed part stops it,
+//! and energy is not conserved in a group that it belongs to. Each body may also have a constant force and torque,
+//! damping, and more or less gravity ([`Rigid::act_on`]), and may sleep until it is hit ([`Rigid::put_to_sleep`]).
+//! Between two runs, bodies may be kicked, taken out and put in ([`Rigid::kick`], [`Rigid::remove`], [`Rigid::put`]).
 //!
 //! Joints hold bodies to each other or to the fixed world ([`Rigid::join`]): ball joints, hinges with limits and dry
-//! friction, welds that may break at an impulse. What they hold moves in the steps of lasting contact, four times as
-//! short, whose error falls as the square of the step: the period of a pendulum of 120° is off by 4e-4, 1e-4, 7e-6 and
-//! 3e-7 of itself at the four presets. Between two steps joints are apart by less than a thousandth of the gap at which
-//! bodies touch, however long a run is; half way through a step by the sag of its curve, at most a thousandth of the
-//! joint's arm at the standard preset. Linear and angular momentum are kept to rounding, energy to the square of the
-//! step, up and down: it is not guarded where there are joints, and it does not creep as long as steps are even. An
-//! impact is resolved with all that hangs together, at all its points by Newton's and Coulomb's laws; other contacts of
-//! the same bodies are struck next. A body with joints is not put to sleep, and not put in anew.
+//! friction, welds that may break at an impulse. Bodies with joints move in steps of lasting contact that are four
+//! times as short, with an error that falls as the square of the step: the relative error of the period of a pendulum
+//! of 120° is 4e-4, 1e-4, 7e-6 and 3e-7 at the four presets. Between two steps, the points of a joint are apart by less
+//! than a thousandth of the gap at which bodies touch, however long a run is; half way through a step, by the sag of
+//! the step's curve, at most a thousandth of the joint's arm at the standard preset. Linear and angular momentum are
+//! conserved to rounding. Energy is conserved to the square of the step, up and down: it is not guarded where there are
+//! joints, and it does not creep as long as steps are equal. An impact is resolved with all bodies that hang together,
+//! at all its points, by Newton's and Coulomb's laws; other contacts of the same bodies are struck next. A body with
+//! joints cannot be put to sleep, nor put in anew.
 //!
 //! ```
 //! use glam::DVec3;
@@ -158,7 +161,7 @@ impl BodySpec {
 pub struct RigidWorld {
     /// The bodies.
     pub bodies: Vec<BodySpec>,
-    /// What stands still.
+    /// The fixed parts.
     pub parts: Vec<Part>,
     /// Friction and restitution per pair of materials.
     pub laws: Laws,
@@ -166,25 +169,24 @@ pub struct RigidWorld {
     pub gravity: DVec3,
     /// Tolerances.
     pub accuracy: Accuracy,
-    /// Distance between points of a body's skin that are looked at over a table, over the table's grid spacing. Default
-    /// 0.5; usual 0.25–1; a bump between them reaches into the body by up to about `curvature · (skin · spacing)²/8`;
-    /// the cost grows as its inverse square.
+    /// Distance between points of a body's skin that are tested over a table, over the table's grid spacing. Default
+    /// 0.5; usual 0.25–1. A bump between such points reaches into the body by up to about
+    /// `curvature · (skin · spacing)²/8`; the cost grows as the inverse square of this distance.
     pub skin: f64,
-    /// Height in m below which a body whose centre of gravity is found there, at one of its events, is gone: a pit.
-    /// `-∞` for none.
+    /// Height in m of a pit: a body is gone if, at one of its events, its centre of gravity is below it. `-∞` for none.
     pub sink: f64,
     /// When a run ends, in s.
     pub duration: f64,
 }
 
-/// A checked world with what follows from it.
+/// A checked world, with quantities derived from it.
 #[derive(Debug, Clone)]
 pub struct Rigid {
     specs: Vec<Spec>,
     parts: Vec<Part>,
-    /// Those parts that are boxes, as polyhedra see them.
+    /// The parts that are boxes, as polyhedra see them.
     ledges: Vec<Option<Ledge>>,
-    /// Parts as bodies meet them by their pieces; empty where none do.
+    /// Parts as bodies meet them by their pieces; empty if none do.
     stills: Vec<Still>,
     joints: Joints,
     laws: Laws,
@@ -245,11 +247,11 @@ impl Rigid {
         })
     }
 
-    /// Has a body go its own way from time 0 on, whatever it meets: others feel it with the velocity that it has. Its
-    /// start counts for nothing then, nor do its mass, gravity, and what stands still.
+    /// Lets keyframes drive a body from time 0 on, whatever it meets: others feel it with its velocity. Its start then
+    /// has no effect, nor do its mass, gravity, and fixed parts.
     ///
     /// # Errors
-    /// [`WorldError::BadKey`] naming the body and the key whose numbers are none, or whose time does not come after
+    /// [`WorldError::BadKey`] naming the body and a key whose numbers are not finite, or whose time is not later than
     /// that of the key before; [`WorldError::BadNumber`] for a body that is not there.
     pub fn drive(&mut self, body: usize, keys: &Keyframes) -> Result<(), WorldError> {
         let Some(spec) = self.specs.get(body) else {
@@ -277,8 +279,8 @@ impl Rigid {
     /// A state in which every body waits for its release.
     ///
     /// # Errors
-    /// [`WorldError`] naming the body whose start is not finite, or that overlaps a part or another body released at
-    /// the same time.
+    /// [`WorldError`] naming a body whose start is not finite, or that overlaps a part or another body released at the
+    /// same time.
     pub fn state(&self, starts: &[Start]) -> Result<State<Turning>, WorldError> {
         if starts.len() != self.specs.len() {
             return Err(WorldError::WrongState { state: starts.len(), world: self.specs.len() });
@@ -342,7 +344,7 @@ impl Rigid {
     /// Runs a state until `until` seconds, the end of the world's duration, rest, or the observer's stop.
     ///
     /// # Errors
-    /// [`WorldError::BadControlPoint`] where a field of a table was given a value that is not finite or out of its
+    /// [`WorldError::BadControlPoint`] if a field of a table was given a value that is not finite or is out of its
     /// range; the run stops there.
     pub fn run(
         &self,
@@ -364,7 +366,7 @@ impl Rigid {
         &self.parts
     }
 
-    /// The fixed parts, to move control points. States that have started do not notice until their next event.
+    /// The fixed parts, for moving control points. States that have started do not notice until their next event.
     pub fn parts_mut(&mut self) -> &mut [Part] {
         &mut self.parts
     }
@@ -378,8 +380,8 @@ impl Rigid {
             - s.mass * s.pull.dot(body.path.x)
     }
 
-    /// How far apart the skins of two bodies are at their clocks, in m; negative where they overlap, then by the
-    /// shortest way out of it for balls, cuboids and polyhedra.
+    /// How far apart the skins of two bodies are at their clocks, in m. Negative where they overlap; for balls, cuboids
+    /// and polyhedra, it is then the shortest way out.
     #[must_use]
     pub fn gap(&self, pair: [usize; 2], bodies: [&Turning; 2]) -> f64 {
         let [a, b] = bodies.map(Turning::pose);
@@ -388,7 +390,7 @@ impl Rigid {
         if far > 0.0 { far } else { self.pair_touch(pair, [&a, &b]).gap }
     }
 
-    /// How far a body is in the fixed parts at its clock, in m, as its feelers have it; 0 where it is in none.
+    /// How deep a body is in the fixed parts at its clock, in m, according to its feelers; 0 if it is in none.
     #[must_use]
     pub fn depth(&self, index: usize, body: &Turning) -> f64 {
         self.deepest(index, body).map_or(0.0, |(_, depth)| depth)
@@ -401,7 +403,7 @@ impl Rigid {
     }
 }
 
-/// The first of some numbers that is infinite or none.
+/// The first of some numbers that is infinite or NaN.
 fn not_finite(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
     numbers.into_iter().find(|x| !x.is_finite())
 }

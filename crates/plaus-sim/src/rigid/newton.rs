@@ -1,18 +1,18 @@
 //! Impulses of several lasting contacts at once: Newton's method on the residual of Coulomb's law.
 //!
-//! With the velocity `w` that is not to be at a contact and a small compliance `ε`, impulses `f` obey unilateral
-//! contact and Coulomb's law exactly where `f = P(f − w/ε)`, `P` being the projection onto the cone that keeps the
-//! normal part (De Saxcé & Feng, Math. Comput. Modelling 28 (1998); Alart & Curnier, Comput. Methods Appl. Mech. Eng.
-//! 92 (1991)). Momentum ties velocities to impulses. Each round linearises `P` where it is, solves for all velocities
-//! at once, and takes the impulses that follow; the velocity left is then `ε` times the change of the impulses, so that
-//! redundant contacts, stacks and mass ratios of ten thousand converge in a few rounds where Gauss–Seidel needs
-//! thousands. The matrix is sparse ([`Blocks`]).
+//! With the velocity `w` to be removed at a contact and a small compliance `ε`, impulses `f` obey unilateral contact
+//! and Coulomb's law exactly where `f = P(f − w/ε)`. `P` is the projection onto the cone that keeps the normal part (De
+//! Saxcé & Feng, Math. Comput. Modelling 28 (1998); Alart & Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991)).
+//! Momentum ties velocities to impulses. Each round linearises `P` where it is, solves for all velocities at once, and
+//! takes the impulses that follow. The velocity left is then `ε` times the change of the impulses, so redundant
+//! contacts, stacks and mass ratios of ten thousand converge in a few rounds; Gauss–Seidel needs thousands. The matrix
+//! is sparse ([`Blocks`]).
 //!
-//! Where contacts slide or wedge, rounds may go to and fro without an end. Then a convex problem stands in: with the
-//! shift `µ |slip|` added to the velocity along the normal, and the shift held, the same law is the projection onto the
-//! cone itself (De Saxcé & Feng), impulses are those of least energy, and rounds with a line search always get there
-//! (Castro et al., IEEE Trans. Robot. 38 (2022)). The shift is renewed from the slip found until nothing changes any
-//! more (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)).
+//! Where contacts slide or wedge, rounds may alternate without end. Then a convex problem replaces the law. A shift
+//! `µ |slip|` is added to the velocity along the normal, and held. The same law is then the projection onto the cone
+//! itself (De Saxcé & Feng), the impulses are those of least energy, and rounds with a line search always converge
+//! (Castro et al., IEEE Trans. Robot. 38 (2022)). The shift is renewed from the slip found until nothing changes
+//! (Acary, Cadoux, Lemaréchal & Malick, Z. Angew. Math. Mech. 91 (2011)).
 
 use super::blocks::Blocks;
 use super::coulomb::{Contact, Hold, Member};
@@ -22,46 +22,45 @@ use glam::{DMat3, DVec3};
 /// larger ones take more rounds.
 const COMPLIANCE: f64 = 1e-7;
 
-/// The same of the first convex problem. Default 1e-2: with smaller values a round goes a shorter way.
+/// The same for the first convex problem. Default 1e-2: smaller values make the progress of each round smaller.
 const SOFT: f64 = 1e-2;
 
-/// By how much the next is stiffer, as it begins nearer to its solution. Default 0.1.
+/// Compliance of each next convex problem over the last: it starts nearer to its solution. Default 0.1.
 const STIFFER: f64 = 0.1;
 
-/// The stiffest. Default 1e-7.
+/// Least compliance of a convex problem. Default 1e-7.
 const STIFFEST: f64 = 1e-7;
 
-/// Change of velocity over the fastest body's speed that rounding makes. Default 1e-8: ten times its own, over the
+/// Change of velocity that rounding makes, over the fastest body's speed. Default 1e-8: ten times rounding, over the
 /// compliance.
 const NOISE: f64 = 1e-8;
 
-/// By how much velocities may break Coulomb's law, over the fastest body's speed. Default 1e-5: bodies that wedge each
-/// other leave some for ever.
+/// By how much velocities may break Coulomb's law, over the fastest body's speed. Default 1e-5: in bodies that wedge
+/// each other, some error never goes away.
 const LAWLESS: f64 = 1e-5;
 
 /// Rounds of the plain rule. Default 30: 19 of 20 problems take fewer than 12.
 const MOST_ROUNDS: usize = 30;
 
-/// Rounds after which the same contacts slide, stick and are open again, for them to count as going to and fro. Default
-/// 4.
+/// Rounds count as alternating if the same contacts slide, stick and are open again after at most this many. Default 4.
 const LONGEST_CYCLE: usize = 4;
 
-/// How often the shift is renewed. Default 8: each time leaves a tenth of what was missing.
+/// How often the shift is renewed. Default 8: each time leaves a tenth of the error.
 const SHIFTS: usize = 8;
 
-/// How much finer a convex problem is solved than the change from one shift to the next is to be. Default 0.1.
+/// Accuracy of a convex problem, over the change that is wanted from one shift to the next. Default 0.1.
 const STAND_IN_FINER: f64 = 0.1;
 
 /// Rounds for one convex problem. Default 30.
 const CONVEX_ROUNDS: usize = 30;
 
-/// How far a line search goes down: to this part of the slope. Default 0.1.
+/// A line search ends where the slope has fallen to this fraction. Default 0.1.
 const FLAT: f64 = 0.1;
 
-/// Places that a line search looks at.
+/// Maximum number of points that a line search tries.
 const LOOKS: usize = 12;
 
-/// Most bodies of a group that are solved in this way. Default 256.
+/// Maximum number of bodies in a group that is solved in this way. Default 256.
 const MOST_MEMBERS: usize = 256;
 
 /// Work space.
@@ -69,13 +68,13 @@ const MOST_MEMBERS: usize = 256;
 pub(crate) struct Newton {
     blocks: Blocks,
     inertia: Vec<DMat3>,
-    /// Velocities of the members that go with the contacts' impulses.
+    /// Velocities of the members that belong to the contacts' impulses.
     starts: Vec<[DVec3; 2]>,
-    /// What the cones make of each contact.
+    /// Each contact's projection onto its cone.
     projected: Vec<Projected>,
-    /// What is added to each contact's normal velocity where cones stand for Coulomb's law.
+    /// Added to each contact's normal velocity where cones replace Coulomb's law.
     shifts: Vec<f64>,
-    /// What counts as the mass of members that nothing moves.
+    /// The mass used for members that nothing moves.
     immovable: f64,
     /// Compliance of the convex problem.
     compliance: f64,
@@ -84,18 +83,18 @@ pub(crate) struct Newton {
     impulses: Vec<DVec3>,
 }
 
-/// How a contact answers to a change of its velocity.
+/// How a contact responds to a change of its velocity.
 #[derive(Debug, Clone, Copy)]
 struct Projected {
     impulse: DVec3,
-    /// Derivative of the impulse by the velocity, negative.
+    /// Derivative of the impulse with respect to the velocity, with its sign changed.
     stiffness: DMat3,
-    /// Direction of the friction where it slides.
+    /// Direction of the friction, if the contact slides.
     sliding: Option<DVec3>,
 }
 
 impl Projected {
-    /// What a contact answers that sticks.
+    /// The response of a contact that sticks.
     fn sticking(c: &Contact, impulse: DVec3, stiff: f64) -> Self {
         let (impulse, ways) = match c.hold {
             Hold::Brake(_) => (c.normal * impulse.dot(c.normal), outer(c.normal, c.normal)),
@@ -104,8 +103,8 @@ impl Projected {
         Self { impulse, stiffness: ways * stiff, sliding: None }
     }
 
-    /// Whether friction has turned round since `before`: the slip went through none then, and the contact is tried
-    /// without slip, or rounds might go to and fro for ever.
+    /// Whether friction has reversed since `before`. The slip then went through zero, and the contact is tried without
+    /// slip; otherwise rounds might alternate for ever.
     fn reverses(&self, before: &Self, c: &Contact) -> bool {
         let (Some(was), Some(is)) = (before.sliding, self.sliding) else { return false };
         was.dot(is) < 0.0 && c.held_slip.is_none_or(|s| is != -s)
@@ -119,8 +118,8 @@ impl Projected {
 }
 
 impl Newton {
-    /// Rounds until no body's velocity changes by more than `enough` in a last one, which is quadratic; where that
-    /// fails, until no velocity breaks Coulomb's law by more than `coarse`. Whether it is solved; however it ends,
+    /// Rounds until no body's velocity changes by more than `enough` in the last one; convergence is quadratic. If that
+    /// fails, until no velocity breaks Coulomb's law by more than `coarse`. Returns whether it is solved. In any case,
     /// impulses and velocities are consistent to rounding.
     pub(crate) fn solve(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64, coarse: f64) -> bool {
         if members.len() > MOST_MEMBERS {
@@ -156,7 +155,7 @@ impl Newton {
         false
     }
 
-    /// Newton's rounds on Coulomb's law; whether it is solved. If not, nothing is changed.
+    /// Newton's rounds on Coulomb's law. Returns whether it is solved; if not, nothing is changed.
     fn rounds(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64) -> bool {
         self.begin(contacts, members);
         let mut went = [0; LONGEST_CYCLE];
@@ -201,7 +200,7 @@ impl Newton {
         false
     }
 
-    /// Solves the convex problem whose shifts are those of the slips as they are; whether that succeeds. If not,
+    /// Solves the convex problem whose shifts are those of the present slips. Returns whether that succeeds; if not,
     /// nothing is changed.
     fn stand_in(&mut self, contacts: &mut [Contact], members: &mut [Member], compliance: f64, enough: f64) -> bool {
         self.begin(contacts, members);
@@ -232,7 +231,7 @@ impl Newton {
         false
     }
 
-    /// Back to the velocities that go with the contacts' impulses.
+    /// Returns to the velocities that belong to the contacts' impulses.
     fn go_back(&self, members: &mut [Member]) {
         for (m, start) in members.iter_mut().zip(&self.starts) {
             [m.v, m.w] = *start;
@@ -245,9 +244,9 @@ impl Newton {
         }
     }
 
-    /// How much of the change leads to where the energy is least along it, nearly.
+    /// The fraction of the change at which the energy along it is nearly least.
     fn line_search(&mut self, contacts: &[Contact], members: &[Member]) -> f64 {
-        // Energy along the change, of the members: its slope is `first + second · part`.
+        // Energy of the members along the change: its slope is `first + second · part`.
         let (mut first, mut second) = (0.0, 0.0);
         for (k, (m, inertia)) in members.iter().zip(&self.inertia).enumerate().filter(|(_, (m, _))| !is_immovable(m)) {
             let ([v, w], [v0, w0]) = (self.blocks.solution(k), self.starts[k]);
@@ -272,7 +271,7 @@ impl Newton {
         }
         let mut part = 1.0;
         for _ in 0..LOOKS {
-            // Where the chord is zero, but not nearer to an end than a tenth.
+            // Where the chord is zero, but at least a tenth away from both ends.
             let chord = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
             let margin = 0.1 * (high.0 - low.0);
             part = chord.clamp(low.0 + margin, high.0 - margin);
@@ -289,7 +288,7 @@ impl Newton {
         part
     }
 
-    /// Starts anew from impulses and velocities that go with each other.
+    /// Starts anew from impulses and velocities that belong to each other.
     fn begin(&mut self, contacts: &[Contact], members: &[Member]) {
         self.starts.clear();
         self.starts.extend(members.iter().map(|m| [m.v, m.w]));
@@ -305,9 +304,9 @@ impl Newton {
         }
     }
 
-    /// Gives contacts the impulses that have been found, and members the velocities that follow to the last bit, where
-    /// these are within `enough` of those that the cones were asked with. By how much impulses have changed then, as
-    /// velocities at their contacts.
+    /// If the velocities that follow from the found impulses are within `enough` of those for which the cones were
+    /// evaluated: gives contacts the impulses, and members these velocities, to the last bit. Returns by how much
+    /// impulses have changed, as velocities at their contacts.
     fn take_impulses(&mut self, contacts: &mut [Contact], members: &mut [Member], enough: f64) -> Option<f64> {
         for (m, start) in members.iter_mut().zip(&self.starts) {
             m.last = [m.v, m.w];
@@ -334,7 +333,7 @@ impl Newton {
         self.blocks.clear();
         for (k, ((m, inertia), [v, w])) in members.iter().zip(&self.inertia).zip(&self.starts).enumerate() {
             let mass = if is_immovable(m) { self.immovable } else { mass(m) };
-            // What the change so far takes of the momentum that the impulses bring.
+            // The momentum that the change so far takes of what the impulses bring.
             self.blocks.add_body(k, mass, inertia, [(*v - m.v) * mass, *inertia * (*w - m.w)]);
         }
         for (c, p) in contacts.iter().zip(&self.projected) {
@@ -343,8 +342,8 @@ impl Newton {
     }
 }
 
-/// Mass over that of the heaviest other member that what goes its own way has where bodies' masses are needed. Default
-/// 1e30: beyond all stiffness, so that it counts as moving not at all; no difference of large numbers is taken.
+/// Mass of a driven body where masses are needed, over that of the heaviest other member. Default 1e30: beyond all
+/// stiffness, so that it does not move at all. No difference of large numbers is taken.
 const IMMOVABLE: f64 = 1e30;
 
 fn is_immovable(m: &Member) -> bool {
@@ -355,13 +354,13 @@ fn mass(m: &Member) -> f64 {
     1.0 / m.inverse_mass
 }
 
-/// By how much a member has other velocities.
+/// By how much a member's velocities differ from these.
 fn moved(m: &Member, [v, w]: [DVec3; 2]) -> f64 {
     (m.v - v).length().max((m.w - w).length() * m.reach)
 }
 
-/// Whether a contact's impulse is, within what changes its velocity by `enough`, the one that Coulomb's law has for a
-/// contact that moves like this.
+/// Whether a contact's impulse is the one that Coulomb's law requires for a contact that moves like this, up to an
+/// error that changes its velocity by `enough`.
 fn is_lawful(c: &Contact, members: &[Member], enough: f64) -> bool {
     let n = c.normal;
     let trial = c.impulse - c.wrong(members) / c.compliance();
@@ -381,14 +380,14 @@ fn stiffness(c: &Contact, compliance: f64) -> f64 {
     1.0 / (compliance * c.compliance())
 }
 
-/// What a joint makes of the impulse that would hold it.
+/// A joint's response to the impulse that would hold it.
 fn joint(c: &Contact, trial: DVec3, stiff: f64) -> Projected {
     let (impulse, gives_way) = c.held(trial);
     let open = Projected { impulse, sliding: impulse.try_normalize(), ..OPEN };
     if gives_way { open } else { Projected::sticking(c, impulse, stiff) }
 }
 
-/// What Coulomb's law makes of a contact with the velocity `wrong` that is not to be.
+/// The response that Coulomb's law gives for a contact with the velocity `wrong` to be removed.
 fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
     let stiff = stiffness(c, COMPLIANCE);
     let n = c.normal;
@@ -407,7 +406,7 @@ fn coulomb(c: &Contact, wrong: DVec3) -> Projected {
         Projected { impulse: direction * load, stiffness: (outer(direction, n) + turning) * stiff, sliding: Some(t) }
     };
     if let Some(s) = c.held_slip.filter(|s| across.dot(*s) < -most) {
-        // Friction against the slip as it was, as long as it goes on.
+        // Friction opposes the slip as it was, as long as that goes on.
         return slides(-s, DMat3::ZERO);
     }
     if side <= most {

@@ -1,9 +1,9 @@
 //! Two bodies: how near they are, when they touch, and their impact.
 //!
-//! Balls and bodies of revolution are looked at as the balls and rings of their skins, cuboids by their faces against
-//! balls; what serves which pair is in `rows.rs`. First contacts are found by advancement with a second-order bound on
-//! the nearest points' approach; should another pair of points have come first, the overlap is seen and the time
-//! bisected.
+//! Balls and bodies of revolution are treated as the balls and rings of their skins, cuboids by their faces against
+//! balls; `rows.rs` says which row serves which pair. First contacts are found by advancement with a second-order bound
+//! on the approach of the nearest points. If another pair of points comes first, the overlap is noticed, and the time
+//! is found by bisection.
 
 use super::advance::{bisect, flight};
 use super::body::{Motion, Phase, Pose, Turning};
@@ -18,22 +18,22 @@ use crate::mechanics::{Impact, Other};
 use crate::roots::earliest;
 use glam::DVec3;
 
-/// Most advancements of one search; then the time reached is handed on as an event.
+/// Maximum number of advancements of one search. After that the time reached is handed on as an event.
 const MOST_ADVANCES: usize = 100;
 
-/// Bisections of a step that ended in overlap: to 2⁻⁴⁰ of it.
+/// Bisections of a step that ended in overlap: to 2⁻⁴⁰ of the step.
 const BISECTIONS: usize = 40;
 
-/// Distance of the capsules around two bodies, over their size, from which their skins are looked at. Default 0.02.
+/// Distance of the capsules around two bodies, over their size, below which their skins are examined. Default 0.02.
 const NEAR: f64 = 0.02;
 
-/// Distance over the size that two skins may move between two looks beyond what parts them. Default 0.05; larger values
-/// miss grazes that deep by half of it.
+/// Distance over the size that two skins may move between two looks, in addition to the distance between them. Default
+/// 0.05; larger values miss grazes as deep as half of this.
 const SKIP: f64 = 0.05;
 
 /// Two balls, in world axes about the two centres of gravity.
 pub(super) fn balls(offset: DVec3, [p, q]: [DVec3; 2], [r, s]: [f64; 2]) -> PairTouch {
-    // offset: from the second centre of gravity to the first.
+    // `offset` points from the second centre of gravity to the first.
     let between = offset + p - q;
     let distance = between.length();
     let normal = if distance > 0.0 { between / distance } else { DVec3::Z };
@@ -65,15 +65,14 @@ impl Rigid {
         self.slowest_bounce(self.pair_law([i, j])) * self.specs[i].speed.min(self.specs[j].speed)
     }
 
-    /// The gap that a point of contact of two bodies is to have at the end of a step of `h` seconds: an overlap is
-    /// undone at a limited speed.
+    /// The wanted gap at a point of contact of two bodies at the end of a step of `h` seconds: an overlap is undone at
+    /// a limited speed.
     pub(super) fn pair_goal(&self, [i, j]: [usize; 2], gap: f64, h: f64) -> f64 {
         let fastest = PUSH * self.accuracy.settle * self.specs[i].speed.min(self.specs[j].speed);
         (KEEP * self.pair_gap([i, j])).min(gap + fastest * h)
     }
 
-    /// First time in `[from, until]` at which two bodies touch while approaching, for rows that look at balls and
-    /// rings.
+    /// First time in `[from, until]` at which two bodies touch while approaching, for rows that use balls and rings.
     pub(super) fn first_of_feelers(
         &self,
         pair: [usize; 2],
@@ -128,7 +127,7 @@ impl Rigid {
             if f < -2.0 * level
                 && let Some(clear) = clear
             {
-                // Another pair of points came first: back to where they touch.
+                // Another pair of points came first: go back to when they touch.
                 return Some(bisect(BISECTIONS, clear, time, |t| {
                     let (a, b) = (pose(0, t), pose(1, t));
                     self.pair_touch(pair, [&a, &b]).gap <= 0.5 * level
@@ -143,17 +142,17 @@ impl Rigid {
             if time >= until || time.is_nan() {
                 return None;
             }
-            // Skins have necks: a pair of points that is not the nearest may meet first, but within this distance it is
+            // Skins have necks: a pair of points that is not the nearest may meet first. Within this distance it is
             // seen in time, or hardly touches.
             let seen = (f.max(0.0) + SKIP * s.size.min(t.size)) / ((a.v - b.v).length() + swing);
-            // The end is looked at too.
+            // The end of the search is examined too.
             time = (time + earliest(f, rate, m).min(seen)).min(until);
         }
         Some(time)
     }
 
-    /// Impact of two bodies, at all points that are struck at once; whether there was one, and whether their contact
-    /// lasts from then on.
+    /// Impact of two bodies, at all points that are struck at once. Returns whether there was one, and whether their
+    /// contact lasts from then on.
     pub(super) fn hit_pair(
         &self,
         pair: [usize; 2],
@@ -167,8 +166,8 @@ impl Rigid {
         let mut members = [RigidScratch::member(s, &p.r, p.v, p.w), RigidScratch::member(t, &q.r, q.v, q.w)];
         let mut points = self.points_of_pair(pair, [a, b], &members, linked);
         if !points.iter().any(Point::is_struck) {
-            // Found again and again without an approach, as where two pairs of points are equally near: their group is
-            // to deal with it.
+            // Found again and again without an approach, for example where two pairs of points are equally near: their
+            // group has to deal with it.
             let stuck = !linked && hurried && !points.is_empty();
             if stuck {
                 self.touch_again(pair, [a, b]);
@@ -203,13 +202,13 @@ impl Rigid {
         self.for_pair_touches(pair, [&p, &q], within, |touch| {
             let contact = pair_contact(members, [0, 1], to_middle(touch.arms, [p.x, q.x]), touch.normal, law.friction);
             let point = Point::new(contact, -touch.rate(&p, &q), law, settles, hurried, Other::Body(pair[1]));
-            // A first contact is struck however slowly; what is slow later is for the steps of lasting contact.
+            // A first contact is struck however slow it is; later, the steps of lasting contact deal with slow ones.
             points.push(Point { least: if linked && point.lasting { f64::INFINITY } else { 0.0 }, ..point });
         });
         points
     }
 
-    /// Has both bodies look anew at what they touch.
+    /// Makes both bodies look anew for what they touch.
     fn touch_again(&self, pair: [usize; 2], bodies: [&mut Turning; 2]) {
         for (index, body) in pair.into_iter().zip(bodies).filter(|(k, _)| !self.specs[*k].is_driven()) {
             if !body.flies() {
@@ -220,7 +219,7 @@ impl Rigid {
     }
 }
 
-/// A cuboid and the balls of another body; `offset` from the other to the cuboid.
+/// A cuboid and the balls of another body; `offset` points from the other body to the cuboid.
 pub(super) fn cuboid_and_balls(s: &Spec, a: &Pose, t: &Spec, b: &Pose, offset: DVec3) -> PairTouch {
     let Skin::Cuboid { half, rounding } = s.skin else { return balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]) };
     let core = half - rounding;

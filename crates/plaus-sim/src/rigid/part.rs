@@ -1,4 +1,4 @@
-//! What stands still: half spaces, boxes, tables with a spline surface, solids of any shape at any angle, and triangle
+//! Fixed parts: half spaces, boxes, tables with a spline surface, solids of any shape at any angle, and triangle
 //! meshes.
 
 use crate::error::WorldError;
@@ -20,33 +20,33 @@ pub enum Part {
         bounds: Aabb,
         /// What it is made of.
         material: Material,
-        /// Stretches along y whose friction is not the material's, in ascending order; empty for none.
+        /// Stretches along y with a friction of their own, in ascending order; empty for none.
         stretches: Vec<Stretch>,
     },
     /// A table with an uneven surface.
     Table(Box<Table>),
-    /// Any shape that stands still at any angle.
+    /// Any fixed shape, at any angle.
     Solid(Box<SolidPart>),
-    /// A triangle mesh, solid behind its faces, whose corners run anticlockwise seen from outside; its triangles have
-    /// the materials. It need not be closed. Edges between triangles in one plane are not felt.
+    /// A triangle mesh, solid behind its faces. Their corners run anticlockwise as seen from outside, and each triangle
+    /// has its material. It need not be closed. Edges between triangles in one plane are not felt.
     Mesh(Arc<Mesh>),
 }
 
-/// A stretch of a part along y with its own friction, up to the next.
+/// A stretch of a part along y with a friction of its own; it ends where the next begins.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Stretch {
     /// Where it begins, in m.
     pub from: f64,
-    /// Coulomb's coefficient there; `None`: that of the materials.
+    /// Coulomb's coefficient there; `None` for that of the materials.
     pub friction: Option<f64>,
 }
 
-/// A shape that stands still.
+/// A fixed shape.
 #[derive(Debug, Clone)]
 pub struct SolidPart {
     /// The shape about its centre of gravity.
     pub shape: Shape,
-    /// Where that is, in m.
+    /// Position of the centre of gravity, in m.
     pub at: DVec3,
     /// Turns the shape's axes into world axes.
     pub turn: DQuat,
@@ -59,15 +59,15 @@ pub struct SolidPart {
 pub struct Table {
     /// Height in m.
     pub height: Spline,
-    /// Restitution over the table, where it is not the material's; its range lies in [0, 1].
+    /// Restitution over the table, if not the material's; its range lies in [0, 1].
     pub restitution: Option<Spline>,
-    /// Friction over the table, where it is not the material's; its range lies in [0, ∞).
+    /// Friction over the table, if not the material's; its range lies in [0, ∞).
     pub friction: Option<Spline>,
     /// What it is made of.
     pub material: Material,
 }
 
-/// Where a point stands to a part: unit normal towards the point and distance, negative inside.
+/// The position of a point relative to a part: unit normal towards the point and distance, negative inside.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Foot {
     pub(crate) normal: DVec3,
@@ -106,8 +106,8 @@ impl Table {
         self.fields().find_map(Spline::fault).map_or(Ok(()), Err)
     }
 
-    /// The foot of the perpendicular for a point near the surface. A ball's centre needs a few rounds, a corner on the
-    /// surface none.
+    /// The foot of the perpendicular for a point near the surface. A ball's centre needs a few rounds, and a corner on
+    /// the surface needs none.
     #[inline]
     pub(crate) fn foot(&self, p: DVec3, rounds: usize) -> Foot {
         let (mut x, mut y) = (p.x, p.y);
@@ -126,23 +126,23 @@ impl Table {
     pub(crate) fn law(&self, p: DVec3, law: &Law) -> Law {
         let friction = self.friction.as_ref().map_or(law.friction, |f| f.value(p.x, p.y));
         let restitution = self.restitution.as_ref().map_or(law.restitution, |f| f.value(p.x, p.y));
-        // Values lie in the fields' ranges but for rounding.
+        // Values lie in the fields' ranges, except for rounding.
         Law { friction: friction.max(0.0), restitution: restitution.clamp(0.0, 1.0), ..*law }
     }
 }
 
-/// Most triangles of a mesh under turning bodies: each takes about a kilobyte.
+/// Maximum number of triangles of a mesh for turning bodies: each takes about a kilobyte.
 const MOST_TRIANGLES: usize = 1 << 20;
 
 /// How far the length of a plane's normal may be from 1: rounding.
 const UNIT: f64 = 1e-12;
 
-/// Rounds of [`Table::foot`] for a ball: each reduces the error by the ratio of its radius to the surface's radius of
-/// curvature.
+/// Rounds of [`Table::foot`] for a ball: each reduces the error by the ratio of the ball's radius to the surface's
+/// radius of curvature.
 pub(crate) const ROUNDS: usize = 4;
 
 impl Part {
-    /// What it is made of where it is touched.
+    /// The material where the part is touched.
     #[inline]
     pub(crate) fn material(&self, surface: Surface) -> Material {
         match (self, surface) {
@@ -215,20 +215,20 @@ impl Part {
         }
     }
 
-    /// Where the centre of a ball of this radius stands.
+    /// The foot of the centre of a ball with this radius.
     #[inline]
     pub(crate) fn foot(&self, p: DVec3, radius: f64) -> Foot {
         match self {
             Self::Plane(plane) => Foot { normal: plane.normal, distance: plane.distance(p) },
             Self::Block { bounds, .. } => block_foot(bounds, p),
             Self::Table(table) => table.foot(p, if radius > 0.0 { ROUNDS } else { 0 }),
-            // Met by pieces, not by feelers.
+            // Bodies meet these by pieces, not by feelers.
             Self::Solid(_) | Self::Mesh(_) => Foot { normal: DVec3::Z, distance: f64::INFINITY },
         }
     }
 
-    /// The direction in world axes against which the lowest point of a ring of a body is meant: that in which the ring
-    /// is nearest to the part.
+    /// The direction, in world axes, that counts as up for the lowest point of a body's ring: away from the part at the
+    /// point where the ring is nearest to it.
     pub(crate) fn up_at_ring(&self, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
         match self {
             Self::Plane(plane) => plane.normal,
@@ -238,7 +238,7 @@ impl Part {
         }
     }
 
-    /// Whether any field of it was given a bad value.
+    /// The fault, if one of its fields was given a bad value.
     pub(crate) fn fault(&self) -> Option<WorldError> {
         match self {
             Self::Table(table) => table.fields().find_map(Spline::fault),
@@ -272,7 +272,7 @@ impl Side {
     }
 }
 
-/// The side of a box that a point is farthest beyond; none where it is inside.
+/// The side of a box that a point is farthest beyond; none if the point is inside.
 pub(crate) fn farthest_side(bounds: &Aabb, x: DVec3) -> Option<Side> {
     let ends = [(true, x - bounds.max), (false, bounds.min - x)];
     let (mut farthest, mut side) = (0.0, None);
@@ -291,8 +291,8 @@ pub(crate) fn is_over(bounds: &Aabb, axis: usize, p: DVec3) -> bool {
     (0..3).all(|k| k == axis || (p[k] >= bounds.min[k] && p[k] <= bounds.max[k]))
 }
 
-/// Up where a ring's point nearest to a box is down: the normal of the side that its body is before where that point is
-/// over the side, else found from foot to foot.
+/// The direction that counts as up at the point of a ring that is nearest to a box. If that point is over the side that
+/// the body is in front of, it is the side's normal. Otherwise it is found by going from foot to foot.
 fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
     let middle = x + r.z_axis * ring.height;
     let lowest = |up: DVec3| {
@@ -322,7 +322,7 @@ fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
             }
         }
     }
-    // From the point's foot to the ring's point nearest to that, and again: no step leads away.
+    // From the point's foot to the ring's point nearest to the foot, and again: no step moves away from the box.
     let mut point = best.1;
     for _ in 0..RING_ROUNDS {
         let foot = block_foot(bounds, point);
@@ -337,8 +337,8 @@ fn up_at_ring(bounds: &Aabb, ring: &Ring, x: DVec3, r: &DMat3) -> DVec3 {
     middle - point
 }
 
-/// Rounds of looking for a ring's nearest point to an edge. Default 6; an error of an angle then left is far below that
-/// between the points of a rim.
+/// Rounds of looking for a ring's nearest point to an edge. Default 6: the error that remains is an angle far below the
+/// one between the points of a rim.
 const RING_ROUNDS: usize = 6;
 
 fn block_foot(bounds: &Aabb, p: DVec3) -> Foot {
@@ -348,7 +348,7 @@ fn block_foot(bounds: &Aabb, p: DVec3) -> Foot {
     if distance > 0.0 {
         return Foot { normal: offset / distance, distance };
     }
-    // Inside: out through the nearest side.
+    // Inside, the way out is through the nearest side.
     let mut foot = Foot { normal: DVec3::Z, distance: f64::NEG_INFINITY };
     for axis in 0..3 {
         for (depth, sign) in [(p[axis] - bounds.max[axis], 1.0), (bounds.min[axis] - p[axis], -1.0)] {

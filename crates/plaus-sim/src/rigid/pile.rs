@@ -1,24 +1,25 @@
-//! What steps of lasting contact do where cuboids touch each other: piles, dice that lean or are pushed.
+//! How steps of lasting contact differ where cuboids touch each other: in piles, and for dice that lean or are pushed.
 //!
-//! A corner that turns against a face that turns too needs shorter steps than a corner on a table, and what one body's
-//! contacts are off, the next body's undo.
+//! A corner that turns against a face that also turns needs shorter steps than a corner on a table, and errors at one
+//! body's contacts disturb the next body.
 
 use super::scratch::{CLOSE, KEEP, PUSH, RigidScratch};
 use super::touch::{PairTouch, Touch};
 use super::{Rigid, Skin};
 
-/// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; smaller values
-/// make fast turning in contact cost more, as their inverse root.
+/// Overlap over the size that cuboids in lasting contact may have half way through a step. Default 1e-3; for smaller
+/// values, the cost of fast turning in contact grows as their inverse root.
 pub(super) const SAG: f64 = 1e-3;
 
-/// How much deeper, over the gap at which they touch, bodies other than cuboids may end a step than they were to.
-/// Default 300, 40 µm for a pin at the standard preset; looked at more closely, steps of pins get shorter and cost half
-/// as much again.
+/// How much deeper than their goal bodies other than cuboids may end a step, over the gap at which they touch. Default
+/// 300, which is 40 µm for a pin at the standard preset. With closer limits, steps of pins get shorter and cost half as
+/// much again.
 const ROUGH: f64 = 300.0;
 
 impl RigidScratch {
-    /// The part of a step within which cuboids that touch do not turn far into each other between its ends: a straight
-    /// drift leaves the curve of a corner by an eighth of what turning adds over the step, squared.
+    /// The fraction of a step in which cuboids that touch do not turn far into each other before its end. A straight
+    /// drift strays from the curve of a corner by an eighth of what turning adds over the step; this grows as the
+    /// square of the step.
     pub(super) fn straightness(&self, world: &Rigid, h: f64) -> f64 {
         let mut worst = 0.0_f64;
         for (ab, t) in self.pairs.iter().filter(|p| p.1.feature.is_some()) {
@@ -40,13 +41,13 @@ impl RigidScratch {
         if worst > 4.0 * SAG { (4.0 * SAG / worst).sqrt() } else { 1.0 }
     }
 
-    /// Whether bodies end a step deeper in each other than they were to; then it is too long for the passes.
+    /// Whether bodies end a step deeper in each other than their goal; the step is then too long for the passes.
     pub(super) fn misses(&self, world: &Rigid, h: f64) -> Option<f64> {
         let deep = |(ab, t): &([usize; 2], PairTouch)| {
             let [p, q] = ab.map(|k| &self.places[k]);
             let both = [p.body, q.body];
             let after = world.pair_again(both, [&p.end, &q.end], t).gap;
-            // A cuboid's nearest points to a ball jump, whatever the step.
+            // The nearest points of a cuboid and a ball jump, however short the step.
             let jumps = both.iter().any(|&k| matches!(world.specs[k].skin, Skin::Cuboid { .. } | Skin::Hull));
             let most = match (t.feature, jumps) {
                 (Some(_), _) => 1.0,
@@ -64,14 +65,14 @@ impl RigidScratch {
         (self.pairs.iter().any(deep) || self.touches.iter().any(deep_at_ledge)).then_some(0.5)
     }
 
-    /// Whether cuboids are in lasting contact with each other. They come to rest where they are: what tidies one up
-    /// could push it into another.
+    /// Whether cuboids are in lasting contact with each other. They come to rest where they are: tidying one up could
+    /// push it into another.
     pub(super) fn has_cuboids_in_touch(&self) -> bool {
         self.pairs.iter().any(|p| p.1.feature.is_some())
     }
 
-    /// How far at most the ends of a step may be off where cuboids touch, in m. What they are off more, others undo,
-    /// and bodies that lean on each other never come to rest.
+    /// How large the error at the ends of a step may be where cuboids touch, in m. If it were larger, the correction at
+    /// one contact would undo others, and bodies that lean on each other would never come to rest.
     pub(super) fn fine(&self, world: &Rigid) -> f64 {
         let cuboids = self.pairs.iter().filter(|p| p.1.feature.is_some());
         let fine = cuboids.map(|(ab, _)| CLOSE * world.pair_gap(ab.map(|k| self.places[k].body)));

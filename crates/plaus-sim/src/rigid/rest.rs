@@ -8,7 +8,7 @@ use super::touch::Touch;
 use super::tumble::rotation;
 use glam::{DMat3, DVec3};
 
-/// Whether all bodies of a group are slow enough to be looked at.
+/// Whether all bodies of a group are slow enough to be tested for rest.
 pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
     group.places.iter().all(|p| {
         let spec = &world.specs[p.body];
@@ -20,10 +20,10 @@ pub(super) fn is_slow(world: &Rigid, group: &RigidScratch) -> bool {
     })
 }
 
-/// A body that wobbles on the rim of its foot, or of whose foot only a part touches yet, and that has less energy over
-/// lying flat there than the preset's rest speed gives a body's height: the points of its foot, and the shift and small
-/// turn that lay it flat. A disk that wobbles does so faster and faster, and of smaller and smaller steps there is no
-/// end.
+/// A body that wobbles on the rim of its foot, or that touches with only a part of its foot yet. Its energy above lying
+/// flat must be less than the preset's rest speed allows for its height. Returns the points of its foot, and the shift
+/// and small rotation that lay it flat. A wobbling disk wobbles faster and faster, so its steps would get smaller and
+/// smaller without end.
 pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(Vec<Touch>, DVec3, DVec3)> {
     let ([place], [(_, first), ..], []) = (&group.places[..], &group.touches[..], &group.leaving[..]) else {
         return None;
@@ -40,7 +40,7 @@ pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(V
     if spec.torque() != DVec3::ZERO {
         return None;
     }
-    // Heights over lying flat are up to two thirds of this where half of the energy is that of motion.
+    // Heights above lying flat are at most two thirds of this if half of the energy is kinetic.
     let height = 0.5 * world.accuracy.rest_speed * world.accuracy.rest_speed * spec.size;
     let inertia = spec.inertia.momentum(place.turn, place.start.w).dot(place.start.w) / spec.mass;
     let motion = 0.5 * (place.start.v.length_squared() + inertia);
@@ -48,7 +48,7 @@ pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(V
     let press = -n.dot(spec.pull);
     let slide = (spec.pull + n * press).length();
     let law = world.law_at(place.body, first, place.start.x + first.arm);
-    // On ice it slides on, and on a slope that friction cannot hold.
+    // On ice, or on a slope too steep for friction to hold it, the body slides on.
     if motion > height * spec.strength.min(law.friction * press - slide) || press <= 0.0 {
         return None;
     }
@@ -61,7 +61,7 @@ pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(V
     if motion + spec.pull.dot(shift) > height * spec.strength {
         return None;
     }
-    // Points in a row, as those of a can on its side, do not tell how it is turned about their line.
+    // Points in a row, such as those of a can on its side, do not determine the rotation about their line.
     let turned = (rotation(turn) * place.turn).normalize();
     let there = Pose { x: place.start.x + shift, r: DMat3::from_quat(turned), ..place.start };
     let mut is_deep = false;
@@ -69,7 +69,7 @@ pub(super) fn lies_nearly_flat(world: &Rigid, group: &RigidScratch) -> Option<(V
     (!is_deep).then_some((foot, shift, turn))
 }
 
-/// Whether contacts can hold bodies that do not move. `h` is the length of a step.
+/// Whether contacts can hold bodies at rest. `h` is the length of a step.
 pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> bool {
     if !group.leaving.is_empty() || !group.parting.is_empty() || !h.is_finite() {
         return false;
@@ -77,7 +77,7 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     if group.has_cuboids_in_touch() && group.least_gap(world) < 0.0 {
         return false;
     }
-    // Another step makes less of an overlap larger than what can be tidied.
+    // Another step reduces an overlap that is too large to be tidied.
     let size = |k: usize| world.specs[group.places[k].body].size;
     if group.touches.iter().any(|(k, t)| t.gap < -OVERLAP * size(*k))
         || group.pairs.iter().any(|([a, b], t)| t.gap < -OVERLAP * size(*a).min(size(*b)))
@@ -101,12 +101,13 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
         }
         let normal = group.touches.first().map_or(DVec3::Z, |t| t.1.normal);
         if group.touches.len() >= 3 && group.touches.iter().all(|t| t.1.normal == normal) {
-            // Flat ground: the centre of gravity above the points, and not steeper than friction allows.
+            // Flat ground: the centre of gravity must be above the points, and the slope no steeper than friction
+            // allows.
             let first = &group.touches[0].1;
             let law = world.law_at(place.body, first, place.start.x + first.arm);
             let press = -spec.pull.dot(normal);
             let slide = (spec.pull + normal * press).length();
-            // What is left of its motion is to be stopped by friction within a step: on ice it slides on.
+            // Friction must be able to stop the remaining motion within a step: on ice the body slides on.
             let (v, w) = (place.start.v, place.start.w);
             let moves = (v - normal * v.dot(normal)).length() + w.dot(normal).abs() * spec.reach;
             return moves <= (law.friction * press - slide + NO_MOTION * press) * h
@@ -118,10 +119,10 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     let fastest = |p: &Place| p.start.v.length().max(p.start.w.length() * world.specs[p.body].reach);
     let fastest = group.places.iter().map(fastest).fold(0.0, f64::max);
     let residual = limit.min(STOPPED * fastest).max(NO_MOTION * world.strength * h);
-    // What is carried by a corner of a pile near tipping is found slowly.
+    // In a pile near tipping, the forces that a corner carries are found slowly.
     let patience = if group.has_cuboids_in_touch() { PATIENCE } else { 1 };
     let enough = Enough::new(0.03 * limit / f64::from(patience), world.strength * h);
-    // What contacts cannot stop within a step is not at rest; nor is what swings, where it turns round.
+    // A body that contacts cannot stop within a step is not at rest. Nor is one that swings, at its turning point.
     let sweeps = world.accuracy.sweeps * patience;
     if !are_stopped(world, group, [h, 1.0, residual], enough, sweeps) {
         return false;
@@ -130,8 +131,8 @@ pub(super) fn is_supported(world: &Rigid, group: &mut RigidScratch, h: f64) -> b
     group.rows.is_empty() || are_stopped(world, group, [h, 0.0, held], Enough::new(0.1 * held, held), sweeps)
 }
 
-/// Whether contacts leave bodies at most this speed, the last of the numbers, after a kick of `h` seconds and with this
-/// part of their velocities before.
+/// Whether contacts leave bodies at most the speed `most` after a kick of `h` seconds, when bodies start with the
+/// fraction `part` of their velocities.
 fn are_stopped(
     world: &Rigid,
     group: &mut RigidScratch,
@@ -148,14 +149,15 @@ fn are_stopped(
     group.members.iter().all(|m| m.v.length().max(m.w.length() * m.reach) <= most)
 }
 
-/// Part of a motion that may be left where contacts are to stop it. Default 0.1: friction that cannot leaves all of it.
+/// Fraction of a motion that may remain after contacts try to stop it. Default 0.1: friction that is too weak leaves
+/// all of it.
 const STOPPED: f64 = 0.1;
 
-/// Velocity over `g · step` that counts as none where contacts are tried. Default 1e-6, above what the solver leaves.
+/// Velocity over `g · step` that counts as none when contacts are tested. Default 1e-6, above the solver's error.
 const NO_MOTION: f64 = 1e-6;
 
-/// Whether a ball that touches at one point stays: where the ground leans less than what its
-/// resistance to rolling holds, and it moves no faster than its weight along the ground makes it within a step.
+/// Whether a ball that touches at one point stays: the ground is no steeper than its resistance to rolling can hold,
+/// and it is no faster than its weight along the ground can make it within a step.
 fn rests_on_its_point(world: &Rigid, place: &Place, touch: &Touch, h: f64) -> bool {
     let spec = &world.specs[place.body];
     let slope = touch.normal.cross(spec.pull).length() / spec.strength;
@@ -170,14 +172,14 @@ fn rests_on_its_point(world: &Rigid, place: &Place, touch: &Touch, h: f64) -> bo
 /// Sine of the slope up to which ground counts as level under a ball. Default 1e-9, rounding of a triangle's normal.
 const LEVEL: f64 = 1e-9;
 
-/// Whether a body of revolution lies on two points of its side, on which it can only roll.
+/// Whether a body of revolution lies on two points of its side, so that it can only roll.
 fn lies(touches: &[(usize, Touch)], axis: DVec3, size: f64) -> bool {
     let along = |t: &(usize, Touch)| t.1.arm.dot(axis);
     touches.iter().any(|a| touches.iter().any(|b| along(a) - along(b) > 0.5 * size))
 }
 
-/// Whether the line of gravity through the centre of gravity meets the hull of the points: no half plane holds them
-/// all.
+/// Whether the vertical line through the centre of gravity meets the convex hull of the points: then no half plane
+/// holds them all.
 fn is_above(arms: impl Iterator<Item = DVec3> + Clone, down: DVec3) -> bool {
     let flat = |arm: DVec3| arm - down * arm.dot(down);
     arms.clone().all(|a| {
@@ -195,15 +197,15 @@ fn is_above(arms: impl Iterator<Item = DVec3> + Clone, down: DVec3) -> bool {
     })
 }
 
-/// How many times more sweeps the test of a pile may take, and how much smaller their last change is to be. Default 10.
+/// Factor by which the test of a pile may take more sweeps, and by which their last change must be smaller. Default 10.
 const PATIENCE: u32 = 10;
 
-/// Overlap over the size up to which a body may lie down; it is lifted out of it. Default 1e-3, a hundred times what
-/// steps of the draft preset leave.
+/// Overlap over the size up to which a body may lie down; it is then lifted out. Default 1e-3, a hundred times the
+/// overlap that steps of the draft preset leave.
 const OVERLAP: f64 = 1e-3;
 
-/// Shift and small turn that bring the touching points of a body on flat ground to gap 0: least squares, exact for
-/// three points and for the corners of a face.
+/// Shift and small rotation that bring the touching points of a body on flat ground to gap 0: by least squares, exact
+/// for three points and for the corners of a face.
 pub(super) fn flatten<'t>(touches: impl Iterator<Item = &'t Touch> + Clone) -> Option<(DVec3, DVec3)> {
     let normal = touches.clone().next()?.normal;
     if touches.clone().count() < 3 || touches.clone().any(|t| t.normal != normal) {
@@ -211,7 +213,7 @@ pub(super) fn flatten<'t>(touches: impl Iterator<Item = &'t Touch> + Clone) -> O
     }
     let (first, second) = normal.any_orthonormal_pair();
     let size = touches.clone().map(|t| t.arm.length()).fold(0.0, f64::max);
-    // Unknowns: shift along the normal, and turns about the two tangents times the size.
+    // Unknowns: the shift along the normal, and the rotations about the two tangents, times the size.
     let row = |t: &Touch| {
         let lever = t.arm.cross(normal) / size;
         DVec3::new(1.0, first.dot(lever), second.dot(lever))
@@ -222,7 +224,7 @@ pub(super) fn flatten<'t>(touches: impl Iterator<Item = &'t Touch> + Clone) -> O
         matrix += DMat3::from_cols(r * r.x, r * r.y, r * r.z);
         right -= r * t.gap;
     }
-    // Points on one line leave a turn open.
+    // Points on one line do not determine one of the rotations.
     if matrix.determinant().abs() <= 1e-9 {
         return None;
     }

@@ -7,10 +7,10 @@ use super::touch::PairTouch;
 use crate::shape::{Feeler, Ring};
 use glam::DVec3;
 
-/// Stride over the balls of two rows in the first look; the best local minima are then followed ball by ball.
+/// Stride over the balls of two rows in the first search; the best local minima are then followed ball by ball.
 const STRIDE: usize = 4;
 
-/// Most local minima followed.
+/// Maximum number of local minima that are followed.
 const FOLLOWED: usize = 4;
 
 /// The point of a ring's circle nearest to `d` (both about the ring's body), in body axes.
@@ -44,14 +44,15 @@ pub(super) fn revolved_and_ball(s: &Spec, a: &Pose, offset: DVec3, radius: f64) 
 struct Rows<'r> {
     row: &'r [Feeler],
     col: &'r [Feeler],
-    /// Squared distance of the centres of gravity, and products of the line between them and the axes, with each other.
+    /// Squared distance of the centres of gravity; products of the line between them with both axes, and of the axes
+    /// with each other.
     apart: f64,
     along: [f64; 2],
     cos: f64,
 }
 
 impl Rows<'_> {
-    /// Squared distance of two balls' centres; for choosing among them.
+    /// Squared distance of two balls' centres, for choosing among them.
     #[inline]
     fn distance_squared(&self, p: &Feeler, q: &Feeler) -> f64 {
         let (y, z) = (p.centre.z, q.centre.z);
@@ -64,12 +65,12 @@ impl Rows<'_> {
         self.distance_squared(p, q).max(0.0).sqrt() - p.radius - q.radius
     }
 
-    /// The ball of the other row that is nearest to one of this, of those looked at first.
+    /// Of the balls of the other row that the first search visits, the one nearest to ball `k` of this row.
     fn nearest_to(&self, k: usize) -> (f64, usize) {
         let p = &self.row[k];
         let mut best = (f64::INFINITY, 0);
         for (l, q) in self.col.iter().enumerate().step_by(STRIDE) {
-            // Its centre is nearer than this where it is nearer than the best.
+            // A ball nearer than the best has its centre nearer than this.
             let reach = best.0 + p.radius + q.radius;
             let square = self.distance_squared(p, q).max(0.0);
             if reach > 0.0 && square < reach * reach {
@@ -79,7 +80,7 @@ impl Rows<'_> {
         best
     }
 
-    /// From ball to ball as long as that brings them nearer.
+    /// Moves to neighbouring balls as long as they are nearer to each other.
     fn follow(&self, (mut f, mut k, mut l): (f64, usize, usize)) -> (usize, usize) {
         for _ in 0..self.row.len() + self.col.len() {
             let (before, now) = ((k, l), f);
@@ -121,7 +122,7 @@ pub(super) fn two_revolved([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], offset: DVec3
     let mut starts = [(f64::INFINITY, 0, 0); FOLLOWED];
     for k in (0..rows.row.len()).step_by(STRIDE) {
         let (f, l) = rows.nearest_to(k);
-        // The best of this row of the table, kept if among the best few.
+        // The best ball for this one, kept if it is among the best few.
         let worst = starts.iter_mut().max_by(|x, y| x.0.total_cmp(&y.0));
         if let Some(worst) = worst
             && f < worst.0
@@ -132,7 +133,7 @@ pub(super) fn two_revolved([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], offset: DVec3
     starts.sort_by(|x, y| x.0.total_cmp(&y.0));
     let mut best: Option<PairTouch> = None;
     for &start in &starts {
-        // Balls between the looked-at ones stand out by a few millimetres at most: far starts cannot win.
+        // Balls that the stride left out stand out by a few millimetres at most, so starts that are farther cannot win.
         if !start.0.is_finite() || start.0 > starts[0].0 + 0.2 * (s.size + t.size) {
             continue;
         }
@@ -140,16 +141,16 @@ pub(super) fn two_revolved([s, t]: [&Spec; 2], [a, b]: [&Pose; 2], offset: DVec3
         let (p, q) = (&rows.row[k], &rows.col[l]);
         nearer(&mut best, balls(offset, [e * p.centre.z, g * q.centre.z], [p.radius, q.radius]));
     }
-    // Rings of each against the balls of the other.
+    // Rings of each body against the balls of the other.
     let mut best = best.unwrap_or(balls(offset, [DVec3::ZERO; 2], [s.reach, t.reach]));
     for (first, spec, pose, other, axis, to) in [(true, s, a, t, g, -offset), (false, t, b, s, e, offset)] {
-        // `to`: from this body to the other; both in this body's axes.
+        // `to` goes from this body to the other; both in this body's axes.
         let turned = pose.r.transpose();
         let (from, along) = (turned * to, turned * axis);
         let [middle, around] = spec.foot;
         for f in other.row().iter().step_by(2) {
             let d = from + along * f.centre.z;
-            // The ball around all rings first, then that around each.
+            // First the ball around all rings, then the ball around each ring.
             let far = best.gap + f.radius + around;
             let flat = d.x * d.x + d.y * d.y;
             if far <= 0.0 || flat + (d.z - middle) * (d.z - middle) > far * far {

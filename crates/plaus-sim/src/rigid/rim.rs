@@ -1,5 +1,5 @@
-//! The lowest point of a ring that turns with its body: not a point of the body, so its own second derivative has no
-//! bound, but every point of the ring has one.
+//! The lowest point of a ring that turns with its body. It is not a fixed point of the body, so its own second
+//! derivative has no bound, but every point of the ring has one.
 
 use super::advance::bisect;
 use crate::roots::earliest;
@@ -7,7 +7,7 @@ use glam::DVec2;
 
 /// A ring over a plane. A point of it in direction `u` (in body axes, across the axis) has the gap
 /// `middle + circle p·u`, its rate is `rate + circle q·u`, and its acceleration towards the plane is at most `m`. So
-/// after `τ` every point, and with it the lowest, is no lower than
+/// after `τ` every point, including the lowest, is at least as high as
 /// `g(τ) = middle + rate τ − circle |p + q τ| − m τ²/2`, which is concave.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Low {
@@ -19,8 +19,8 @@ pub(super) struct Low {
     pub(super) m: f64,
 }
 
-/// Rounds of closing in on the first root. Each about squares the error; more save no advancement of the search around
-/// it.
+/// Rounds of approaching the first root. Each about squares the error; more rounds would save no advancement of the
+/// surrounding search.
 const ROUNDS: usize = 4;
 
 /// Bisections for the time from which an overlapping ring can sink. Default 40: to 2⁻⁴⁰ of the bracket.
@@ -39,13 +39,13 @@ impl Low {
         self.rate - self.m * t - self.circle * turned
     }
 
-    /// A time before which the ring cannot touch while it sinks; not more than `limit` needs to be known.
+    /// A time before which the ring cannot touch while it sinks, limited to `limit`.
     pub(super) fn earliest(&self, limit: f64) -> f64 {
         let (f, slope) = (self.at(0.0), self.slope_at(0.0));
         if f <= 0.0 {
             return self.sinks(slope);
         }
-        // Below the parabola of the point that is lowest now, above that of the fastest.
+        // Below the parabola of the point that is lowest now, above that of the fastest point.
         let mut low = earliest(f, self.rate - self.circle * self.q.length(), self.m);
         let mut high = earliest(f, slope, self.m).min(limit);
         if low >= high || self.at(high) > 0.0 {
@@ -69,7 +69,7 @@ impl Low {
         low
     }
 
-    /// Overlapping but rising: not before some point of the ring can sink again, with the overlap not yet gone.
+    /// Overlapping but rising: a time before which no point of the ring can sink again while the overlap lasts.
     fn sinks(&self, slope: f64) -> f64 {
         let fastest = self.rate - self.circle * self.q.length();
         if fastest >= 0.0 {
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use plaus_dist::math;
 
-    /// Against a scan of the bound itself: never late, and not so early that the search around it would crawl.
+    /// Compared with a scan of the bound itself: never late, and not so early that the surrounding search would crawl.
     #[test]
     fn the_first_root_is_not_overshot() {
         let mut found = 0;
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn an_overlap_that_opens_can_sink_when_the_ring_has_levelled() {
         // Leaning by 0.1 and levelling at 2 rad/s: the lowest point rises until the other side comes down, after 0.05 s
-        // but for the bound's own fall.
+        // except for the bound's own fall.
         let low = Low {
             middle: 0.03 * 0.1 - 1e-9,
             rate: 0.0,

@@ -1,7 +1,7 @@
-//! The table of pairs: which row serves two bodies. A row knows how far apart they are, when they first touch, and all
-//! points at which they do.
+//! The table of pairs: which row is responsible for two bodies. A row knows how far apart they are, when they first
+//! touch, and all points at which they touch.
 //!
-//! A new row is a line here, and its answer in each of the functions below. The compiler asks for both.
+//! A new row is a line here, and an answer in each of the functions below. The compiler asks for both.
 
 use super::body::{Pose, Turning};
 use super::pair::{balls, cuboid_and_balls, swapped};
@@ -23,9 +23,9 @@ pub(super) enum Row {
     Cuboids,
     /// A cuboid against the balls of another body.
     CuboidAndBalls,
-    /// Two polyhedra, exactly; a ball is one of a single corner.
+    /// Two polyhedra, exactly; a ball counts as a polyhedron with a single corner.
     Hulls,
-    /// Convex pieces of any kind, exactly: all that has no row of its own.
+    /// Convex pieces of any kind, exactly: all pairs that have no row of their own.
     Pieces,
 }
 
@@ -84,8 +84,7 @@ impl Rigid {
         }
     }
 
-    /// The same of bodies in lasting contact, at points that are not part of it. Of round bodies there is one point
-    /// only.
+    /// The same for bodies in lasting contact, at points that are not part of it. Round bodies have only one point.
     pub(super) fn first_new(&self, pair: [usize; 2], bodies: [&Turning; 2], from: f64, until: f64) -> Option<f64> {
         match self.row(pair) {
             Row::Cuboids => self.first_of_cuboids(pair, bodies, [from, until], true),
@@ -95,7 +94,8 @@ impl Rigid {
         }
     }
 
-    /// Calls `each` for the points at which two bodies touch: all that have faces, the nearest of others.
+    /// Calls `each` for the points at which two bodies touch: all such points if both have faces, otherwise the nearest
+    /// points.
     pub(super) fn for_pair_touches(
         &self,
         pair: [usize; 2],

@@ -1,4 +1,4 @@
-//! Work space of a group's step: its bodies, the points at which they touch, and the gaps that these are to have.
+//! Work space of a group's step: its bodies, the points at which they touch, and the gaps wanted at these points.
 
 use super::body::{Phase, Pose, Turning};
 use super::coulomb::{Contact, Member, response};
@@ -9,19 +9,19 @@ use super::tumble::{drift, rotation};
 use super::{Rigid, Spec};
 use glam::{DMat3, DQuat, DVec3};
 
-/// Gap that lasting contacts keep, over the gap at which bodies touch. Default 0.75; below 1, so that they go on
+/// Gap that lasting contacts keep, over the gap at which bodies touch. Default 0.75: below 1, so that they go on
 /// touching.
 pub(super) const KEEP: f64 = 0.75;
 
-/// Gap up to which a point counts as touching, over the gap at which bodies touch: what a step leaves is not looked at
-/// as a new impact. This is the preset's gap.
+/// Gap up to which a point counts as touching, over the gap at which bodies touch: so the gaps that a step leaves are
+/// not taken for new impacts. This is the preset's gap.
 pub(super) const TOUCHING: f64 = 2.0;
 
-/// Distance from the gap that is to be kept within which a step needs no correction, over the gap. Default 0.2.
+/// Distance from the wanted gap up to which a step needs no correction, over the gap. Default 0.2.
 pub(super) const CLOSE: f64 = 0.2;
 
-/// Largest speed with which a point is pushed out of an overlap, over that below which bounces last. Default 1; only
-/// the drift has it, not the velocities.
+/// Largest speed at which a point is pushed out of an overlap, over the speed below which bounces last. Default 1. It
+/// acts on the drift only, not on the velocities.
 pub(super) const PUSH: f64 = 1.0;
 
 /// Work space of a group's step.
@@ -41,13 +41,13 @@ pub struct RigidScratch {
     pub(super) parting: Vec<([usize; 2], PairTouch)>,
     /// Rows of joints.
     pub(super) rows: Vec<Row>,
-    /// Limits of joints that are not touched, or are just leaving.
+    /// Limits of joints that are not touched, or are just being left.
     pub(super) stops: Vec<Row>,
-    /// Of the touches first, then of the pairs, then of the joints.
+    /// Contacts of the touches first, then of the pairs, then of the joints.
     pub(super) contacts: Vec<Contact>,
-    /// The same with the impulses of a step's first kick.
+    /// The same contacts with the impulses of a step's first kick.
     pub(super) firsts: Vec<Contact>,
-    /// Part of the push out of overlaps that is made.
+    /// Fraction of the push out of overlaps that is applied.
     pub(super) push: f64,
     pub(super) newton: Newton,
 }
@@ -64,7 +64,7 @@ pub(super) struct Place {
     /// With the velocities at the end of the drift.
     pub(super) end: Pose,
     pub(super) end_turn: DQuat,
-    /// Acceleration of one that goes its own way.
+    /// Acceleration, if it is driven.
     pub(super) drive: DVec3,
 }
 
@@ -85,7 +85,7 @@ impl Place {
         (Pose { x: self.start.x + v * h, r: DMat3::from_quat(turn), v, w }, turn)
     }
 
-    /// The start with the velocities of the drift.
+    /// The pose at the start with the velocities of the drift.
     pub(super) fn begin(&self) -> Pose {
         Pose { v: self.end.v, w: self.spin, ..self.start }
     }

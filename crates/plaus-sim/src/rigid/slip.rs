@@ -1,38 +1,38 @@
 //! Sliding friction at one contact: the direction of the remaining slip, and the load.
 //!
 //! With velocity `f` before any impulse and response `K`, a load `λ` with friction against the unit slip `s` leaves
-//! `u = f + (K n − μ K s) λ`, whose normal part is to be what is asked for. Coulomb's law holds where what is left
-//! slips along `s`: `s⊥ · u = 0` and `s · u > 0`. The angle of `s` is found by Newton's rule from the direction at the
-//! last look, in a frame along the first: two more rounds of it square the error twice, and a world in a mirror gives
-//! the mirrored bits.
+//! `u = f + (K n − μ K s) λ`, whose normal part must have the wanted value. Coulomb's law holds if the velocity that is
+//! left slips along `s`: `s⊥ · u = 0` and `s · u > 0`. The angle of `s` is found by Newton's rule from the direction of
+//! the last visit, in a frame along the first direction. Each further round squares the error, and a mirrored world
+//! gives the mirrored bits.
 
 use glam::{DMat3, DVec2, DVec3};
 
 /// The slip of a contact that slides.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slip {
-    /// Unit vectors along the slip when it was seen first, and across.
+    /// Unit vectors along the slip when it was first seen, and across it.
     frame: [DVec3; 2],
     /// The response in that frame: along, mixed, across.
     k: [f64; 3],
-    /// Response along the normal to forces in the frame, which is that in the frame to a normal force.
+    /// Response along the normal to forces in the frame; this equals the response in the frame to a normal force.
     kn: DVec2,
-    /// Where the slip points to, in the frame.
+    /// The direction of the slip, in the frame.
     towards: DVec2,
 }
 
-/// What a contact asks of its slip.
+/// What a contact wants to know about its slip.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Asked {
     pub(super) friction: f64,
-    /// Change of normal velocity that is missing, and the response to a normal force in it.
+    /// The missing change of normal velocity; `along` is its response to a normal force.
     pub(super) missing: f64,
     pub(super) along: f64,
-    /// At least the largest response across the normal.
+    /// An upper bound on the response across the normal.
     pub(super) stiff: f64,
     /// Angle in radians by which the slip's direction may be off.
     pub(super) turn: f64,
-    /// Most rounds of looking for it.
+    /// Maximum number of rounds of looking for it.
     pub(super) rounds: u32,
 }
 
@@ -42,19 +42,19 @@ pub(super) struct Slide {
     pub(super) load: f64,
     /// Unit vector of the slip.
     pub(super) slip: DVec3,
-    /// Whether slip is left in this direction: if not, friction has reversed it.
+    /// Whether slip is left in this direction; if not, friction has reversed it.
     pub(super) goes_on: bool,
     /// Whether the direction was found within the angle allowed.
     pub(super) is_right: bool,
 }
 
-/// Largest turn of one round, in radians.
+/// Largest rotation in one round, in radians.
 const FARTHEST: f64 = 0.5;
 
-/// Part of the response to a normal force that friction must leave, or it wedges the contact.
+/// Fraction of the response to a normal force that friction must leave; if it leaves less, it wedges the contact.
 pub(super) const WEDGED: f64 = 1e-3;
 
-/// A unit vector turned towards another across it by the angle whose half has this half as its tangent.
+/// A unit vector turned towards another one across it, by the angle whose half has the tangent `angle/2`.
 #[inline]
 fn turned_by(s: DVec2, t: DVec2, angle: f64) -> DVec2 {
     let half = 0.5 * angle;
@@ -63,7 +63,7 @@ fn turned_by(s: DVec2, t: DVec2, angle: f64) -> DVec2 {
 }
 
 impl Slip {
-    /// Slip in the direction of a vector across the normal; `None` where that vanishes.
+    /// Slip in the direction of a vector across the normal; `None` if that vanishes.
     pub(super) fn new(direction: DVec3, normal: DVec3, k: &DMat3, kn: DVec3) -> Option<Self> {
         let along = direction.try_normalize()?;
         let across = normal.cross(along);
@@ -88,7 +88,7 @@ impl Slip {
         DVec2::new(xx * force.x + xy * force.y, xy * force.x + yy * force.y)
     }
 
-    /// How it slides on from velocity `free`; `None` where friction wedges the contact.
+    /// How the contact slides on from velocity `free`; `None` if friction wedges it.
     #[inline]
     pub(super) fn slide(&mut self, free: DVec3, asked: &Asked) -> Option<Slide> {
         let Asked { friction, missing, along, stiff, turn, rounds } = *asked;
@@ -117,7 +117,7 @@ impl Slip {
                     break;
                 }
             } else {
-                // Not near it: a direction between what is left and what was.
+                // Far from the solution: take a direction between the slip that is left and the previous one.
                 self.towards = (left + s * (friction * load * stiff)).normalize_or(s);
             }
         }
@@ -130,8 +130,8 @@ impl Slip {
 mod tests {
     use super::*;
 
-    /// A contact of a body of unit mass, from a sequence that fills the box of its numbers evenly: response, its
-    /// inverse, and a velocity that comes down.
+    /// A contact of a body with unit mass, from a sequence that fills the box of its numbers evenly: response, its
+    /// inverse, and a downward velocity.
     fn contact(n: u32) -> (DMat3, DVec3) {
         let part = |step: f64| (f64::from(n) * step) % 1.0;
         let r =
@@ -143,10 +143,10 @@ mod tests {
         (DMat3::IDENTITY - cross * inertia * cross, u)
     }
 
-    /// Where no force within the cone can hold a contact, what is left after one look slips against the friction, and
-    /// its normal part is what was asked for.
+    /// Where no force within the cone can hold a contact, the slip left after one visit points against the friction,
+    /// and its normal part is as wanted.
     #[test]
-    fn what_is_left_obeys_coulomb() {
+    fn the_slip_that_is_left_obeys_coulomb() {
         let (n, friction) = (DVec3::Z, 0.3);
         let (mut slid, mut right) = (0, 0);
         for case in 1..2000 {
@@ -166,7 +166,7 @@ mod tests {
                 right += 1;
                 let tangent = left - n * left.z;
                 // The last round turned it by at most 1e-6 and left the square of that; where little slip is left,
-                // rounding has its share.
+                // rounding adds its share.
                 assert!(tangent.cross(slide.slip).length() <= 1e-9 * tangent.length() + 1e-14, "{case}: {left}");
                 assert!(tangent.dot(slide.slip) > 0.0, "{case}");
             }

@@ -7,10 +7,10 @@ use super::newton::Newton;
 /// Rounds over the direction of slip per visit; the sweeps around it do the rest.
 const ROUNDS: u32 = 1;
 
-/// The same where there is no other contact: it is found once and for all.
+/// The same if there is no other contact: the direction is then found once and for all.
 const ROUNDS_ALONE: u32 = 6;
 
-/// Least angle in radians that is asked for: rounding is below.
+/// Least angle in radians that is asked for; rounding is smaller.
 const LEAST_TURN: f64 = 1e-9;
 
 /// When sweeps end.
@@ -23,22 +23,23 @@ pub(crate) struct Enough {
 }
 
 impl Enough {
-    /// Where sweeps may end at changes of `speed`, and what contacts have to take up is of the order of `push`, both in
-    /// m/s: friction up to the load that is off by a third of their ratio is off by less than `speed`.
+    /// Sweeps may end at changes of `speed`, and the velocities that contacts have to take up are of the order of
+    /// `push`, both in m/s. If the direction of friction is off by a third of their ratio, the velocity is off by less
+    /// than `speed`.
     pub(crate) fn new(speed: f64, push: f64) -> Self {
         Self { speed, turn: (speed / (3.0 * push)).max(LEAST_TURN) }
     }
 }
 
-/// How much finer Newton's rule is solved than sweeps would be: another round at most. Default 1e-3.
+/// How much finer Newton's rule is solved than sweeps would be: it takes one more round at most. Default 1e-3.
 const NEWTON_FINER: f64 = 1e-3;
 
-/// How many of the sweeps that a preset allows are made where Newton's rule fails: friction that wedges bodies. Default
-/// 60.
+/// Number of the preset's sweeps that are made where Newton's rule fails, because friction wedges bodies. Default 60.
 const SWEEPS_AFTER: u32 = 60;
 
-/// Solves all contacts until a round changes no body's velocity by more than `enough` says: by Newton's rule, and where
-/// that does not converge (friction that wedges bodies) by sweeps, at most `most` of them. Whether it got there.
+/// Solves all contacts until a round changes no body's velocity by more than `enough` says. It uses Newton's rule;
+/// where that does not converge because friction wedges bodies, it makes at most `most` sweeps. Returns whether it
+/// converged.
 pub(crate) fn solve(
     contacts: &mut [Contact],
     members: &mut [Member],
@@ -49,7 +50,7 @@ pub(crate) fn solve(
     if let [only] = contacts {
         let look = Look { turn: enough.turn, rounds: ROUNDS_ALONE };
         for _ in 0..4 {
-            // With its slip's direction right, nothing is left to change.
+            // When its slip's direction is right, nothing is left to change.
             if only.solve(members, look) <= enough.speed || only.is_right {
                 return true;
             }
@@ -69,7 +70,7 @@ pub(crate) fn solve(
 }
 
 /// Sweeps up and down over all contacts until a round changes no body's velocity by more than `enough` says, at most
-/// `most` times; whether it got there.
+/// `most` times. Returns whether it converged.
 ///
 /// Velocities decide, not impulses: where contacts are redundant, impulses that cancel each other may go on growing for
 /// ever.
@@ -80,7 +81,7 @@ fn sweep(contacts: &mut [Contact], members: &mut [Member], enough: Enough, most:
         for m in members.iter_mut() {
             m.last = [m.v, m.w];
         }
-        // The first was the last of the pass before.
+        // The first contact was the last one of the previous pass.
         for c in contacts.iter_mut().skip(usize::from(round > 0)) {
             c.solve(members, look);
         }

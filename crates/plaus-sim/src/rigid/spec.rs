@@ -1,4 +1,4 @@
-//! What follows from a body's shape and mass.
+//! Quantities derived from a body's shape and mass.
 
 use super::drag::Drag;
 use super::drive::Drive;
@@ -13,7 +13,7 @@ use crate::shape::{Feeler, MassProperties, Polyhedron, Ring, Shape};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// A body with what follows from its shape.
+/// A body with the quantities derived from its shape.
 #[derive(Debug, Clone)]
 pub(crate) struct Spec {
     pub(crate) mass: f64,
@@ -27,14 +27,14 @@ pub(crate) struct Spec {
     pub(super) ring_arms: Vec<f64>,
     pub(crate) reach: f64,
     pub(crate) size: f64,
-    /// Acceleration where nothing is touched, in m/s², and how large it is.
+    /// Acceleration while nothing is touched, in m/s², and its size.
     pub(crate) pull: DVec3,
     pub(crate) strength: f64,
     /// `√(g · size)`.
     pub(crate) speed: f64,
     /// Time in s within which many events make its contacts last: `accuracy.rattle · √(size/g)`.
     pub(crate) rattle: f64,
-    /// Gap at which it touches, in m: the preset's over [`TOUCHING`].
+    /// Gap at which it touches, in m: the preset's gap over [`TOUCHING`].
     pub(crate) gap: f64,
     pub(crate) wobble: f64,
     pub(crate) is_ball: bool,
@@ -44,19 +44,19 @@ pub(crate) struct Spec {
     /// A ball about the axis that holds all rings: height of its centre, and its radius.
     pub(super) foot: [f64; 2],
     pub(crate) skin: Skin,
-    /// What polyhedra meet: a core, and the radius of what is round it. Only in worlds with polyhedra.
+    /// The part that polyhedra meet: a core, and the radius of the rounding around it. Only in worlds with polyhedra.
     pub(super) core: Option<(Arc<Polyhedron>, f64)>,
-    /// Its convex pieces, where something is met by them.
+    /// Its convex pieces, if something is met by them.
     pub(super) pieces: Vec<Piece>,
     /// A capsule along the body's z axis that holds it: heights of its ends, and its radius.
     pub(crate) capsule: [f64; 3],
-    /// The way it goes, whatever it meets.
+    /// Its path, if it is driven.
     pub(super) drive: Option<Drive>,
-    /// Damping and torque, where there is any.
+    /// Damping and torque, if there is any.
     pub(super) drag: Option<Drag>,
 }
 
-/// How a body is looked at by others.
+/// How other bodies see a body.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Skin {
     Ball,
@@ -69,10 +69,11 @@ pub(crate) enum Skin {
 /// How far moments of inertia may be off by rounding: 1e-9.
 const ROUNDING: f64 = 1e-9;
 
-/// Points of the first ring, a quarter turn apart from its lowest on; other rings have their lowest only.
+/// Number of points of the first ring, a quarter turn apart, beginning with its lowest; other rings have only their
+/// lowest point.
 pub(crate) const RIM_POINTS: usize = 4;
 
-/// Whether a body can have such a mass and such moments of inertia.
+/// Whether a body can have this mass and these moments of inertia.
 fn check(body: usize, b: &BodySpec) -> Result<(), WorldError> {
     let bad = |field, value, expected| Err(WorldError::BadBody { body, field, value, expected });
     let MassProperties { mass, inertia } = b.mass;
@@ -87,7 +88,8 @@ fn check(body: usize, b: &BodySpec) -> Result<(), WorldError> {
             return bad(field, value, "a positive number");
         }
     }
-    // Each moment is at most the sum of the two others: the integral of y² + z² at most that of x² + z² and x² + y².
+    // Each moment is at most the sum of the two others: the integral of y² + z² is at most that of x² + z² plus x² +
+    // y².
     let largest = inertia.max_element();
     if largest > (inertia.x + inertia.y + inertia.z - largest) * (1.0 + ROUNDING) {
         return bad("inertia", largest, "moments none of which exceeds the sum of the other two");
@@ -113,7 +115,7 @@ impl Spec {
         }
         let (size, inertia) = (b.shape.size(), Inertia::new(inertia));
         let (speed, gap) = ((strength * size).sqrt(), world.accuracy.gap * size / TOUCHING);
-        // Without gravity there is no time scale but that of the speeds, which is not known here.
+        // Without gravity the only time scale is that of the speeds, which are not known here.
         let rattle = if strength > 0.0 { world.accuracy.rattle * (size / strength).sqrt() } else { 0.0 };
         let (reach, wobble) = (b.shape.reach(), inertia.wobble());
         let (skin, rings) = match &b.shape {
@@ -171,13 +173,13 @@ impl Spec {
         self.rattle = if strength > 0.0 { accuracy.rattle * (self.size / strength).sqrt() } else { 0.0 };
     }
 
-    /// Whether it goes its own way.
+    /// Whether it is driven.
     #[inline]
     pub(crate) fn is_driven(&self) -> bool {
         self.drive.is_some()
     }
 
-    /// Whether it is one of several solids, or of one without a way of its own to meet others.
+    /// Whether it has several solids, or one solid that has no row of its own to meet others.
     #[inline]
     pub(crate) fn is_compound(&self) -> bool {
         matches!(self.skin, Skin::Compound)
@@ -188,7 +190,7 @@ impl Spec {
         &self.feelers[..self.hull]
     }
 
-    /// How many points can touch a part: feelers of the hull, then points of rings.
+    /// The points that can touch a part and lie on rings; the feelers of the hull come before them.
     pub(crate) fn ring_points(&self) -> std::ops::Range<usize> {
         let count = if self.rings.is_empty() { 0 } else { RIM_POINTS + self.rings.len() - 1 };
         self.hull..self.hull + count
@@ -211,9 +213,9 @@ impl Spec {
         if self.ring_of(point).is_some() { self.ring_point(point, up, swing).0 } else { self.feelers[point] }
     }
 
-    /// A point of a ring as a ball, in body axes, where `up` (in body axes) points away from the part, and how it
-    /// stands: 0 lowest, 1 and 3 sideways, 2 highest. Of a ring that is level the point that sinks fastest counts as
-    /// the lowest; `swing` is the rate of `up` in body axes.
+    /// A point of a ring as a ball in body axes, where `up` (in body axes) points away from the part, and the point's
+    /// place: 0 lowest, 1 and 3 sideways, 2 highest. On a level ring, the point that sinks fastest counts as the
+    /// lowest; `swing` is the rate of `up` in body axes.
     pub(crate) fn ring_point(&self, point: usize, up: DVec3, swing: DVec3) -> (Feeler, usize) {
         let k = point - self.hull;
         let (ring, quarter) = if k < RIM_POINTS { (&self.rings[0], k) } else { (&self.rings[k + 1 - RIM_POINTS], 0) };
@@ -230,7 +232,7 @@ impl Spec {
     }
 }
 
-/// Most convex pieces of a body: names of points of contact count them.
+/// Maximum number of convex pieces of a body: names of points of contact count them.
 const MOST_PIECES: usize = 256;
 
 /// Whether bodies of a world meet something by their convex pieces.
@@ -254,7 +256,7 @@ fn capsule(shape: &Shape, reach: f64) -> [f64; 3] {
     let Shape::Revolution(body) = shape else { return [0.0, 0.0, reach] };
     let widest =
         body.row().iter().map(|f| f.radius).chain(body.rings().iter().map(|r| r.circle + r.radius)).fold(0.0, f64::max);
-    // Ends such that the balls there hold the cap and the foot.
+    // Ends chosen so that the balls there hold the cap and the foot.
     let top = body.row().iter().map(|f| f.centre.z + f.radius - widest).fold(f64::NEG_INFINITY, f64::max);
     let low = body.rings().iter().map(|r| {
         let outer = r.circle + r.radius;

@@ -1,4 +1,4 @@
-//! Where convex pieces touch: of two bodies, or of a body and what stands still.
+//! Where convex pieces touch: those of two bodies, or of a body and a fixed part.
 
 use super::body::Pose;
 use super::pair::balls;
@@ -10,18 +10,18 @@ use crate::shape::convex_pair::{Both, Mark, Meeting, nearest};
 use crate::shape::piece::{Core, Piece};
 use glam::{DMat3, DVec3};
 
-/// Distance over a body's size within which points of contact on several pieces of a part count as one. Default 1e-6: a
-/// corner over the edge between two triangles.
+/// Distance over a body's size up to which points of contact on several pieces of a part count as one. Default 1e-6:
+/// for a corner over the edge between two triangles.
 const SAME: f64 = 1e-6;
 
 impl Rigid {
-    /// Pieces of two bodies where they are, about the first's centre of gravity.
+    /// Pieces of two bodies in their places, about the first body's centre of gravity.
     fn both<'w>(&'w self, [i, j]: [usize; 2], [a, b]: [&Pose; 2], own: usize, other: usize) -> Both<'w> {
         let [first, second] = [(i, own), (j, other)].map(|(body, k)| &self.specs[body].pieces[k]);
         Both { first: first.placed(&a.r, DVec3::ZERO), second: second.placed(&b.r, b.x - a.x) }
     }
 
-    /// Calls `each` for all pairs of pieces of two bodies that are within `within` of each other, and for others too.
+    /// Calls `each` for all pairs of pieces of two bodies with a gap of at most `within`, and for some others too.
     fn for_near_pieces(
         &self,
         pair: [usize; 2],
@@ -87,8 +87,8 @@ impl Rigid {
         pair_touch(&Meeting { mark: spot.mark, ..m }, own, other, poses[1].x - poses[0].x)
     }
 
-    /// The axis, in the body's axes, of the rim that a point belongs to whose lowest point runs around as the body
-    /// turns.
+    /// If a point belongs to a rim whose lowest point runs around as the body turns: the axis of that rim, in the
+    /// body's axes.
     #[inline]
     pub(super) fn rim_axis(&self, body: usize, t: &Touch) -> Option<DVec3> {
         let spec = &self.specs[body];
@@ -130,7 +130,7 @@ impl Rigid {
         touch(part, spot, &meeting)
     }
 
-    /// Calls `each` for the points of a body's pieces that are within `within` of a part.
+    /// Calls `each` for the points of a body's pieces with a gap of at most `within` to a part.
     pub(super) fn for_spots(&self, index: usize, pose: &Pose, part: usize, within: f64, mut each: impl FnMut(Touch)) {
         let spec = &self.specs[index];
         match self.ground(spec, part) {
@@ -180,7 +180,7 @@ impl Rigid {
 }
 
 impl Still {
-    /// A piece of a body and one of what stands still, about the body's centre of gravity.
+    /// A piece of a body and one of a fixed part, about the body's centre of gravity.
     pub(super) fn both<'p>(&'p self, piece: &'p Piece, other: u32, pose: &Pose) -> Both<'p> {
         let second = self.pieces[other as usize].placed(&DMat3::IDENTITY, -pose.x);
         Both { first: piece.placed(&pose.r, DVec3::ZERO), second }
@@ -203,7 +203,7 @@ fn pair_touch(m: &Meeting, own: usize, other: usize, shift: DVec3) -> PairTouch 
     PairTouch { normal: m.normal, arms, gap: m.gap, feature: Some(Feature::Pieces(spot)) }
 }
 
-/// Calls `each` for the corners and points of rims of a piece, in its own axes.
+/// Calls `each` for the corners and rim points of a piece, in its own axes.
 pub(super) fn for_elements(piece: &Piece, down: DVec3, mut each: impl FnMut(Mark, DVec3)) {
     match &piece.core {
         Core::Polyhedron(core) => {
@@ -221,11 +221,11 @@ pub(super) fn for_elements(piece: &Piece, down: DVec3, mut each: impl FnMut(Mark
     }
 }
 
-/// The corner or point of a rim of that name, in the piece's axes.
+/// The corner or rim point with that name, in the piece's axes.
 fn element(piece: &Piece, mark: Mark, down: DVec3) -> Option<DVec3> {
     match (mark, &piece.core) {
         (Mark::Corner { corner, .. }, Core::Polyhedron(core)) => Some(core.corner(corner)),
-        // A rim that lies flat has no lowest point: any is.
+        // A rim that lies flat has no lowest point: any will do.
         (Mark::Rim { ring, slot, .. }, Core::Discs(discs)) => {
             discs.rim(usize::from(ring), slot, down).or_else(|| discs.rim(usize::from(ring), 1, down))
         }
@@ -233,7 +233,7 @@ fn element(piece: &Piece, mark: Mark, down: DVec3) -> Option<DVec3> {
     }
 }
 
-/// The meeting of a core point with a plane over which the origin is `height`.
+/// The meeting of a core point with a plane; the origin is at `height` over the plane.
 fn on_plane(p: DVec3, rounding: f64, normal: DVec3, height: f64, mark: Mark) -> Meeting {
     let distance = height + normal.dot(p);
     let arm = p - normal * rounding;

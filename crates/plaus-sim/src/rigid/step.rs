@@ -1,12 +1,12 @@
 //! Lasting contact: what bodies that touch something do next, in steps on their group's own adaptive clock.
 //!
 //! A step is a half kick of gravity and contact impulses, a drift (straight, with free rotation, which keeps momentum),
-//! and another half kick: RATTLE's order (Andersen, J. Comput. Phys. 52 (1983)), of second order. The first impulses
-//! are such that every loaded point ends the drift at the gap that it is to keep and, where friction holds it, has not
-//! slipped, found in [`PASSES`] passes over the true geometry; the second such that no point approaches or, where
-//! friction holds it, slips. Where a point slides, both halves act against the slip over the drift. Impacts of other
-//! points during the drift are found exactly on the path that is really taken; the impulses of a step that one
-//! interrupts count up to then.
+//! and another half kick. This is the order of RATTLE (Andersen, J. Comput. Phys. 52 (1983)), a method of second order.
+//! With the first impulses, every loaded point ends the drift at the wanted gap and, where friction holds it, has not
+//! slipped; they are found in [`PASSES`] passes over the true geometry. With the second impulses, no point approaches
+//! or, where friction holds it, slips. Where a point slides, both halves act against the slip over the drift. Impacts
+//! of other points during the drift are found exactly on the actual path. If such an impact interrupts a step, the
+//! step's impulses count up to that time.
 
 use super::body::{Momentum, Motion, Phase, Turning};
 use super::coulomb::{Contact, Member, response};
@@ -21,27 +21,28 @@ use super::{glide, heap};
 use crate::links::Links;
 use glam::{DMat3, DQuat, DVec3};
 
-/// Spread of the gaps at rest, over the gap at which bodies touch, that is left as it is. Default 1e-3; rounding is far
-/// below.
+/// Spread of the gaps at rest that is left as it is, over the gap at which bodies touch. Default 1e-3; rounding is far
+/// smaller.
 const TIDY: f64 = 1e-3;
 
 /// Rounds of lifting a body out of overlaps when it lies down: each deals with its deepest point.
 const LIFTS: usize = 4;
 
-/// Passes over the end of a step: the first predicts where points get to, the others correct.
+/// Passes over the end of a step: the first predicts where points end, the others correct that.
 pub(super) const PASSES: usize = 2;
 
-/// The same where cuboids touch each other: a corner of one turns against a face that turns too. Passes end where all
-/// gaps are right.
+/// The same if cuboids touch each other: a corner of one turns against a face that also turns. Passes end when all gaps
+/// are right.
 pub(super) const PASSES_OF_CUBOIDS: usize = 8;
 
-/// How often a step is shortened so that points which just left are not back within it. Each aims at half their speed.
+/// How often a step is shortened so that points that have just left are not back within it. Each time aims at half
+/// their speed.
 const SHORTENINGS: usize = 4;
 
-/// Least part that one shortening leaves of a step.
+/// Least fraction of a step that one shortening leaves.
 const SHORTEST: f64 = 0.1;
 
-/// Part of the push out of overlaps that a jam is given where the whole brings too much energy. Default 1/16.
+/// Fraction of the push out of overlaps that a jam gets if the whole push adds too much energy. Default 1/16.
 const GENTLE: f64 = 0.0625;
 
 /// Decides how a group goes on.
@@ -87,7 +88,7 @@ pub(super) fn settle(
     scratch.take_step(world, bodies, h, heap::is_heap(group));
 }
 
-/// Bodies that have sunk below the world's end are gone, with their contacts.
+/// Bodies that have sunk below the world's sink are gone, with their contacts.
 fn lose_sunk(world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut Links) {
     for &k in group {
         let body = &mut bodies[k as usize];
@@ -100,14 +101,14 @@ fn lose_sunk(world: &Rigid, group: &[u32], bodies: &mut [Turning], links: &mut L
 }
 
 impl RigidScratch {
-    /// A step of `h` seconds, shortened where points that just left would come back within it.
+    /// Takes a step of `h` seconds, shortened if points that have just left would come back within it.
     fn take_step(&mut self, world: &Rigid, bodies: &mut [Turning], mut h: f64, is_heap: bool) {
         let mut is_forced = true;
         self.push = 1.0;
         for _ in 0..SHORTENINGS {
             let step = self.drift(world, h);
             match self.returns().or_else(|| self.misses(world, h)).or_else(|| self.climbs(world)) {
-                // Shorter steps would have to lift the heap as high.
+                // Shorter steps would have to lift the heap just as high.
                 Some(_) if is_heap && self.climbs(world).is_some() => {
                     is_forced = true;
                     break;
@@ -121,15 +122,16 @@ impl RigidScratch {
                     if self.second_kick(world, &step) {
                         return self.write(world, bodies, h);
                     }
-                    // Energy that its impulses cannot be made to give back: a shorter step makes less of it.
+                    // The impulses cannot be made to give back this energy; a shorter step adds less of it.
                     h *= 0.5;
                 }
             }
         }
-        // What bodies are in each other is left as it is: pushing them apart brought the energy.
+        // Overlaps are left as they are: pushing the bodies apart added the energy.
         let mut pushes: &[f64] = &[0.0];
         if is_forced {
-            // Bounces too fast for any step, which count as lasting; or a jam, in which the push lifts bodies too high.
+            // Bounces too fast for any step, which then count as lasting; or a jam, in which the push lifts bodies too
+            // high.
             self.loads.clear();
             self.touches.append(&mut self.leaving);
             self.pairs.append(&mut self.parting);
@@ -147,14 +149,14 @@ impl RigidScratch {
         self.write(world, bodies, h);
     }
 
-    /// A step within the present stretch of those that go their own way.
+    /// A step that ends within the present stretch of all driven bodies.
     fn until_driven_turn(&self, world: &Rigid, bodies: &[Turning], h: f64) -> f64 {
         let driven = self.places.iter().filter(|p| world.specs[p.body].is_driven());
         driven.map(|p| bodies[p.body].expiry - bodies[p.body].path.t).fold(h, f64::min)
     }
 
-    /// Whether energy may come and go: some member goes its own way, or joints hold some. The energy of what swings
-    /// goes up and down by the steps' error; to take only would slow it down.
+    /// Whether energy may come and go: some member is driven, or joints hold some. The energy of a swinging body goes
+    /// up and down by the steps' error; only taking energy away would slow it down.
     pub(super) fn is_open(&self, world: &Rigid) -> bool {
         !self.rows.is_empty() || self.places.iter().any(|p| world.specs[p.body].is_driven())
     }
@@ -200,8 +202,7 @@ impl RigidScratch {
         world.accuracy.step * if self.rows.is_empty() { time } else { SWING * time }
     }
 
-    /// Whether the drift of a step brings a point back that is just leaving, and by what part the step is too long
-    /// then.
+    /// The factor by which to shorten a step if its drift brings back a point that is just leaving.
     fn returns(&self) -> Option<f64> {
         let mut worst = 1.0_f64;
         for (k, t) in &self.leaving {
@@ -228,8 +229,8 @@ impl RigidScratch {
         Member { inverse_mass, inverse_inertia, v, w, reach: spec.reach, last: [DVec3::ZERO; 2] }
     }
 
-    /// Members at their starts with the velocities that `free` gives, and contacts without impulses; those are to act
-    /// for so many seconds.
+    /// Puts members at their starts with the velocities that `free` gives, and contacts without impulses; the contacts
+    /// are to act for `time` seconds.
     pub(super) fn prepare(&mut self, world: &Rigid, time: f64, free: impl Fn(&Spec, &Place) -> (DVec3, DVec3)) {
         self.members.clear();
         self.members.extend(self.places.iter().map(|p| {
@@ -251,7 +252,7 @@ impl RigidScratch {
         self.prepare_joints(world, time);
     }
 
-    /// Rest: without velocity, flat where the ground is, and lifted out of what overlap steps have left.
+    /// Rest: without velocity, flat if the ground is flat, and lifted out of overlaps that steps have left.
     fn lie_down(&self, world: &Rigid, bodies: &mut [Turning]) {
         for (k, p) in self.places.iter().enumerate().filter(|(_, p)| !world.specs[p.body].is_driven()) {
             let body = &mut bodies[p.body];
@@ -269,7 +270,7 @@ impl RigidScratch {
                 body.path.x += shift;
                 body.turn = (rotation(turn) * body.turn).normalize();
             }
-            // Straight up, where that helps: it brings no other point of uneven ground nearer.
+            // Straight up, if that helps: it brings no other point of uneven ground nearer.
             let spec = &world.specs[p.body];
             let up = if spec.strength > 0.0 { -spec.pull / spec.strength } else { DVec3::ZERO };
             for _ in 0..LIFTS {
@@ -312,8 +313,8 @@ impl RigidScratch {
 }
 
 /// Angle in radians that the lowest point of a ring may run around within the unit of a step's length. Default 0.25:
-/// its way is curved, a step's is straight.
+/// the point's path is curved, a step's is straight.
 const WOBBLE: f64 = 0.25;
 
-/// Sizes that a body may move within the unit of a step's length.
+/// Distance that a body may move within the unit of a step's length, over its size.
 const LONGEST: f64 = 4.0;

@@ -1,5 +1,5 @@
-//! What stands still as the pieces of bodies see it: planes, and pieces under a tree, those of a mesh with what is
-//! solid beside them.
+//! Fixed parts as the pieces of bodies see them: planes, and pieces in a tree. For a mesh, each piece also knows what
+//! is solid beside it.
 
 use super::part::Part;
 use super::{RigidWorld, Spec};
@@ -13,25 +13,25 @@ use crate::shape::{Convex, Cuboid, On, Polyhedron, SLOTS, Shape};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
-/// Pieces that stand still.
+/// Fixed pieces.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Still {
     pub(super) pieces: Vec<Piece>,
     boxes: Vec<Aabb>,
     tree: BoxTree,
     mesh: Option<Arc<Mesh>>,
-    /// How the mesh goes on across the sides of each triangle.
+    /// How the mesh continues across each triangle's sides.
     folds: Vec<[Fold; 3]>,
 }
 
-/// How a mesh goes on across a side of a triangle.
+/// How a mesh continues across a side of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fold {
-    /// Away from what is over the triangle, or not at all.
+    /// Away from a body over the triangle, or not at all.
     Down,
     /// In the same plane.
     Flat,
-    /// Towards what is over it: the edge is hollow.
+    /// Towards a body over the triangle: the edge is hollow.
     Up,
 }
 
@@ -42,12 +42,13 @@ pub(super) enum Ground<'w> {
     Still(&'w Still),
 }
 
-/// Sine by which a normal may lean into what is beside an edge, and the distance over a triangle's longest side within
-/// which a point counts as on its edge. Default 1e-6: rounding of nearest points that are a thousandth of a gap away.
+/// Sine of the angle by which a normal may lean into the triangle beside an edge, and the distance, over a triangle's
+/// longest side, up to which a point counts as on its edge. Default 1e-6: rounding of nearest points that are a
+/// thousandth of a gap away.
 const LEAN: f64 = 1e-6;
 
 impl Still {
-    /// The parts of a world, where bodies may meet any of them by their pieces.
+    /// The parts of a world, if bodies may meet any of them by their pieces.
     pub(super) fn all(world: &RigidWorld) -> Result<Vec<Self>, WorldError> {
         let compounds = world.bodies.iter().any(|b| matches!(b.shape, Shape::Compound(_)));
         let needed = |part: &Part| match part {
@@ -62,7 +63,7 @@ impl Still {
         world.parts.iter().enumerate().map(still).collect()
     }
 
-    /// The pieces of a part, where bodies may meet it by theirs.
+    /// The pieces of a part, if bodies may meet it by theirs.
     fn new(index: usize, part: &Part) -> Result<Self, WorldError> {
         let pieces = match part {
             Part::Plane(_) | Part::Table(_) => return Ok(Self::default()),
@@ -93,8 +94,8 @@ impl Still {
         Ok(Self { tree: BoxTree::new(&boxes), pieces, boxes, mesh, folds })
     }
 
-    /// How the pieces of a body meet the part, if they do: bodies with ways of their own to meet planes, blocks and
-    /// tables keep to those.
+    /// How the pieces of a body meet the part, if they do. Bodies that have other ways to meet planes, blocks and
+    /// tables use those.
     #[inline]
     pub(super) fn ground<'w>(&'w self, spec: &Spec, part: &'w Part) -> Option<Ground<'w>> {
         match part {
@@ -126,13 +127,13 @@ impl Still {
         (x - x.clamp(b.min, b.max)).length()
     }
 
-    /// The normal of a triangle out of what it is the skin of.
+    /// The outward normal of a triangle.
     pub(super) fn facet(&self, piece: u32) -> Option<DVec3> {
         self.mesh.as_ref().map(|mesh| mesh.faces[piece as usize].normal)
     }
 
-    /// How far apart the plane of a triangle keeps a piece of a body from it, if the part is a mesh; nothing for a
-    /// piece whose middle is behind it, which it does not touch.
+    /// How far the plane of a triangle keeps a piece of a body away from the triangle, if the part is a mesh. The inner
+    /// `None` means that the middle of the piece is behind the plane, so that it does not touch the triangle.
     pub(super) fn over_plane(&self, piece: u32, both: &Both) -> Option<Option<f64>> {
         let n = self.facet(piece)?;
         let base = n.dot(both.second.centre);
@@ -140,13 +141,13 @@ impl Still {
         Some((n.dot(both.first.centre) > base).then_some(low))
     }
 
-    /// How deep behind a triangle a point still counts as in the mesh.
+    /// How deep behind a triangle a point still counts as inside the mesh.
     fn thickness(&self, piece: u32) -> f64 {
         THICK * self.pieces[piece as usize].reach
     }
 
-    /// Calls `each` for the points at which a piece of a body, whose centre of gravity is at `x`, touches one of the
-    /// part. Corners and points of rims over a triangle, and a little below it, touch its plane.
+    /// Calls `each` for the points at which a piece of a body, whose centre of gravity is at `x`, touches a piece of
+    /// the part. Corners and rim points over a triangle, or a little below it, touch its plane.
     pub(super) fn for_touching(&self, other: u32, both: &Both, x: DVec3, within: f64, mut each: impl FnMut(&Meeting)) {
         match self.over_plane(other, both) {
             Some(None) => return,
@@ -161,8 +162,8 @@ impl Still {
         });
     }
 
-    /// Calls `each` for the corners and points of rims of a piece of a body that are over a triangle, or a little below
-    /// it, and touch its plane: the shortest way out of a triangle may be over its edge, where the next one is.
+    /// Calls `each` for the corners and rim points of a body's piece that are over a triangle, or a little below it,
+    /// and touch its plane. The shortest way out of a triangle may lead over its edge, where the next triangle is.
     pub(super) fn for_over(&self, other: u32, both: &Both, x: DVec3, within: f64, each: &mut impl FnMut(&Meeting)) {
         let Some(n) = self.facet(other) else { return };
         let mut over = |c: DVec3, mark: Mark| {
@@ -188,7 +189,8 @@ impl Still {
         }
     }
 
-    /// The meeting of a point of a piece of a body, in the piece's axes, with the plane of a triangle with this normal.
+    /// The meeting of a point of a body's piece, in the piece's axes, with the plane of a triangle that has this
+    /// normal.
     fn on_facet(&self, n: DVec3, both: &Both, c: DVec3, mark: Mark) -> Meeting {
         let p = both.first.centre + both.first.axes * c;
         let distance = n.dot(p - both.second.centre);
@@ -196,9 +198,9 @@ impl Still {
         Meeting { normal: n, points: [arm, p - n * distance], gap: distance - both.first.rounding, mark }
     }
 
-    /// Whether a point `p` of a body is over a triangle, or less than the mesh's thickness below it. What is beyond a
-    /// hollow edge by no more than that, behind the triangle beside it, counts too: a tip that is below one of them by
-    /// rounding and beyond the edge would be over neither, and slip through.
+    /// Whether a point `p` of a body is over a triangle, or less than the mesh's thickness below it. A point no farther
+    /// than that beyond a hollow edge, behind the triangle beside it, counts too. Otherwise a tip that is, by rounding,
+    /// below one triangle and beyond the edge would be over neither, and slip through.
     fn is_over(&self, other: u32, both: &Both, x: DVec3, p: DVec3) -> bool {
         let Some(mesh) = &self.mesh else { return false };
         let (face, thick) = (&mesh.faces[other as usize], self.thickness(other));
@@ -227,7 +229,8 @@ impl Still {
         })
     }
 
-    /// The point of a rim of that name where it is over a triangle, or over what goes on in its plane or up from it.
+    /// The rim point with that name, if it is over the triangle or over a neighbour that continues in its plane or
+    /// rises from it.
     pub(super) fn rim_again(&self, other: u32, both: &Both, x: DVec3, mark: Mark) -> Option<Meeting> {
         let (mesh, n) = (self.mesh.as_ref()?, self.facet(other)?);
         let (Mark::Rim { of: 0, ring, slot }, Core::Discs(discs)) = (mark, both.first.core) else { return None };
@@ -241,8 +244,8 @@ impl Still {
     }
 
     /// Whether a meeting is one with the mesh: from outside, and at an edge or a corner not leaning into a triangle
-    /// beside it, which then has the true one. So edges between triangles in one plane, and hollow ones, are not felt.
-    /// `x` is the body's centre of gravity.
+    /// beside it; that triangle then has the true meeting. So edges between triangles in one plane, and hollow edges,
+    /// are not felt. `x` is the body's centre of gravity.
     pub(super) fn has(&self, piece: u32, m: &Meeting, x: DVec3) -> bool {
         let Some(mesh) = &self.mesh else { return true };
         let face = &mesh.faces[piece as usize];
@@ -276,7 +279,7 @@ impl Still {
         if is_upright {
             return true;
         }
-        // At a corner no edge may go on into the body.
+        // At a corner, no edge may lead into the body.
         let near = |c: &&u32| (mesh.vertices()[**c as usize] - q).length() <= LEAN * self.pieces[piece as usize].reach;
         if let Some(&corner) = face.corners.iter().find(near) {
             let at = mesh.vertices()[corner as usize];

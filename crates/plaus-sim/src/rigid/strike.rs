@@ -1,16 +1,16 @@
 //! Impacts of turning bodies, at one point or at several at once.
 //!
-//! A body that strikes at one point obeys Stronge's law ([`stronge_impulse`]). Where several points of one body on what
-//! stands still, or of one pair of bodies, are struck at one instant, they are struck at once: no order of points plays
-//! a part, and a symmetric impact stays symmetric. A point that touches and is driven into its partner by an impact
-//! elsewhere is struck next. Each point then parts with its restitution times its approach (Newton's rule), what
-//! touches without approach does not approach afterwards, and impulses lie in Coulomb's cones: Moreau, "Unilateral
-//! contact and dry friction in finite freedom dynamics" (1988), solved to rounding. Deviation: as Newton's rule can
-//! make energy where points slide, the restitutions are scaled down by what keeps it from growing; at 0 friction and
-//! contact only take.
+//! A body that strikes at one point obeys Stronge's law ([`stronge_impulse`]). Where several points of one body on
+//! fixed parts, or of one pair of bodies, are struck at one instant, they are resolved at once: their order plays no
+//! part, and a symmetric impact stays symmetric. A point that touches and is driven into its partner by an impact
+//! elsewhere is struck next. Each point then parts at its restitution times its approach (Newton's rule), points that
+//! touch without approach do not approach afterwards, and impulses lie in Coulomb's cones: Moreau, "Unilateral contact
+//! and dry friction in finite freedom dynamics" (1988), solved to rounding. Deviation: Newton's rule can make energy
+//! where points slide, so the restitutions are multiplied by the largest factor with which energy does not grow. With
+//! factor 0, friction and contact only take energy.
 //!
-//! Several pairs of bodies are struck pair by pair, as an impact goes on from body to body: so the balls of a cradle
-//! hand it on.
+//! Several pairs of bodies are struck pair by pair, as an impact passes from body to body: so the balls of a cradle
+//! pass it on.
 
 use super::coulomb::{Contact, Member};
 use super::newton::Newton;
@@ -20,20 +20,20 @@ use crate::mechanics::{Impact, Other};
 use crate::resolve::{ContactMatrix, stronge_impulse};
 use glam::{DMat3, DVec3};
 
-/// One of the points at which an impact may be.
+/// A point that an impact may strike.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     pub(super) contact: Contact,
-    /// With which it parts.
+    /// The restitution with which it parts.
     pub(super) restitution: f64,
     /// Slower approach is left to lasting contact.
     pub(super) least: f64,
-    /// Normal relative speed before, in m/s; negative where it opens.
+    /// Normal relative speed before the impact, in m/s; negative if the gap opens.
     pub(super) approach: f64,
     /// Whether the contact lasts from here on.
     pub(super) lasting: bool,
     pub(super) other: Other,
-    /// Whether it is a contact, and no limit of a joint.
+    /// Whether it is a contact, not a limit of a joint.
     pub(super) is_outer: bool,
 }
 
@@ -42,9 +42,9 @@ pub(super) struct Point {
 const LEFT: f64 = 0.1;
 
 impl Point {
-    /// A point with this approach; `settles` is the rebound up to which a contact of its bodies lasts, and `hurried`
-    /// whether it is to last however fast they part, unless nothing is lost in an impact: such impacts go on for ever,
-    /// or part at last.
+    /// A point with this approach. `settles` is the rebound speed up to which a contact of its bodies lasts. `hurried`
+    /// says whether it lasts however fast the bodies part, unless nothing is lost in an impact: such impacts may go on
+    /// for ever, or the bodies may part in the end.
     pub(super) fn new(contact: Contact, approach: f64, law: &Law, settles: f64, hurried: bool, other: Other) -> Self {
         let lasting = law.restitution * approach <= settles || hurried && law.restitution < 1.0;
         let restitution = if lasting { 0.0 } else { law.restitution };
@@ -52,7 +52,7 @@ impl Point {
         Self { contact, restitution, least, approach, lasting, other, is_outer: true }
     }
 
-    /// Tells of the impulse, if it was struck.
+    /// Reports the impulse, if the point was struck.
     pub(super) fn report(&self, time: f64, body: usize, x: DVec3, report: &mut dyn FnMut(&Impact)) {
         let c = &self.contact;
         if c.impulse != DVec3::ZERO {
@@ -75,21 +75,22 @@ impl Point {
     }
 }
 
-/// Halvings of the interval in which the part of the restitutions lies that makes no energy.
+/// Halvings of the interval that holds the largest factor of the restitutions that makes no energy.
 const HALVINGS: usize = 16;
 
-/// Most sweeps over points struck at once. Default 2000: about 20 are taken, a few hundred where impulses are
-/// redundant.
+/// Maximum number of sweeps over points struck at once. Default 2000: about 20 are taken, or a few hundred where
+/// impulses are redundant.
 const SWEEPS: u32 = 2000;
 
-/// Change of velocity, over the fastest before, at which points struck at once are solved. Default 1e-13: rounding.
+/// Change of velocity, over the fastest before the impact, at which points struck at once count as solved. Default
+/// 1e-13: rounding.
 const SOLVED: f64 = 1e-13;
 
-/// Energy, over that of impulses and velocities, that counts as none: rounding.
+/// Energy, over that of impulses and velocities, that counts as zero: rounding.
 const NO_ENERGY: f64 = 1e-12;
 
-/// Impulses of an impact at the points that touch, of which at least one is struck; the members have the velocities
-/// before and are left with those after. `turn` is the preset's `slip_turn`.
+/// Impulses of an impact at the points that touch, of which at least one is struck. The members come with the
+/// velocities before it and leave with those after it. `turn` is the preset's `slip_turn`.
 pub(super) fn strike(points: &mut [Point], members: &mut [Member], turn: f64) {
     // The fastest first: labels of bodies and points play no part.
     points.sort_by(|p, q| q.approach.total_cmp(&p.approach));
@@ -104,7 +105,7 @@ pub(super) fn strike(points: &mut [Point], members: &mut [Member], turn: f64) {
     }
 }
 
-/// The same of members that joints hold, whose rows keep their velocities at 0.
+/// The same for members that joints hold; the joints' rows keep their velocities at 0.
 pub(super) fn strike_joined(points: &mut [Point], joints: &mut [Contact], members: &mut [Member]) {
     points.sort_by(|p, q| q.approach.total_cmp(&p.approach));
     strike_at_once(points, joints, members);
@@ -147,7 +148,7 @@ fn strike_at_once(points: &mut [Point], joints: &mut [Contact], members: &mut [M
     }
 }
 
-/// Impulse at one point in world axes. The tangents follow the slip, so that an impact in a plane stays in it.
+/// Impulse at one point in world axes. The tangents follow the slip, so that an impact in a plane stays in that plane.
 fn impulse(contact: &Contact, u: DVec3, restitution: f64, turn: f64) -> DVec3 {
     let n = contact.normal;
     let slip = u - n * u.dot(n);

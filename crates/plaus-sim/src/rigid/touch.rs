@@ -1,4 +1,4 @@
-//! Points at which bodies touch: what still stands, or each other.
+//! Points at which bodies touch: fixed parts, or each other.
 
 use super::body::Pose;
 use crate::scenery::Surface;
@@ -6,7 +6,7 @@ use crate::shape::convex_pair::Mark;
 use crate::shape::{cuboid_pair, hull_pair};
 use glam::DVec3;
 
-/// The name of a point of contact: a piece of each, and what of them meets.
+/// The name of a point of contact: a piece of each body, and the elements that meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Spot {
     pub(super) own: u8,
@@ -14,7 +14,7 @@ pub(crate) struct Spot {
     pub(super) mark: Mark,
 }
 
-/// Bits of the own piece's index in a packed name.
+/// Bits for the index of the own piece in a packed name.
 const OWN: u32 = 32 - crate::shape::convex_pair::BITS;
 
 impl Spot {
@@ -24,7 +24,7 @@ impl Spot {
         Surface::Spot { part, piece: self.other, point }
     }
 
-    /// What such a name says.
+    /// The name that was packed.
     pub(super) fn of_surface(piece: u32, point: u32) -> Self {
         Self { own: (point & ((1 << OWN) - 1)) as u8, other: piece, mark: Mark::of_number(point >> OWN) }
     }
@@ -33,7 +33,7 @@ impl Spot {
 /// A point of a body on a part.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Touch {
-    /// Its name, and the part that it is of.
+    /// Its name, and the part that it touches.
     pub(crate) surface: Surface,
     pub(crate) part: u16,
     /// From the centre of gravity to the point of contact, in world axes.
@@ -59,7 +59,7 @@ impl Touch {
     }
 }
 
-/// What meets at a point of two bodies with flat faces.
+/// The elements that meet at a point of two bodies with flat faces.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Feature {
     Cuboids(cuboid_pair::Feature),
@@ -75,7 +75,7 @@ pub(crate) struct PairTouch {
     /// From each centre of gravity to its nearest point.
     pub(crate) arms: [DVec3; 2],
     pub(crate) gap: f64,
-    /// What meets there, of bodies that are looked at by their faces, edges and corners.
+    /// The elements that meet there, for bodies that are compared by their faces, edges and corners.
     pub(crate) feature: Option<Feature>,
 }
 
@@ -87,8 +87,8 @@ impl PairTouch {
     }
 }
 
-/// Arms from centres of gravity at `x` to the point half way between where they end: where impulses act on both bodies
-/// at one point, these keep their angular momentum.
+/// Arms from centres of gravity at `x` to the point half way between their ends. If the impulses act on both bodies at
+/// one point, the bodies keep their angular momentum.
 pub(super) fn to_middle(arms: [DVec3; 2], x: [DVec3; 2]) -> [DVec3; 2] {
     let half = ((x[0] + arms[0]) - (x[1] + arms[1])) * 0.5;
     [arms[0] - half, arms[1] + half]

@@ -3,17 +3,18 @@
 //! - Three equal moments: `ω` is constant.
 //! - Two equal moments (axis `e`, `I₁ = I₂ ≠ I₃`): `R(t) = Rot(L̂, |L| t/I₁) · R₀ · Rot(e, (1 − I₃/I₁) ω₃ t)`.
 //! - Three different moments: Taylor series of Euler's equations and of the quaternion, re-expanded before the body has
+//! - Three different moments: Taylor series of Euler's equations and of the quaternion, re-expanded before the body has
 //!   turned by half a radian; the terms left out are below rounding ([`ORDER`]). Deviation from a closed form in
-//!   Jacobi's elliptic functions: the series needs no special cases near the separatrix, and is as exact.
+//!   Jacobi's elliptic functions: the series needs no special cases near the separatrix, and is just as exact.
 
 use glam::{DMat3, DQuat, DVec3};
 use plaus_dist::math;
 
-/// What the moments of inertia are like.
+/// The kinds of moments of inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Equal,
-    /// The two others are equal.
+    /// Two equal moments; the index is that of the third.
     Top(usize),
     Different,
 }
@@ -46,12 +47,12 @@ impl Inertia {
         if self.kind == Kind::Equal { w * self.moments.x } else { turn * (self.moments * (turn.conjugate() * w)) }
     }
 
-    /// Angular velocity in world axes of a body with this angular momentum.
+    /// Angular velocity, in world axes, of a body with this angular momentum.
     pub(crate) fn spin(&self, turn: DQuat, l: DVec3) -> DVec3 {
         if self.kind == Kind::Equal { l / self.moments.x } else { turn * ((turn.conjugate() * l) / self.moments) }
     }
 
-    /// The inverse in world axes, for a body turned by `r`.
+    /// The inverse inertia in world axes, for a body turned by `r`.
     #[inline]
     pub(crate) fn inverse(&self, r: &DMat3) -> DMat3 {
         let i = self.moments;
@@ -122,7 +123,7 @@ impl Top {
     }
 }
 
-/// A rotation that can be asked for at many times.
+/// A rotation that can be evaluated at many times.
 #[derive(Debug, Clone)]
 pub(crate) struct Tumble {
     fixed: DMat3,
@@ -164,8 +165,8 @@ impl Tumble {
         Self { fixed, cos, sin, rate, own: None, series: None }
     }
 
-    /// Angular velocity in world axes at the time last asked for, of a body with three different moments: it is known
-    /// there.
+    /// Angular velocity, in world axes, at the time last asked for. Only for a body with three different moments: it is
+    /// known there.
     #[inline]
     pub(crate) fn spin(&self) -> Option<DVec3> {
         self.series.as_ref().map(|(_, series)| series.turn * series.w)
@@ -200,14 +201,14 @@ impl Tumble {
         (seen, swing)
     }
 
-    /// How the body sees a direction of the world, where it turns about one axis.
+    /// How the body sees a direction of the world, if it turns about one axis.
     pub(crate) fn sines(&self, direction: DVec3) -> Option<Sines> {
         let View { fixed, cos, sin, .. } = self.view(direction);
         let is_about_one_axis = self.own.is_none() && self.series.is_none();
         is_about_one_axis.then_some(Sines { rate: self.rate, fixed, cos, sin })
     }
 
-    /// Orientation after `dt`. Times asked for one after the other should not fall: a series would start anew.
+    /// Orientation after `dt`. Successive times should not decrease: a series would have to start anew.
     #[inline]
     pub(crate) fn at(&mut self, dt: f64) -> DMat3 {
         if let Some((_, series)) = &mut self.series {
@@ -227,8 +228,8 @@ impl Tumble {
     }
 }
 
-/// A direction of the world as a turning body sees it: what of it stays, and what goes with cosine and sine of the
-/// turn.
+/// A direction of the world as a turning body sees it: its constant part, and its parts along the cosine and the sine
+/// of the angle.
 #[derive(Debug, Clone)]
 pub(crate) struct View {
     direction: DVec3,
@@ -251,7 +252,7 @@ pub(crate) struct Sines {
 #[derive(Debug, Clone)]
 struct Series {
     moments: DVec3,
-    /// Where it was started, to start anew.
+    /// Where the rotation started, so that it can start anew.
     origin: (DQuat, DVec3),
     elapsed: f64,
     turn: DQuat,
@@ -259,14 +260,14 @@ struct Series {
     w: DVec3,
 }
 
-/// Terms of the series. With steps of at most [`STEP`] radians the first term left out is below `0.3¹⁶/16! ≈ 2e-22`
+/// Terms of the series. With steps of at most [`STEP`] radians, the first term left out is below `0.3¹⁶/16! ≈ 2e-22`
 /// times a small power of the ratio of moments.
 const ORDER: usize = 16;
 
 /// Longest step in radians of turning (times the ratio of moments where that exceeds 1).
 const STEP: f64 = 0.3;
 
-/// Most steps of one request: 10⁵ radians. Longer ones use longer steps; nothing the simulator does asks for them.
+/// Maximum number of steps for one request: 10⁵ radians. Longer requests use longer steps; the simulator makes none.
 const MOST_STEPS: f64 = 4e5;
 
 impl Series {
@@ -326,7 +327,7 @@ impl Series {
 mod tests {
     use super::*;
 
-    /// Classic Runge–Kutta with tiny steps on the matrix form, as a reference that shares nothing with the formulas.
+    /// Classic Runge–Kutta with tiny steps on the matrix form: a reference that shares nothing with the formulas.
     fn reference(moments: DVec3, r0: DMat3, w0: DVec3, t: f64, n: usize) -> (DMat3, DVec3) {
         // State: rotation (columns) and body angular velocity.
         let euler = |w: DVec3| -> DVec3 { (moments * w).cross(w) / moments };

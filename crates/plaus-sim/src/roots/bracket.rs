@@ -1,7 +1,7 @@
 //! Newton's method that never leaves its bracket.
 
-/// Most iterations of [`refine`]; bisection alone would need about 60 from any bracket whose ends differ by less than a
-/// factor 256.
+/// Maximum number of iterations of [`refine`]; bisection alone would need about 60 from any bracket whose ends differ
+/// by less than a factor of 256.
 const MOST_ITERATIONS: usize = 128;
 
 /// The root of a function that changes its sign once between `low` and `high`.

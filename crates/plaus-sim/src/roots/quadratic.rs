@@ -14,7 +14,7 @@ pub fn roots_of_quadratic([c0, c1, c2]: [f64; 3]) -> Option<[f64; 2]> {
         return None;
     }
     let q = half + discriminant.sqrt().copysign(half);
-    // q is 0 only where c1 and the discriminant are: a double root at 0.
+    // q is 0 only if c1 and the discriminant are: a double root at 0.
     let (first, second) = (q / c2, if q == 0.0 { 0.0 } else { c0 / q });
     Some(if first <= second { [first, second] } else { [second, first] })
 }
@@ -29,20 +29,20 @@ pub fn fall_of_quadratic(c: [f64; 3], until: f64) -> Option<f64> {
         if falling_now {
             0.0
         } else if c2 < 0.0 {
-            // Overlapping and separating: it comes back at the earliest from its turning point.
+            // Overlapping and separating: it cannot come back before its turning point.
             let turn = -0.5 * c1 / c2;
             if c0 + 0.5 * c1 * turn <= 0.0 { turn } else { roots_of_quadratic(c)?[1] }
         } else {
             return None;
         }
     } else if c2 > 0.0 {
-        // A valley: the first root is the fall, and lies ahead only if it falls now.
+        // A valley: the first root is the fall, and it lies ahead only if the value falls now.
         if c1 >= 0.0 {
             return None;
         }
         roots_of_quadratic(c)?[0]
     } else if c0 + (c1 + c2 * until) * until > 0.0 {
-        // A hill or a line is above zero in between where it is at both ends.
+        // A hill or a line that is above zero at both ends is above zero between them.
         return None;
     } else {
         // A hill or a falling line, above zero now: the later root.
@@ -54,7 +54,7 @@ pub fn fall_of_quadratic(c: [f64; 3], until: f64) -> Option<f64> {
     (time <= until).then_some(time)
 }
 
-/// Time until a gap `f` with rate `rate` and acceleration at least `-m` can be gone.
+/// Earliest time at which a gap `f` with rate `rate` and acceleration at least `-m` can close.
 #[inline]
 pub(crate) fn earliest(f: f64, rate: f64, m: f64) -> f64 {
     if f > 0.0 {
@@ -69,7 +69,7 @@ pub(crate) fn earliest(f: f64, rate: f64, m: f64) -> f64 {
     } else if rate <= 0.0 {
         0.0
     } else if m > 0.0 {
-        // Overlapping but opening: not before the rate has turned.
+        // Overlapping but opening: not before the rate has changed sign.
         let discriminant = rate * rate + 2.0 * m * f;
         (rate + discriminant.max(0.0).sqrt()) / m
     } else {

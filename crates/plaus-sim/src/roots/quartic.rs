@@ -1,4 +1,4 @@
-//! Quartics `Σ c_k t^k`: squared distances along parabolas (edges, vertices, domes, spheres of which one rolls).
+//! Quartics `Σ c_k t^k`: squared distances along parabolas (edges, vertices, domes, and spheres one of which rolls).
 
 use super::{fall_of_quadratic, refine, roots_of_quadratic};
 use glam::DVec3;
@@ -25,8 +25,8 @@ fn curvature(c: &[f64; 5], t: f64) -> f64 {
     2.0 * c[2] + t * (6.0 * c[3] + t * 12.0 * c[4])
 }
 
-/// Whether the Bernstein coefficients over `[from, until]` are all positive, which proves that there is no root. Cheap,
-/// and it settles most calls.
+/// Whether the Bernstein coefficients over `[from, until]` are all positive, which proves that there is no root. This
+/// test is quick and settles most calls.
 #[inline]
 fn surely_positive(c: &[f64; 5], from: f64, until: f64) -> bool {
     let width = until - from;
@@ -65,8 +65,8 @@ fn turning_points(c: &[f64; 5], from: f64, until: f64) -> [f64; 3] {
     turns
 }
 
-/// First time in `[from, until]` at which the quartic is not positive and falls (see the module). `from` ≥ 0, `until`
-/// may be infinite only where the quartic is in fact a quadratic.
+/// First time in `[from, until]` at which the quartic is not positive and falls (see the module). `from` is at least 0.
+/// `until` may be infinite only if the quartic is in fact a quadratic.
 #[inline]
 #[must_use]
 pub fn fall_of_quartic(c: &[f64; 5], from: f64, until: f64) -> Option<f64> {
@@ -89,7 +89,7 @@ pub(crate) fn first_fall_of_quartic(c: &[f64; 5], until: f64, horizon: f64) -> O
     falls_of_quartic(c, 0.0, horizon, |_| true)
 }
 
-/// The first fall of the quartic that `accept` agrees to; the others pass.
+/// The first fall of the quartic that `accept` agrees to; the others are passed over.
 #[inline]
 #[must_use]
 pub fn falls_of_quartic(c: &[f64; 5], from: f64, until: f64, mut accept: impl FnMut(f64) -> bool) -> Option<f64> {
@@ -102,7 +102,7 @@ pub fn falls_of_quartic(c: &[f64; 5], from: f64, until: f64, mut accept: impl Fn
         Bend::Unknown => None,
     };
     match known {
-        // Where the bend has one sign there is one fall at most.
+        // If the bend has a single sign, there is at most one fall.
         Some(fall) => fall.filter(|&time| accept(time)),
         None => fall_in_pieces(c, from, until, accept),
     }
@@ -129,15 +129,15 @@ fn bend(c: &[f64; 5], from: f64, until: f64) -> Bend {
     }
 }
 
-/// Whether there is a fall, and when; [`None`] where it is not known.
+/// Whether there is a fall, and when; [`None`] if that is not known.
 type Verdict = Option<Option<f64>>;
 
-/// Most steps of Newton's method without a bracket: grazing takes about 30, everything else up to eight. Beyond them
-/// the general way is taken.
+/// Maximum number of steps of Newton's method without a bracket: grazing takes about 30, everything else up to eight.
+/// After that, the general method takes over.
 const MOST_STEPS: usize = 64;
 
 /// The fall of a quartic that is convex over the interval. Newton's method from the left never passes the root, so it
-/// needs no bracket, and shows on its way where there is none.
+/// needs no bracket, and it notices if there is no root.
 #[inline]
 fn fall_of_convex(c: &[f64; 5], from: f64, until: f64) -> Verdict {
     let mut t = from;
@@ -154,7 +154,7 @@ fn fall_of_convex(c: &[f64; 5], from: f64, until: f64) -> Verdict {
         if next > until {
             return Some(None);
         }
-        // A step of the last bit or two, which rounding may turn back.
+        // A step of one or two last bits, which rounding may reverse.
         if next - t <= f64::EPSILON * next {
             return Some(Some(next));
         }
@@ -164,13 +164,13 @@ fn fall_of_convex(c: &[f64; 5], from: f64, until: f64) -> Verdict {
 }
 
 /// The fall of a quartic that is concave over the interval, by Newton's method from the right, which never passes the
-/// last root. Not known where it is nowhere positive but rises at first: then it falls from its turning point on, which
-/// is not sought here.
+/// last root. Not known if the quartic is nowhere positive but rises at first: then it falls from its turning point on,
+/// which is not sought here.
 #[inline]
 fn fall_of_concave(c: &[f64; 5], from: f64, until: f64) -> Verdict {
     let (mut f, mut s) = (value(c, until), slope(c, until));
     if f > 0.0 || s >= 0.0 {
-        // Above zero at its end, which it was not before only if it has risen; or it rises all the way.
+        // It is above zero at its end, and if it was not before, it has only risen; or it rises all the way.
         return Some(None);
     }
     if value(c, from) <= 0.0 && slope(c, from) <= 0.0 {
@@ -243,10 +243,11 @@ mod tests {
     }
 
     proptest! {
-        /// The short ways for one sign of the bend against the general one, over stretches that begin and end anywhere:
-        /// the same fall, or both none; save where the quartic only just touches zero, which rounding decides.
+        /// Compares the short methods for one sign of the bend with the general one, over intervals that begin and end
+        /// anywhere. Both give the same fall, or none, except where the quartic only just touches zero, which rounding
+        /// decides.
         #[test]
-        fn short_ways_agree_with_the_general_one(
+        fn short_methods_agree_with_the_general_one(
             p in prop::array::uniform3(-2.0..2.0_f64), v in prop::array::uniform3(-3.0..3.0_f64),
             a in prop::array::uniform3(-10.0..10.0_f64), d in 0.01..3.0_f64, hollow in any::<bool>(),
             from in 0.0..0.5_f64, width in 0.001..1.0_f64, on_surface in any::<bool>(),
@@ -257,7 +258,7 @@ mod tests {
             }
             let until = from + width;
             if on_surface {
-                // As after a bounce: a rounding error from touching.
+                // As after a bounce: a rounding error away from touching.
                 c[0] -= value(&c, from) * (1.0 - 1e-15);
             }
             let short = match bend(&c, from, until) {
@@ -267,7 +268,7 @@ mod tests {
             };
             let general = fall_in_pieces(&c, from, until, |_| true);
             let scale = c.iter().map(|x| x.abs()).fold(0.0, f64::max);
-            // Times differ by what an error of the value of a few roundings makes at that slope.
+            // The times may differ by the effect, at that slope, of a few roundings in the value.
             match (short, general) {
                 (None, _) | (Some(None), None) => {}
                 (Some(Some(s)), Some(g)) => {
@@ -282,7 +283,7 @@ mod tests {
             }
         }
 
-        /// Against a dense scan: no fall is invented, none is missed by more than the scan can see.
+        /// Compared with a dense scan: no fall is invented, and none is missed by more than the scan can resolve.
         #[test]
         fn agrees_with_a_scan(
             p in prop::array::uniform3(-2.0..2.0_f64), v in prop::array::uniform3(-3.0..3.0_f64),

@@ -3,13 +3,13 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// The greater of two numbers of which none is NaN: one instruction, where `f64::max` has to ask for NaN first.
+/// The greater of two numbers, neither of which is NaN: one instruction, where `f64::max` must test for NaN first.
 #[inline(always)]
 pub(crate) fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The lesser of two numbers of which none is NaN.
+/// The lesser of two numbers, neither of which is NaN.
 #[inline(always)]
 pub(crate) fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
@@ -54,7 +54,7 @@ impl Aabb {
     #[inline]
     #[must_use]
     pub fn meets(&self, other: &Self) -> bool {
-        // All six, without a branch that could be foreseen wrongly.
+        // All six, without a branch that might be mispredicted.
         (self.min.x <= other.max.x)
             & (self.max.x >= other.min.x)
             & (self.min.y <= other.max.y)
@@ -63,7 +63,7 @@ impl Aabb {
             & (self.max.z >= other.min.z)
     }
 
-    /// Square of the distance between two boxes; infinite where one is empty.
+    /// Square of the distance between two boxes; infinite if one is empty.
     #[inline]
     #[must_use]
     pub fn distance_squared(&self, other: &Self) -> f64 {

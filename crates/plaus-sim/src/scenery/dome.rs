@@ -50,14 +50,14 @@ impl Dome {
         if self.hollow { (-outward, self.radius - length) } else { (outward, length - self.radius) }
     }
 
-    /// Where a ball's centre stands to the surface.
+    /// The foot of a ball's centre on the surface.
     #[inline]
     pub(crate) fn stands(&self, x: DVec3) -> Foot {
         let (normal, distance) = self.normal_and_distance(x);
         Foot { normal, distance, curvature_radius: if self.hollow { -self.radius } else { self.radius } }
     }
 
-    /// The surface point nearest to `x`, where it counts.
+    /// The surface point nearest to `x`, if it counts.
     #[inline]
     #[must_use]
     pub fn foot(&self, x: DVec3) -> Option<DVec3> {
@@ -66,7 +66,7 @@ impl Dome {
         self.clip.contains(point).then_some(point)
     }
 
-    /// A box around the surface: of the clip box, the slab that a cap opening along ±z can reach.
+    /// A box around the surface: the slab of the clip box that a cap opening along ±z can reach.
     pub(crate) fn bounds(&self) -> Aabb {
         let ball = Aabb { min: self.centre - self.radius, max: self.centre + self.radius };
         Aabb { min: self.clip.min.max(ball.min), max: self.clip.max.min(ball.max) }

@@ -6,7 +6,7 @@
 use crate::scenery::Aabb;
 use glam::DVec3;
 
-/// Most cells along one axis; bounds memory at about 2 million cells.
+/// Maximum number of cells along one axis; bounds memory at about 2 million cells.
 const MOST_CELLS: f64 = 128.0;
 
 /// Side of a cell over the mean side of a grown box. Default 0.15: smaller cells list less each but are crossed more
@@ -89,18 +89,18 @@ impl Grid {
     #[inline]
     pub(crate) fn cell_of(&self, x: DVec3) -> [usize; 3] {
         let scaled = ((x - self.origin) * self.inverse).to_array();
-        // A float-to-integer cast saturates. What lies below goes to the first cell.
+        // A float-to-integer cast saturates. Anything below goes to the first cell.
         std::array::from_fn(|k| (scaled[k] as i32).clamp(0, self.last[k]) as usize)
     }
 
-    /// What is listed in a cell, in ascending order.
+    /// The features listed in a cell, in ascending order.
     #[inline]
     pub(crate) fn items(&self, cell: [usize; 3]) -> &[u32] {
         let k = self.index(cell);
         &self.items[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 
-    /// Lower and upper walls of a cell, infinite where it is outermost.
+    /// Lower and upper walls of a cell; infinite if it is outermost.
     #[inline]
     pub(crate) fn walls(&self, cell: [usize; 3]) -> (DVec3, DVec3) {
         let wall = |k: usize, beyond: usize| self.walls[k][cell[k] + beyond];

@@ -9,9 +9,9 @@ use crate::scenery::Aabb;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// An edge counts as flat where the neighbour's far corner is within this part of the edge's length of the face's
-/// plane. Dimensionless; default 1e-12 (a few thousand rounding errors); danger: larger values open cracks of that
-/// width.
+/// An edge counts as flat if the distance of the neighbour's far corner from the face's plane is within this fraction
+/// of the edge's length. Dimensionless; default 1e-12 (a few thousand rounding errors); danger: larger values open
+/// cracks of that width.
 const FLAT: f64 = 1e-12;
 
 /// One triangle.
@@ -63,8 +63,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// A mesh of triangles whose corners run counter-clockwise seen from outside. Vertices may later be moved by up to
-    /// `margin` metres without a new broad phase (see [`Mesh::move_vertices`]); 0 where they never move.
+    /// A mesh of triangles whose corners run anticlockwise as seen from outside. Vertices may later be moved by up to
+    /// `margin` metres without a new broad phase (see [`Mesh::move_vertices`]); 0 if they never move.
     ///
     /// # Errors
     /// [`WorldError`] naming the triangle that is degenerate, names an unknown vertex, or shares an edge it cannot
@@ -74,10 +74,10 @@ impl Mesh {
         Self::with_margins(vertices, triangles, margins)
     }
 
-    /// The same with a margin for each vertex: what cannot move is found faster.
+    /// The same with a margin for each vertex: surfaces that cannot move are found faster.
     ///
     /// # Errors
-    /// As [`Mesh::new`], and if the margins are not as many as the vertices.
+    /// As [`Mesh::new`], and if the number of margins is not that of the vertices.
     pub fn with_margins(
         vertices: Vec<DVec3>,
         triangles: &[([u32; 3], Material)],
@@ -233,7 +233,7 @@ impl Mesh {
     }
 
     /// Moves vertices in place: `moved` gives the index and the new position. The topology and the broad phase stay, so
-    /// a scene whose draws differ in small offsets builds its mesh once.
+    /// a scene whose draws differ by small offsets builds its mesh only once.
     ///
     /// # Errors
     /// [`WorldError::MovedTooFar`] beyond the mesh's margin, [`WorldError::DegenerateTriangle`] if a triangle
@@ -262,7 +262,7 @@ impl Mesh {
         placed
     }
 
-    /// What the last move touched.
+    /// The parts of the mesh that the last move touched.
     pub(crate) fn touched(&self) -> &Touched {
         &self.moved
     }
@@ -296,12 +296,12 @@ impl Mesh {
         vertices.iter().map(|&v| self.margins[v as usize]).fold(0.0, f64::max)
     }
 
-    /// Boxes of all faces where they can ever be.
+    /// Boxes of all faces, wherever they can ever be.
     pub(crate) fn face_reaches(&self) -> impl Iterator<Item = Aabb> + '_ {
         (0..self.faces.len()).map(|f| self.face_bounds(f).grown(self.margin_of(&self.faces[f].corners)))
     }
 
-    /// Boxes of all edges where they can ever be; empty for one that can never become convex.
+    /// Boxes of all edges, wherever they can ever be; empty for an edge that can never become convex.
     pub(crate) fn edge_reaches(&self) -> impl Iterator<Item = Aabb> + '_ {
         (0..self.edges.len()).map(|e| {
             if self.edge_may_count(e) {
@@ -313,7 +313,7 @@ impl Mesh {
         })
     }
 
-    /// Boxes of all vertices where they can ever be; empty for one whose edges can never become convex.
+    /// Boxes of all vertices, wherever they can ever be; empty for a vertex whose edges can never become convex.
     pub(crate) fn vertex_reaches(&self) -> impl Iterator<Item = Aabb> + '_ {
         (0..self.vertices.len()).map(|v| {
             let counts = self.edges_at_vertex[v].iter().any(|&e| self.edge_may_count(e as usize));
@@ -321,8 +321,8 @@ impl Mesh {
         })
     }
 
-    /// Whether a ball of radius up to `reach` whose centre is in a box can touch a face: not where the box is all
-    /// behind it or all beyond reach.
+    /// Whether a ball of radius up to `reach` whose centre is in a box can touch a face. It cannot if the box is
+    /// entirely behind the face or beyond reach.
     pub(crate) fn face_may_touch(&self, f: usize, centres: &Aabb, reach: f64) -> bool {
         let face = &self.faces[f];
         if self.margin_of(&face.corners) > 0.0 || !centres.min.is_finite() || !centres.max.is_finite() {
@@ -366,7 +366,7 @@ impl Mesh {
     }
 }
 
-/// What a move of vertices touches: kept, since scenes move the same vertices again and again.
+/// The parts of the mesh that a move of vertices touches; kept, because scenes move the same vertices again and again.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Touched {
     moved: Vec<u32>,
@@ -387,7 +387,7 @@ impl Touched {
         };
         self.moved = moved.iter().map(|m| m.0).collect();
         self.faces = unique(self.moved.iter().flat_map(|&v| &mesh.around_vertex[v as usize]).copied().collect());
-        // An edge's convexity rests on both of its faces, so every edge of a touched face is looked at.
+        // An edge's convexity depends on both of its faces, so every edge of a touched face is examined.
         self.vertices = unique(self.faces.iter().flat_map(|&f| mesh.faces[f as usize].corners).collect());
         self.edges = unique(self.vertices.iter().flat_map(|&v| &mesh.edges_at_vertex[v as usize]).copied().collect());
         self.vertices = unique(self.edges.iter().flat_map(|&e| mesh.edges[e as usize].ends).collect());

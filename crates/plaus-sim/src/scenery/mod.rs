@@ -51,7 +51,7 @@ pub enum Surface {
         part: u16,
         /// Which piece of the part: the triangle of a mesh.
         piece: u32,
-        /// What touches there, and with which piece of the body.
+        /// The elements that touch there, and the piece of the body.
         point: u32,
     },
 }
@@ -72,7 +72,7 @@ impl fmt::Display for Surface {
 
 pub(crate) const NO_PARTS: &str = "parts belong to worlds of turning bodies";
 
-/// Where a ball's centre stands to a surface.
+/// A ball's centre relative to a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Foot {
     /// Unit vector from the surface to the centre.
@@ -89,11 +89,11 @@ pub struct Scenery {
     planes: Vec<Plane>,
     mesh: Mesh,
     domes: Vec<Dome>,
-    /// Of planes, faces, domes, edges, vertices in this order: the order in which they are looked at.
+    /// Of planes, faces, domes, edges, vertices in this order: the order in which they are tested.
     boxes: Vec<Aabb>,
-    /// The same boxes, rougher and quicker.
+    /// The same boxes, rougher and quicker to test.
     screens: Vec<Screen>,
-    /// What each box is around.
+    /// The surface inside each box.
     items: Vec<Surface>,
     grid: Grid,
     reach: f64,
@@ -133,7 +133,7 @@ impl Scenery {
     /// Scenery without anything in it.
     ///
     /// # Errors
-    /// Never in fact; the mesh of nothing is a mesh.
+    /// None in practice: a mesh without triangles is valid.
     pub fn empty() -> Result<Self, WorldError> {
         Self::new(Vec::new(), Mesh::new(Vec::new(), &[], 0.0)?, Vec::new(), 1.0)
     }
@@ -195,13 +195,13 @@ impl Scenery {
         self.screens[item as usize].may_meet(probe)
     }
 
-    /// What an item of the broad phase is.
+    /// The surface that an item of the broad phase stands for.
     #[inline]
     pub(crate) fn surface(&self, item: u32) -> Surface {
         self.items[item as usize]
     }
 
-    /// What a surface is made of; edges and vertices take the material of their first face.
+    /// The material of a surface; edges and vertices take that of their first face.
     #[inline]
     #[must_use]
     pub fn material(&self, surface: Surface) -> Material {
@@ -219,7 +219,7 @@ impl Scenery {
         }
     }
 
-    /// Where a ball's centre stands to a surface.
+    /// The foot of a ball's centre on a surface.
     #[inline]
     #[must_use]
     pub fn foot(&self, surface: Surface, x: DVec3) -> Foot {

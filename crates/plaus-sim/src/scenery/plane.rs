@@ -42,7 +42,7 @@ impl Plane {
         self.normal.dot(x) - self.offset
     }
 
-    /// Whether a ball of radius up to `reach` whose centre is in a box, endless perhaps, can touch the plane or be
+    /// Whether a ball of radius up to `reach` whose centre is in a box, which may be endless, can touch the plane or be
     /// behind it.
     pub(crate) fn may_touch(&self, centres: &Aabb, reach: f64) -> bool {
         let nearest = |k: usize| match self.normal[k] {
@@ -51,7 +51,7 @@ impl Plane {
             _ => 0.0,
         };
         let nearest = nearest(0) + nearest(1) + nearest(2) - self.offset;
-        // A little more than the reach, for rounding; infinities of both signs make it NaN, and then it may.
+        // A little more than the reach, for rounding. Infinities of both signs give NaN, and then the answer is yes.
         nearest.is_nan() || nearest <= reach + 1e-6 * (reach + self.offset.abs())
     }
 }

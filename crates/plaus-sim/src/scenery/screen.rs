@@ -31,10 +31,10 @@ impl Probe {
     }
 }
 
-/// More than two roundings to `f32` can lose, over the number.
+/// The most that two roundings to `f32` can lose, over the number, is less than this.
 const OUTWARD: f32 = 2.0 * f32::EPSILON;
 
-/// A little less than `x`; never infinite above, so that what lies beyond all `f32` stays in.
+/// A little less than `x`; never infinite above, so that points beyond all `f32` stay in.
 #[inline(always)]
 fn not_above(x: f64) -> f32 {
     let near = x as f32;
@@ -60,13 +60,13 @@ mod tests {
     }
 
     proptest! {
-        /// What meets is never ruled out.
+        /// Boxes that meet are never ruled out.
         #[test]
         fn boxes_that_meet_pass(a in any_box(), b in any_box()) {
             prop_assert!(!a.meets(&b) || Screen::new(&a).may_meet(&Probe::new(&b)));
         }
 
-        /// What is apart by more than an f32 can lose is ruled out.
+        /// Boxes that are apart by more than an f32 can lose are ruled out.
         #[test]
         fn boxes_that_are_apart_do_not(
             a in prop::array::uniform3(-1.0..1.0_f64),

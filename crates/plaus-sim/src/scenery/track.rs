@@ -4,8 +4,8 @@ use super::{Foot, Scenery, Surface};
 use glam::DVec3;
 
 impl Scenery {
-    /// The surface that a ball in contact with `surface` touches now, its centre being at `x`: the same as long as the
-    /// foot of the perpendicular stays on it, else the nearest face, edge or vertex around. `None` if a dome has
+    /// The surface that a ball in contact with `surface` touches now, with its centre at `x`: the same as long as the
+    /// foot of the perpendicular stays on it, otherwise the nearest face, edge or vertex around. `None` if a dome has
     /// been left.
     pub(crate) fn track(&self, surface: Surface, x: DVec3) -> Option<Surface> {
         match surface {
@@ -22,7 +22,7 @@ impl Scenery {
         }
     }
 
-    /// What [`Scenery::track`] finds, and where the centre stands to it.
+    /// The surface that [`Scenery::track`] finds, and the centre's foot on it.
     #[inline]
     pub(crate) fn follow(&self, surface: Surface, x: DVec3) -> Option<(Surface, Foot)> {
         if let Surface::Dome(k) = surface {
@@ -34,8 +34,8 @@ impl Scenery {
         Some((surface, self.foot(surface, x)))
     }
 
-    /// Where a ball's centre stands to what a contact with `surface` has become at `x`: the offset of a convex corner
-    /// has no kinks, whatever feature is nearest.
+    /// The foot of a ball's centre on the surface that a contact with `surface` has become at `x`. The offset of a
+    /// convex corner has no kinks, whichever feature is nearest.
     #[inline]
     pub(crate) fn foot_near(&self, surface: Surface, x: DVec3) -> Foot {
         if matches!(surface, Surface::Plane(_) | Surface::Dome(_)) {
@@ -68,7 +68,7 @@ impl Scenery {
         self.mesh.edges_at_vertex(k).iter().all(away)
     }
 
-    /// The edge itself unless the ball has come over one of its faces or beyond one of its ends.
+    /// The edge itself, unless the ball has come over one of its faces or beyond one of its ends.
     fn around_edge(&self, k: u32, x: DVec3) -> Option<Surface> {
         let edge = &self.mesh.edges[k as usize];
         let along = edge.direction.dot(x - edge.origin);
@@ -101,8 +101,8 @@ impl Scenery {
         best.map(|(_, s)| s)
     }
 
-    /// Squared distance of `x` from a triangle and the part of it that is nearest. Behind a face counts as far: its
-    /// solid is there.
+    /// Squared distance of `x` from a triangle, and its nearest part. A point behind the face counts as far, because
+    /// its solid is there.
     fn nearest_on(&self, f: u32, x: DVec3) -> (f64, Surface) {
         let face = &self.mesh.faces[f as usize];
         let height = face.normal.dot(x) - face.offset;
@@ -173,7 +173,7 @@ impl Scenery {
         worst
     }
 
-    /// Whether another face that looks the other way lies in front of `x` nearer than `depth`: then `x` is outside,
+    /// Whether another face that faces the other way lies in front of `x`, nearer than `depth`: then `x` is outside,
     /// beyond a thin wall.
     fn is_shielded(&self, f: u32, x: DVec3, depth: f64) -> bool {
         let behind = self.mesh.faces[f as usize].normal;

@@ -1,5 +1,5 @@
-//! Bodies of one or several convex solids, each with a pose: cylinders, cones, capsules, dumbbells, mugs, balls out of
-//! balance.
+//! Bodies of one or several convex solids, each with a pose: cylinders, cones, capsules, dumbbells, mugs, unbalanced
+//! balls.
 
 use super::frustum::Frustum;
 use super::hull::{outer, principal};
@@ -25,7 +25,7 @@ pub enum Convex {
 /// A solid within a compound.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Member {
-    /// Which solid.
+    /// The solid.
     pub solid: Convex,
     /// Where its origin is, in m.
     pub at: DVec3,
@@ -43,10 +43,10 @@ impl Member {
     }
 }
 
-/// One or several convex solids that are one body, about its centre of gravity and along its principal axes.
+/// One or several convex solids that form one body, about its centre of gravity and along its principal axes.
 ///
-/// The solids may be given along any axes about any origin; [`centre`](Self::centre) and [`turn`](Self::turn) tell
-/// where the body is among them: a point `p` of theirs is at `turn⁻¹ (p − centre)` of the body. Where solids overlap
+/// The solids may be given along any axes about any origin. [`centre`](Self::centre) and [`turn`](Self::turn) tell
+/// where the body is among them: a point `p` of theirs is at `turn⁻¹ (p − centre)` of the body. Where solids overlap,
 /// their masses add up.
 ///
 /// ```
@@ -77,18 +77,18 @@ pub struct Compound {
     members: Vec<Member>,
 }
 
-/// Most solids of one compound: names of points of contact count them.
+/// Maximum number of solids of one compound: names of points of contact count them.
 const MOST_MEMBERS: usize = 256;
 
-/// How far density over density may go: 1e-6 to 1e6.
+/// Range of a solid's density over the compound's: 1e-6 to 1e6.
 const DENSITIES: [f64; 2] = [1e-6, 1e6];
 
 impl Compound {
     /// Puts solids together.
     ///
     /// # Errors
-    /// [`WorldError::BadMember`] with the index of a solid whose numbers are no numbers or out of range,
-    /// [`WorldError::BadNumber`] for none at all or more than 256.
+    /// [`WorldError::BadMember`] with the index of a solid whose numbers are not finite or are out of range,
+    /// [`WorldError::BadNumber`] for no solids or more than 256.
     pub fn new(members: &[Member]) -> Result<Self, WorldError> {
         if members.is_empty() || members.len() > MOST_MEMBERS {
             let expected = "from 1 to 256";
@@ -104,7 +104,7 @@ impl Compound {
             let trace = own.inertia.element_sum();
             mass += own.mass;
             first += at * own.mass;
-            // The second moments `∫ x xᵀ` from the inertia.
+            // The second moments `∫ x xᵀ`, from the inertia.
             second += DMat3::from_diagonal(DVec3::splat(0.5 * trace)) - tensor + outer(at, at) * own.mass;
         }
         let centre = first / mass;
@@ -123,8 +123,8 @@ impl Compound {
         Ok(Self { pieces, volume: mass, moments, centre, turn, reach, size, is_round, members: members.to_vec() })
     }
 
-    /// A ball whose centre of gravity is `offset` m below its middle (at `−offset` along z as seen from there), with
-    /// the moments of inertia that a uniform ball has about its middle: a tumbler toy, a bowl on a green.
+    /// A ball whose centre of gravity is `offset` m below its middle (at `−offset` along z as seen from the middle),
+    /// with the moments of inertia that a uniform ball has about its middle: a tumbler toy, a bowl on a green.
     ///
     /// # Errors
     /// [`WorldError::BadNumber`] for a radius that is not positive or an offset of more than half of it.
@@ -163,7 +163,7 @@ impl Compound {
         self.turn
     }
 
-    /// Mass and inertia for a density in kg/m³ of those solids whose density is 1.
+    /// Mass and inertia, if solids with density 1 have this density in kg/m³.
     #[must_use]
     pub fn mass_properties(&self, density: f64) -> MassProperties {
         MassProperties { mass: density * self.volume, inertia: self.moments * density }
@@ -249,7 +249,7 @@ impl Convex {
 }
 
 impl From<Frustum> for Shape {
-    /// A body of this solid alone, about its centre of gravity and along its own axes.
+    /// A body of only this solid, about its centre of gravity and along its own axes.
     fn from(frustum: Frustum) -> Self {
         let balance = DVec3::new(0.0, 0.0, frustum.balance());
         let MassProperties { mass, inertia } = frustum.mass_properties(1.0);
@@ -279,7 +279,7 @@ impl From<Compound> for Shape {
 mod tests {
     use super::*;
 
-    /// A box cut in three, turned and moved, is the box.
+    /// A box cut in three, turned and moved, is still the box.
     #[test]
     fn a_box_in_parts_is_the_box() {
         let edges = DVec3::new(0.3, 0.2, 0.1);

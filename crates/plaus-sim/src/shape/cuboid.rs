@@ -5,7 +5,7 @@ use crate::error::WorldError;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A cuboid with edges along the body's axes. With rounding it is the sum of a smaller cuboid and a ball, so its faces
+/// A cuboid with edges along the body's axes. A rounded one is the sum of a smaller cuboid and a ball, so its faces
 /// stay where they are.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Cuboid {
@@ -14,7 +14,7 @@ pub struct Cuboid {
 }
 
 impl Cuboid {
-    /// A cuboid with `edges` in m whose edges and corners are rounded with radius `rounding` in m (0: sharp).
+    /// A cuboid with `edges` in m. Its edges and corners are rounded with radius `rounding` in m (0: sharp).
     ///
     /// # Errors
     /// [`WorldError::BadNumber`] if an edge is not positive, or the rounding is negative or not less than half the
@@ -47,8 +47,8 @@ impl Cuboid {
         self.rounding
     }
 
-    /// Centres of the corners' roundings; the corners where they are sharp. Bit k of the index tells the side along
-    /// axis k.
+    /// Centres of the corners' roundings; for a sharp cuboid, the corners. Bit k of the index tells the side along axis
+    /// k.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
         let c = self.half - self.rounding;
@@ -80,7 +80,7 @@ impl Cuboid {
         points
     }
 
-    /// Mass and inertia, the rounding integrated exactly: inner cuboid, six slabs, twelve quarter cylinders, eight
+    /// Mass and inertia, with the rounding integrated exactly: inner cuboid, six slabs, twelve quarter cylinders, eight
     /// octants of a ball.
     #[must_use]
     pub fn mass_properties(&self, density: f64) -> MassProperties {
@@ -130,7 +130,7 @@ mod tests {
         let (r, tiny) = (0.5, 1e-9);
         let c = Cuboid::new(DVec3::splat(2.0 * r + tiny), r).unwrap();
         let (p, q) = (c.mass_properties(3.0), MassProperties::ball(r, 3.0));
-        // The inner cube's edge is 1e-9: relative errors of a few times that.
+        // The inner cube's edge is 1e-9, so relative errors are a few times that.
         assert!((p.mass - q.mass).abs() < 1e-8 * q.mass && (p.inertia - q.inertia).length() < 1e-8);
     }
 

@@ -8,9 +8,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The convex hull of two discs across the z axis, and all that is within `rounding` of it.
 ///
-/// A cylinder has two equal discs, a cone a disc and a point, a capsule two points and a rounding, a frustum two discs
-/// of different radii. Their own origin is half way between the discs; bodies have theirs in the centre of gravity (see
-/// [`Compound`](super::Compound)).
+/// A cylinder has two equal discs, a cone has a disc and a point, a capsule has two points and a rounding, and a
+/// frustum has two discs of different radii. A frustum's own origin is half way between the discs; a body's origin is
+/// its centre of gravity (see [`Compound`](super::Compound)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frustum {
     pub(crate) core: Discs,
@@ -28,16 +28,16 @@ pub(crate) struct Discs {
     length: f64,
 }
 
-/// Points of a rim at which contact is looked at: its lowest, and four fixed in the body.
+/// Points of a rim at which contact is tested: its lowest point, and four that are fixed in the body.
 pub(crate) const SLOTS: u8 = 5;
 
 /// Sine of the angle between an axis and a normal up to which no point of the rim counts as the lowest. Default 1e-9:
-/// the rim's other points are then as low but for rounding.
+/// except for rounding, the rim's other points are then as low.
 const LEVEL: f64 = 1e-9;
 
 impl Frustum {
-    /// Between a disc of radius `radii[0]` in m and one of radius `radii[1]` at `height` above it, grown by `rounding`:
-    /// all lengths in m with the rounding on top of them.
+    /// Between a disc of radius `radii[0]` and one of radius `radii[1]` at `height` above it, grown by `rounding`, all
+    /// in m. Radii and height do not include the rounding.
     ///
     /// # Errors
     /// [`WorldError::BadNumber`] for a negative or infinite length, and for a solid without volume.
@@ -71,7 +71,7 @@ impl Frustum {
         Self::new([radius, 0.0], height, 0.0)
     }
 
-    /// All within `radius` of a segment of this `length` along z.
+    /// All points within `radius` of a segment of this `length` along z.
     ///
     /// # Errors
     /// As [`Frustum::new`].
@@ -114,8 +114,8 @@ impl Frustum {
         }
     }
 
-    /// By slices: with radius `r(z)` the volume is `∫ π r² dz`, and so on. Along the side `r` is linear, at the rims an
-    /// arc of the rounding.
+    /// By slices: with radius `r(z)` the volume is `∫ π r² dz`, and so on. Along the side, `r` is linear; at the rims,
+    /// it is an arc of the rounding.
     fn moments(&self) -> Moments {
         let Discs { heights, radii, normal, length, .. } = self.core;
         let mut sum = Moments::default();
@@ -136,7 +136,7 @@ impl Frustum {
     }
 }
 
-/// Moments of unit density about the own origin: `∫ dV`, `∫ z dV`, `∫ z² dV` and `∫ x² dV`.
+/// Moments of unit density about its own origin: `∫ dV`, `∫ z dV`, `∫ z² dV` and `∫ x² dV`.
 #[derive(Debug, Clone, Copy, Default)]
 struct Moments {
     volume: f64,
@@ -146,8 +146,8 @@ struct Moments {
 }
 
 impl Moments {
-    /// Adds slices: `at` gives height, radius and the height's rate for a part in [0, 1] of the way. Gauss–Legendre
-    /// with eight points on four parts: to rounding for arcs and lines.
+    /// Adds slices: `at` gives height, radius and the height's rate at a fraction in [0, 1] of the way. Gauss–Legendre
+    /// with eight points on four parts: exact to rounding for arcs and lines.
     fn slices(&mut self, at: impl Fn(f64) -> (f64, f64, f64)) {
         const PARTS: usize = 4;
         for part in 0..PARTS {
@@ -181,7 +181,8 @@ impl Discs {
         Self { heights, radii, normal, along, length }
     }
 
-    /// Unit normal out of the core at its point nearest to `p`, and how far `p` is from there; negative inside.
+    /// Unit normal out of the core at its point nearest to `p`, and the distance of `p` from that point; negative
+    /// inside.
     #[inline]
     pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
         let [r0, r1] = self.radii;
@@ -201,7 +202,7 @@ impl Discs {
             return (DVec3::Z, above);
         }
         if below <= 0.0 && above <= 0.0 && beside <= 0.0 && (self.length > 0.0 || flat <= r0) {
-            // Inside: out by the shortest way.
+            // Inside, the way out is the shortest one.
             return if beside >= below && beside >= above {
                 (in_plane(self.normal), beside)
             } else if above >= below {
@@ -233,7 +234,7 @@ impl Discs {
         (self.heights[0] * d.z + self.radii[0] * flat).max(self.heights[1] * d.z + self.radii[1] * flat)
     }
 
-    /// A point of the core farthest in a direction.
+    /// The point of the core that is farthest in a direction.
     pub(crate) fn farthest(&self, d: DVec3) -> DVec3 {
         let flat = (d.x * d.x + d.y * d.y).sqrt();
         let reach = |k: usize| self.heights[k] * d.z + self.radii[k] * flat;
@@ -248,8 +249,8 @@ impl Discs {
         corner(0).max(corner(1))
     }
 
-    /// A point of a rim: slot 0 is that farthest in the direction `down`, if there is one such; the others are fixed. A
-    /// rim without radius has one slot.
+    /// A point of a rim. Slot 0 is the point that is farthest in the direction `down`, if there is a unique one; the
+    /// other slots are fixed. A rim without radius has one slot.
     pub(crate) fn rim(&self, ring: usize, slot: u8, down: DVec3) -> Option<DVec3> {
         let (r, z) = (self.radii[ring], self.heights[ring]);
         let at = |x: f64, y: f64| Some(DVec3::new(x * r, y * r, z));
@@ -268,7 +269,7 @@ impl Discs {
         }
     }
 
-    /// Sine of the side's normal against the plane across the axis: positive where it looks up.
+    /// Sine of the side's normal against the plane across the axis: positive if it points up.
     pub(crate) fn slope(&self) -> Option<f64> {
         (self.length > 0.0 && (self.radii[0] > 0.0 || self.radii[1] > 0.0)).then_some(self.normal[1])
     }
@@ -301,7 +302,7 @@ mod tests {
         close(capsule.inertia.z, 0.5 * tube * r * r + 0.4 * ends * r * r);
     }
 
-    /// Against the support function: the foot's plane holds the core, and the foot is on it.
+    /// Compared with the support function: the foot's plane holds the core, and the foot is on it.
     #[test]
     fn feet_are_on_the_skin() {
         let mut seed = 3_u64;
@@ -333,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_volume_is_refused() {
+    fn a_solid_without_volume_is_refused() {
         assert!(Frustum::cylinder(0.0, 1.0).is_err());
         assert!(Frustum::cylinder(1.0, 0.0).is_err());
         assert!(Frustum::cone(-1.0, 1.0).is_err());

@@ -19,7 +19,7 @@ impl MassProperties {
         Self { mass, inertia: DVec3::splat(0.4 * mass * radius * radius) }
     }
 
-    /// The same shape with another mass.
+    /// The same shape with a different mass.
     #[must_use]
     pub fn with_mass(self, mass: f64) -> Self {
         Self { mass, inertia: self.inertia * (mass / self.mass) }

@@ -1,6 +1,6 @@
 //! Shapes of turning bodies, their mass properties, and the points and balls that make up their skin.
 //!
-//! The simulator sees a shape as **feelers**: balls fixed in the body whose union has the shape's surface wherever it
+//! The simulator sees a shape as **feelers**: balls fixed in the body. Their union has the shape's surface wherever it
 //! can touch something. A sharp corner is a ball of radius 0, a rounded one has its rounding radius, a sphere is a
 //! single ball, and a body of revolution is a row of balls along its axis and the rounded rim of its foot. Two bodies
 //! with flat faces are compared by faces, edges and corners.
@@ -66,7 +66,7 @@ impl Shape {
         }
     }
 
-    /// The length that tolerances are measured in: the shape's least half width, in m.
+    /// The unit of length for tolerances: the shape's least half width, in m.
     #[must_use]
     pub fn size(&self) -> f64 {
         match self {
@@ -91,7 +91,7 @@ impl Shape {
     }
 
     /// More balls between those of [`feelers`](Self::feelers), so that no point of the skin is farther than about
-    /// `spacing` from one: for uneven ground.
+    /// `spacing` from a ball: for uneven ground.
     #[must_use]
     pub fn feelers_between(&self, spacing: f64) -> Vec<Feeler> {
         match self {
@@ -118,8 +118,8 @@ impl Shape {
         }
     }
 
-    /// The convex pieces that the body is made of; of a body of revolution the balls on its axis and the discs within
-    /// its rings.
+    /// The convex pieces that make up the body. For a body of revolution, they are the balls on its axis and the discs
+    /// within its rings.
     pub(crate) fn pieces(&self) -> Vec<Piece> {
         match self {
             Self::Ball(radius) => vec![Piece::ball(*radius, DVec3::ZERO)],

@@ -1,4 +1,4 @@
-//! Convex pieces, of which every body and all scenery is made for the row of pairs that serves all shapes.
+//! Convex pieces: the row of pairs that serves all shapes sees every body and all scenery as made of them.
 
 use super::Feeler;
 use super::frustum::Discs;
@@ -11,10 +11,10 @@ use std::sync::Arc;
 /// Depth behind a triangle, over its reach, down to which points count as in its mesh. Default 0.1.
 pub(crate) const THICK: f64 = 0.1;
 
-/// Points of a rim that are felt over a table with bumps. Default 32.
+/// Points of a rim that are tested over a table with bumps. Default 32.
 const RIM: usize = 32;
 
-/// The core of a piece about its own origin; what is within the piece's rounding of it is the piece.
+/// The core of a piece about its own origin. The piece is everything within its rounding of the core.
 #[derive(Debug, Clone)]
 pub(crate) enum Core {
     Polyhedron(Arc<Polyhedron>),
@@ -26,14 +26,14 @@ pub(crate) enum Core {
 pub(crate) struct Piece {
     pub(crate) core: Core,
     pub(crate) rounding: f64,
-    /// Its origin in the body's axes, which is inside its core or on it, and its own axes as columns.
+    /// Its origin in the body's axes, inside its core or on it, and its own axes as columns.
     pub(crate) at: DVec3,
     pub(crate) turn: DMat3,
-    /// Largest distance of a point of it, its rounding included, from its origin.
+    /// Largest distance of its points, including the rounding, from its origin.
     pub(crate) reach: f64,
 }
 
-/// A piece where it is.
+/// A piece in its place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Placed<'p> {
     pub(crate) core: &'p Core,
@@ -60,7 +60,7 @@ impl Core {
         }
     }
 
-    /// A point of it farthest in a direction.
+    /// The point of it that is farthest in a direction.
     pub(crate) fn farthest(&self, d: DVec3) -> DVec3 {
         match self {
             Self::Polyhedron(p) => p.corner(p.farthest(d).0),
@@ -68,7 +68,7 @@ impl Core {
         }
     }
 
-    /// Unit normal out of it at its point nearest to `p`, and how far `p` is from there; negative inside.
+    /// Unit normal out of it at its point nearest to `p`, and the distance of `p` from that point; negative inside.
     #[inline]
     pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
         match self {
@@ -82,7 +82,7 @@ impl Polyhedron {
     /// As [`Core::foot`].
     pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
         if let [front, _] = &self.faces[..] {
-            // A triangle of a mesh: over it, and a little below, its plane counts, from outside.
+            // For a triangle of a mesh, its plane counts over the triangle and a little below it, from outside.
             let height = front.normal.dot(p) - front.offset;
             if height > -THICK * self.reach && self.is_over(0, p, 0.0) {
                 return (front.normal, height);
@@ -110,7 +110,7 @@ impl Piece {
         Self::new(Core::Polyhedron(Arc::new(Polyhedron::point())), radius, at, DMat3::IDENTITY)
     }
 
-    /// Largest distance of a point of it from the body's centre of gravity.
+    /// Largest distance of its points from the body's centre of gravity.
     pub(crate) fn reach_from_body(&self) -> f64 {
         self.rounding
             + match &self.core {
@@ -147,7 +147,7 @@ impl Piece {
     }
 
     /// More balls between those, on edges, faces, caps and sides, so that no point of the skin is farther than about
-    /// `spacing` from one; at most 16 along a line.
+    /// `spacing` from a ball; at most 16 along a line.
     pub(crate) fn feelers_between(&self, spacing: f64) -> Vec<Feeler> {
         let ball = |p: DVec3| Feeler { centre: self.at + self.turn * p, radius: self.rounding };
         let parts = |length: f64| (length / spacing).ceil().clamp(1.0, 16.0) as usize;
@@ -156,7 +156,7 @@ impl Piece {
             Core::Discs(discs) => {
                 let ([low, high], [r0, r1]) = (discs.heights, discs.radii);
                 let mut points = Vec::new();
-                // A segment is one line, whatever way round it one looks.
+                // A segment is one line, seen from any side.
                 for k in 0..if r0 == 0.0 && r1 == 0.0 { 1 } else { RIM } {
                     let (s, c) = math::sin_cos(TAU * (k as f64 / RIM as f64));
                     let at = |r: f64, z: f64| DVec3::new(r * c, r * s, z);
@@ -193,12 +193,12 @@ impl Placed<'_> {
         self.centre.dot(d) + self.core.support(self.axes.transpose() * d)
     }
 
-    /// A point of its core farthest in a direction.
+    /// The point of its core that is farthest in a direction.
     pub(crate) fn farthest(&self, d: DVec3) -> DVec3 {
         self.centre + self.axes * self.core.farthest(self.axes.transpose() * d)
     }
 
-    /// Unit normal out of its core at the point nearest to `p`, and how far `p` is from there.
+    /// Unit normal out of its core at the point nearest to `p`, and the distance of `p` from that point.
     #[inline]
     pub(crate) fn foot(&self, p: DVec3) -> (DVec3, f64) {
         let (normal, distance) = self.core.foot(self.axes.transpose() * (p - self.centre));

@@ -25,7 +25,7 @@ pub struct Ring {
 /// The meridian profile of a body of revolution, from its foot upwards; lengths in m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// Radius of the flat of the foot.
+    /// Radius of the flat part of the foot.
     pub foot: f64,
     /// Rounding of the foot's rim.
     pub rim: f64,
@@ -107,8 +107,8 @@ impl Profile {
         Ok(())
     }
 
-    /// About so many points (radius, height over the foot) on the meridian from the foot's edge to the top, for
-    /// drawing: closer where it bends more.
+    /// About this many points (radius, height over the foot) on the meridian from the foot's edge to the top, for
+    /// drawing; closer together where it bends more.
     ///
     /// # Errors
     /// [`WorldError::BadNumber`] if the profile does not rise from its foot to its cap.
@@ -134,12 +134,11 @@ impl Profile {
         Ok(outline)
     }
 
-    /// The spline: from the rim, which it leaves in its own direction, to the beginning of the cap, where it is
-    /// vertical.
+    /// The spline: it leaves the rim in the rim's own direction, and is vertical where the cap begins.
     fn pieces(&self) -> Vec<Piece> {
         let [z1, r1] = self.points[0];
-        // The rim's tangent towards the first point: where it leaves the rim depends on the slope, a few rounds settle
-        // it.
+        // The rim's tangent towards the first point. The place where it leaves the rim depends on the slope, so it
+        // takes a few rounds.
         let mut slope = 0.0_f64;
         let mut start = [0.0; 2];
         for _ in 0..60 {
@@ -161,8 +160,8 @@ impl Profile {
     }
 }
 
-/// Slopes at the knots of the twice differentiable cubic spline with given slope at the lower end and none at the
-/// upper.
+/// Slopes at the knots of the twice differentiable cubic spline with the given slope at the lower end and slope 0 at
+/// the upper end.
 fn clamped_slopes(knots: &[[f64; 2]], first: f64) -> Vec<f64> {
     let n = knots.len();
     let h: Vec<f64> = knots.windows(2).map(|k| k[1][0] - k[0][0]).collect();
@@ -241,7 +240,7 @@ impl Revolution {
         Ok(Self { row, rings, reach, balance, volume, across, along })
     }
 
-    /// The balls of the skin from below to above; all on the axis.
+    /// The balls of the skin, from the lowest up; all on the axis.
     #[must_use]
     pub fn row(&self) -> &[Feeler] {
         &self.row
@@ -302,7 +301,7 @@ fn head(centre: f64, radius: f64, k: usize, m: usize) -> f64 {
 /// The slice between the floor and the height where the spline leaves the rim, whose radius is
 /// `foot + √(rim² − (rim − z)²)`: a sum over fine slices.
 fn rim(profile: &Profile, height: f64, k: usize, m: usize) -> f64 {
-    // The square root's end at the floor is removed by z = height · x²; the rest is smooth.
+    // The substitution z = height · x² removes the square root's singularity at the floor; the rest is smooth.
     const SLICES: usize = 64;
     let piece_sum: f64 = (0..SLICES)
         .map(|i| {
@@ -368,8 +367,8 @@ mod tests {
         assert!(p.inertia.x > 4.0 * p.inertia.z);
     }
 
-    /// Against a plain sum over 200,000 slices of the same profile; 1e-5 is what its midpoint rule leaves at the rim's
-    /// square root.
+    /// Compared with a plain sum over 200,000 slices of the same profile; 1e-5 is the error of its midpoint rule at the
+    /// rim's square root.
     #[test]
     fn moments_agree_with_a_plain_sum() {
         let profile = Profile::pin();
@@ -410,8 +409,8 @@ mod tests {
     fn the_skin_follows_the_profile() {
         let profile = Profile::pin();
         let pin = Revolution::new(&profile, 60).unwrap();
-        // At each table height the balls and rings reach the table's radius to 0.3 mm from inside, and nothing sticks
-        // out by more than 0.01 mm.
+        // At each height of the table, the balls and rings come within 0.3 mm of the table's radius from inside, and
+        // nothing sticks out by more than 0.01 mm.
         for &[z, r] in &profile.points[..profile.points.len() - 1] {
             let h = z - pin.balance();
             let balls =

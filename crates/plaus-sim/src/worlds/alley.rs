@@ -24,11 +24,11 @@ pub(super) const PIT: f64 = -10.0 * INCH;
 /// Where the lane begins, behind the foul line: y in inches.
 const START: f64 = -740.0;
 
-/// Half the width, and the end, of a lane to practise on, in m: farther than a ball gets in any time that matters.
+/// Half the width, and the end, of a practice lane, in m: farther than a ball gets in any time that matters.
 const OPEN: f64 = 1000.0;
 
-/// An alley along y: the head pin's spot is the origin, the ball comes from below in y. Body 0 is the ball, the others
-/// are the pins that are set up, in ascending order of their numbers: with all ten, body k is pin k.
+/// An alley along y. The head pin's spot is the origin, and the ball comes from negative y. Body 0 is the ball, the
+/// others are the pins that are set up, in ascending order of their numbers: with all ten, body k is pin k.
 #[derive(Debug, Clone, Copy)]
 pub struct Alley {
     /// Radius of the ball in m. Regulation: 0.10795–0.10916.
@@ -62,7 +62,7 @@ pub struct Alley {
 }
 
 impl Default for Alley {
-    /// A 15 lb ball; the coefficients of pins are not published and chosen among usual ones.
+    /// A 15 lb ball. The coefficients of pins are not published; these are usual values.
     fn default() -> Self {
         Self {
             ball_radius: 0.1085,
@@ -130,7 +130,7 @@ impl Alley {
         self.world_of(&Arc::new(self.pin()?))
     }
 
-    /// The world, with [`Alley::pin`] made before: for many worlds that differ in the ball.
+    /// The world, with an [`Alley::pin`] made earlier: for many worlds that differ in the ball.
     ///
     /// # Errors
     /// [`WorldError`] for impossible numbers.
@@ -141,7 +141,7 @@ impl Alley {
         self.among(bodies, self.parts()?)
     }
 
-    /// The ball alone on a lane of the same friction that is wide and goes on behind the pins: there one sees where a
+    /// The ball alone on a lane with the same friction that is wide and continues behind the pins: it shows where a
     /// delivery leads.
     ///
     /// # Errors
@@ -176,7 +176,7 @@ impl Alley {
         })
     }
 
-    /// The lane, of half this width and until there, in m.
+    /// The lane, with half this width and up to this end, in m.
     fn lane(&self, half: f64, end: f64) -> Part {
         let start = START * INCH;
         let oiled = Stretch { from: start, friction: Some(self.oil_friction) };

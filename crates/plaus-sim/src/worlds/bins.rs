@@ -32,7 +32,7 @@ pub struct Bins {
     pub marble: f64,
     /// Density of a marble in kg/m³.
     pub density: f64,
-    /// Most that a vertex will be moved.
+    /// The farthest that a vertex will be moved.
     pub margin: f64,
     /// Law between marbles and box.
     pub wall_law: Law,
@@ -90,8 +90,8 @@ impl Bins {
         DVec3::new(i as f64 * self.side, j as f64 * self.side, self.height)
     }
 
-    /// Offsets of all ridge vertices, about normal (a sum of uniforms) with `sigma` metres per axis; `uniform` gives
-    /// numbers in [0, 1).
+    /// Offsets of all ridge vertices, approximately normal (a sum of uniforms) with `sigma` metres per axis; `uniform`
+    /// gives numbers in [0, 1).
     pub fn perturbed(&self, sigma: f64, mut uniform: impl FnMut() -> f64) -> Vec<(u32, DVec3)> {
         (0..self.crossings())
             .map(|k| {
@@ -165,7 +165,7 @@ impl Bins {
         let (width, breadth) = self.extent();
         let half = 0.5 * self.thickness;
         let wall = |p: DVec3, n: DVec3| Plane::new(p, n, Material(1));
-        // The walls stand on the outer partitions' inner sides and are taken as endless upwards: marbles stay over the
+        // The walls stand on the outer partitions' inner sides and count as endless upwards: marbles stay over the
         // bins.
         let planes = vec![
             wall(DVec3::new(half, 0.0, 0.0), DVec3::X)?,

@@ -7,9 +7,10 @@ use crate::rigid::{Phase, Rigid, Turning};
 use crate::state::State;
 use glam::DVec3;
 
-/// Energy in J over that of lying in a gutter, and how far in m a pin with no more than that can reach over the lane:
-/// to lay its head on the lane's edge with its foot on the gutter's floor it must raise its middle. The least energies
-/// that a search over poses finds are 0.12 for any way, 0.20 for 0.015 m, and 0.74 for 0.155 m; a test repeats it.
+/// Energies in J above that of lying in a gutter, and how far in m a pin with at most that energy can reach over the
+/// lane: to lay its head on the lane's edge with its foot on the gutter's floor, it must raise its middle. A search
+/// over poses finds the least energies 0.12 for any reach, 0.20 for 0.015 m, and 0.74 for 0.155 m; a test repeats the
+/// search.
 const INTRUSIONS: [(f64, f64); 3] = [(0.1, 0.0), (0.17, 0.015), (0.7, 0.155)];
 
 /// Where bodies leave the deck.
@@ -48,8 +49,8 @@ fn contains(set: u64, k: usize) -> bool {
 }
 
 impl Pool<'_> {
-    /// What may come to bear on a standing pin, in J, of all that moves and all at rest that it may reach; `None` where
-    /// that is more than does no harm, or the ball moves.
+    /// The energy in J that may reach a standing pin, from all bodies that move and all bodies at rest that these may
+    /// reach. `None` if that is more than is harmless, or if the ball moves.
     pub(super) fn left(&self) -> Option<f64> {
         let mut members = 0;
         let moves = |k: usize, body: &Turning| !self.world.is_resting(body) && !self.still.is_still(k, self.state);
@@ -61,7 +62,7 @@ impl Pool<'_> {
         }
         let mut left = self.sum(members, 0.0)?;
         loop {
-            // What it frees takes it farther, and what it reaches then may free more. Both only grow.
+            // The energy that they free takes them farther, and the bodies reached then may free more. Both only grow.
             let way = left / self.verdict.roll;
             let more = members | self.neighbours(members, way);
             let sum = self.sum(more, way)?;
@@ -76,7 +77,7 @@ impl Pool<'_> {
         self.state.bodies().iter().enumerate()
     }
 
-    /// The sum for these members, and for pins that rock, if they get so far in m on the deck.
+    /// The sum for these members, and for standing pins that rock, if bodies can go this far in m on the deck.
     fn sum(&self, members: u64, way: f64) -> Option<f64> {
         let harmless = self.verdict.harmless;
         let mut left = 0.0;
@@ -101,7 +102,7 @@ impl Pool<'_> {
         (left <= harmless).then_some(left)
     }
 
-    /// What is in a gutter, with what it may be given by what is in the pit.
+    /// The bodies in a gutter, with the energy that those in the pit may give them.
     fn gutter(&self, side: Side, members: u64, way: f64, pit: &Aside) -> Aside {
         let mut aside = self.aside(side, members, way);
         let near = |(k, body): (usize, &Turning)| {
@@ -115,13 +116,13 @@ impl Pool<'_> {
         aside
     }
 
-    /// A body's energy over what it has at rest with its middle so high.
+    /// A body's energy above that at rest with its middle at this height.
     fn over(&self, k: usize, body: &Turning, height: f64) -> f64 {
         (self.world.energy(k, body) - self.verdict.weights[usize::from(k > 0)] * height).max(0.0)
     }
 
-    /// The least height of a body's middle over the deck. A pin whose head or foot may be beyond the edge may have it
-    /// lower than one that lies.
+    /// The least height of a body's middle over the deck. If a pin's head or foot may be beyond the edge, its middle
+    /// may be lower than that of a pin that lies on the deck.
     fn on_deck(&self, k: usize, body: &Turning, way: f64) -> f64 {
         let verdict = self.verdict;
         let is_inside = || Side::ALL.iter().all(|side| self.extent(*side, k, body, way) < 0.0);
@@ -152,7 +153,7 @@ impl Pool<'_> {
         aside
     }
 
-    /// Whether what is beyond an edge can touch another body on the deck.
+    /// Whether a body beyond an edge can touch another body on the deck.
     fn meets(&self, side: Side, aside: &Aside, way: f64) -> bool {
         let known = INTRUSIONS.iter().find(|(energy, _)| aside.is_level && aside.energy <= *energy);
         let most = known.map_or(self.verdict.reach, |(_, most)| *most);
@@ -172,7 +173,7 @@ impl Pool<'_> {
         ends[0].max(ends[1]) + verdict.widest + slack
     }
 
-    /// Bodies at rest to which one of these may get, if those on the deck get so far in m.
+    /// Bodies at rest that one of these may reach, if those on the deck can go this far in m.
     fn neighbours(&self, members: u64, way: f64) -> u64 {
         let mut found = 0;
         for (k, body) in self.bodies().filter(|(k, body)| !contains(members, *k) && body.phase != Phase::Gone) {
@@ -191,18 +192,18 @@ impl Pool<'_> {
     }
 }
 
-/// What is beyond an edge of the deck.
+/// The bodies beyond an edge of the deck.
 #[derive(Debug)]
 struct Aside {
-    /// What it can set free, and how much of that it must keep to come up again, in J.
+    /// The energy that they can free, and how much of it they must keep to come up again, in J.
     energy: f64,
     climb: f64,
     bodies: u64,
-    /// Whether all of it has the gutter's floor below it.
+    /// Whether all of them have the gutter's floor below them.
     is_level: bool,
 }
 
-/// Whether a body's middle is over the deck, or where it was before it.
+/// Whether a body's middle is over the deck, or over the lane before it.
 fn is_over(body: &Turning) -> bool {
     body.phase != Phase::Gone && Side::ALL.iter().all(|side| side.beyond(body.path.x) <= 0.0)
 }
@@ -233,8 +234,9 @@ mod tests {
         skin
     }
 
-    /// Looks at poses with the middle `away` from the edge of the lane, which is at x = 0 and ends where x < 0: sets
-    /// the pin as low as gutter and edge let it, and says what energy it has then and how far it reaches over the lane.
+    /// Examines poses with the middle at the distance `away` from the edge of the lane, which is at x = 0 and ends
+    /// where x < 0. Sets the pin as low as gutter and edge allow, and returns its energy then and how far it reaches
+    /// over the lane.
     fn pose(skin: &[(DVec3, f64)], turn: DMat3, away: f64) -> Option<[f64; 2]> {
         let turned = skin.iter().map(|(centre, radius)| (turn * *centre + DVec3::new(away, 0.0, 0.0), *radius));
         let mut height = f64::NEG_INFINITY;
@@ -251,10 +253,10 @@ mod tests {
         Some([height, most])
     }
 
-    /// The grid (2°, 10°, 5 mm) finds the least energies 0.01 J too high at most: a finer one (1°, 5°, 2.5 mm) finds
-    /// 0.122, 0.198 and 0.743 J. The bounds are 0.02 J and more below.
+    /// The grid (2°, 10°, 5 mm) finds least energies that are at most 0.01 J too high: a finer one (1°, 5°, 2.5 mm)
+    /// finds 0.122, 0.198 and 0.743 J. The bounds are at least 0.02 J below these.
     #[test]
-    fn a_pin_in_a_gutter_reaches_no_farther_over_the_lane_than_its_energy_lets_it() {
+    fn a_pin_in_a_gutter_reaches_no_farther_over_the_lane_than_its_energy_allows() {
         let (skin, alley) = (skin(), Alley::default());
         let lying = super::super::verdict::lying(&alley.pin().unwrap(), f64::INFINITY);
         let mut least = INTRUSIONS.map(|_| f64::INFINITY);
@@ -274,7 +276,7 @@ mod tests {
             }
         }
         for ((energy, most), least) in INTRUSIONS.iter().zip(least) {
-            // Not for nothing either: with half as much again it does get there.
+            // The bound is not far too low: with half as much energy again, the pin does get there.
             assert!(*energy < least && least < 1.5 * energy, "{most} m takes {least} J");
         }
     }

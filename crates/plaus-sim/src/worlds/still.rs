@@ -4,15 +4,15 @@ use crate::rigid::{Phase, Turning};
 use crate::state::State;
 use glam::DVec3;
 
-/// How long in s a body has kept to one place from when on it counts as at rest. Default 0.25: what begins to fall from
-/// a balance goes e times as far every 0.12 s. Larger values make shots longer that end in heaps; smaller ones take a
-/// turning point for rest.
+/// Time in s after which a body that has kept to one place counts as at rest. Default 0.25: a body that begins to fall
+/// from balance goes e times as far every 0.12 s. Larger values prolong shots that end in heaps; with smaller values a
+/// turning point counts as rest.
 const WHILE: f64 = 0.25;
 
-/// How far in m a body's middle may move, and head or foot with it, that keeps to its place. Default 1e-3.
+/// How far in m the middle, head and foot of a body may move while it still keeps to its place. Default 1e-3.
 const SPOT: f64 = 1e-3;
 
-/// Distance in m of head and foot from the middle, for turns. Default 0.2.
+/// Distance in m of head and foot from the middle, for rotations. Default 0.2.
 const ARM: f64 = 0.2;
 
 /// Since when each body of a shot has kept to its place.
@@ -22,12 +22,12 @@ pub struct Still {
 }
 
 impl Still {
-    /// Looks at the bodies. To be called after each event of a run; a new one for each run.
+    /// Examines the bodies. To be called after each event of a run, on a new one for each run.
     pub fn look(&mut self, state: &State<Turning>) {
         let time = state.time();
         for (k, body) in state.bodies().iter().enumerate() {
             let axis = body.turn * DVec3::Z;
-            // In flight it has had no event for long, and moves all the same.
+            // In flight a body has had no event for long, but still moves.
             let now = (time, body.path.at(time), axis);
             match self.since.get_mut(k) {
                 None => self.since.push(now),

@@ -52,7 +52,7 @@ impl DieOnTable {
         self.world_of(1, gaussian)
     }
 
-    /// The same with several alike dice.
+    /// The same with several identical dice.
     ///
     /// # Errors
     /// [`WorldError`] for impossible numbers.
@@ -103,9 +103,9 @@ impl DieOnTable {
     }
 
     /// Several dice thrown together: as in [`throw`](Self::throw), but side by side in two rows, each towards the
-    /// middle of all at up to 1 m/s, so that they meet in the air.
+    /// middle of all dice at up to 1 m/s, so that they meet in the air.
     pub fn throw_together(&self, dice: usize, mut uniform: impl FnMut() -> f64) -> Vec<Start> {
-        // Two of them cannot touch, however they are turned.
+        // Two of them cannot touch, in any orientation.
         let apart = 1.05 * self.edges.length();
         let middle = 0.25 * (dice.saturating_sub(1)) as f64;
         (0..dice)

@@ -1,4 +1,4 @@
-//! When a shot is over: which pins stand can no longer change.
+//! When a shot is over: when it can no longer change which pins stand.
 
 use super::alley::{END, GRAVITY};
 use super::pool::Pool;
@@ -14,39 +14,41 @@ use plaus_dist::math;
 /// which it falls by itself.
 const FALLEN: f64 = 0.5;
 
-/// Depth in m of the middle of a pin's foot below the deck from which on it is down. Default 0.01. One that leans on
-/// the deck has it above; gutters are 0.05 and more deep.
+/// A pin is down if the middle of its foot is deeper than this below the deck, in m. Default 0.01: the foot of a pin
+/// that leans on the deck is above that; gutters are at least 0.05 deep.
 const SUNK: f64 = 0.01;
 
-/// Height in m of a pin's centre of gravity over its foot, of [`Profile::pin`](crate::shape::Profile::pin); to a
+/// Height in m of a pin's centre of gravity over its foot, for [`Profile::pin`](crate::shape::Profile::pin); to a
 /// millimetre, as `SUNK` needs it.
 const BALANCE: f64 = 0.147;
 
-/// Energy that all that can still meet a standing pin may have together, over that which tips one. Default 0.75: the
-/// rest, 9 mJ, is for what lasting contact may add by pushing bodies out of overlaps, 4 mJ at most at a time. Danger:
-/// at 1 and more nothing is certain.
+/// Total energy that the bodies that can still meet a standing pin may have, over the energy that tips a pin. Default
+/// 0.75. The rest, 9 mJ, is for the energy that lasting contact may add by pushing bodies out of overlaps, at most 4 mJ
+/// at a time. Danger: at 1 and above nothing is certain.
 const HARMLESS: f64 = 0.75;
 
-/// Angles at which a lying pin's lowest height is looked for: less than 0.1 mm, or 2 mJ, apart. Default 8000.
+/// Number of angles at which a lying pin's lowest height is computed: their heights differ by less than 0.1 mm, or 2
+/// mJ. Default 8000.
 const ANGLES: u32 = 8000;
 
-/// Way of a pin's middle over that of its farther end where it rolls, in a circle, on belly and head. Default 0.7.
+/// Distance that a pin's middle moves over that of its farther end, when it rolls in a circle on belly and head.
+/// Default 0.7.
 const ENDS: f64 = 0.7;
 
-/// Part of its weight that rests on its head. Default 0.13, as its middle is 26 mm from where the belly touches, and
-/// the head 230 mm.
+/// Fraction of its weight that rests on its head. Default 0.13, because its middle is 26 mm from where the belly
+/// touches, and the head 230 mm.
 const HEAD: f64 = 0.13;
 
-/// Distance in m along its axis from a pin's middle within which it is convex. Default 0.04: from there to the head it
-/// is narrower.
+/// Distance in m along its axis from a pin's middle within which it is convex. Default 0.04: beyond that, towards the
+/// head, it is narrower.
 const BELLY: f64 = 0.04;
 
 /// Says when a shot on an [`Alley`] is decided.
 ///
 /// A pin is down from the moment at which it leans by more than 60°, its foot is below the deck, or it is gone,
-/// whatever it does later; one that leans less, held by something, stands. A shot is decided when all pins are down; or
-/// when the ball is gone or at rest, every other pin stands on the deck with its whole foot, and what moves is too weak
-/// to tip any of them. Asked after each event, it ends a shot early:
+/// whatever it does later. A pin that leans less, held by something, stands. A shot is decided when all pins are down.
+/// It is also decided when the ball is gone or at rest, every standing pin stands on the deck with its whole foot, and
+/// the moving bodies are too weak to tip any of them. Asked after each event, the verdict ends a shot early:
 ///
 /// ```
 /// use glam::DVec3;
@@ -63,27 +65,28 @@ const BELLY: f64 = 0.04;
 /// # Ok::<(), plaus_sim::WorldError>(())
 /// ```
 ///
-/// Too weak means: what all bodies that move, and those at rest to which they may get, can set free together is less
-/// than what tips a pin. On the deck each is counted down to where its middle would be lowest, and so is what it may
-/// push over an edge or what may come up again from gutters and pit, with all that these would set free on their
-/// floors; unless it can't get there, or can't reach a body on the deck from there.
+/// Too weak means: all bodies that move, and those at rest that they may reach, can together free less energy than tips
+/// a pin. On the deck, each body's energy is counted down to the lowest possible height of its middle. Added to this is
+/// the energy of bodies that may be pushed over an edge or may come up again from gutters and pit, with all that these
+/// would free on their floors. It is left out if a body cannot get there, or cannot reach a body on the deck from
+/// there.
 ///
-/// Proved, since energy only falls (but for the little that [`rigid`](crate::rigid) tells of): what a body on the deck
-/// can have at most, and that nothing in gutter or pit comes up with more than that. Bounded: how far something rolls
-/// or slides, from what resistance to rolling takes on the way while it touches (hops are not reckoned with), and how
-/// far a pin in a gutter reaches over the lane, by a search over its poses. Assumed: that a pin which falls off the
-/// gutter's end does not throw up another one, and that a body which has kept to its place for a while, see [`Still`],
-/// stays there if nothing comes.
+/// Proved, since energy only falls (except for the little that [`rigid`](crate::rigid) describes): the most energy that
+/// a body on the deck can have, and that nothing in gutter or pit comes up with more than that. Bounded: how far a body
+/// rolls or slides, from the energy that resistance to rolling takes on the way while it touches (hops are not
+/// included); and how far a pin in a gutter reaches over the lane, by a search over its poses. Assumed: that a pin that
+/// falls off the gutter's end does not throw up another one, and that a body that has kept to its place for a while,
+/// see [`Still`], stays there unless something comes.
 #[derive(Debug, Clone, Copy)]
 pub struct Verdict {
-    /// Energy in J that tips a standing pin, and what of it bodies may have that it need not fear.
+    /// Energy in J that tips a standing pin, and the part of it that other bodies may have without harm.
     tipping: f64,
     pub(super) harmless: f64,
     /// Height of a pin's axis, as a cosine, at which it tips; the radius of the circle on which it stands, in m.
     tipped: f64,
     foot: f64,
-    /// Heights in m of the middle of a standing pin, and least ones of one that lies: with all of it over the ground,
-    /// and with its middle only.
+    /// Height in m of the middle of a standing pin, and least heights for a lying pin: with all of it over the ground,
+    /// and with only its middle over the ground.
     pub(super) upright: f64,
     pub(super) lying: f64,
     pub(super) inside: f64,
@@ -94,7 +97,7 @@ pub struct Verdict {
     pub(super) ball: f64,
     /// Weights in N of the ball and of a pin.
     pub(super) weights: [f64; 2],
-    /// Energy in J that a pin loses at least for each metre of its way while it touches, and while it slides.
+    /// Least energy in J that a pin loses for each metre of its path while it touches, and while it slides.
     pub(super) roll: f64,
     slide: f64,
 }
@@ -108,7 +111,7 @@ impl Verdict {
         Ok(Self::of(alley, &alley.pin()?))
     }
 
-    /// The same, with [`Alley::pin`] made before.
+    /// The same, with an [`Alley::pin`] made earlier.
     #[must_use]
     pub fn of(alley: &Alley, pin: &Revolution) -> Self {
         let (rim, weight, law) = (pin.rings()[0], alley.pin_mass * GRAVITY, alley.pin_lane);
@@ -139,22 +142,22 @@ impl Verdict {
         self
     }
 
-    /// Whether a pin is down as it is now. One that ever was remains so.
+    /// Whether a pin is down at present. A pin that has ever been down counts as down.
     #[must_use]
     pub fn has_fallen(pin: &Turning) -> bool {
         let up = pin.turn * DVec3::Z;
         pin.phase == Phase::Gone || up.z < FALLEN || pin.path.x.z - BALANCE * up.z < -SUNK
     }
 
-    /// Whether which pins stand can no longer change, where no pin has risen again. Body 0 is the ball, the others are
-    /// pins.
+    /// Whether the set of standing pins can no longer change, if no pin has risen again. Body 0 is the ball, the others
+    /// are pins.
     #[must_use]
     pub fn is_final(&self, world: &Rigid, state: &State<Turning>) -> bool {
         self.settled(world, state, &Still::default(), |k| Self::has_fallen(&state.bodies()[k])).is_some()
     }
 
-    /// Once no other pin than those that are down can fall any more: how far in m the middles of the others may still
-    /// go. `is_down` is asked of bodies from 1 on.
+    /// If no pin can fall any more except those that are down: how far in m the middles of the others may still move.
+    /// `is_down` is asked about bodies from 1 on.
     #[must_use]
     pub fn settled(
         &self,
@@ -175,8 +178,8 @@ impl Verdict {
             return Some(0.0);
         }
         let left = Pool { verdict: self, world, state, still, standing }.left()?;
-        // What slides it, and how far its middle leans: tipping takes a concave barrier, so that the angle is at most
-        // in proportion to the energy.
+        // How far it slides, and how far its middle leans. The barrier to tipping is concave, so the angle is at most
+        // proportional to the energy.
         Some(left / self.slide + left / self.tipping * self.foot)
     }
 
@@ -184,13 +187,13 @@ impl Verdict {
     fn stands(&self, pin: &Turning) -> bool {
         let up = pin.turn * DVec3::Z;
         let foot = pin.path.x - self.upright * up;
-        // It may still be slid.
+        // It may still be pushed along the deck.
         let margin = self.foot + self.harmless / self.slide;
         up.z >= self.tipped && foot.x.abs() <= 0.5 * Alley::WIDTH - margin && foot.y <= END - margin
     }
 }
 
-/// The least height of the middle of a pin that lies on the deck, at whatever angle, where only what is so near to its
+/// The least height of the middle of a pin that lies on the deck at any angle, if only the part within `near` of its
 /// middle along its axis has ground below it.
 pub(super) fn lying(pin: &Revolution, near: f64) -> f64 {
     let step = std::f64::consts::PI / f64::from(ANGLES);
@@ -202,7 +205,7 @@ pub(super) fn lying(pin: &Revolution, near: f64) -> f64 {
         let rings = rings.map(|ring| ring.radius + ring.circle * sin - ring.height * cos);
         balls.chain(rings).fold(0.0, f64::max)
     };
-    // Between two angles it is lower by what turning by half a step can lower it at most.
+    // Between two angles, it can be lower by at most the effect of turning by half a step.
     let least = (0..=ANGLES).map(|k| height(f64::from(k) * step)).fold(f64::INFINITY, f64::min);
     least - 0.5 * step * pin.reach()
 }

@@ -29,7 +29,7 @@ impl<'b> Watch<'b> {
         self.tunnelled
     }
 
-    /// Whether the way of a centre between two times crosses no middle plane of a partition below its ridge.
+    /// Whether the path of a centre between two times crosses no middle plane of a partition below its ridge.
     fn is_clear(&self, path: &Parabola, until: f64) -> bool {
         let clear = self.bins.height - 2.0 * self.bins.margin + 0.9 * self.bins.marble;
         (0..2).all(|axis| {

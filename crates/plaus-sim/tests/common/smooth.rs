@@ -1,4 +1,4 @@
-//! An integrator of another make, for comparison: balls in contacts that neither open nor change between sticking and
+//! An independent integrator, for comparison: balls in contacts that neither open nor change between sticking and
 //! sliding.
 //!
 //! Forces are found from the constraints on accelerations (an index-1 system of differential and algebraic equations,
@@ -90,7 +90,7 @@ impl Smooth {
         }
     }
 
-    /// Of the touching points: relative velocity, how fast the normal turns, and the normal acceleration that keeps
+    /// For the touching points: relative velocity, how fast the normal turns, and the normal acceleration that keeps
     /// them together.
     fn motion(&self, balls: &[Ball], touch: &Touch, n: DVec3) -> (DVec3, DVec3, f64) {
         let a = &balls[touch.a];
@@ -106,7 +106,7 @@ impl Smooth {
         (v - w.cross(n), w.cross(turn), -v.length_squared() / distance)
     }
 
-    /// What forces at the touching points do, without gravity.
+    /// The accelerations that a force at the touching points causes, without gravity.
     fn response(balls: &[Ball], touch: &Touch, n: DVec3, force: DVec3, rates: &mut Rates) {
         let a = &balls[touch.a];
         rates[touch.a].0 += force / a.mass;
@@ -118,7 +118,8 @@ impl Smooth {
         }
     }
 
-    /// Rows of the constraints on accelerations: what `rates` give, less what the motion asks for where `asked`.
+    /// Rows of the constraints on accelerations: those that `rates` give, minus those that the motion requires if
+    /// `asked`.
     fn rows(&self, balls: &[Ball], rates: &Rates, asked: bool) -> Vec<f64> {
         let mut rows = Vec::new();
         for touch in &self.touches {
@@ -143,7 +144,7 @@ impl Smooth {
 
     fn rates(&self, balls: &[Ball]) -> Rates {
         let still = vec![(DVec3::ZERO, DVec3::ZERO); balls.len()];
-        // One unknown a contact that slides or is smooth, three where it sticks.
+        // One unknown for a contact that slides or is smooth, three for one that sticks.
         let mut forces: Vec<(usize, DVec3)> = Vec::new();
         for (k, touch) in self.touches.iter().enumerate() {
             let n = self.normal(balls, touch);
@@ -190,7 +191,7 @@ fn moved(from: &[Ball], at: &[Ball], rates: &Rates, by: f64) -> Vec<Ball> {
     from.iter().zip(at).zip(rates).map(step).collect()
 }
 
-/// Elimination with pivots; columns as given.
+/// Elimination with pivots; the matrix is given by columns.
 fn solve(columns: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     let n = right.len();
     let mut rows: Vec<Vec<f64>> = (0..n).map(|i| columns.iter().map(|c| c[i]).chain([right[i]]).collect()).collect();

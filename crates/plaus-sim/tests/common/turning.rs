@@ -1,11 +1,11 @@
-//! What tests of turning bodies share: a stand-in for random bumps, a look whether bodies are in each other,
+//! Shared by tests of turning bodies: a substitute for random bumps, a check whether bodies are in each other,
 //! relabelling.
 
 use plaus_sim::rigid::{Phase, Rigid, Start, Turning};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Scratch, State};
 
-/// A Gaussian's stand-in, within ±3.5.
+/// A substitute for a Gaussian, within ±3.5.
 pub fn noise(i: i64, j: i64) -> f64 {
     let mut h = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (j as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
     h ^= h >> 31;
@@ -15,11 +15,11 @@ pub fn noise(i: i64, j: i64) -> f64 {
     (u(0) + u(1) + u(2) + u(3)) * 3.0_f64.sqrt()
 }
 
-/// Looks at every new motion, and half way before it, whether bodies are in each other.
+/// At every new motion, and half way before it, checks whether bodies are in each other.
 pub struct Overlaps<'w> {
     world: &'w Rigid,
     last: Vec<Turning>,
-    /// The deepest so far, in m.
+    /// The deepest overlap so far, in m.
     pub worst: f64,
 }
 
@@ -49,8 +49,8 @@ impl Observer<Rigid> for Overlaps<'_> {
     }
 }
 
-/// Runs two bodies, and the same two under exchanged labels, and asserts that they do the same to the last bit. `of`
-/// makes the world in which the bodies stand in an order. Returns how many impacts there were.
+/// Runs two bodies, and the same two with exchanged labels, and asserts that they behave the same to the last bit. `of`
+/// makes the world with the bodies in the given order. Returns the number of impacts.
 pub fn same_when_relabelled(of: impl Fn([usize; 2]) -> Rigid, starts: [Start; 2], until: f64, what: &str) -> u64 {
     let run = |order: [usize; 2]| {
         let world = of(order);

@@ -109,7 +109,7 @@ impl Body {
     }
 }
 
-/// Corners of a box as a mesh seen from inside, each side of `n × n` squares.
+/// A box seen from inside as a mesh, each side with `n × n` squares.
 fn hollow_box(turn: DQuat, n: u32) -> Mesh {
     let (mut vertices, mut triangles) = (Vec::<DVec3>::new(), Vec::new());
     let mut vertex = |p: DVec3| {
@@ -128,7 +128,7 @@ fn hollow_box(turn: DQuat, n: u32) -> Mesh {
                 for j in 0..n {
                     let mut at = |i: u32, j: u32| vertex(turn * ((base + u * along(i) + v * along(j)) * HALF));
                     let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-                    // u × v points along the axis; the inside is the other way at the upper end.
+                    // u × v points along the axis; at the upper end, the inside is in the opposite direction.
                     let quads = if sign > 0.0 { [[a, c, b], [a, d, c]] } else { [[a, b, c], [a, c, d]] };
                     triangles.extend(quads.map(|t| (t, M)));
                 }
@@ -170,7 +170,7 @@ fn hollow_ball(n: u32) -> Mesh {
 impl Place {
     pub const ALL: [Self; 6] = [Self::Planes, Self::Blocks, Self::Solids, Self::Mesh, Self::HollowBall, Self::Table];
 
-    /// The parts, and how the box stands.
+    /// The parts, and the box's orientation.
     pub fn parts(self, dice: &mut Dice) -> (Vec<Part>, DQuat) {
         let turn = match self {
             Self::Planes | Self::Solids | Self::Mesh => dice.turn(),
@@ -218,17 +218,17 @@ impl Place {
     }
 }
 
-/// What came of a throw.
+/// The result of a throw.
 #[derive(Debug, Clone, Copy)]
 pub struct Fate {
     pub outcome: Outcome,
-    /// Farthest that a centre of gravity was outside, over the body's size.
+    /// How far a centre of gravity was outside at most, over the body's size.
     pub out: f64,
-    /// Deepest that bodies were in parts at the ends of their motions, over the size.
+    /// How deep bodies were in parts at the ends of their motions at most, over the size.
     pub deep: f64,
     /// The same at the end.
     pub left: f64,
-    /// Energy gained over what there was (kinetic energy and the weight times the box).
+    /// Energy gained over the initial energy (kinetic energy, and the weight times the box).
     pub gain: f64,
     pub events: u64,
 }
@@ -249,7 +249,7 @@ impl Observer<Rigid> for Watch<'_> {
     }
 }
 
-/// Throws some bodies into a place for a time; from rest to fast.
+/// Throws some bodies into a place for some time; from rest to fast.
 pub fn throw(bodies: &[Body], place: Place, throw: u64, preset: Preset, until: f64) -> Fate {
     let mut dice = Dice::new(31, throw);
     let (parts, turn) = place.parts(&mut dice);
@@ -266,7 +266,7 @@ pub fn throw(bodies: &[Body], place: Place, throw: u64, preset: Preset, until: f
     };
     let sizes: Vec<f64> = world.bodies.iter().map(|b| b.shape.size()).collect();
     let world = Rigid::new(world).expect("a world");
-    // Apart, on a lattice within the middle of the place.
+    // Apart from each other, on a lattice around the middle of the place.
     let start = |k: usize| {
         let lattice = DVec3::new((k % 2) as f64 - 0.5, (k / 2 % 2) as f64 - 0.5, (k / 4) as f64 * 0.9) * 0.12;
         let speed = [0.0, 0.3, 2.0, 20.0][(throw % 4) as usize];

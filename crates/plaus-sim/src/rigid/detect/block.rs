@@ -8,10 +8,10 @@ use crate::scenery::Aabb;
 use crate::shape::Feeler;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Least part of the way to a box that an advancement goes, at the speed that the body then has. Default 1e-3.
+/// Least fraction of the distance to a box that an advancement covers, at the body's speed at that point. Default 1e-3.
 const LEAST: f64 = 1e-3;
 
-/// Difference of two gaps, over the gap at which bodies touch, that is rounding. Default 1e-6.
+/// Difference of two gaps, over the gap at which bodies touch, that counts as rounding. Default 1e-6.
 const SAME: f64 = 1e-6;
 
 /// Where a body is, and how it moves.
@@ -24,7 +24,7 @@ struct Placed {
     pull: f64,
 }
 
-/// What of a body touches first, of the points looked at so far.
+/// Which of a body's points examined so far touches first.
 struct Soonest {
     /// How long nothing touches, in s.
     step: f64,
@@ -34,7 +34,7 @@ struct Soonest {
 }
 
 impl Soonest {
-    /// A point touches now; where several do, the deepest counts.
+    /// A point touches now; if several do, the deepest counts.
     fn touches(&mut self, point: usize, gap: f64) {
         self.step = 0.0;
         if gap < self.gap {
@@ -56,7 +56,7 @@ impl Search<'_> {
         let Part::Block { bounds, .. } = block else { return };
         let (spec, path) = (self.spec, &self.body.path);
         if spec.is_ball && self.lasts(part, 0) {
-            // Its only point; that it leaves the box is an event of its motion.
+            // This is its only point; when it leaves the box is an event of its motion.
             return;
         }
         let swept = path.bounds(0.0, self.until).grown(spec.reach);
@@ -65,7 +65,7 @@ impl Search<'_> {
         }
         let mut t = 0.0;
         if let Some(side) = farthest_side(bounds, path.x) {
-            // The box is part of the half space behind that side, so nothing touches it before.
+            // The box is part of the half space behind that side, so nothing touches the box before the half space.
             let edges = Some((bounds, side.axis));
             let Some((time, point)) = self.half_space(part, (side.normal, side.offset), edges) else { return };
             if self.is_at_side(bounds, &side, time, point) {
@@ -80,7 +80,7 @@ impl Search<'_> {
             let offset = x - x.clamp(bounds.min, bounds.max);
             let away = offset.length() - spec.reach;
             t += if away > 0.0 {
-                // The sphere around the body, whose centre only falls.
+                // The sphere around the body: its centre only falls.
                 let n = offset / offset.length();
                 let least = LEAST * away / (v.length() + pull * away).max(f64::MIN_POSITIVE).sqrt().max(v.length());
                 earliest(away, n.dot(v), pull).max(least)
@@ -105,12 +105,12 @@ impl Search<'_> {
         self.hit(t, part, 0);
     }
 
-    /// How far a point at this distance from the centre of gravity can come within a time.
+    /// How far a point at this distance from the centre of gravity can move within a time.
     fn way(&self, at: &Placed, arm: f64, time: f64) -> f64 {
         (at.v.length() + at.w.length() * arm + 0.5 * (at.pull + self.turning * arm) * time) * time + self.spec.gap
     }
 
-    /// When the points of a body come to a box that are not on rings.
+    /// When those points of a body that are not on rings reach a box.
     fn feelers_at_block(&self, part: u16, block: &Part, at: &Placed, soonest: &mut Soonest) {
         let Part::Block { bounds, .. } = block else { return };
         let spec = self.spec;
@@ -133,7 +133,7 @@ impl Search<'_> {
         }
     }
 
-    /// When the points of a body's rings come to a box.
+    /// When the points of a body's rings reach a box.
     fn rings_at_block(&self, part: u16, block: &Part, at: &Placed, soonest: &mut Soonest) {
         let Part::Block { bounds, .. } = block else { return };
         let Placed { x, v, r, w, pull } = *at;
@@ -158,7 +158,8 @@ impl Search<'_> {
                     self.ring_at_edge(part, k, gap, soonest);
                     continue;
                 }
-                // The box is behind the plane through the foot, and so farther from all of the ring than that plane.
+                // The box is behind the plane through the foot, so every point of the ring is at least as far from the
+                // box as from that plane.
                 let middle = height + lever.z * ring.height - ring.radius;
                 let m = pull + self.turning * spec.ring_arms[index];
                 let low = rim::Low { middle, rate: fall + swing.z * ring.height, circle: ring.circle, p, q, m };
@@ -186,7 +187,7 @@ impl Search<'_> {
         is_over(bounds, side.axis, x + r * feeler.centre)
     }
 
-    /// Whether the lowest point of a ring comes first, against the plane through its foot.
+    /// Whether the lowest point of a ring comes first, tested against the plane through its foot.
     fn ring_by_plane(&self, k: usize, [f, rate, ..]: [f64; 4], low: &rim::Low, soonest: &mut Soonest) {
         let is_now = f <= 0.5 * self.spec.gap && rate < 0.0;
         let time = if is_now { 0.0 } else { low.earliest(soonest.step) };
@@ -207,7 +208,7 @@ impl Search<'_> {
         soonest.comes(k, f, time);
     }
 
-    /// Where the capsule around the body is beyond one side of a box: for how long at least it stays there.
+    /// If the capsule around the body is beyond one side of a box: a lower bound on how long it stays there.
     fn beside(&self, bounds: &Aabb, &Placed { x, v, r, w, pull }: &Placed) -> Option<f64> {
         let [low, high, radius] = self.spec.capsule;
         let arms = [r.z_axis * low, r.z_axis * high];
@@ -228,14 +229,14 @@ impl Search<'_> {
     }
 }
 
-/// How far a point is at least from a box: its distance from the farthest side, negative inside.
+/// A lower bound on the distance of a point from a box: its distance beyond the farthest side, negative inside.
 fn outside(bounds: &Aabb, p: DVec3) -> f64 {
     (bounds.min - p).max(p - bounds.max).max_element()
 }
 
-/// Gap of a point of a ring, its rate, the rate to reckon with, and a bound on its acceleration. The point moves round
-/// the ring as the body leans, which adds `ρ ω²` over the sine of the lean; for bodies that hardly lean the circle's
-/// own bound is used instead, in which the whole rim falls as fast as its fastest point.
+/// Gap of a ring's point, its rate, the rate used for the bound, and a bound on its acceleration. The point moves round
+/// the ring as the body leans, which adds `ρ ω²` over the sine of the lean. For bodies that hardly lean, the circle's
+/// own bound is used instead: the whole rim is taken to fall as fast as its fastest point.
 fn ring_gap(
     feeler: &Feeler,
     quarter: usize,

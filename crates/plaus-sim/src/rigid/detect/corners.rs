@@ -1,8 +1,9 @@
-//! First contact with a half space of a few balls that turn about one axis: cuboids in the air if all their moments of
-//! inertia are equal, any body in a step.
+//! First contact with a half space for a few balls that turn about one axis: for cuboids in the air if all their
+//! moments of inertia are equal, and for any body in a step.
 //!
-//! The height of each over the plane is a parabola, that of the centre of gravity, and a sine. What the sines are is
-//! found once; a look costs one sine and cosine for all of them, and each sine's own amplitude bounds its acceleration.
+//! The height of each ball over the plane is the height of the centre of gravity, a parabola, plus a sine. The sines
+//! are found once. Each look takes one sine and cosine for all of them, and each sine's own amplitude bounds its
+//! acceleration.
 
 use super::plane::BEYOND;
 use super::{MOST_ADVANCES, Search, earliest};
@@ -12,10 +13,10 @@ use crate::scenery::Aabb;
 use glam::DVec3;
 use plaus_dist::math;
 
-/// Most balls that are looked at in this way: the corners of a cuboid.
+/// Maximum number of balls that are treated in this way: the corners of a cuboid.
 const MOST: usize = 8;
 
-/// Height of a ball over the plane, less that of the centre of gravity and the ball's radius:
+/// Height of a ball over the plane, minus that of the centre of gravity and minus the ball's radius:
 /// `fixed + cos · cos(ωt) + sin · sin(ωt)`.
 #[derive(Debug, Clone, Copy, Default)]
 struct Height {
@@ -29,7 +30,7 @@ struct Height {
 }
 
 impl Search<'_> {
-    /// As [`half_space`](Self::half_space), from time `t` on; `None` where it is no case for this.
+    /// As [`half_space`](Self::half_space), from time `t` on; `None` if this method does not apply.
     pub(super) fn corners(
         &self,
         part: u16,
@@ -89,7 +90,7 @@ impl Search<'_> {
             if step == 0.0 {
                 return Some(Some((t, heights[nearest].ball)));
             }
-            // It comes first at the next look: most others outlast its step.
+            // It is examined first at the next look: most others outlast its step.
             heights.swap(0, nearest);
             t += step;
             if t >= self.until || t.is_nan() {

@@ -19,8 +19,8 @@ use crate::roots::{earliest, fall_of_quadratic};
 use crate::scenery::Surface;
 use glam::DVec3;
 
-/// Most advancements of one search. Where they are spent the nearest point's time is handed on as an event: the body is
-/// looked at anew.
+/// Maximum number of advancements of one search. When they are used up, the time reached is handed on as an event, and
+/// the body is examined anew.
 const MOST_ADVANCES: usize = 200;
 
 /// A search for the first contact of one body.
@@ -29,7 +29,7 @@ pub(in crate::rigid) struct Search<'s> {
     pub(super) body: &'s Turning,
     /// Largest angular speed.
     fastest: f64,
-    /// Acceleration of a point per its distance from the centre.
+    /// Acceleration of a point, over its distance from the centre.
     turning: f64,
     /// The same for points on the axis of a body of revolution.
     axial: f64,
@@ -53,7 +53,7 @@ impl Rigid {
         };
         let fastest = if spec.wobble == 0.0 || !free { body.spin.length() } else { fastest };
         let turning = fastest * fastest * if free { 1.0 + spec.wobble } else { 1.0 };
-        // The axis of a top only swings: at |L|/I₁ in flight, with the body in a step.
+        // The axis of a top only swings: at |L|/I₁ in flight; in a step, with the body.
         let across = body.spin.reject_from_normalized(body.turn * DVec3::Z).length();
         let axial = match spec.skin {
             Skin::Revolved => across * if free { momentum / spec.inertia.moments.x } else { body.spin.length() },
@@ -85,7 +85,7 @@ impl Rigid {
 }
 
 impl Search<'_> {
-    /// Whether a point of the body is in lasting contact with the part already.
+    /// Whether a point of the body is already in lasting contact with the part.
     #[inline]
     pub(super) fn lasts(&self, part: u16, point: usize) -> bool {
         matches!(self.body.phase, Phase::Step | Phase::Glide)
@@ -111,8 +111,8 @@ impl Search<'_> {
         fall_of_quadratic([height, normal.dot(path.v), 0.5 * normal.dot(path.a)], self.until)
     }
 
-    /// Angular velocity after `t`, for which `tumble` was asked last; it changes only in free flight, and not if all
-    /// moments are equal.
+    /// Angular velocity after `t`, the time for which `tumble` was last asked. It changes only in free flight, and only
+    /// if the moments are not all equal.
     #[inline]
     pub(super) fn spin_at(&self, tumble: &Tumble, t: f64) -> DVec3 {
         if self.spec.wobble == 0.0 || !self.body.turns_freely() {

@@ -11,22 +11,22 @@ use crate::scenery::Aabb;
 use glam::{DVec2, DVec3};
 use std::cell::RefCell;
 
-/// Distance of the capsule around a body from a plane, over the body's size, from which its skin is looked at. Default
-/// 0.05; smaller values look at capsules more often.
+/// Distance of the capsule around a body from a plane, over the body's size, below which its skin is examined. Default
+/// 0.05; smaller values test capsules more often.
 const NEAR: f64 = 0.05;
 
-/// Stands for a point behind the plane beyond the edges.
+/// Stands for a point that is behind the plane beyond the edges.
 pub(super) const BEYOND: usize = usize::MAX;
 
 /// The body against the half space at one time of the search.
 struct Look<'b> {
     part: u16,
-    /// A box whose side the plane is, and that side's axis.
+    /// A box that has the plane as a side, and that side's axis.
     edges: Option<(&'b Aabb, usize)>,
     x: DVec3,
     t: f64,
     tumble: &'b RefCell<Tumble>,
-    /// Of the centre of gravity over the plane, less half the gap.
+    /// Height of the centre of gravity over the plane, minus half the gap.
     height: f64,
     /// Rate of the height.
     fall: f64,
@@ -38,15 +38,15 @@ struct Look<'b> {
 }
 
 impl Look<'_> {
-    /// Whether a point (in body axes) that is behind the plane is beyond the edges of the side: then the plane says
-    /// nothing about when it touches the box.
+    /// Whether a point (in body axes) that is behind the plane is beyond the edges of the side. If so, the plane does
+    /// not tell when it touches the box.
     fn is_beyond(&self, centre: DVec3) -> bool {
         let there = || self.x + self.tumble.borrow_mut().at(self.t) * centre;
         self.edges.is_some_and(|(bounds, axis)| !is_over(bounds, axis, there()))
     }
 }
 
-/// How far the body may go, and what then touches first.
+/// How far the body may go, and which point then touches first.
 struct Next {
     step: f64,
     first: Option<(usize, f64)>,
@@ -70,7 +70,7 @@ impl Next {
         self.step = 0.0;
     }
 
-    /// Whether a gap with at most this acceleration cannot be gone within the step.
+    /// Whether a gap with at most this acceleration cannot close within the step.
     #[inline]
     fn outlasts(&self, f: f64, rate: f64, m: f64) -> bool {
         f > 0.0 && f + (rate - 0.5 * m * self.step) * self.step > 0.0
@@ -78,8 +78,8 @@ impl Next {
 }
 
 impl Search<'_> {
-    /// When and with which point the body first comes to a half space of a part; [`BEYOND`] where `edges` are given and
-    /// it gets behind the plane beyond them.
+    /// When and with which point the body first reaches a half space of a part; [`BEYOND`] if `edges` are given and the
+    /// body gets behind the plane beyond them.
     pub(in crate::rigid) fn half_space(
         &self,
         part: u16,
@@ -145,7 +145,7 @@ impl Search<'_> {
         Some((t, if edges.is_some() { BEYOND } else { 0 }))
     }
 
-    /// For how long at least the capsule around the body stays clear of the plane, where that is worth a step of the
+    /// A lower bound on how long the capsule around the body stays clear of the plane, if that is worth a step of the
     /// search.
     fn capsule(&self, look: &Look, step: f64) -> Option<f64> {
         let [low, high, radius] = self.spec.capsule;
@@ -183,8 +183,8 @@ impl Search<'_> {
         }
     }
 
-    /// The lowest point of a ring; of the rim also those sideways and the highest, which may touch while the lowest
-    /// does.
+    /// The lowest point of a ring. On the rim also the sideways points and the highest one, which may touch while the
+    /// lowest does.
     fn ring(&self, look: &Look, index: usize, next: &mut Next) {
         let (spec, ring) = (self.spec, &self.spec.rings[index]);
         let point = spec.points_of(index).start;
@@ -197,7 +197,7 @@ impl Search<'_> {
         }
         let f = middle - ring.circle * p.length();
         if f <= TOUCHING * spec.gap {
-            // Other points of the ring are named by where they are to this one.
+            // The ring's other points are named by their positions relative to this one.
             let down = -p.normalize_or(DVec2::X) * ring.circle;
             next.is_beyond |= look.is_beyond(down.extend(ring.height));
         }
@@ -217,8 +217,8 @@ impl Search<'_> {
         }
     }
 
-    /// A point of the rim that is not its lowest. Those sideways are as high as the rim's middle, whatever way the body
-    /// turns.
+    /// A point of the rim that is not its lowest. The sideways points are as high as the rim's middle, whichever way
+    /// the body turns.
     fn rim_point(&self, look: &Look, point: usize, [middle, rate, m]: [f64; 3], next: &mut Next) {
         if self.lasts(look.part, point) {
             return;

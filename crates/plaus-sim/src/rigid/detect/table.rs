@@ -6,26 +6,26 @@ use crate::rigid::part::{ROUNDS, Table};
 use crate::shape::Feeler;
 use glam::{DMat3, DVec3};
 
-/// How far ahead the table below is looked at at once, over the body's reach. Default 0.5; larger values make more of
-/// the table, smaller ones look more often.
+/// How far ahead the table below is examined at once, over the body's reach. Default 0.5; larger values create more of
+/// the table, smaller ones examine it more often.
 const AHEAD: f64 = 0.5;
 
 impl Search<'_> {
     pub(super) fn table(&mut self, part: u16, table: &Table) {
         let (spec, path) = (self.spec, &self.body.path);
-        // Above the highest that the field can be there is nothing to look at.
+        // Above the greatest height that the field can have, there is nothing to examine.
         let Some(mut t) = self.approach(DVec3::Z, table.height.range()[1]) else { return };
         let gravity = path.a.length();
         let mut tumble = self.body.tumble(spec);
         let mut window: Option<(f64, Bounds)> = None;
-        // The point that was nearest at the last look comes first: most others outlast its step.
+        // The point that was nearest at the last look is examined first: most others outlast its step.
         let mut lead = 0;
         for _ in 0..MOST_ADVANCES {
             if t >= self.until || t.is_nan() {
                 return;
             }
             let (x, v) = (path.after(t), path.velocity_after(t));
-            // Not so long that speeds grow much.
+            // The step is limited so that speeds cannot grow much.
             let speed = v.length() + (gravity * spec.reach).sqrt();
             let (end, bounds) = match window {
                 Some((end, b)) if t < end => (end, b),
@@ -33,7 +33,7 @@ impl Search<'_> {
                     let end = (t + AHEAD * spec.reach / speed).min(self.until);
                     let over = path.bounds(t, end).grown(spec.reach * (1.0 + 1e-9));
                     let Some(b) = table.height.bounds([over.min.x, over.min.y], [over.max.x, over.max.y]) else {
-                        // A footprint of thousands of cells: nothing is known about it but its height.
+                        // A footprint of thousands of cells: only its range of heights is known.
                         return self.coarse(part, t);
                     };
                     window = Some((end, b));
@@ -72,8 +72,8 @@ impl Search<'_> {
         self.hit(t, part, 0);
     }
 
-    /// Height over the centre of gravity from which no point of the body can come down to `high` within a step, at the
-    /// speed that it can have at most.
+    /// Height over the centre of gravity up to which a point of the body might come down to `high` within a step, at
+    /// the highest possible speed.
     fn level(&self, (x, v, ..): &(DVec3, DVec3, DVec3, DMat3), high: f64, step: f64) -> f64 {
         let reach = self.spec.reach;
         let pull = (self.turning * reach - self.body.path.a.z).max(0.0);
@@ -111,7 +111,7 @@ impl Search<'_> {
             (p.z - value, pv.z - slope[0] * pv.x - slope[1] * pv.y)
         };
         let f = f - 0.5 * spec.gap;
-        // The way of a corner over the surface is level, that of a ball along it.
+        // The path of a corner over the surface is measured in the horizontal plane, that of a ball along the surface.
         let (way, sideways) = if feeler.radius > 0.0 {
             (pv.length(), gravity.length())
         } else {
@@ -141,8 +141,8 @@ impl Search<'_> {
         }
     }
 
-    /// A body so large against the grid that its footprint is not looked at: it counts as touching where it comes down
-    /// to the field's highest value.
+    /// For a body so large compared with the grid that its footprint is not examined: it counts as touching when it
+    /// comes down to the field's greatest height.
     fn coarse(&mut self, part: u16, t: f64) {
         self.hit(t, part, 0);
     }

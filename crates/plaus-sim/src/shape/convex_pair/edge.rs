@@ -6,18 +6,18 @@ use glam::DVec3;
 use plaus_dist::math;
 use std::f64::consts::TAU;
 
-/// Most rounds of closing in on a root. Each halves the bracket at least every other time; with the secant about eight
-/// are taken.
+/// Maximum number of rounds of approaching a root. Each halves the bracket at least every other time; with the secant,
+/// about eight are taken.
 const ROUNDS: usize = 120;
 
-/// Samples of a rim between which its nearest points are looked for. Default 16.
+/// Samples of a rim between which its nearest points are sought. Default 16.
 const SAMPLES: usize = 16;
 
-/// Part of its bracket's size to which a root is found: rounding.
+/// Fraction of its bracket's size to which a root is found: rounding.
 const FINE: f64 = 4e-16;
 
-/// The root of a function that is negative at `low` and positive at `high` (Illinois' rule, with halvings where that is
-/// slow).
+/// The root of a function that is negative at `low` and positive at `high` (Illinois method, with bisections where that
+/// is slow).
 fn root(mut low: (f64, f64), mut high: (f64, f64), scale: f64, f: impl Fn(f64) -> f64) -> f64 {
     let mut side = 0;
     for round in 0..ROUNDS {
@@ -51,7 +51,7 @@ fn root(mut low: (f64, f64), mut high: (f64, f64), scale: f64, f: impl Fn(f64) -
     0.5 * (low.0 + high.0)
 }
 
-/// A corner with the distance and direction of a core from it.
+/// A corner, with the distance and direction of a core from it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct End {
     pub(super) at: DVec3,
@@ -59,14 +59,14 @@ pub(super) struct End {
     pub(super) distance: f64,
 }
 
-/// The point inside an edge that is nearest to a core, if it can be nearer than `least` and none of the ends is; in the
-/// core's axes.
+/// The point inside an edge that is nearest to a core, in the core's axes, if it can be nearer than `least` and neither
+/// end is.
 pub(super) fn on_edge(core: &Core, [a, b]: [&End; 2], along: DVec3, length: f64, least: f64) -> Option<DVec3> {
     let (down, up) = (a.out.dot(along), b.out.dot(along));
     if down >= 0.0 || up <= 0.0 {
         return None;
     }
-    // The distance is convex: above both tangents.
+    // The distance is convex, so it lies above both tangents.
     let cross = (b.distance - up * length - a.distance) / (down - up);
     if a.distance + down * cross >= least {
         return None;
@@ -75,8 +75,8 @@ pub(super) fn on_edge(core: &Core, [a, b]: [&End; 2], along: DVec3, length: f64,
     Some(a.at + along * t)
 }
 
-/// Calls `each` for the points of a rim that are nearer to a core than those beside them. `place` turns points of the
-/// rim's axes into those of the core, `turned` directions.
+/// Calls `each` for the points of a rim that are nearer to a core than the points beside them. `place` turns points in
+/// the rim's axes into those of the core, and `turned` does the same for directions.
 pub(super) fn on_rim(
     core: &Core,
     discs: &Discs,
@@ -108,7 +108,7 @@ pub(super) fn on_rim(
         }
     }
     if !any {
-        // As near all around.
+        // The distance is the same all around.
         each(at(0.0).0);
     }
 }

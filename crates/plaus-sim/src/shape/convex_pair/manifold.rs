@@ -1,4 +1,4 @@
-//! All points at which two pieces touch, each with a name by which it is found again at other poses.
+//! All points at which two pieces touch, each with a name that finds it again at other poses.
 
 use super::edge::{on_edge, on_rim};
 use super::nearest::{ends, in_common, nearest, polyhedra};
@@ -8,19 +8,19 @@ use crate::shape::hull::Polyhedron;
 use crate::shape::piece::{Core, Placed};
 use glam::DVec3;
 
-/// Cosine of the angle to the nearest points' normal within which a point's own normal must lie. Default ½; others
-/// belong to sides that do not face each other.
+/// Cosine of the largest angle between a point's own normal and that of the nearest points. Default ½; points with a
+/// larger angle belong to sides that do not face each other.
 const FACING: f64 = 0.5;
 
 /// Cosine of the lean up to which a disc counts as lying flat on what it touches, so that edges across its rim are
-/// looked at. Default 0.99; a disc that leans more touches at its lowest point.
+/// examined. Default 0.99; a disc that leans more touches at its lowest point.
 const FLAT: f64 = 0.99;
 
 /// Distance over the size within which two points of contact count as one. Default 1e-4.
 const SAME: f64 = 1e-4;
 
-/// Of two such points the nearer counts, if it is by this part of that distance. Default 1e-6: rounding decides
-/// nothing.
+/// Of two such points the nearer counts if it is nearer by at least this fraction of that distance. Default 1e-6, so
+/// that rounding decides nothing.
 const CLOSER: f64 = 1e-6;
 
 /// Points of contact so far.
@@ -47,8 +47,8 @@ impl Found {
         }
     }
 
-    /// Whether three points are as near as what is nearest: then pieces lie flat on each other, and which point is the
-    /// nearest is up to rounding, and another at the next pose.
+    /// Whether three points are as near as the nearest. Then the pieces lie flat on each other, and rounding decides
+    /// which point is nearest: at the next pose it may be another one.
     fn is_flat(&self, gap: f64) -> bool {
         self.points.iter().filter(|f| f.gap <= gap + CLOSER * self.same).count() >= 3
     }
@@ -82,7 +82,7 @@ impl Both<'_> {
         found.points.into_iter().for_each(each);
     }
 
-    /// The point of that name at this pose. `towards` is its normal at a pose nearby.
+    /// The point with that name at this pose. `towards` is its normal at a pose nearby.
     pub(crate) fn again(&self, mark: Mark, towards: DVec3) -> Meeting {
         let again = match mark {
             Mark::Nearest => None,
@@ -117,14 +117,14 @@ impl Both<'_> {
         Some(piece.centre + piece.axes * self.hull(of)?.corner(corner))
     }
 
-    /// A point of a rim. The lowest is that nearest to the other's core.
+    /// A point of a rim. The lowest point is the one nearest to the other's core.
     fn rim(&self, of: usize, ring: u8, slot: u8, towards: DVec3) -> Option<Meeting> {
         let (piece, discs) = (self.piece(of), self.discs(of)?);
         let mark = Mark::Rim { of: of as u8, ring, slot };
         let down = piece.axes.transpose() * if of == 0 { -towards } else { towards };
         let lowest = discs.rim(usize::from(ring), slot, down);
         if slot > 0 || discs.radii[usize::from(ring)] == 0.0 || lowest.is_none() {
-            // Of a rim that lies flat any point is as low as any other.
+            // On a rim that lies flat, any point is as low as any other.
             let p = lowest.or_else(|| discs.rim(usize::from(ring), 1, down))?;
             return Some(self.at_point(of, piece.centre + piece.axes * p, mark));
         }
@@ -155,7 +155,7 @@ impl Both<'_> {
         let (own, other) = (nearest.normal * if of == 0 { 1.0 } else { -1.0 }, self.piece(1 - of));
         let level = other.support(own) + within + self.roundings() - own.dot(piece.centre);
         for ring in 0..if is_disc { 1 } else { 2_u8 } {
-            // The plane across the normal that holds the other: what is beyond it is farther.
+            // The plane across the normal that holds the other core: anything beyond it is farther away.
             let k = usize::from(ring);
             if -discs.radii[k] * down.truncate().length() - discs.heights[k] * down.z > level {
                 continue;
@@ -198,7 +198,7 @@ impl Both<'_> {
                 take(self.at_point(of, other.centre + other.axes * p, mark(0)));
             }
             if is_flat && both_ends.iter().any(|end| end.distance > 0.0) {
-                // The upper disc faces what is above it.
+                // The upper disc faces objects above it.
                 let ring = if up { 1 } else { 0 };
                 for side in 0..2 {
                     if let Some(p) = across_rim(discs, ring, side, both_ends[0].at, into * e.along, e.length) {
@@ -226,7 +226,7 @@ impl Both<'_> {
         Some(self.at_point(of, other.centre + other.axes * p, Mark::Edge { of: of as u8, edge, at }))
     }
 
-    /// Where rims that face each other cross.
+    /// Crossings of rims that face each other.
     fn crossing_rims(&self, normal: DVec3, take: &mut impl FnMut(Meeting)) {
         let lean = |p: &Placed| p.axes.z_axis.dot(normal);
         let (a, b) = (lean(&self.first), lean(&self.second));
@@ -244,7 +244,7 @@ impl Both<'_> {
         let (a, b) = (self.discs(0)?, self.discs(1)?);
         let middle = |p: &Placed, d: &Discs, ring: u8| p.centre + p.axes.z_axis * d.heights[usize::from(ring)];
         let (r, s) = (a.radii[usize::from(rings[0])], b.radii[usize::from(rings[1])]);
-        // The first's own axis: the same points whatever the normal is.
+        // The first core's own axis: the points are then the same, whatever the normal is.
         let axis = self.first.axes.z_axis;
         let normal = if axis.dot(normal) < 0.0 { -axis } else { axis };
         let (from, to) = (middle(&self.first, a, rings[0]), middle(&self.second, b, rings[1]));
@@ -259,7 +259,7 @@ impl Both<'_> {
         let turned = self.first.axes.transpose() * (towards * along + normal.cross(towards) * off);
         let p = self.first.centre + self.first.axes * a.rim(usize::from(rings[0]), 0, turned)?;
         let m = self.at_point(0, p, Mark::Rims { rings, side });
-        // A little inside the second's rim, its side is as near as its disc, which is meant.
+        // A little inside the second's rim, its side is as near as its disc; the disc is meant.
         let up = self.second.axes.z_axis;
         let up = if up.dot(normal) < 0.0 { -up } else { up };
         let distance = up.dot(p - to);

@@ -3,7 +3,7 @@
 use crate::shape::On;
 use crate::shape::hull_pair::Feature;
 
-/// What meets at a point of contact, so that the same point is found again at other poses.
+/// The elements that meet at a point of contact, so that the same point can be found again at other poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mark {
     /// The nearest points, whatever they are.
@@ -14,14 +14,14 @@ pub(crate) enum Mark {
     Corner { of: u8, corner: u8 },
     /// A point of a rim of the core `of` on the other.
     Rim { of: u8, ring: u8, slot: u8 },
-    /// A point of an edge of the core `of`: that nearest to the other (0), or where it crosses the rim of the other's
-    /// lower (1, 2) or upper (3, 4) disc.
+    /// A point of an edge of the core `of`: the one nearest to the other core (0), or where the edge crosses the rim of
+    /// the other's lower (1, 2) or upper (3, 4) disc.
     Edge { of: u8, edge: u8, at: u8 },
-    /// Where rims cross: the upper one of each is meant by its bit, and `side` tells the two crossings.
+    /// A crossing of two rims: a set bit in `rings` means a core's upper rim, and `side` tells the two crossings apart.
     Rims { rings: [u8; 2], side: u8 },
 }
 
-/// Bits of a name. Sixteen kinds; two numbers of eight bits, one of three.
+/// Bits of a name: for sixteen kinds, for two numbers of eight bits, and for one of three.
 const KIND: u32 = 4;
 const FIRST: u32 = 8;
 const SECOND: u32 = 8;
@@ -34,7 +34,7 @@ fn pack([kind, first, second, third]: [u8; 4]) -> u32 {
 }
 
 impl Mark {
-    /// A number that tells it from all other names.
+    /// A number that no other name has.
     pub(crate) fn number(self) -> u32 {
         pack(match self {
             Self::Nearest => [0, 0, 0, 0],

@@ -1,5 +1,5 @@
 //! Two convex pieces of any kind: how far apart they are, where they are nearest, and the points at which they touch.
-//! This row of the table of pairs serves all pairs that no other row serves.
+//! This row of the table of pairs serves all pairs that have no other row.
 //!
 //! The signed distance from a point to a core is known in closed form and is a convex function of the point; so is the
 //! core's support function. The nearest features of two cores are a corner, an edge or a rim of one of them against the
@@ -8,8 +8,8 @@
 //! no tolerance at which an iteration ends. Two polyhedra have a search of their own (`hull_pair`). If cores overlap,
 //! the depth is that along the best of the same directions.
 //!
-//! If the cores are as far apart along a direction as two of their points, these points are proved to be the nearest.
-//! The tests use this proof, and compare with another library.
+//! If a direction keeps the cores as far apart as two of their points, these points are proved to be the nearest. The
+//! tests use this proof, and compare with another library.
 
 mod edge;
 mod manifold;
@@ -47,7 +47,7 @@ impl<'p> Both<'p> {
         if of == 0 { &self.first } else { &self.second }
     }
 
-    /// Both reaches together: what slack is measured in.
+    /// Both reaches together: the unit of slack.
     pub(crate) fn size(&self) -> f64 {
         self.first.reach + self.second.reach
     }
@@ -61,13 +61,13 @@ impl<'p> Both<'p> {
         -self.first.support(-normal) - self.second.support(normal)
     }
 
-    /// The meeting of core points along a normal, the cores `distance` apart there.
+    /// The meeting of core points along a normal, along which the cores are `distance` apart.
     fn meeting(&self, [p, q]: [DVec3; 2], normal: DVec3, distance: f64, mark: Mark) -> Meeting {
         let points = [p - normal * self.first.rounding, q + normal * self.second.rounding];
         Meeting { normal, points, gap: distance - self.roundings(), mark }
     }
 
-    /// The meeting of a point of the core `of` with its foot on the other's.
+    /// The meeting of a point of the core `of` with its foot on the other core.
     fn at_point(&self, of: usize, p: DVec3, mark: Mark) -> Meeting {
         let (out, distance) = self.piece(1 - of).foot(p);
         let q = p - out * distance;

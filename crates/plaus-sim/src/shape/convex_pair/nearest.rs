@@ -8,34 +8,34 @@ use crate::shape::hull_pair::{self, HullPair};
 use crate::shape::piece::{Core, Placed};
 use glam::DVec3;
 
-/// Distance over the size below which cores count as touching, so that the direction between their nearest points says
-/// nothing. Default 1e-11.
+/// Distance over the size below which cores count as touching, because the direction between their nearest points is
+/// then meaningless. Default 1e-11.
 const TOUCHING: f64 = 1e-11;
 
 /// Slack over the size within which points count as equally low. Default 1e-12.
 const SLACK: f64 = 1e-12;
 
-/// Distance over the size by which nearest points may be farther apart than what separates the cores. Default 1e-10,
-/// above rounding.
+/// Distance over the size by which nearest points may be farther apart than the planes that separate the cores. Default
+/// 1e-10, above rounding.
 const PROVED: f64 = 1e-10;
 
-/// Most rounds of turning the way out of an overlap.
+/// Maximum number of rounds of turning the way out of an overlap.
 const ROUNDS: usize = 40;
 
-/// Least distance over the size to which cores that overlap are moved apart. Default 1e-5: what is nearest then is
+/// Least distance over the size to which overlapping cores are moved apart. Default 1e-5: their nearest points are then
 /// known to 1e-10 of it.
 const ASIDE: f64 = 1e-5;
 
-/// Overlap over the size up to which the best direction looked at is taken, where it is the normal of a face with the
-/// other's lowest point over it: no way out is shorter nearby, and others elsewhere are by less than this. Default
-/// 1e-4.
+/// Overlap over the size up to which the best direction examined is taken, if it is the normal of a face and the
+/// other's lowest point is over that face. No way out nearby is then shorter, and ways out elsewhere are shorter by
+/// less than this. Default 1e-4.
 const SHALLOW: f64 = 1e-4;
 
-/// Change of a direction within which it counts as found.
+/// Change of a direction below which it counts as found.
 const FOUND: f64 = 1e-10;
 
-/// The nearest points of two pieces; of cores that overlap, those along the way out that is shortest among those found
-/// from several directions.
+/// The nearest points of two pieces. For cores that overlap, the points along the shortest way out found from several
+/// directions.
 pub(crate) fn nearest(both: &Both) -> Meeting {
     match (both.first.core, both.second.core) {
         (Core::Polyhedron(_), Core::Polyhedron(_)) => {
@@ -52,14 +52,14 @@ pub(crate) fn nearest(both: &Both) -> Meeting {
     }
 }
 
-/// What came of a search.
+/// The result of a search.
 enum Searched<'b, 'p> {
     Nearest(Meeting),
-    /// The cores overlap; this was looked at.
+    /// The cores overlap; this was examined.
     Overlap(Search<'b, 'p>),
 }
 
-/// The nearest points of cores that are not both polyhedra, or else what a search has seen.
+/// The nearest points of cores that are not both polyhedra, or what the search has seen.
 fn searched<'b, 'p>(both: &'b Both<'p>) -> Searched<'b, 'p> {
     match (both.first.core, both.second.core) {
         (Core::Discs(_), Core::Discs(_)) => two_of_discs(both),
@@ -77,13 +77,13 @@ pub(super) fn polyhedra<'p>(both: &Both<'p>) -> Option<HullPair<'p>> {
     Some(HullPair::new(both.first.centre - both.second.centre, placed(&both.first)?, placed(&both.second)?))
 }
 
-/// A meeting of polyhedra, whose arms are about their own centres, about the common origin.
+/// A meeting of polyhedra, whose arms are about their own centres, moved to the common origin.
 pub(super) fn in_common(both: &Both, m: hull_pair::Meeting) -> Meeting {
     let points = [both.first.centre + m.arms[0], both.second.centre + m.arms[1]];
     Meeting { normal: m.normal, points, gap: m.gap, mark: Mark::Polyhedra(m.feature) }
 }
 
-/// What was looked at: the nearest points of cores so far, and the direction that keeps the cores farthest apart.
+/// The results so far: the nearest points of cores, and the direction that keeps the cores farthest apart.
 struct Search<'b, 'p> {
     both: &'b Both<'p>,
     near: Option<Meeting>,
@@ -103,12 +103,12 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Whether the plane across the line between two points keeps the cores as far apart as they are.
+    /// Whether the plane across the line between two points keeps the cores as far apart as the points are.
     fn is_proved(&self, m: &Meeting) -> bool {
         m.gap + self.both.roundings() <= self.both.apart(m.normal) + PROVED * self.both.size()
     }
 
-    /// A direction towards the first.
+    /// Examines a direction towards the first core.
     fn along(&mut self, normal: DVec3) {
         let apart = self.both.apart(normal);
         if apart > self.far.0 {
@@ -116,12 +116,12 @@ impl Search<'_, '_> {
         }
     }
 
-    /// The answer where cores overlap: the best of the ways out that lead from the best directions looked at and from
-    /// that between the centres.
+    /// The answer if cores overlap: the best of the ways out that start from the best directions examined and from the
+    /// direction between the centres.
     fn deepest(mut self) -> Meeting {
         if let Some(m) = self.near {
             self.along(m.normal);
-            // Its own normal must be the way out: a point at an edge is as near to another side.
+            // Its own normal must be the way out, because a point at an edge is just as near to another side.
             let apart = self.both.apart(m.normal);
             if m.gap + self.both.roundings() <= self.far.0.min(apart) + SLACK * self.both.size() {
                 return m;
@@ -145,9 +145,10 @@ impl Search<'_, '_> {
         best
     }
 
-    /// The shortest way out near a direction. Moved apart along a direction by more than they overlap, cores have
-    /// nearest points, and along the line between these they overlap less, or as much if it is the same direction: the
-    /// proximal-point method, for what keeps cores apart is the largest of `apart(n) + shift n·direction`.
+    /// The shortest way out near a direction. If cores are moved apart along a direction by more than they overlap,
+    /// they have nearest points. Along the line between these points they overlap less, or equally if it is the same
+    /// direction. This is the proximal-point method, because the moved cores are kept apart by the largest of
+    /// `apart(n) + shift n·direction`.
     fn way_out(&self, start: DVec3) -> Option<Meeting> {
         let (mut n, mut found) = (start, None);
         for _ in 0..ROUNDS {
@@ -165,11 +166,11 @@ impl Search<'_, '_> {
         found.map(|m| Meeting { mark: Mark::Nearest, ..m })
     }
 
-    /// Points that a direction is the normal of: of those of the first equally low one over the second, if that is
-    /// seen. With them how far they are off the skins.
+    /// Points that have a direction as their normal; of equally low points of the first core, one that is over the
+    /// second, if one is seen. Also returns how far they are off the skins.
     fn at(&self, normal: DVec3, apart: f64, mark: Mark) -> (Meeting, f64) {
         let (p, q) = (self.both.first.farthest(-normal), self.both.second.farthest(normal));
-        // Of a flat piece over a point or the other way round the point tells where.
+        // If one core is flat there and the other has a point, the point determines the place.
         let (on_p, on_q) = (p - normal * apart, q + normal * apart);
         let off = |of: usize, x: DVec3| self.both.piece(of).foot(x).1.abs();
         let (off_p, off_q) = (off(1, on_p), off(0, on_q));
@@ -211,7 +212,7 @@ fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Searched<'b, 'p>
     let distance = search.distance();
     let size = both.size();
     if distance > TOUCHING * size {
-        // Apart: over a face, or else what was found of corners and edges is nearest.
+        // They are apart: the nearest point is over a face, or else the best one found at corners and edges.
         let (apart, normal) = search.far;
         if apart > TOUCHING * size
             && let Some(m) = over_face(both, discs, core, normal, apart)
@@ -223,7 +224,7 @@ fn with_polyhedron<'b, 'p>(both: &'b Both<'p>, discs: usize) -> Searched<'b, 'p>
         {
             return Searched::Nearest(m);
         }
-        // No corner and no edge is in the other, but it goes through a face.
+        // No corner and no edge of the polyhedron is inside the discs' core, but that core goes through a face.
     }
     for cap in [own.axes.z_axis, -own.axes.z_axis] {
         if core.radii[usize::from(cap == own.axes.z_axis)] > 0.0 {
@@ -246,8 +247,8 @@ pub(super) fn ends(own: &Placed, other: &Placed, hull: &Polyhedron) -> [End; MOS
     ends
 }
 
-/// The meeting of a core of discs with the face of a polyhedron whose normal, towards the first, this is: if one of its
-/// lowest points is over it.
+/// The meeting of a core of discs with the face of a polyhedron, if one of the core's lowest points is over it.
+/// `normal` is the face's normal, towards the first.
 fn over_face(both: &Both, discs: usize, core: &Discs, normal: DVec3, apart: f64) -> Option<Meeting> {
     let own = both.piece(discs);
     let down = if discs == 0 { -normal } else { normal };
@@ -308,13 +309,13 @@ fn two_of_discs<'b, 'p>(both: &'b Both<'p>) -> Searched<'b, 'p> {
     let (apart, normal) = search.far;
     match search.near {
         Some(m) if search.is_proved(&m) => Searched::Nearest(m),
-        // Sides that cross, whose points are on no rim.
+        // The sides cross at points that are on no rim.
         _ if apart > TOUCHING * size => Searched::Nearest(crossing_sides(both, normal, apart)),
         _ => Searched::Overlap(search),
     }
 }
 
-/// The directions that are normals of the sides of both at once, towards the first.
+/// The directions, towards the first, that are normals of the sides of both cores at once.
 fn side_normals(both: &Both) -> [Option<DVec3>; 2] {
     let (Core::Discs(a), Core::Discs(b)) = (both.first.core, both.second.core) else { return [None; 2] };
     let (e, g) = (both.first.axes.z_axis, both.second.axes.z_axis);
@@ -338,7 +339,7 @@ fn side_normals(both: &Both) -> [Option<DVec3>; 2] {
     [Some(flat + out), Some(flat - out)]
 }
 
-/// Points of two sides along their common normal: where the lines on them that it belongs to cross.
+/// Points of two sides along their common normal: where the lines on the sides with that normal cross.
 fn crossing_sides(both: &Both, normal: DVec3, apart: f64) -> Meeting {
     let line = |piece: &Placed, out: DVec3| {
         let Core::Discs(core) = piece.core else { return [piece.centre; 2] };

@@ -49,8 +49,7 @@ fn kinds() -> Vec<(&'static str, Piece)> {
     ]
 }
 
-/// The direction in which two pieces are farthest apart, by climbing from a start: a bound from below on their
-/// distance.
+/// The direction in which two pieces are farthest apart, by climbing from a start: a lower bound on their distance.
 fn climbed(both: &Both, start: DVec3) -> f64 {
     let (mut n, mut best, mut step) = (start, both.apart(start), 0.3);
     while step > 1e-7 {
@@ -72,8 +71,8 @@ fn climbed(both: &Both, start: DVec3) -> f64 {
     best
 }
 
-/// What is called nearest is proved so, where pieces are apart: the planes across the normal keep the cores as far
-/// apart as the points are, to 1e-9 of their size. The points are on the skins.
+/// Where pieces are apart, the points called nearest are proved nearest: the planes across the normal keep the cores as
+/// far apart as the points are, to 1e-9 of their size. The points are on the skins.
 #[test]
 fn nearest_points_are_proved() {
     let kinds = kinds();
@@ -97,15 +96,14 @@ fn nearest_points_are_proved() {
                         assert!(on.abs() < 1e-9 * size, "{one} and {other}: {on} off the skin");
                     }
                 } else if i != 6 && j != 6 && i < 9 && j < 9 {
-                    // In each other: no direction climbed to from it, or from some others, keeps them less deep by
-                    // much.
+                    // Overlapping: no direction climbed to from it, or from some others, keeps them much less deep.
                     within += 1;
                     let starts = [m.normal, numbers.vector().normalize(), centre.normalize()];
                     let best = starts.into_iter().map(|n| climbed(&both, n)).fold(f64::NEG_INFINITY, f64::max);
                     assert!(distance <= kept + 1e-9 * size, "{one} in {other}: {distance} for {kept}");
                     assert!((distance - kept).abs() <= 1e-9 * size, "{one} in {other}: {distance} for {kept}");
-                    // Where pieces are deep in each other another direction may be better; what touches is never so
-                    // deep. Climbing ends 1e-8 from a kink.
+                    // Where pieces are deep in each other, another direction may be better; pieces in contact are never
+                    // that deep. Climbing ends within 1e-8 of a kink.
                     let allowed = 1e-7 * size + if best > -0.02 * size { 0.0 } else { 0.3 * -best };
                     assert!(distance >= best - allowed, "{one} in {other}: {distance} but {best}");
                 }
@@ -115,14 +113,14 @@ fn nearest_points_are_proved() {
     assert!(apart > 1000 && within > 250, "{apart} {within}");
 }
 
-/// A point of contact found again where it was found is the same; all have at most the gap asked for, one of them the
-/// least.
+/// A point of contact found again at the same pose is the same point. All points have at most the gap asked for, and
+/// one of them has the least gap.
 #[test]
 fn points_of_contact_are_found_again() {
     let kinds = kinds();
     let mut numbers = Numbers(11);
     let mut most = 0;
-    // A triangle is one of a mesh, which is always the second and is seen from outside.
+    // A triangle belongs to a mesh, which is always the second and is seen from outside.
     for (one, a) in &kinds[..9] {
         for (other, b) in &kinds {
             for flat in [true, false] {
@@ -150,8 +148,8 @@ fn points_of_contact_are_found_again() {
                         assert!((again.points[0] - t.points[0]).length() < 1e-9, "{one} on {other}: {t:?} {again:?}");
                     });
                     most = most.max(count);
-                    // Of two polyhedra a corner that is less than what is asked for beside a face counts as over it,
-                    // and edges that cross so near to a corner are left to that.
+                    // For two polyhedra, a corner beside a face by less than `within` counts as over it, and crossings
+                    // of edges that near to a corner are left to the corner.
                     let off = if matches!(m.mark, Mark::Polyhedra(_)) { 2e-4 } else { 1e-8 };
                     assert!(count > 0 && (least - m.gap).abs() < off, "{one} on {other}: {least} for {m:?}");
                 }
@@ -161,8 +159,8 @@ fn points_of_contact_are_found_again() {
     assert!(most >= 4, "{most}");
 }
 
-/// Cylinders that stand on each other, a little apart or a little in each other, wherever their rims cross: all points
-/// of contact are along the axis, the crossings among them. One at a rim is as near to the side as to the disc.
+/// Cylinders that stand on each other, a little apart or slightly overlapping, wherever their rims cross. All points of
+/// contact are along the axis, including the crossings. A point at a rim is as near to the side as to the disc.
 #[test]
 fn discs_that_lie_on_each_other_meet_along_their_axis() {
     let (kinds, mut numbers) = (kinds(), Numbers(23));

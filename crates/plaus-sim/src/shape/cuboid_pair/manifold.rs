@@ -3,20 +3,20 @@
 use super::{CuboidPair, Edge, Meeting, PARALLEL};
 use glam::DVec3;
 
-/// Cosine of the angle to the nearest points' normal within which a point's own normal must lie. Default ½; others
-/// belong to sides that do not face each other.
+/// Cosine of the largest angle between a point's own normal and that of the nearest points. Default ½; points with a
+/// larger angle belong to sides that do not face each other.
 const FACING: f64 = 0.5;
 
-/// Sine of the slope against the plane of contact up to which an edge's crossings are looked at: the touching part of a
-/// steeper one is at its corner. Default ½.
+/// Sine of the slope against the plane of contact up to which an edge's crossings are examined: a steeper edge touches
+/// at its corner. Default ½.
 const STEEP: f64 = 0.5;
 
-/// Most edges of one cuboid that can be near the plane of contact.
+/// Maximum number of edges of one cuboid that can be near the plane of contact.
 const MOST_EDGES: usize = 12;
 
 impl CuboidPair {
-    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one
-    /// where the nearest points are that near.
+    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one if
+    /// the nearest points are that near.
     pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
         if nearest.gap > within {
             return;
@@ -41,8 +41,8 @@ impl CuboidPair {
         }
     }
 
-    /// Beyond which sides of the other cuboid a corner is, if it can be near. What is hardly beyond a side counts as
-    /// above the face next to it.
+    /// The sides of the other cuboid that a corner is beyond, if it can be near. A corner hardly beyond a side counts
+    /// as above the face next to it.
     fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: f64) -> Option<[i8; 3]> {
         let other = &self.cuboids[1 - of];
         let seen = self.corner_seen(of, corner);
@@ -61,8 +61,8 @@ impl CuboidPair {
             }
         }
         if sides == 0 {
-            // On the skin of the core or inside: of the sides not deeper than the nearest points are, that which faces
-            // the other cuboid most.
+            // On the skin of the core or inside: among the sides no deeper than the nearest points are, the one that
+            // faces the other cuboid most.
             let deepest = top.min(nearest.gap + self.roundings()) - within;
             let faces = |k: usize| {
                 let cosine = other.axes.col(k).dot(nearest.normal) * f64::from(side(k));
@@ -71,7 +71,7 @@ impl CuboidPair {
             let axis = (0..3).filter(|&k| beyond[k] >= deepest).max_by(|&k, &l| faces(k).total_cmp(&faces(l)))?;
             region[axis] = side(axis);
         }
-        // Two corners are found from both sides.
+        // Two corners that meet are found from both sides.
         (sides < 3 || of == 0).then_some(region)
     }
 
@@ -112,7 +112,7 @@ impl CuboidPair {
                     continue;
                 }
                 let (meeting, [s, t]) = self.at_edges(e, g, normal);
-                // Where an edge ends its corner is looked at.
+                // At the end of an edge, its corner is examined instead.
                 if s.abs() < a.core[i] - within && t.abs() < b.core[j] - within {
                     take(meeting);
                 }

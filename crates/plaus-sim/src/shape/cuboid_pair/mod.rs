@@ -1,15 +1,15 @@
 //! Two cuboids: how far apart they are, where they are nearest, and all the points at which they touch.
 //!
 //! A rounded cuboid is its core (a smaller, sharp cuboid) and everything within its rounding of the core, so only cores
-//! are looked at.
+//! are examined.
 //!
-//! Cores that are apart are best separated along a face's normal or the cross product of two edges, or else the nearest
-//! point of one of them is a corner. So the distance is exact after fifteen axes and the distances of sixteen corners
-//! from the other cuboid: no iteration, and no tolerance at which it ends. If cores overlap, the axis of least overlap
-//! gives the depth.
+//! Cores that are apart are best separated along a face's normal or along the cross product of two edges. If not, the
+//! nearest point of one of them is a corner. So the distance is exact after fifteen axes and the distances of sixteen
+//! corners from the other cuboid: there is no iteration, and no tolerance at which one would end. If cores overlap, the
+//! axis of least overlap gives the depth.
 //!
-//! The points of contact are those of the usual clipping of two support features: corners near a face of the other, and
-//! crossings of edges. Each is named by its [`Feature`], so that it can be followed to another pose
+//! The points of contact are those of the usual clipping of two support features: corners near a face of the other
+//! cuboid, and crossings of edges. Each is named by its [`Feature`], so that it can be followed to another pose
 //! ([`CuboidPair::again`]) with the exact geometry of that feature.
 //!
 //! Sources: axes: Gottschalk, Lin & Manocha, "OBBTree", SIGGRAPH 1996; corner regions: Ericson, *Real-Time Collision
@@ -22,7 +22,7 @@ mod tests;
 
 use glam::{DMat3, DVec3};
 
-/// A cuboid where it is.
+/// A cuboid in its place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Placed {
     /// Its axes in the world, as columns.
@@ -33,14 +33,14 @@ pub(crate) struct Placed {
     pub(crate) rounding: f64,
 }
 
-/// Two cuboids, with what the questions about them share.
+/// Two cuboids, with values that several queries share.
 #[derive(Debug)]
 pub(crate) struct CuboidPair {
     cuboids: [Placed; 2],
     /// From the second centre to the first.
     offset: DVec3,
-    /// From the other's centre to the own one, in own axes negated for the first: where the other's centre is seen from
-    /// each.
+    /// The other's centre relative to its own, in its own axes, negated for the first: where each sees the other's
+    /// centre.
     other: [DVec3; 2],
     /// Axes of the second in those of the first, as columns, and the transpose.
     across: [DMat3; 2],
@@ -56,8 +56,8 @@ pub(crate) struct Edge {
 /// The parts of two cuboids that meet at a point of contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Feature {
-    /// A corner of the cuboid `of` (0 or 1) and what is nearest to it on the other: `region` tells the sides beyond
-    /// which it is, along each axis. One side is a face, two are an edge, three a corner.
+    /// A corner of the cuboid `of` (0 or 1), and the nearest part of the other: `region` tells the sides that the
+    /// corner is beyond, along each axis. One side is a face, two are an edge, three a corner.
     Corner { of: u8, corner: u8, region: [i8; 3] },
     /// An edge of each.
     Edges(Edge, Edge),
@@ -75,8 +75,7 @@ pub(crate) struct Meeting<F = Feature> {
 }
 
 /// Sine of the angle between edges below which they count as parallel. Default 1e-7: the crossing of edges more
-/// parallel than that lies within 1e-7 of their length of where their corners are, and its normal would be exact to
-/// 1e-9 only.
+/// parallel than that lies within 1e-7 of their length of their corners, and its normal would be exact to 1e-9 only.
 const PARALLEL: f64 = 1e-7;
 
 /// The point of a core with these sides, in body axes.
@@ -150,7 +149,7 @@ impl CuboidPair {
         let (normal, distance) = if sides > 1 && length > 0.0 {
             (away / length, length)
         } else {
-            // A face; or inside the sides of an edge or corner: out through the nearest of them.
+            // A face, or inside the sides of an edge or corner: the way out is through the nearest side.
             (DVec3::AXES[top.1] * f64::from(region[top.1]), top.0)
         };
         // The foot on a face lies straight below the corner.
@@ -166,8 +165,8 @@ impl CuboidPair {
         }
     }
 
-    /// The square of the sine between axis `i` of the first and axis `j` of the second, without cancellation. The same
-    /// bits from both sides.
+    /// The square of the sine between axis `i` of the first and axis `j` of the second, without cancellation. Both
+    /// sides give the same bits.
     #[inline]
     fn sine_squared(&self, i: usize, j: usize) -> f64 {
         let part = |c: DVec3, i: usize| {
@@ -177,7 +176,7 @@ impl CuboidPair {
         0.5 * (part(self.across[0].col(j), i) + part(self.across[1].col(i), j))
     }
 
-    /// The meeting of two edges as lines, its normal on the side of `towards`; with it how far along each edge it lies
+    /// The meeting of two edges as lines, its normal on the side of `towards`; also how far along each edge it lies
     /// from the middle.
     fn at_edges(&self, a: Edge, b: Edge, towards: DVec3) -> (Meeting, [f64; 2]) {
         let [first, second] = &self.cuboids;
@@ -228,10 +227,10 @@ impl CuboidPair {
         }
     }
 
-    /// Rate of a feature's normal while the cuboids turn at these angular velocities; where edges are almost parallel
-    /// or corners meet, what leaves no feature's own rate out of account.
+    /// Rate of a feature's normal while the cuboids turn at these angular velocities. If edges are almost parallel,
+    /// only the first edge's rate counts; if corners meet, the rate is 0.
     pub(crate) fn turning(&self, feature: Feature, normal: DVec3, spins: [DVec3; 2]) -> DVec3 {
-        // A normal across an edge stays so.
+        // A normal across an edge stays across it.
         let kept_across = |e: DVec3, w: DVec3| -normal.dot(w.cross(e));
         match feature {
             Feature::Corner { of, region, .. } => {
@@ -260,11 +259,11 @@ impl CuboidPair {
     }
 }
 
-/// Sine below which the normal of two edges turns too fast to be followed. Default 0.1: it turns at up to the cuboids'
-/// angular speeds over this.
+/// Sine below which the normal of two edges turns too fast to be followed. Default 0.1: the normal turns at up to the
+/// cuboids' angular speeds over this.
 const NEARLY_PARALLEL: f64 = 0.1;
 
-/// Within ±`most`; what is not a number is the middle.
+/// Within ±`most`; NaN gives the middle.
 fn clamped(x: f64, most: f64) -> f64 {
     if x.is_nan() { 0.0 } else { x.clamp(-most, most) }
 }

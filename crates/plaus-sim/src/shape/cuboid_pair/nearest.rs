@@ -3,20 +3,20 @@
 use super::{CuboidPair, Edge, Meeting, PARALLEL, Placed};
 use glam::DVec3;
 
-/// How much farther apart an axis of two edges must keep cores than the faces do, over their size, to be taken:
-/// rounding decides nothing. Default 1e-12.
+/// By how much, over their size, an axis of two edges must keep cores farther apart than faces do in order to be
+/// chosen: so that rounding decides nothing. Default 1e-12.
 const SLACK: f64 = 1e-12;
 
-/// Distance over the size below which cores count as touching, so that the direction between their nearest points says
-/// nothing. Default 1e-11.
+/// Distance over the size below which cores count as touching, because the direction between their nearest points is
+/// then meaningless. Default 1e-11.
 const TOUCHING: f64 = 1e-11;
 
-/// Distance over the size by which nearest points may be farther apart than what separates the cores. Default 1e-10,
-/// above rounding.
+/// Distance over the size by which nearest points may be farther apart than the planes that separate the cores. Default
+/// 1e-10, above rounding.
 const TIE: f64 = 1e-10;
 
 impl CuboidPair {
-    /// The nearest points of two cuboids; of cores that overlap, those along the axis of least overlap.
+    /// The nearest points of two cuboids; for cores that overlap, the points along the axis of least overlap.
     pub(crate) fn nearest(&self) -> Meeting {
         let [a, b] = &self.cuboids;
         let size = a.core.element_sum() + b.core.element_sum();
@@ -40,8 +40,8 @@ impl CuboidPair {
         if meeting.gap + self.roundings() <= self.apart(meeting.normal) + TIE * size {
             return meeting;
         }
-        // Faces so parallel that edges cross without an axis of their own: the face's axis keeps cores as far apart as
-        // they are.
+        // Faces are so parallel that edges cross without an axis of their own: the face's axis keeps cores as far apart
+        // as they are.
         self.support_corner(of, axis)
     }
 
@@ -59,7 +59,7 @@ impl CuboidPair {
         let mut best = (f64::NEG_INFINITY, 0, 0);
         for of in 0..2 {
             let (own, other) = (&self.cuboids[of], &self.cuboids[1 - of]);
-            // Rows: the other's axes seen along each own axis.
+            // Rows: the other's axes as seen along each of its own axes.
             let c = &self.across[of];
             let across = c.x_axis.abs() * other.core.x + c.y_axis.abs() * other.core.y + c.z_axis.abs() * other.core.z;
             let apart = self.other[of].abs() - own.core - across;
@@ -90,7 +90,7 @@ impl CuboidPair {
                 let apart = (d[l] * c(k, j) - d[k] * c(l, j)).abs()
                     - (a.core[k] * c(l, j).abs() + a.core[l] * c(k, j).abs())
                     - (b.core[m] * c(i, n).abs() + b.core[n] * c(i, m).abs());
-                // Without the root where it cannot win.
+                // Where it cannot win, the root is not taken.
                 if apart > 0.0 && apart * apart <= most * most * sine && most > 0.0 {
                     continue;
                 }
@@ -130,7 +130,7 @@ impl CuboidPair {
         self.at_corner(1 - of, self.side(1 - of, -normal), region)
     }
 
-    /// The corner nearest to the other cuboid, of cores that are apart.
+    /// If cores are apart: the corner that is nearest to the other cuboid.
     fn nearest_corner(&self) -> (usize, u8, [i8; 3]) {
         let (mut least, mut best) = (f64::INFINITY, (0, 0, DVec3::ZERO));
         for of in 0..2 {

@@ -1,4 +1,4 @@
-//! Compares with an independent way to the distance: alternating projections.
+//! Compares with an independent method for the distance: alternating projections.
 
 use super::*;
 use glam::DQuat;
@@ -22,9 +22,9 @@ fn reach(c: &Placed, d: DVec3) -> f64 {
     (c.axes.transpose() * d).abs().dot(c.core)
 }
 
-/// Whether two cores have a point in common, by the vertices of what they share: where three of their twelve face
-/// planes meet within all the others. A vertex counts that is within `slack` of the faces; planes more parallel than a
-/// determinant of 1e-9 make none, as their vertices would be off by rounding over that.
+/// Whether two cores have a point in common, by the vertices of their intersection: points where three of their twelve
+/// face planes meet inside all the others. A vertex counts if it is within `slack` of the faces. Planes more parallel
+/// than a determinant of 1e-9 give no vertex, because its error would be rounding over that determinant.
 fn overlap(a: &Placed, b: &Placed, offset: DVec3, slack: f64) -> bool {
     let planes: Vec<(DVec3, f64)> = [(a, offset), (b, DVec3::ZERO)]
         .into_iter()
@@ -54,9 +54,9 @@ fn places() -> impl Strategy<Value = (Placed, Placed, DVec3)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
-    /// The least distance proves itself: two points of the cores are that far apart, so it is not less; and a plane's
-    /// width of that size fits between them, so it is not more. Lengths are up to 5, so rounding is 1e-15 an operation;
-    /// the bounds leave room for a few hundred.
+    /// The least distance proves itself. Two points of the cores are that far apart, so it is not larger; a slab of
+    /// that width fits between them, so it is not smaller. Lengths are up to 5, so rounding is 1e-15 per operation; the
+    /// bounds leave room for a few hundred.
     #[test]
     fn the_distance_is_the_least((a, b, offset) in places()) {
         let pair = CuboidPair::new(offset, a, b);
@@ -67,10 +67,10 @@ proptest! {
         let width = normal.dot(offset) - reach(&a, normal) - reach(&b, normal);
         prop_assert!((width - distance).abs() < 1e-12, "{width} for {distance}: {nearest:?}");
         if distance > 0.0 {
-            // The points lie on both skins, and apart along the normal.
+            // The points lie on both skins, and are separated along the normal.
             let (p, q) = (nearest.arms[0] + normal * a.rounding, nearest.arms[1]);
             prop_assert!((onto(&a, p) - p).length() < 1e-13 && (onto(&b, q) - q).length() < 1e-13);
-            // Where edges of a small angle cross is known to rounding over the square of its sine.
+            // Where edges cross at a small angle, the place is known to rounding over the square of its sine.
             let sine_squared = match nearest.feature {
                 Feature::Edges(e, f) => pair.sine_squared(usize::from(e.axis), usize::from(f.axis)),
                 Feature::Corner { .. } => 1.0,
@@ -81,7 +81,7 @@ proptest! {
         }
     }
 
-    /// Seen from the other cuboid everything is the other way round, to the last bit.
+    /// Seen from the other cuboid, everything is reversed, to the last bit.
     #[test]
     fn exchange_negates((a, b, offset) in places()) {
         let (one, two) = (CuboidPair::new(offset, a, b).nearest(), CuboidPair::new(-offset, b, a).nearest());
@@ -101,7 +101,7 @@ proptest! {
         }
     }
 
-    /// Every point of contact has the gap, and its feature the rate, that moving the cuboids a little shows.
+    /// Every point of contact has the gap, and its feature the rate, that result from moving the cuboids a little.
     #[test]
     fn rates_of_gaps_are_right(
         (a, b, offset) in places(),
@@ -132,9 +132,9 @@ proptest! {
     }
 }
 
-/// A die on another, turned by 45°: the octagon of their faces. Not turned, half over: the rectangle.
+/// A die on another, turned by 45°: the octagon of their faces. Not turned and moved by half an edge: the rectangle.
 #[test]
-fn faces_touch_at_the_corners_of_what_they_share() {
+fn faces_touch_at_the_corners_of_their_overlap() {
     let lower = cuboid([1.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0], 0.0);
     let count = |upper: Placed, offset: DVec3| {
         let pair = CuboidPair::new(offset, upper, lower);

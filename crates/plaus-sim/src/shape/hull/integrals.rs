@@ -27,7 +27,7 @@ fn both(a: DVec3, b: DVec3) -> DMat3 {
     outer(a, b) + outer(b, a)
 }
 
-/// The mean of `x xᵀ` over a simplex is this over `n (n + 1)`, n being the number of its corners.
+/// The mean of `x xᵀ` over a simplex with `n` corners is this over `n (n + 1)`.
 fn spread(corners: &[DVec3]) -> DMat3 {
     let sum = corners.iter().fold(DVec3::ZERO, |s, &c| s + c);
     corners.iter().fold(outer(sum, sum), |s, &c| s + outer(c, c))
@@ -40,7 +40,7 @@ impl Moments {
         self.second += second;
     }
 
-    /// Of a polyhedron whose origin is inside or near, grown by `r`.
+    /// For a polyhedron whose origin is inside or near, grown by `r`.
     pub(super) fn of(body: &Polyhedron, r: f64) -> Self {
         let mut sum = Self { volume: 0.0, first: DVec3::ZERO, second: DMat3::ZERO };
         let mut angles = vec![0.0; body.corners.len()];
@@ -78,7 +78,7 @@ impl Moments {
     /// Wedges and sectors.
     fn round(&mut self, body: &Polyhedron, r: f64, angles: &[f64]) {
         let (r2, r3) = (r * r, r * r * r);
-        // Per corner, of the directions u in its sector: −2 ∫ u, and −6 times the part of ∫ u uᵀ without trace.
+        // For each corner, over the directions u in its sector: −2 ∫ u, and −6 times the traceless part of ∫ u uᵀ.
         let mut directions = vec![(DVec3::ZERO, DMat3::ZERO); body.corners.len()];
         for e in &body.edges {
             let [p, q] = e.ends.map(|k| body.corner(k));

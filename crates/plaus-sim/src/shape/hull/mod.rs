@@ -20,19 +20,19 @@ pub(super) use integrals::outer;
 pub(super) use principal::principal;
 use std::collections::BTreeMap;
 
-/// Most corners of one face: all points at which a body stands on flat ground are kept (`MOST_TOUCHES` of a body), and
-/// some of a wall beside it.
+/// Maximum number of corners of one face: enough to keep all points at which a body stands on flat ground
+/// (`MOST_TOUCHES` of a body), and some of a wall beside it.
 const MOST_CORNERS_OF_A_FACE: usize = 12;
 
-/// Most points that a hull is made from: the search for its first face takes up to the cube of their number.
+/// Maximum number of points that a hull is made from: the time to find its first face grows with up to the cube of
+/// their number.
 const MOST_POINTS: usize = 1000;
 
 /// The convex hull of points, or all that is within a radius of it, about its centre of gravity and along its principal
 /// axes.
 ///
-/// The points may be given along any axes about any origin; [`centre`](Self::centre) and [`turn`](Self::turn) tell
-/// where the body is among them, so that what is drawn fits: a point `p` of the given ones is at `turn⁻¹ (p − centre)`
-/// of the body.
+/// The points may be given along any axes about any origin. [`centre`](Self::centre) and [`turn`](Self::turn) tell
+/// where the body is among them, so that a drawing fits: a given point `p` is at `turn⁻¹ (p − centre)` of the body.
 ///
 /// ```
 /// use plaus_sim::shape::{ConvexHull, Shape, Solid};
@@ -58,7 +58,7 @@ pub struct ConvexHull {
 
 impl ConvexHull {
     /// The hull of `points` in m, grown by `rounding` in m (0: sharp). Points inside the hull, on its faces or twice in
-    /// the same place do no harm; points within 1e-9 of the extent of a plane count as in it.
+    /// the same place do no harm. A point counts as in a plane if it is within 1e-9 of the points' extent.
     ///
     /// # Errors
     /// [`WorldError::BadPoint`] for a point that is not finite, [`WorldError::FewPoints`] for fewer than four distinct
@@ -110,13 +110,13 @@ impl ConvexHull {
         Ok(Self { core, rounding, volume: raw.volume, moments, centre, turn, indices: from })
     }
 
-    /// Corners (of the core where it is rounded) in m, in the body's axes about its centre of gravity.
+    /// Corners in m (of the core, for a rounded hull), in the body's axes about its centre of gravity.
     #[must_use]
     pub fn corners(&self) -> &[DVec3] {
         &self.core.corners
     }
 
-    /// Which of the given points each corner is.
+    /// For each corner, the index of the given point.
     #[must_use]
     pub fn indices(&self) -> &[usize] {
         &self.indices
@@ -138,13 +138,13 @@ impl ConvexHull {
         self.core.faces.get(face).map(|f| f.normal)
     }
 
-    /// How far beyond the hull of the points the body reaches, in m.
+    /// How far the body reaches beyond the hull of the points, in m.
     #[must_use]
     pub fn rounding(&self) -> f64 {
         self.rounding
     }
 
-    /// In m³, the rounding with it.
+    /// In m³, including the rounding.
     #[must_use]
     pub fn volume(&self) -> f64 {
         self.volume

@@ -3,13 +3,13 @@
 use super::wrap::{around, newell};
 use glam::DVec3;
 
-/// Most corners of a polyhedron: sets of them are the bits of a number.
+/// Maximum number of corners of a polyhedron: sets of them are the bits of a number.
 pub(crate) const MOST_CORNERS: usize = 64;
 
-/// Most edges: those of triangles all around, `3n − 6`.
+/// Maximum number of edges: that of a surface of triangles only, `3n − 6`.
 pub(crate) const MOST_EDGES: usize = 3 * MOST_CORNERS - 6;
 
-/// Most faces, `2n − 4`.
+/// Maximum number of faces, `2n − 4`.
 pub(crate) const MOST_FACES: usize = 2 * MOST_CORNERS - 4;
 
 /// A face: `normal · x ≤ offset` within the polyhedron.
@@ -43,7 +43,7 @@ pub(crate) struct Polyhedron {
     pub(crate) reach: f64,
 }
 
-/// What of a polyhedron is nearest to a point.
+/// The part of a polyhedron that is nearest to a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum On {
     Face(u8),
@@ -89,7 +89,7 @@ impl Polyhedron {
         let corner = |k: usize| {
             DVec3::from_array(std::array::from_fn(|axis| if k >> axis & 1 == 1 { half[axis] } else { -half[axis] }))
         };
-        // Each side anticlockwise: along the next axis first where the side is at the upper end.
+        // Each side runs anticlockwise: along the next axis first if the side is at the upper end.
         let side = |axis: usize, upper: usize| {
             let (i, j) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
             let base = upper << axis;
@@ -109,7 +109,7 @@ impl Polyhedron {
         self.corners.iter().map(|c| c.dot(direction)).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The corner farthest in a direction, and how far; the first of those equally far.
+    /// The corner farthest in a direction, and how far; the first one if several are equally far.
     #[inline]
     pub(crate) fn farthest(&self, direction: DVec3) -> (u8, f64) {
         let mut best = (0, f64::NEG_INFINITY);
@@ -146,14 +146,14 @@ impl Polyhedron {
         })
     }
 
-    /// Where the foot of a point on an edge's line is, from its first end, in m.
+    /// Where on an edge's line the foot of a point is, from its first end, in m.
     #[inline]
     pub(crate) fn along(&self, edge: u8, p: DVec3) -> f64 {
         let e = self.edge(edge);
         (p - self.corner(e.ends[0])).dot(e.along)
     }
 
-    /// What edge or corner is nearest to a point, and the square of the distance.
+    /// The edge or corner that is nearest to a point, and the square of the distance.
     pub(crate) fn nearest_edge(&self, p: DVec3) -> (On, f64) {
         let mut best = (On::Corner(0), f64::INFINITY);
         for (k, c) in self.corners.iter().enumerate() {
@@ -175,7 +175,7 @@ impl Polyhedron {
         best
     }
 
-    /// What is nearest to a point outside.
+    /// The part that is nearest to a point outside.
     pub(crate) fn nearest(&self, p: DVec3) -> On {
         for (k, f) in self.faces.iter().enumerate() {
             let above = f.normal.dot(p) - f.offset;
@@ -207,8 +207,8 @@ impl Polyhedron {
         }
     }
 
-    /// Points on edges and faces, no farther from each other than about `spacing`, without the corners; at most 16
-    /// intervals per edge.
+    /// Points on edges and faces, no farther apart than about `spacing`, without the corners; at most 16 intervals per
+    /// edge.
     pub(crate) fn between(&self, spacing: f64) -> Vec<DVec3> {
         let intervals = |length: f64| (length / spacing).ceil().clamp(1.0, 16.0) as usize;
         let mut points = Vec::new();

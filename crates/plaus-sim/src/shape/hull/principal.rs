@@ -1,21 +1,21 @@
 //! Principal moments and axes of a symmetric tensor, by Jacobi's rotations.
 //!
-//! Source: Golub & Van Loan, *Matrix Computations*, §8.5 (cyclic Jacobi). A fixed order of rotations and square roots
-//! only: the same bits everywhere.
+//! Source: Golub & Van Loan, *Matrix Computations*, §8.5 (cyclic Jacobi). It uses only a fixed order of rotations and
+//! square roots, so the bits are the same everywhere.
 
 use glam::{DMat3, DVec3};
 
-/// Part of the trace below which what is not on the diagonal counts as rounding. Default 1e-14.
+/// Fraction of the trace below which entries off the diagonal count as rounding. Default 1e-14.
 const ROUNDING: f64 = 1e-14;
 
-/// Difference of two moments, over the larger, below which they are equal: the free rotation of a top then has its
-/// closed form, and axes are not turned for rounding's sake. Default 1e-12.
+/// Difference of two moments, over the larger, below which they count as equal: the free rotation of a top then has its
+/// closed form, and rounding does not turn the axes. Default 1e-12.
 const EQUAL: f64 = 1e-12;
 
-/// Sweeps over the three entries; convergence is quadratic, five or six do.
+/// Sweeps over the three entries; convergence is quadratic, five or six suffice.
 const SWEEPS: usize = 20;
 
-/// Moments, and the axes as columns of a rotation. Axes that are principal already stay as they are.
+/// Moments, and the axes as columns of a rotation. Axes that are already principal stay as they are.
 pub(crate) fn principal(tensor: DMat3) -> (DVec3, DMat3) {
     let mut m: [[f64; 3]; 3] = tensor.to_cols_array_2d();
     let mut axes = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -49,7 +49,7 @@ pub(crate) fn principal(tensor: DMat3) -> (DVec3, DMat3) {
     (levelled(DVec3::new(m[0][0], m[1][1], m[2][2])), DMat3::from_cols(axes[0], axes[1], axes[2]))
 }
 
-/// Moments that are equal but for rounding become equal.
+/// Makes moments that are equal except for rounding exactly equal.
 fn levelled(i: DVec3) -> DVec3 {
     let near = |a: f64, b: f64| (a - b).abs() <= EQUAL * a.max(b);
     let (xy, yz, zx) = (near(i.x, i.y), near(i.y, i.z), near(i.z, i.x));

@@ -43,7 +43,7 @@ impl Solid {
             })
         };
         let turned = |p: DVec3| [p, DVec3::new(p.z, p.x, p.y), DVec3::new(p.y, p.z, p.x)];
-        // Those of the usual coordinates, and their edge.
+        // Corners in the usual coordinates, and their edge.
         let (mut corners, usual): (Vec<DVec3>, f64) = match self {
             Self::Tetrahedron => {
                 let all = signs(1.0, 1.0, 1.0).filter(|p| p.x * p.y * p.z > 0.0);
@@ -57,7 +57,7 @@ impl Solid {
             }
             Self::Icosahedron => (signs(0.0, 1.0, golden).flat_map(turned).collect(), 2.0),
         };
-        // A sign of zero is none.
+        // A zero with a sign is the same corner.
         let mut distinct: Vec<DVec3> = Vec::new();
         for p in corners.drain(..) {
             if !distinct.contains(&p) {

@@ -33,7 +33,7 @@ fn regular_solids_have_their_moments() {
         let mass = body.mass_properties(3.0);
         assert!(close(mass.mass, 3.0 * volume), "{solid:?}: {mass:?}");
         assert!(close(mass.inertia.x, moment * mass.mass), "{solid:?}: {mass:?}");
-        // Equal to the bit, and along the axes given: free rotation is uniform.
+        // Equal to the bit, and along the given axes: free rotation is uniform.
         assert!(mass.inertia.x == mass.inertia.y && mass.inertia.y == mass.inertia.z);
         assert_eq!(body.turn(), DQuat::IDENTITY);
         assert!(
@@ -56,9 +56,9 @@ fn a_cuboid_is_the_hull_of_its_corners() {
     }
 }
 
-/// Of any tetrahedron, about its middle: `V/20 Σ v vᵀ`.
+/// For any tetrahedron, about its middle: `V/20 Σ v vᵀ`.
 #[test]
-fn axes_are_principal_and_told() {
+fn axes_are_principal_and_reported() {
     let points = [[0.3, 0.1, -0.2], [1.4, 0.2, 0.1], [0.2, 0.9, 0.3], [0.5, 0.4, 2.0]].map(DVec3::from);
     let body = hull(&points, 0.0);
     let middle = (points[0] + points[1] + points[2] + points[3]) * 0.25;
@@ -76,8 +76,8 @@ fn axes_are_principal_and_told() {
     }
 }
 
-/// A lattice of cells whose middles are in the body: each cell on the skin is wrong by half of it at most, by chance,
-/// so 64³ of them are exact to well below 1e-3.
+/// A lattice of cells whose middles are in the body. Each cell on the skin is wrong by at most half of it, at random,
+/// so 64³ cells are exact to well below 1e-3.
 #[test]
 fn rounding_agrees_with_a_plain_sum() {
     let points =
@@ -112,7 +112,7 @@ fn rounding_agrees_with_a_plain_sum() {
 }
 
 #[test]
-fn what_is_inside_or_on_a_face_does_no_harm() {
+fn points_inside_or_on_a_face_do_no_harm() {
     let cube = Solid::Cube.corners(2.0);
     let mut points = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.3, 1.0, -0.2), DVec3::new(1.0, 1.0, 0.5)];
     points.extend(&cube);

@@ -1,5 +1,5 @@
-//! The faces of a convex hull, by gift wrapping: from each edge of a face found, the plane is turned about the edge
-//! until it meets the first other point.
+//! The faces of a convex hull, by gift wrapping: from each edge of a face already found, the plane is turned about the
+//! edge until it meets the first other point.
 //!
 //! Source: Chand & Kapur, "An algorithm for convex polytopes", J. ACM 17 (1970). Deviation: all points within [`FLAT`]
 //! of a face's plane belong to it, so that faces that are flat up to rounding stay whole; the result is checked to be a
@@ -9,14 +9,14 @@ use crate::error::WorldError;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
 
-/// Distance from a plane or from another point within which points count as on it, over the extent of all. Default
-/// 1e-9; far above rounding, far below what can be seen.
+/// Distance from a plane or from another point up to which points count as on it, over the extent of all points.
+/// Default 1e-9: far above rounding, far below what can be seen.
 pub(super) const FLAT: f64 = 1e-9;
 
-/// The points with what belongs to all of them.
+/// The points, with values that belong to all of them.
 struct Cloud<'p> {
     points: &'p [DVec3],
-    /// Those that stand for all that are in the same place.
+    /// One point for each distinct place.
     distinct: Vec<usize>,
     near: f64,
 }
@@ -68,7 +68,7 @@ pub(super) fn faces(points: &[DVec3]) -> Result<Vec<Vec<usize>>, WorldError> {
     }
     for face in &faces {
         let (normal, on) = (newell(points, face), points[face[0]]);
-        // Twice: the plane was found from a few of its points.
+        // Twice, because the plane was found from only a few of its points.
         if let Some(&point) = cloud.distinct.iter().find(|&&k| (points[k] - on).dot(normal) > 2.0 * near) {
             return Err(WorldError::UnclearHull { point });
         }
@@ -88,8 +88,8 @@ pub(super) fn newell(points: &[DVec3], face: &[usize]) -> DVec3 {
 }
 
 impl Cloud<'_> {
-    /// A face at the first of the points along x: of the planes through it that have all points on one side, that
-    /// through the largest triangle.
+    /// A face at the first of the points along x: among the planes through it that have all points on one side, the
+    /// plane through the largest triangle.
     fn seed(&self, extent: f64) -> Option<Vec<usize>> {
         let at = |k: usize| self.points[k];
         let order = |a: DVec3, b: DVec3| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z));
@@ -126,7 +126,7 @@ impl Cloud<'_> {
     fn wrap(&self, [a, b]: [usize; 2], normal: DVec3) -> Vec<usize> {
         let (from, along) = (self.points[a], (self.points[b] - self.points[a]).normalize());
         let out = along.cross(normal);
-        // Across the edge: outwards in the face's plane, and down from it.
+        // Across the edge: outwards in the face's plane, and down from that plane.
         let across = |k: usize| {
             let w = self.points[k] - from;
             DVec2::new(w.dot(out), (-w.dot(normal)).max(0.0))
@@ -140,7 +140,7 @@ impl Cloud<'_> {
                 first = k;
             }
         }
-        // Of those in that plane the farthest from the edge gives the best plane.
+        // Among the points in that plane, the farthest from the edge gives the most exact plane.
         let plane = normal_through(across(first));
         for k in others() {
             let is_in = (self.points[k] - from).dot(plane).abs() <= self.near;

@@ -5,19 +5,19 @@ use crate::shape::hull::{MOST_EDGES, MOST_FACES};
 use glam::DVec3;
 
 impl HullPair<'_> {
-    /// The directions of an edge of each, in the world.
+    /// The directions of one edge of each polyhedron, in the world.
     pub(super) fn along(&self, [i, j]: [u8; 2]) -> [DVec3; 2] {
         let [a, b] = &self.hulls;
         [a.axes * a.core.edge(i).along, b.axes * b.core.edge(j).along]
     }
 
-    /// The meeting of two edges as lines, its normal on the side of `towards`; with it by how much the points are
-    /// within the ends of their edges, in m.
+    /// The meeting of two edges as lines, its normal on the side of `towards`; also by how much the points are within
+    /// the ends of their edges, in m.
     pub(super) fn at_edges(&self, [i, j]: [u8; 2], towards: DVec3) -> (Meeting, f64) {
         let [a, b] = &self.hulls;
         let [e, g] = self.along([i, j]);
         let (first, second) = (a.core.edge(i), b.core.edge(j));
-        // From the middles: as exact at both ends.
+        // From the middles, so that both ends are equally exact.
         let p = a.axes * (a.core.corner(first.ends[0]) + first.along * (0.5 * first.length));
         let q = b.axes * (b.core.corner(second.ends[0]) + second.along * (0.5 * second.length));
         let between = self.offset + (p - q);
@@ -39,15 +39,15 @@ impl HullPair<'_> {
         (self.meeting(points, normal, normal.dot(between), feature), if within.is_nan() { -1.0 } else { within })
     }
 
-    /// The pair of edges whose common perpendicular keeps the cores farthest apart, if farther than `least`; with the
+    /// The pair of edges whose common perpendicular keeps the cores farthest apart, if farther than `least`; also that
     /// direction, towards the first.
     ///
-    /// Only pairs whose perpendicular is a normal of both surfaces count: on the sphere of normals the arcs between the
-    /// faces of the edges cross (Gregorius, "The separating axis test between convex polyhedra", GDC 2013).
+    /// Only pairs whose perpendicular is a normal of both surfaces count: on the sphere of normals, the arcs between
+    /// the faces of the edges must cross (Gregorius, "The separating axis test between convex polyhedra", GDC 2013).
     pub(super) fn best_edges(&self, least: f64) -> Option<(f64, [u8; 2], DVec3)> {
         let [a, b] = self.hulls.map(|h| h.core);
         let into = &self.across[0];
-        // The second's edges, their first corners and its faces in the first's axes.
+        // The second's edges, the first corners of these, and the second's faces, in the first's axes.
         let (mut along, mut from) = ([DVec3::ZERO; MOST_EDGES], [DVec3::ZERO; MOST_EDGES]);
         for (k, e) in b.edges.iter().enumerate() {
             along[k] = *into * e.along;
@@ -82,7 +82,8 @@ impl HullPair<'_> {
                 if sine < PARALLEL * PARALLEL {
                     continue;
                 }
-                // The normals at an edge of a triangle are half a circle, about the direction out of it in its plane.
+                // The normals at an edge of a triangle fill half a circle about the outward direction in the triangle's
+                // plane.
                 let outward = if flat[0] { e.along.cross(n) } else { n + m };
                 let out = if cross.dot(outward) < 0.0 { -cross } else { cross };
                 if is_flat {
@@ -92,7 +93,7 @@ impl HullPair<'_> {
                     }
                 }
                 let apart = (from[j] - start).dot(out);
-                // Without the root where it cannot win.
+                // Where it cannot win, the root is not taken.
                 if most > 0.0 && (apart <= 0.0 || apart * apart <= most * most * sine) {
                     continue;
                 }

@@ -5,17 +5,17 @@ use super::{HullPair, Meeting, PARALLEL};
 use crate::shape::hull::{MOST_EDGES, On};
 use glam::DVec3;
 
-/// Cosine of the angle to the nearest points' normal within which a point's own normal must lie. Default ½; others
-/// belong to sides that do not face each other.
+/// Cosine of the largest angle between a point's own normal and that of the nearest points. Default ½; points with a
+/// larger angle belong to sides that do not face each other.
 const FACING: f64 = 0.5;
 
-/// Sine of the slope against the plane of contact up to which an edge's crossings are looked at: the touching part of a
-/// steeper one is at its corner. Default ½.
+/// Sine of the slope against the plane of contact up to which an edge's crossings are examined: a steeper edge touches
+/// at its corner. Default ½.
 const STEEP: f64 = 0.5;
 
 impl HullPair<'_> {
-    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one
-    /// where the nearest points are that near.
+    /// Calls `each` for the points with a gap of at most `within`, given the nearest points. There is at least one if
+    /// the nearest points are that near.
     pub(crate) fn touching(&self, nearest: &Meeting, within: f64, mut each: impl FnMut(Meeting)) {
         if nearest.gap > within {
             return;
@@ -28,7 +28,7 @@ impl HullPair<'_> {
             }
         };
         for of in 0..2 {
-            // Up to which plane of the other a corner can be near it.
+            // The level up to which a corner can be near the other polyhedron.
             let [own, other] = [&self.hulls[of], &self.hulls[1 - of]];
             let out = if of == 0 { nearest.normal } else { -nearest.normal };
             let other_out = other.axes.transpose() * out;
@@ -51,8 +51,8 @@ impl HullPair<'_> {
         }
     }
 
-    /// What of the other polyhedron a corner is near, if it can be near. What is hardly beyond a face counts as above
-    /// the face next to it.
+    /// The part of the other polyhedron that a corner is near, if it can be near. A corner hardly beyond a face counts
+    /// as above the face next to it.
     fn region(&self, of: usize, corner: u8, nearest: &Meeting, within: f64) -> Option<On> {
         let other = self.hulls[1 - of].core;
         let seen = self.corner_seen(of, corner);
@@ -69,8 +69,8 @@ impl HullPair<'_> {
                 let mut sides = (0..other.faces.len()).filter(|&k| beyond(k) > within);
                 match (sides.next(), sides.next()) {
                     (None, _) => {
-                        // On the skin of the core or inside: of the faces not deeper than the nearest points are, that
-                        // which faces the other polyhedron most.
+                        // On the skin of the core or inside: among the faces no deeper than the nearest points are, the
+                        // one that faces the other polyhedron most.
                         let deepest = top.min(nearest.gap + self.roundings()) - within;
                         let out = self.hulls[1 - of].axes.transpose() * nearest.normal;
                         let out = if of == 0 { out } else { -out };
@@ -83,12 +83,12 @@ impl HullPair<'_> {
                 }
             }
         };
-        // Two corners are found from both sides.
+        // Two corners that meet are found from both sides.
         (of == 0 || !matches!(on, On::Corner(_))).then_some(on)
     }
 
-    /// Calls `take` for the crossings of edges near the plane of contact that are within the ends of both by more than
-    /// `margin`.
+    /// Calls `take` for the crossings of edges near the plane of contact that are inside the ends of both edges by more
+    /// than `margin`.
     pub(super) fn crossings(&self, normal: DVec3, within: f64, margin: f64, mut take: impl FnMut(Meeting)) {
         // Heights along the normal about the second centre.
         let base = self.offset.dot(normal);
@@ -119,7 +119,7 @@ impl HullPair<'_> {
                     continue;
                 }
                 let (meeting, inside) = self.at_edges([i, j], normal);
-                // Where an edge ends its corner is looked at.
+                // At the end of an edge, its corner is examined instead.
                 if inside > margin {
                     take(meeting);
                 }

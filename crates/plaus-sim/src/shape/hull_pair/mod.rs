@@ -14,23 +14,23 @@ use super::cuboid_pair;
 use super::hull::{On, Polyhedron};
 use glam::{DMat3, DVec3};
 
-/// A polyhedron where it is.
+/// A polyhedron in its place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Placed<'h> {
     /// Its axes in the world, as columns.
     pub(crate) axes: DMat3,
     pub(crate) core: &'h Polyhedron,
-    /// Radius of what is round it, in m.
+    /// Radius of the rounding around it, in m.
     pub(crate) rounding: f64,
 }
 
-/// Two polyhedra, with what the questions about them share.
+/// Two polyhedra, with values that several queries share.
 #[derive(Debug)]
 pub(crate) struct HullPair<'h> {
     hulls: [Placed<'h>; 2],
     /// From the second centre to the first.
     offset: DVec3,
-    /// Where the other's centre is seen from each, in own axes.
+    /// Where each sees the other's centre, in its own axes.
     other: [DVec3; 2],
     /// Axes of the second in those of the first, as columns, and the transpose.
     across: [DMat3; 2],
@@ -94,8 +94,8 @@ impl<'h> HullPair<'h> {
         Meeting { normal, arms, gap: distance - self.roundings(), feature }
     }
 
-    /// The meeting of a corner with a part of the other's surface, wherever they are now; with it whether the foot is
-    /// on that part.
+    /// The meeting of a corner with a part of the other's surface, wherever they are now; also whether the foot is on
+    /// that part.
     fn at_corner(&self, of: usize, corner: u8, on: On) -> (Meeting, bool) {
         let (own, other) = (&self.hulls[of], &self.hulls[1 - of]);
         let seen = self.corner_seen(of, corner);
@@ -105,7 +105,7 @@ impl<'h> HullPair<'h> {
         if let On::Corner(k) = on
             && distance > 0.0
         {
-            // The same bits from both sides: neither corner is more than the other.
+            // The same bits from both sides: neither corner takes precedence.
             let q = other.axes * other.core.corner(k);
             let points = if of == 0 { [p, q] } else { [q, p] };
             let between = self.offset + (points[0] - points[1]);
@@ -129,10 +129,10 @@ impl<'h> HullPair<'h> {
         }
     }
 
-    /// Rate of a feature's normal while the bodies turn at these angular velocities; where edges are almost parallel or
-    /// corners meet, what leaves no feature's own rate out of account.
+    /// Rate of a feature's normal while the bodies turn at these angular velocities. If edges are almost parallel, only
+    /// the first edge's rate counts; if corners meet, the rate is 0.
     pub(crate) fn turning(&self, feature: Feature, normal: DVec3, spins: [DVec3; 2]) -> DVec3 {
-        // A normal across an edge stays so.
+        // A normal across an edge stays across it.
         let kept_across = |e: DVec3, w: DVec3| -normal.dot(w.cross(e));
         match feature {
             Feature::Corner { of, on, .. } => {
@@ -178,7 +178,7 @@ impl<'h> HullPair<'h> {
     }
 }
 
-/// From a part of a core's surface to a point: the direction, how far, and whether the foot is on that part.
+/// From a part of a core's surface to a point: direction, distance, and whether the foot is on that part.
 pub(crate) fn foot(core: &Polyhedron, p: DVec3, on: On) -> (DVec3, f64, bool) {
     let above = |face: u8| core.face(face).normal.dot(p) - core.face(face).offset;
     let (away, is_on) = match on {
@@ -191,7 +191,7 @@ pub(crate) fn foot(core: &Polyhedron, p: DVec3, on: On) -> (DVec3, f64, bool) {
         }
         On::Corner(corner) => (p - core.corner(corner), true),
     };
-    // Of the faces that meet there, that which the point is farthest beyond.
+    // Among the faces that meet there, the one that the point is farthest beyond.
     let set = core.spanning(on);
     let mut top = (f64::NEG_INFINITY, DVec3::Z);
     for (k, face) in core.faces.iter().enumerate().filter(|(_, f)| f.set & set == set) {
@@ -207,7 +207,7 @@ pub(crate) fn foot(core: &Polyhedron, p: DVec3, on: On) -> (DVec3, f64, bool) {
     if length > 0.0 && top.0 > 0.0 {
         (away / length, length, is_on)
     } else {
-        // Inside all of them: out through the nearest.
+        // Inside all of them, the way out is through the nearest.
         (top.1, top.0, is_on)
     }
 }

@@ -1,9 +1,10 @@
 //! The distance of two polyhedra.
 //!
-//! Cores that are apart are best separated along a face's normal or the common perpendicular of two edges, or else the
-//! nearest point of one of them is a corner, over an edge or a corner of the other. So the distance is exact after all
-//! faces, all pairs of edges that can face each other and, if these do not decide, all corners against all edges: no
-//! iteration. If cores overlap, the axis of least overlap gives the depth, which is the shortest way out.
+//! Cores that are apart are best separated along a face's normal or along the common perpendicular of two edges. If
+//! not, the nearest point of one of them is a corner, over an edge or a corner of the other. So the distance is exact
+//! after all faces, all pairs of edges that can face each other and, if these do not decide, all corners against all
+//! edges: there is no iteration. If cores overlap, the axis of least overlap gives the depth, which is the shortest way
+//! out.
 //!
 //! Two points prove themselves to be nearest: the planes through them across the line between them, each touching its
 //! core, are just as far apart. So a guess from a nearby pose needs only this proof ([`HullPair::nearest`]).
@@ -12,21 +13,21 @@ use super::{Feature, HullPair, Meeting};
 use crate::shape::hull::On;
 use glam::DVec3;
 
-/// How much farther apart edges must keep cores than the faces do, over their size, to be taken: rounding decides
-/// nothing. Default 1e-12.
+/// By how much, over their size, edges must keep cores farther apart than faces do in order to be chosen: so that
+/// rounding decides nothing. Default 1e-12.
 const SLACK: f64 = 1e-12;
 
-/// Distance over the size below which cores count as touching, so that the direction between their nearest points says
-/// nothing. Default 1e-11.
+/// Distance over the size below which cores count as touching, because the direction between their nearest points is
+/// then meaningless. Default 1e-11.
 const TOUCHING: f64 = 1e-11;
 
-/// Distance over the size by which nearest points may be farther apart than what separates the cores. Default 1e-10,
-/// above rounding.
+/// Distance over the size by which nearest points may be farther apart than the planes that separate the cores. Default
+/// 1e-10, above rounding.
 const TIE: f64 = 1e-10;
 
 impl HullPair<'_> {
-    /// The nearest points of two polyhedra; of cores that overlap, those along the axis of least overlap. `guess` is
-    /// what was nearest at a pose nearby, with its normal.
+    /// The nearest points of two polyhedra; for cores that overlap, the points along the axis of least overlap. `guess`
+    /// is the feature that was nearest at a nearby pose, with its normal.
     pub(crate) fn nearest(&self, guess: Option<(Feature, DVec3)>) -> Meeting {
         guess.and_then(|(feature, normal)| self.proved(feature, normal)).unwrap_or_else(|| self.searched())
     }
@@ -74,23 +75,23 @@ impl HullPair<'_> {
             return meeting;
         }
         let Some((_, of, face)) = face else { return meeting };
-        // Faces so parallel that edges cross without a perpendicular of their own, or corners just beside them: the
-        // face's normal keeps cores as far apart as they are.
+        // Faces are so parallel that edges cross without a perpendicular of their own, or that corners are just beside
+        // them: the face's normal keeps cores as far apart as they are.
         let (meeting, _) = self.support_corner(of, face);
         self.crossing(&meeting, TIE * size).unwrap_or(meeting)
     }
 
-    /// The face that keeps the cores farthest apart: how far, of which polyhedron, and which.
+    /// The face that keeps the cores farthest apart: how far, of which polyhedron, and its index.
     fn best_face(&self) -> Option<(f64, usize, u8)> {
         let mut best: Option<(f64, usize, u8)> = None;
         for of in 0..2 {
             let other = self.hulls[1 - of].core;
-            // Directions of this one in the other's axes.
+            // Directions of this polyhedron in the other's axes.
             let into = &self.across[1 - of];
             for (k, face) in self.hulls[of].core.faces.iter().enumerate() {
                 let centre = face.normal.dot(self.other[of]) - face.offset;
                 if best.is_some_and(|b| centre <= b.0) {
-                    // The other reaches at least to its own centre of gravity.
+                    // The other polyhedron reaches at least to its own centre of gravity.
                     continue;
                 }
                 let apart = centre - other.support(*into * -face.normal);
@@ -102,8 +103,8 @@ impl HullPair<'_> {
         best
     }
 
-    /// The corner of the other polyhedron that is deepest below a face; of those equally deep one over the face, if
-    /// there is any, and whether it is.
+    /// The corner of the other polyhedron that is deepest below a face; if several are equally deep, one that is over
+    /// the face, if there is one. Also returns whether it is over the face.
     fn support_corner(&self, of: usize, face: u8) -> (Meeting, bool) {
         let (own, other) = (self.hulls[of].core, self.hulls[1 - of].core);
         let down = self.across[1 - of] * -own.face(face).normal;

@@ -1,4 +1,5 @@
-//! Distances prove themselves: points on both surfaces, along a direction that keeps the bodies just as far apart. Also
+//! Distances prove themselves: points on both surfaces, along a direction that keeps the bodies just as far apart. The
+//! tests also compare with cuboids, whose code is independent.
 //! compares with cuboids, whose code is independent.
 
 use super::*;
@@ -25,7 +26,7 @@ fn offset() -> impl Strategy<Value = DVec3> {
     prop::array::uniform3(-2.5..2.5_f64).prop_map(DVec3::from)
 }
 
-/// Whether a point, about the centre of a core, is on its skin or beside it by rounding only.
+/// Whether a point, about the centre of a core, is on its skin, except for rounding.
 fn is_on_skin(placed: &Placed, p: DVec3) -> bool {
     let p = placed.axes.transpose() * p;
     match placed.core.farthest_face(p) {
@@ -52,7 +53,8 @@ proptest! {
             prop_assert!(is_on_skin(&p, m.arms[0]) && is_on_skin(&q, m.arms[1]), "{m:?}");
             prop_assert!((offset + m.arms[0] - m.arms[1] - m.normal * m.gap).length() < 1e-12, "{m:?}");
         } else {
-            // The least of the ways out: moved by it the bodies just touch, and no direction of many parts them sooner.
+            // The shortest way out: moved along it, the bodies just touch, and none of many directions parts them
+            // sooner.
             let out = HullPair::new(offset - m.normal * m.gap, p, q);
             prop_assert!(out.nearest(None).gap.abs() < 1e-10, "{m:?}: {:?}", out.nearest(None));
             for k in 0..200 {
@@ -62,12 +64,12 @@ proptest! {
                 prop_assert!(pair.apart(direction) <= m.gap + 1e-12, "{m:?}: {direction}");
             }
         }
-        // Seen from the other everything is the other way round.
+        // Seen from the other polyhedron, everything is reversed.
         let back = HullPair::new(-offset, q, p).nearest(None);
         prop_assert!((back.gap - m.gap).abs() < 1e-12, "{m:?} {back:?}");
     }
 
-    /// What was nearest at a pose nearby makes no difference.
+    /// The features that were nearest at a nearby pose make no difference.
     #[test]
     fn guesses_do_not_matter(
         a in cores(),
@@ -108,7 +110,7 @@ proptest! {
         let pair = HullPair::new(offset, placed[0], placed[1]);
         let (m, n) = (pair.nearest(None), boxes.nearest());
         prop_assert!((m.gap - n.gap).abs() < 1e-12, "{m:?} {n:?}");
-        // Brought to where they all but touch they have the same points of contact.
+        // Moved to where they almost touch, they have the same points of contact.
         let near = offset - m.normal * (m.gap - 1e-6);
         let boxes = CuboidPair::new(
             near,
@@ -126,7 +128,7 @@ proptest! {
         prop_assert!(same && !first.is_empty(), "{first:?} {second:?}");
     }
 
-    /// Every point of contact has the gap and the rate that moving the bodies a little shows.
+    /// Every point of contact has the gap and the rate that result from moving the bodies a little.
     #[test]
     fn rates_of_gaps_are_right(
         a in cores(),
@@ -163,10 +165,10 @@ fn points(pair: &HullPair, within: f64) -> Vec<Meeting> {
     points
 }
 
-/// A cube on another, turned by 45°: the octagon of their faces. A pentagon on the square: corners over it, and
-/// crossings of its sides.
+/// A cube on another, turned by 45°: the octagon of their faces. A pentagon on the square: corners over the square, and
+/// crossings of the sides.
 #[test]
-fn faces_touch_at_the_corners_of_what_they_share() {
+fn faces_touch_at_the_corners_of_their_overlap() {
     let cube = solid(Solid::Cube);
     let place = |core, axes| Placed { axes, core, rounding: 0.0 };
     let lower = place(&cube, DMat3::IDENTITY);
@@ -185,14 +187,14 @@ fn faces_touch_at_the_corners_of_what_they_share() {
     let level = DMat3::from_rotation_z(-plaus_dist::math::atan2(out.y, out.x)) * down;
     let height = face.offset + 0.5 + 1e-6;
     let hangs = points(&HullPair::new(DVec3::new(0.0, 0.0, height), place(&dodecahedron, level), lower), 1e-5);
-    // Circumradius 0.85 of a pentagon with edge 1: the corner at +x is over the edge, so are those at ±144° hardly not;
-    // the square's corners are outside or inside.
+    // Circumradius 0.85 of a pentagon with edge 1: the corner at +x is beyond the edge, those at ±144° hardly; the
+    // square's corners are outside or inside.
     let inside = |m: &&Meeting| m.arms[1].x.abs() < 0.5 + 1e-9 && m.arms[1].y.abs() < 0.5 + 1e-9;
     assert!(hangs.iter().all(|m| inside(&m) && (m.gap - 1e-6).abs() < 1e-12), "{hangs:?}");
     assert!((5..=9).contains(&hangs.len()), "{}", hangs.len());
 }
 
-/// A ball over a face, an edge and a corner of a cube; and with its middle in it.
+/// A ball over a face, an edge and a corner of a cube, and a ball with its middle inside the cube.
 #[test]
 fn balls_are_points_with_a_rounding() {
     let (cube, point) = (solid(Solid::Cube), Polyhedron::point());

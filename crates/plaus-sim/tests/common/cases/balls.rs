@@ -18,7 +18,7 @@ fn ball(mass: f64) -> BodySpec {
     BodySpec { shape: Shape::Ball(R), mass: MassProperties::ball(R, 1.0).with_mass(mass), material: M }
 }
 
-/// The deepest overlap at any event, and half way between events of a body.
+/// The deepest overlap at any event, and half way between a body's events.
 struct Overlap<'w> {
     world: &'w Rigid,
     last: Vec<Turning>,
@@ -41,7 +41,7 @@ impl Observer<Rigid> for Overlap<'_> {
     }
 }
 
-/// A heavy ball comes down from a tenth of a radius on a light one on the floor, straight above it.
+/// A heavy ball comes down from a height of a tenth of a radius onto a light one on the floor, straight above it.
 pub fn heavy(s: &Setting<'_>, ratio: f64) -> Found {
     let bodies = vec![ball(0.01), ball(0.01 * ratio)];
     let world = Rigid::new(on_floor(bodies, Law::new(0.3, 0.5), s.preset)).expect("a sound world");
@@ -53,7 +53,7 @@ pub fn heavy(s: &Setting<'_>, ratio: f64) -> Found {
         went.state.bodies().iter().enumerate().map(|(k, b)| world.at(k, b, went.state.time())).collect();
     let left = deepest(&world, &ends) / R;
     let is_called_rest = went.outcome == Outcome::AllAtRest;
-    // At rest nothing may overlap by more than the gap that a preset tells apart.
+    // At rest nothing may overlap by more than the gap that a preset resolves.
     let honest = !is_called_rest || left <= 10.0 * s.accuracy().gap;
     let holds = honest && !went.cut && (deep < 0.01 || ratio > 1e6);
     Found::new(
@@ -81,7 +81,7 @@ impl Observer<Rigid> for Count {
 }
 
 /// Galperin's billiard: a heavy ball drives a light one against a wall; both lie on a floor, under gravity, e = 1. With
-/// a ratio of masses of 100^N there are as many impacts as π has in its first N + 1 digits (Galperin 2003).
+/// a ratio of masses of 100^N, the number of impacts shows the first N + 1 digits of π (Galperin 2003).
 pub fn galperin(s: &Setting<'_>, n: i32) -> Found {
     let ratio = plaus_dist::math::powi(100.0, n);
     let bodies = vec![ball(0.01), ball(0.01 * ratio)];
@@ -100,10 +100,10 @@ pub fn galperin(s: &Setting<'_>, n: i32) -> Found {
     Found::new(holds, far, format!("{all} impacts, heavy ball leaves at {end:.6}, {}", went.told()))
 }
 
-/// Five touching balls on a floor with e = 1, two more come in: as many leave.
+/// Five touching balls on a floor with e = 1. Two of them come in, and as many leave.
 pub fn cradle(s: &Setting<'_>) -> Found {
     let world = Rigid::new(on_floor(vec![ball(0.03); 5], Law::new(0.0, 1.0), s.preset)).expect("a sound world");
-    // Two come in together, three wait, all touching their neighbours.
+    // Two come in together and three wait, each touching its neighbours.
     let start = |k: usize| {
         let away = if k < 2 { -R } else { 0.0 };
         let v = if k < 2 { 1.0 } else { 0.0 };
@@ -114,7 +114,7 @@ pub fn cradle(s: &Setting<'_>) -> Found {
     let t = went.state.time();
     let v: Vec<f64> = (0..5).map(|k| world.at(k, &went.state.bodies()[k], t).path.v.x).collect();
     let off = v.iter().zip([0.0, 0.0, 0.0, 1.0, 1.0]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    // Places, and so directions of impact, are known to the gap.
+    // Positions, and so the directions of impacts, are known to the gap.
     let holds = off < 10.0 * s.accuracy().gap && !went.cut;
     let text = format!("({:.3}, {:.3}, {:.3}, {:.3}, {:.3}), {}", v[0], v[1], v[2], v[3], v[4], went.told());
     Found::new(holds, if went.cut { f64::NAN } else { off }, text)

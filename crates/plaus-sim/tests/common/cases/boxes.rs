@@ -10,10 +10,10 @@ use plaus_sim::shape::{MassProperties, Shape};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Law, Outcome};
 
-/// A box that rolls on 5 × 5 balls, gravity tilted by 0.05: nothing slides.
+/// A box that rolls on 5 × 5 balls, with gravity tilted by 0.05: nothing slides.
 ///
-/// With box M and balls of N m in all, from Lagrange's equation for V of the box and V/2 of the balls:
-/// a = g_x (M + N m/2)/(M + 7 N m/20), which is 1.2 g_x for N m = 2.5 M; the balls have half of it.
+/// For a box of mass M and balls of total mass N m, Lagrange's equation with the velocity V of the box and V/2 of the
+/// balls gives a = g_x (M + N m/2)/(M + 7 N m/20). This is 1.2 g_x for N m = 2.5 M; the balls have half of it.
 pub fn on_balls(s: &Setting<'_>) -> Found {
     let (r, mass) = (0.02, 0.1);
     let ball = BodySpec { mass: MassProperties::ball(r, 1.0).with_mass(mass), shape: Shape::Ball(r), material: M };
@@ -45,7 +45,7 @@ pub fn on_balls(s: &Setting<'_>) -> Found {
     Found::new(holds, off, format!("box {lid:.4}, balls {low:.4} to {high:.4} g_x, {}", went.told()))
 }
 
-/// Whether cubes that stand upon each other come to rest where they stand.
+/// Whether cubes that stand on each other come to rest where they stand.
 fn stands(s: &Setting<'_>, places: &[DVec3], edge: f64) -> Found {
     let bodies = vec![cuboid(DVec3::splat(edge)); places.len()];
     let starts: Vec<Start> = places.iter().map(|p| Start::at_rest(*p * edge)).collect();
@@ -60,7 +60,7 @@ fn stands(s: &Setting<'_>, places: &[DVec3], edge: f64) -> Found {
     Found::new(holds, off, format!("shift {shift:.1e}, overlap {deep:.1e} edges at {t:.3} s, {}", went.told()))
 }
 
-/// The deepest overlap of any two bodies, or of one with the floor.
+/// The deepest overlap of any two bodies, or of a body with the floor.
 pub fn deepest(world: &Rigid, at: &[Turning]) -> f64 {
     let mut deepest = 0.0_f64;
     for (k, a) in at.iter().enumerate() {
@@ -112,7 +112,8 @@ pub const DOMINO: DVec3 = DVec3::new(0.0075, 0.024, 0.048);
 /// Without restitution, so that the order of impacts matters least.
 pub const DOMINO_LAW: Law = Law::new(0.2, 0.0);
 
-/// Twenty dominoes with this gap over the height; the first tips about its lower front edge, its upper one at √(g h).
+/// Twenty dominoes whose gap is this fraction of the height. The first tips about its lower front edge; its upper edge
+/// moves at √(g h).
 pub fn domino_starts(gap: f64) -> Vec<Start> {
     let pitch = DOMINO.x + gap * DOMINO.z;
     let mut starts: Vec<Start> =
@@ -123,13 +124,13 @@ pub fn domino_starts(gap: f64) -> Vec<Start> {
     starts
 }
 
-/// Speed of the wave between the 8th and the 18th, over √(g h).
+/// Speed of the wave between the 8th and the 18th domino, over √(g h).
 pub fn wave_speed(times: &[Option<f64>], gap: f64) -> Option<f64> {
     let (from, to) = ((*times.get(8)?)?, (*times.get(18)?)?);
     Some(10.0 * (DOMINO.x + gap * DOMINO.z) / (to - from) / (G * DOMINO.z).sqrt())
 }
 
-/// A wave of dominoes; `truth` is its speed in small steps (the example `truths`).
+/// A wave of dominoes; `truth` is its speed found in small steps (the example `truths`).
 pub fn dominoes(s: &Setting<'_>, gap: f64, truth: f64) -> Found {
     let world = Rigid::new(on_floor(vec![cuboid(DOMINO); 20], DOMINO_LAW, s.preset)).expect("a sound world");
     let mut wave = Wave::default();

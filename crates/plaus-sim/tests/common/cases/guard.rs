@@ -5,25 +5,25 @@ use plaus_sim::trace::Observer;
 use plaus_sim::{Outcome, Scratch, State};
 use std::time::{Duration, Instant};
 
-/// What a run may take.
+/// The limits of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Guard {
     pub seconds: f64,
     pub events: u64,
 }
 
-/// A run that is over.
+/// A finished run.
 pub struct Went {
     pub state: State<Turning>,
     pub outcome: Outcome,
-    /// On the wall, in s.
+    /// Wall-clock time, in s.
     pub wall: f64,
     /// Whether it was cut off.
     pub cut: bool,
 }
 
 impl Went {
-    /// What to add to a report: where it was cut off, and what it took.
+    /// The text to add to a report: where the run was cut off, and what it took.
     pub fn told(&self) -> String {
         let cut = if self.cut || self.outcome == Outcome::OutOfEvents {
             format!(", CUT at {:.3} s", self.state.time())

@@ -1,6 +1,6 @@
-//! Contact that is known to be hard, each case with what must come of it: closed forms, conservation, symmetry.
+//! Contact that is known to be hard. Each case states what must come of it: closed forms, conservation, symmetry.
 //!
-//! The example `contact_cases` prints them for every preset. A case that takes too long is cut off and says so.
+//! The example `contact_cases` prints the cases for every preset. A case that takes too long is cut off and says so.
 #![allow(dead_code, unreachable_pub)]
 
 mod balls;
@@ -20,9 +20,9 @@ use plaus_sim::{Accuracy, Preset};
 pub struct Setting<'t> {
     pub preset: Preset,
     pub guard: Guard,
-    /// Throws where a case has many.
+    /// Number of throws, in a case with many.
     pub throws: u64,
-    /// Tosses of a real cube, where there are any.
+    /// Tosses of a real cube, if there are any.
     pub tosses: &'t [Toss],
 }
 
@@ -32,14 +32,14 @@ impl Setting<'_> {
     }
 }
 
-/// What came of a case.
+/// The result of a case.
 #[derive(Debug, Clone)]
 pub struct Found {
     /// In words and numbers.
     pub text: String,
     /// Whether it is as expected.
     pub holds: bool,
-    /// How far it is from what is expected, as the case measures it; NaN where the run was cut off.
+    /// How far it is from the expected result, as the case measures it; NaN if the run was cut off.
     pub off: f64,
 }
 
@@ -53,7 +53,7 @@ impl Found {
 pub struct Case {
     pub name: &'static str,
     pub expected: &'static str,
-    /// What is measured of it: see [`Found::off`].
+    /// What is measured: see [`Found::off`].
     pub measure: &'static str,
     pub run: fn(&Setting<'_>) -> Found,
 }

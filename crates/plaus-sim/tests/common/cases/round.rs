@@ -10,22 +10,22 @@ use plaus_sim::rigid::{BodySpec, Rigid, Start};
 use plaus_sim::shape::{MassProperties, Profile, Revolution, Shape};
 use std::sync::Arc;
 
-/// A round body that rolls on its rim: the ring of its foot.
+/// A round body that rolls on its rim, the ring of its foot.
 #[derive(Debug, Clone)]
 pub struct Disk {
     pub body: BodySpec,
     ring: plaus_sim::shape::Ring,
 }
 
-/// A steady motion: the axis goes round the vertical.
+/// A steady motion: the axis precesses about the vertical.
 #[derive(Debug, Clone, Copy)]
 pub struct Steady {
     pub start: Start,
-    /// Of the axis about the vertical, in rad/s.
+    /// Rate at which the axis turns about the vertical, in rad/s.
     pub precession: f64,
-    /// Of the foot over the floor, in rad.
+    /// Angle between the foot and the floor, in rad.
     pub tilt: f64,
-    /// Radius of the circle in which the centre goes, in m.
+    /// Radius of the centre's circle, in m.
     pub circle: f64,
 }
 
@@ -52,16 +52,16 @@ impl Disk {
         [self.ring.circle + self.ring.radius * sin, self.ring.radius * cos - self.ring.height]
     }
 
-    /// The precession with which the centre of gravity stands still (Euler's disk): the axis of rotation goes through
-    /// it and the point of contact, and `dL/dt = Ω × L` is the torque of the weight:
-    /// `Ω² sin α (I A cos α − K H sin α) = m g A (A cos α − H sin α)`; thin: `Ω² sin α = 4 g/R`.
+    /// The precession at which the centre of gravity stands still (Euler's disk). The axis of rotation goes through it
+    /// and the point of contact, and `dL/dt = Ω × L` is the torque of the weight:
+    /// `Ω² sin α (I A cos α − K H sin α) = m g A (A cos α − H sin α)`; for a thin disk `Ω² sin α = 4 g/R`.
     pub fn precession_at_rest(&self, tilt: f64) -> f64 {
         let ([a, h], (sin, cos)) = (self.arms(tilt), math::sin_cos(tilt));
         let (m, i) = (self.body.mass.mass, self.body.mass.inertia);
         (m * G * a * (a * cos - h * sin) / (sin * (i.x * a * cos - i.z * h * sin))).sqrt()
     }
 
-    /// The steady motion with a tilt and a precession, rolling without slip. About the centre of gravity, along the
+    /// The steady motion with this tilt and precession, rolling without slip. About the centre of gravity, along the
     /// level axis of the foot: `Ω (I ω₁ cos α + K ω₃ sin α) = −m g (A cos α − H sin α) + m Ω V (A sin α + H cos α)`,
     /// with `ω₁ = −Ω sin α` and the speed `V = −(ω₁ H + ω₃ A)` of the centre.
     pub fn steady(&self, tilt: f64, precession: f64) -> Steady {
@@ -81,7 +81,8 @@ impl Disk {
     }
 }
 
-/// Follows a steady motion for a second: when it has left it, and how far round and how tilted it is in the end.
+/// Follows a steady motion for a second: when the body leaves it, how far round it has gone, and how tilted it is at
+/// the end.
 fn follow(s: &Setting<'_>, disk: &Disk, steady: &Steady, until: f64) -> Found {
     let world = Rigid::new(on_floor(vec![disk.body.clone()], Law::new(0.9, 0.5), s.preset)).expect("a sound world");
     let went = go(&world, &[steady.start], until, s.guard, &mut ());
@@ -89,7 +90,7 @@ fn follow(s: &Setting<'_>, disk: &Disk, steady: &Steady, until: f64) -> Found {
     let body = world.at(0, &went.state.bodies()[0], t);
     let axis = body.turn * DVec3::Z;
     let tilt = math::acos(axis.z.clamp(-1.0, 1.0));
-    // Angles about the vertical, the exact one and the found one: their difference within half a turn.
+    // Exact and found angle about the vertical: their difference is within half a turn.
     let found = math::atan2(axis.y, axis.x);
     let off = found - steady.precession * t;
     let off = off - (off / std::f64::consts::TAU).round() * std::f64::consts::TAU;
@@ -104,7 +105,8 @@ fn follow(s: &Setting<'_>, disk: &Disk, steady: &Steady, until: f64) -> Found {
         1e3 * (circle - 2.0 * steady.circle).max(0.0),
         went.told()
     );
-    // Neutral stability lets errors of the start and of the gap grow with the angle turned: about the gap × that.
+    // Because stability is neutral, errors of the start and of the gap grow with the angle turned: to about the gap
+    // times that angle.
     let holds = !went.cut && (tilt - steady.tilt).abs() < 0.01 * steady.tilt && lost.abs() < 1e-3 && off.abs() < 0.1;
     let far = if went.cut { f64::NAN } else { off.abs() + (tilt / steady.tilt - 1.0).abs() };
     Found::new(holds, far, text)

@@ -1,4 +1,4 @@
-//! Throws of cuboids: what they keep, how they are braked, where they end.
+//! Throws of cuboids: what they conserve, how friction slows them, where they end.
 
 use super::guard::go;
 use super::{Found, Setting};
@@ -17,7 +17,7 @@ pub fn cuboid(edges: DVec3) -> BodySpec {
     BodySpec::solid(Shape::Cuboid(Cuboid::new(edges, 0.0).expect("a cuboid")), 1000.0, M)
 }
 
-/// Throws of a cuboid of 6, 8 and 10 cm: fast enough to slide on for seconds.
+/// Throws of a cuboid of 6, 8 and 10 cm: fast enough to slide for seconds.
 fn cuboids(throws: u64) -> impl Iterator<Item = (BodySpec, Start)> {
     (0..throws).map(|k| {
         let mut dice = Dice::new(3, k);
@@ -77,13 +77,14 @@ pub struct Toss {
 /// Half the width of the cube of the published tosses, in m (ContactNets: Pfrommer, Halm and Posa, CoRL 2020).
 const HALF: f64 = 0.0524;
 
-/// Reads tosses as they are in `xtask/figures/data/tosses/tosses.csv`: after the line of names a line each with number
-/// and seconds, then position, quaternion (real part first), velocity and angular velocity in the body's axes of the
-/// first frame, and position and quaternion of the last. Velocities are means over the 1/148 s before the frame: in
-/// free fall that at the frame is faster downwards by half of what gravity adds in that time.
+/// Reads tosses in the format of `xtask/figures/data/tosses/tosses.csv`. After the line of names there is one line per
+/// toss: its number and its seconds; position, quaternion (real part first), velocity, and angular velocity in the
+/// body's axes, at the first frame; position and quaternion at the last frame. Velocities are means over the 1/148 s
+/// before the frame: in free fall, the velocity at the frame is larger downwards by half of what gravity adds in that
+/// time.
 ///
 /// # Errors
-/// What line cannot be read.
+/// The line that cannot be read.
 pub fn read_tosses(text: &str) -> Result<Vec<Toss>, String> {
     text.lines()
         .skip(1)
@@ -115,12 +116,12 @@ pub fn toss_body() -> BodySpec {
     body
 }
 
-/// Its world, with the friction and the restitution that they state.
+/// Its world, with the friction and the restitution that the authors state.
 pub fn toss_world(s: &Setting<'_>) -> RigidWorld {
     on_floor(vec![toss_body()], Law::new(0.18, 0.125), s.preset)
 }
 
-/// Random tosses like the published ones, where those are not at hand.
+/// Random tosses like the published ones, for when those are not available.
 pub fn random_tosses(count: u64) -> Vec<Start> {
     (0..count)
         .map(|k| {
@@ -132,7 +133,7 @@ pub fn random_tosses(count: u64) -> Vec<Start> {
         .collect()
 }
 
-/// How far tossed cubes travel, in widths, and how far from the real ones they end.
+/// How far tossed cubes travel, in widths, and how far from the real cubes they end.
 pub fn travel(s: &Setting<'_>) -> Found {
     let world = Rigid::new(toss_world(s)).expect("a sound world");
     let real: Vec<&Toss> = s.tosses.iter().filter(|t| start_is_free(&world, &t.start)).collect();
@@ -163,7 +164,8 @@ pub fn travel(s: &Setting<'_>) -> Found {
     };
     let mean = sum / n;
     let text = format!("{n} {kind}: {mean:.3} widths{against}, {cut} cut, {:.2} ms each", 1e3 * wall.as_secs_f64() / n);
-    // The means of 570 tosses whose ends are off by 0.28 each are known to 0.28/√570 = 0.012: three times that.
+    // The mean of 570 tosses whose ends are each off by 0.28 is known to 0.28/√570 = 0.012: three times that is
+    // allowed.
     let far = if cut == 0 { (mean / expected - 1.0).abs() } else { f64::NAN };
     Found::new(cut == 0 && (real.is_empty() || (mean - expected).abs() < 0.036), far, text)
 }
@@ -172,7 +174,7 @@ fn start_is_free(world: &Rigid, start: &Start) -> bool {
     world.state(&[*start]).is_ok()
 }
 
-/// A cube dropped exactly flat from two edges.
+/// A cube dropped exactly flat, from a height of two edges.
 pub fn flat(s: &Setting<'_>, e: f64) -> Found {
     let edge = 0.1;
     let world = Rigid::new(on_floor(vec![cuboid(DVec3::splat(edge))], Law::new(0.3, e), s.preset)).expect("sound");
@@ -181,14 +183,15 @@ pub fn flat(s: &Setting<'_>, e: f64) -> Found {
     let aside = body.path.x.with_z(0.0).length() / edge;
     let ahead = body.turn * DVec3::X;
     let yaw = math::atan2(ahead.y, ahead.x).to_degrees();
-    // Places are known to the gap at which bodies touch.
+    // Positions are known to the gap at which bodies touch.
     let enough = 10.0 * s.accuracy().gap;
     let holds = aside <= enough && yaw.to_radians().abs() <= enough && went.outcome == Outcome::AllAtRest;
     let off = if went.cut { f64::NAN } else { aside + yaw.to_radians().abs() };
     Found::new(holds, off, format!("{aside:.1e} edges aside, turned by {yaw:.1e}°, {}", went.told()))
 }
 
-/// A cuboid on a slope a little steeper than friction holds, from rest, 10 s: gravity is tilted over a level floor.
+/// A cuboid on a slope a little steeper than friction can hold, from rest, for 10 s: gravity is tilted over a level
+/// floor.
 pub fn slope(s: &Setting<'_>) -> Found {
     let friction: f64 = 0.3;
     let angle = math::atan2(friction, 1.0) + 1e-6;
@@ -201,12 +204,13 @@ pub fn slope(s: &Setting<'_>) -> Found {
     let body = world.at(0, &went.state.bodies()[0], went.state.time());
     let moved = body.path.x.x;
     let text = format!("{:.3} mm, exact {:.3} mm, {}", 1e3 * moved, 1e3 * exact, went.told());
-    // A preset may hold what is out of balance by less than it tells apart, but never run ahead.
+    // A preset may hold a body that is out of balance by less than it resolves, but the body must never run ahead.
     let off = if went.cut { f64::NAN } else { (moved / exact - 1.0).abs() };
     Found::new(!went.cut && moved <= 1.01 * exact && moved >= -1e-9, off, text)
 }
 
-/// A flat cuboid that slides to rest, askew to its edges: it is braked by µ g all the way, and does not turn.
+/// A flat cuboid that slides to rest in a direction askew to its edges: friction slows it by µ g all the way, and it
+/// does not turn.
 pub fn slides(s: &Setting<'_>) -> Found {
     let (friction, v) = (0.3, DVec3::new(1.0, 0.3, 0.0));
     let world = on_floor(vec![cuboid(DVec3::new(0.1, 0.08, 0.02))], Law::new(friction, 0.2), s.preset);
@@ -224,8 +228,8 @@ pub fn slides(s: &Setting<'_>) -> Found {
     Found::new(holds, if went.cut { f64::NAN } else { far }, text)
 }
 
-/// Two cubes thrown at each other, mirror images of each other: they stay so, whatever else happens to them. Rounding
-/// differs between the two, and impacts let it grow: the median says what the law does.
+/// Two cubes thrown at each other as mirror images: they stay mirror images, whatever else happens to them. Rounding
+/// differs between the two, and impacts let it grow, so the median says what the law does.
 pub fn mirrored(s: &Setting<'_>) -> Found {
     let edge = 0.05;
     let (mut offs, mut met, mut cut) = (Vec::new(), 0, false);
@@ -245,14 +249,14 @@ pub fn mirrored(s: &Setting<'_>) -> Found {
         cut |= went.cut;
     }
     offs.sort_by(f64::total_cmp);
-    // Ten impacts or so, each of which lets rounding grow tenfold.
+    // About ten impacts, each of which lets rounding grow tenfold.
     let (median, worst) = (offs[offs.len() / 2], offs[offs.len() - 1]);
     let text =
         format!("{median:.1e} from the mirror image after 0.3 s, at worst {worst:.1e}; {met} of {} met", s.throws);
     Found::new(median < 1e-6 && !cut, if cut { f64::NAN } else { median }, text)
 }
 
-/// The mirror image at the plane x = 0; angular velocities are pseudovectors.
+/// The mirror image in the plane x = 0; angular velocities are pseudovectors.
 fn mirror(start: &Start) -> Start {
     let flip = DVec3::new(-1.0, 1.0, 1.0);
     let q = start.orientation;

@@ -1,4 +1,4 @@
-//! Many random worlds, each under a law's check, and each again as a wrong twin.
+//! Many random worlds, each under the check of a law, and each again as a wrong twin.
 
 use super::checks::{Finding, Free, coulomb, coulomb_of_impacts, energy, energy_bound, momentum};
 use super::record::{Record, record};
@@ -23,7 +23,7 @@ pub enum Case {
     Meeting,
     /// Two bodies in space: energy.
     MeetingEnergy,
-    /// Two bodies, one above the other, on a level floor without friction that rub against each other.
+    /// Two bodies, one above the other, that rub against each other on a level floor without friction.
     Riding,
 }
 
@@ -56,32 +56,32 @@ impl Case {
 const RESTITUTIONS: [f64; 6] = [0.0, 0.125, 0.5, 0.8, 0.95, 1.0];
 const FRICTIONS: [f64; 5] = [0.02, 0.18, 0.35, 0.6, 1.2];
 
-/// How long a throw is looked at, in s, and for how many events at most; of two bodies.
+/// How long a throw is followed, in s, and for how many events at most; the same for two bodies.
 const UNTIL: f64 = 3.0;
 const MOST_EVENTS: u64 = 4000;
 const MOST_OF_TWO: u64 = 1000;
 
-/// Friction of the world that a check is told is less: by this factor.
+/// The check is told a friction that is too small by this factor.
 const TOO_ROUGH: f64 = 1.05;
 
-/// What came of one random world.
+/// The result for one random world.
 #[derive(Debug, Clone, Copy)]
 pub struct Verdict {
     pub finding: Finding,
-    /// Whether the check refuses the wrong twin; none where the run has nothing that could be wrong.
+    /// Whether the check refuses the wrong twin; none if the run has nothing that could be wrong.
     pub twin: Option<bool>,
     pub events: u64,
 }
 
-/// From this world on the bodies are of convex pieces: cylinders, cones, capsules, compounds.
+/// From this world on, the bodies are made of convex pieces: cylinders, cones, capsules, compounds.
 pub const OF_PIECES: u64 = 1 << 32;
 
-/// The bodies of the throw-th world of a case.
+/// The bodies of world number `throw` of a case.
 pub fn kinds(case: Case, throw: u64) -> [Kind; 2] {
     let k = throw as usize;
     if throw >= OF_PIECES {
         let (k, own) = ((throw - OF_PIECES) as usize, Kind::OF_PIECES);
-        // Every second meets a body of another kind.
+        // Every second body meets a body of another kind.
         let other = if k % 2 == 0 { own[k / 2 % 5] } else { Kind::MEET[k / 2 % 5] };
         return [own[k % 5], other];
     }
@@ -91,7 +91,7 @@ pub fn kinds(case: Case, throw: u64) -> [Kind; 2] {
     }
 }
 
-/// Runs the throw-th world of a case and checks it.
+/// Runs world number `throw` of a case and checks it.
 pub fn examine(case: Case, throw: u64, preset: Preset) -> Verdict {
     let mut dice = Dice::new(5, throw);
     let (e, mu) = (dice.of(&RESTITUTIONS), dice.of(&FRICTIONS));
@@ -110,7 +110,7 @@ pub fn examine(case: Case, throw: u64, preset: Preset) -> Verdict {
         }
         Case::Impacts => {
             let (r, rough) = (run(mu), run(mu * TOO_ROUGH));
-            // Only what slides through its impact, and turns its slip little, has all of the friction.
+            // Only a body that slides through its impact, and whose slip turns little, has all of the friction.
             let twin = slides(&rough, mu * TOO_ROUGH).then(|| coulomb_of_impacts(&rough, mu).is_breach());
             Verdict { finding: coulomb_of_impacts(&r, mu), twin, events: r.events }
         }
@@ -148,7 +148,7 @@ fn single(kind: Kind, throw: u64, law: Law, preset: Preset) -> Record {
     record(world, &starts, UNTIL, MOST_EVENTS)
 }
 
-/// Whether some impact has all the friction it may have.
+/// Whether some impact has all the friction that it may have.
 fn slides(record: &Record, friction: f64) -> bool {
     record.impacts.iter().any(|i| {
         let normal = i.impulse.dot(i.normal);
@@ -156,20 +156,20 @@ fn slides(record: &Record, friction: f64) -> bool {
     })
 }
 
-/// Whether a body still moves, after an impact, with a speed that counts beside √(g·size).
+/// Whether a body still moves after an impact, at a speed that is not small compared with √(g·size).
 fn is_quick(record: &Record, body: usize) -> bool {
     let f = &record.facts[body];
     record.moments[body].iter().any(|m| m.impacts > 0 && m.v.with_z(0.0).length_squared() > 0.5 * f.size * 9.81)
 }
 
-/// One body over the other, both over ice: between the bodies there is friction, on the floor none.
+/// One body over another, both over ice: there is friction between the bodies, but none on the floor.
 fn riding(throw: u64, preset: Preset, law: Law) -> Record {
     use plaus_sim::{Laws, Material};
     let mut dice = Dice::new(13, throw);
     let mut bodies: Vec<_> = kinds(Case::Riding, throw).iter().map(|k| k.body(&mut dice)).collect();
     let mut starts = [dice.throw(&bodies[0]), dice.throw(&bodies[1])];
     starts[1].position.z = starts[0].position.z + bodies[0].shape.reach() + 1.1 * bodies[1].shape.reach();
-    // The upper one comes down on the lower one.
+    // The upper body comes down on the lower one.
     starts[1].velocity = starts[0].velocity - glam::DVec3::Z * 0.5;
     let ice = Material(1);
     bodies.iter_mut().for_each(|b| b.material = Material(0));
@@ -183,20 +183,20 @@ fn riding(throw: u64, preset: Preset, law: Law) -> Record {
     record(world, &starts, UNTIL, MOST_OF_TWO)
 }
 
-/// What came of many.
+/// The results of many worlds.
 #[derive(Debug, Clone, Default)]
 pub struct Tally {
     pub worlds: u64,
     pub events: u64,
-    /// Worlds in which the law was broken, with what was found.
+    /// Worlds in which the law was broken, with the findings.
     pub broken: Vec<(u64, Kind, f64, f64)>,
-    /// Worst breach, in units of the bound and in the law's own unit.
+    /// The worst breach, in units of the bound and in the law's own unit.
     pub worst: [f64; 2],
     /// Wrong twins, and how many of them the check refused.
     pub twins: [u64; 2],
 }
 
-/// Examines the worlds of a case from `from` on.
+/// Examines the worlds of a case in this range.
 pub fn tally(case: Case, preset: Preset, throws: std::ops::Range<u64>) -> Tally {
     let mut tally = Tally::default();
     for throw in throws {

@@ -12,7 +12,7 @@ const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 pub struct Finding {
     /// In units of the bound.
     pub worst: f64,
-    /// The same in the law's own unit: m/s, or parts of what there was.
+    /// The same in the law's own unit: m/s, or a fraction of the quantity.
     pub size: f64,
     /// When, in s.
     pub time: f64,
@@ -24,7 +24,7 @@ impl Finding {
     const NONE: Self = Self { worst: 0.0, size: 0.0, time: 0.0, body: 0 };
 
     fn add(&mut self, worst: f64, size: f64, time: f64, body: usize) {
-        // What is not a number is a breach.
+        // NaN is a breach.
         if worst > self.worst || worst.is_nan() {
             *self = Self { worst: if worst.is_nan() { f64::INFINITY } else { worst }, size, time, body };
         }
@@ -41,10 +41,10 @@ impl Finding {
     }
 }
 
-/// In which directions nothing outside the bodies pushes them.
+/// The directions in which nothing outside the bodies pushes them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Free {
-    /// Nothing but the bodies: all of momentum and angular momentum stays.
+    /// Nothing but the bodies: all of the momentum and angular momentum is kept.
     Space,
     /// A level floor without friction: horizontal momentum, and angular momentum about the vertical.
     Level,
@@ -60,10 +60,10 @@ impl Free {
     }
 }
 
-/// Whether all bodies together keep their momentum (first finding, in parts of Σ m v) and angular momentum about the
-/// origin (second) along the free directions.
+/// Whether all bodies together keep their momentum (first finding, as a fraction of Σ m v) and their angular momentum
+/// about the origin (second) along the free directions.
 ///
-/// Bound: the roundings of all events so far, of the largest momentum there was.
+/// Bound: the roundings of all events so far, relative to the largest momentum so far.
 pub fn momentum(record: &Record, free: Free) -> [Finding; 2] {
     let mut found = [Finding::NONE; 2];
     let (fastest, n) = (record.fastest(), record.facts.len());
@@ -105,8 +105,8 @@ fn total(facts: &[Facts], now: &[Option<Moment>], free: Free) -> [DVec3; 2] {
 /// Coulomb's bound for each body that touches nothing but one level floor with friction µ: from event to event
 /// `|Δv_h| ≤ µ (g Δt + Δv_z)`, whatever the impulses were and wherever they acted.
 ///
-/// Bound: the roundings of an event; and the speed below which a preset calls a supported body at rest, at the event at
-/// which it does.
+/// Bound: the roundings of an event. At the event at which a preset calls a supported body at rest, also the speed
+/// below which it does so.
 pub fn coulomb(record: &Record, friction: f64) -> Finding {
     let mut found = Finding::NONE;
     let (g, fastest) = (record.gravity.length(), record.fastest());
@@ -153,15 +153,15 @@ pub fn energy_bound(record: &Record) -> f64 {
     rise(record) * unit + ROUNDINGS * events as f64 * energy_scale(record)
 }
 
-/// What energy may rise by, over Σ m g size: by lifting every body by the touching gap once, and by the error of a step
-/// of lasting contact, of second order. A twentieth of the step's square is ten times the least that was seen, and
-/// twice the most.
+/// How far energy may rise, over Σ m g size: by lifting every body by the touching gap once, and by the error of a step
+/// of lasting contact, which is of second order. A twentieth of the step's square is ten times the smallest error that
+/// was seen, and twice the largest.
 fn rise(record: &Record) -> f64 {
     let accuracy = &record.accuracy;
     2.0 * accuracy.gap + accuracy.step * accuracy.step / 20.0
 }
 
-/// Whether the energy of all bodies ever rises above the least that there was before. `size` is in units of Σ m g size.
+/// Whether the energy of all bodies ever rises above its lowest earlier value. `size` is in units of Σ m g size.
 ///
 /// Bound: roundings, and [`rise`].
 pub fn energy(record: &Record) -> Finding {
@@ -181,7 +181,7 @@ pub fn energy(record: &Record) -> Finding {
     found
 }
 
-/// The energy of all bodies after all that happened at one time, and one of the bodies that it happened to.
+/// The energy of all bodies after everything that happened at one time, and one of the bodies concerned.
 pub fn energies(record: &Record) -> Vec<(f64, usize, f64)> {
     let mut each = vec![None; record.facts.len()];
     let mut sums = Vec::new();

@@ -1,4 +1,4 @@
-//! What a run did, event by event, in terms of mechanics only.
+//! The events of a run, in terms of mechanics only.
 
 use glam::{DMat3, DQuat, DVec3};
 use plaus_sim::mechanics::Impact;
@@ -6,14 +6,14 @@ use plaus_sim::rigid::{BodySpec, Phase, Rigid, RigidWorld, Start, Turning};
 use plaus_sim::trace::Observer;
 use plaus_sim::{Accuracy, Outcome, Preset, Scratch, State};
 
-/// What does not change of a body.
+/// The constant properties of a body.
 #[derive(Debug, Clone, Copy)]
 pub struct Facts {
     /// In kg.
     pub mass: f64,
     /// About the body's axes, in kg m².
     pub inertia: DVec3,
-    /// The length that tolerances are measured in, in m.
+    /// The unit of length for tolerances, in m.
     pub size: f64,
     /// Radius of the sphere around it, in m.
     pub reach: f64,
@@ -26,7 +26,7 @@ impl Facts {
     }
 }
 
-/// A body at one of its events, after it.
+/// A body just after one of its events.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment {
     pub time: f64,
@@ -36,7 +36,7 @@ pub struct Moment {
     pub w: DVec3,
     pub turn: DQuat,
     pub phase: Phase,
-    /// Impacts of the whole record before this event.
+    /// Number of impacts in the whole record before this event.
     pub impacts: usize,
 }
 
@@ -62,7 +62,7 @@ pub struct Record {
     pub facts: Vec<Facts>,
     pub gravity: DVec3,
     pub accuracy: Accuracy,
-    /// Per body, its events in order; the last is the end of the run.
+    /// For each body, its events in order; the last is the end of the run.
     pub moments: Vec<Vec<Moment>>,
     pub impacts: Vec<Impact>,
     pub outcome: Outcome,
@@ -101,7 +101,8 @@ impl<'w> Recorder<'w> {
     }
 
     fn moment(&self, index: usize, body: &Turning) -> Moment {
-        // A motion's own fields may hold the velocity of a drift; brought to its own clock it has the body's.
+        // A motion's own fields may hold the velocity of a drift; advanced to its own clock, it has the body's
+        // velocity.
         let at = self.world.at(index, body, body.path.t);
         let (time, x, v, w) = (at.path.t, at.path.x, at.path.v, at.spin);
         Moment { time, x, v, w, turn: at.turn, phase: body.phase, impacts: self.impacts.len() }
@@ -123,8 +124,8 @@ impl Observer<Rigid> for Recorder<'_> {
     }
 }
 
-/// Runs a world and writes down what happened. A run of more than `most` events is cut off there: what is recorded up
-/// to it must be lawful too.
+/// Runs a world and writes down its events. A run is cut off after `most` events: its record up to then must be lawful
+/// too.
 pub fn record(world: RigidWorld, starts: &[Start], until: f64, most: u64) -> Record {
     let facts = world.bodies.iter().map(Facts::new).collect();
     let (gravity, accuracy) = (world.gravity, world.accuracy);
@@ -143,7 +144,7 @@ pub fn record(world: RigidWorld, starts: &[Start], until: f64, most: u64) -> Rec
     Record { facts, gravity, accuracy, moments, impacts, outcome, events }
 }
 
-/// The preset of this name.
+/// The preset with this name.
 pub fn preset(name: &str) -> Option<Preset> {
     Preset::ALL.into_iter().find(|p| p.name() == name)
 }

@@ -1,10 +1,11 @@
-//! Records made wrong the way a simulator goes wrong.
+//! Records made wrong in ways in which a simulator can go wrong.
 
 use super::checks::energies;
 use super::record::{Facts, Moment, Record};
 use glam::DVec3;
 
-/// From the first event after `impacts` impacts on that still moves, changes all that follows. Whether there was one.
+/// Changes all events of a body from the first one after `impacts` impacts at which it still moves. Returns whether
+/// there is one.
 fn from_then_on(record: &mut Record, body: usize, impacts: usize, change: impl Fn(&Facts, &mut Moment)) -> bool {
     let Record { facts, moments, .. } = record;
     let (facts, moments) = (&facts[body], &mut moments[body]);
@@ -15,7 +16,7 @@ fn from_then_on(record: &mut Record, body: usize, impacts: usize, change: impl F
     true
 }
 
-/// Velocities scaled after an impact, as a guard of energy does it.
+/// Velocities scaled after an impact, as by a guard of energy.
 pub fn scaled(record: &Record, body: usize, factor: f64) -> Option<Record> {
     let mut twin = record.clone();
     let done = from_then_on(&mut twin, body, 1, |_, m| {
@@ -25,8 +26,8 @@ pub fn scaled(record: &Record, body: usize, factor: f64) -> Option<Record> {
     done.then_some(twin)
 }
 
-/// From the event on at which it shows most, the velocities of a body are larger by a part: energy out of nothing. None
-/// where at every event more is lost than that gives, or than twice `bound` (in J).
+/// From the event at which it shows most, the velocities of a body are larger by the fraction `part`: energy out of
+/// nothing. `None` if at no event this energy exceeds the energy lost so far by more than twice `bound` (in J).
 pub fn quickened(record: &Record, body: usize, part: f64, bound: f64) -> Option<Record> {
     let facts = &record.facts[body];
     let sums = energies(record);
@@ -45,8 +46,8 @@ pub fn quickened(record: &Record, body: usize, part: f64, bound: f64) -> Option<
     (most > 2.0 * bound).then_some(twin)
 }
 
-/// What an interrupted step of lasting contact takes where it is charged with the whole of its half kick of friction:
-/// ½ µ g h along the friction that there is. None where the body never slides with all of its friction.
+/// The error of an interrupted step of lasting contact that is charged with the whole of its half kick of friction: ½ µ
+/// g h along the friction. `None` if the body never slides with all of its friction.
 pub fn braked(record: &Record, friction: f64) -> Option<Record> {
     let g = record.gravity.length();
     let moments = &record.moments[0];

@@ -1,4 +1,4 @@
-//! Random bodies and throws: every shape, each number from a stream of its own seed.
+//! Random bodies and throws: every shape, each number from a stream with its own seed.
 
 use glam::{DQuat, DVec3};
 use plaus_dist::{Purpose, Seed, Stream, math, open_unit};
@@ -33,13 +33,13 @@ impl Kind {
     pub const ALL: [Self; 8] =
         [Self::Ball, Self::Cube, Self::Cuboid, Self::Rounded, Self::Pin, Self::D4, Self::D20, Self::Rock];
 
-    /// Those of convex pieces.
+    /// The kinds that are made of convex pieces.
     pub const OF_PIECES: [Self; 5] = [Self::Cylinder, Self::Cone, Self::Capsule, Self::Hammer, Self::Weighted];
 
-    /// Those that meet each other as what they are.
+    /// The kinds that meet each other with their exact shapes.
     pub const MEET: [Self; 5] = [Self::Ball, Self::Cube, Self::Cuboid, Self::D4, Self::Rock];
 
-    /// A body of this kind, a few centimetres large, its proportions random where it has any.
+    /// A body of this kind, a few centimetres large, with random proportions if it has any.
     pub fn body(self, dice: &mut Dice) -> BodySpec {
         let edge = dice.between(0.01, 0.1);
         let sides = DVec3::new(dice.between(0.4, 1.0), dice.between(0.4, 1.0), dice.between(0.4, 1.0)) * edge;
@@ -65,7 +65,7 @@ impl Kind {
     }
 }
 
-/// A cylinder for a head, a box for a handle.
+/// A cylinder as the head, a box as the handle.
 fn hammer(sides: DVec3) -> Compound {
     let head = Frustum::cylinder(0.3 * sides.x, sides.y).expect("a head");
     let handle = Cuboid::new(DVec3::new(1.5 * sides.z, 0.2 * sides.x, 0.2 * sides.x), 0.0).expect("a handle");
@@ -92,7 +92,7 @@ impl Dice {
         low + (high - low) * open_unit(&mut self.0)
     }
 
-    /// Every order of magnitude alike.
+    /// Every order of magnitude is equally likely.
     pub fn of_any_size(&mut self, low: f64, high: f64) -> f64 {
         low * math::exp(math::ln(high / low) * open_unit(&mut self.0))
     }
@@ -106,7 +106,7 @@ impl Dice {
         DVec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0))
     }
 
-    /// Any orientation, all alike: rejection from the ball of quaternions.
+    /// All orientations are equally likely: rejection from the ball of quaternions.
     pub fn turn(&mut self) -> DQuat {
         loop {
             let q = DQuat::from_vec4(self.in_cube().extend(self.between(-1.0, 1.0)));
@@ -116,7 +116,7 @@ impl Dice {
         }
     }
 
-    /// A throw of a body from up to three times its size over the floor, with speeds from slow to fast on the scale
+    /// A throw of a body from up to three times its size over the floor, with speeds from slow to fast on the scale of
     /// √(g·reach).
     pub fn throw(&mut self, body: &BodySpec) -> Start {
         let reach = body.shape.reach();

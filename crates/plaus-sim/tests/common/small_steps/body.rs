@@ -3,11 +3,11 @@
 use super::impact::{friction_of, impulse};
 use glam::{DMat2, DMat3, DQuat, DVec3};
 
-/// What of a body can touch a floor: of each its lowest point. That of a ring, and of a ball, is not the same point of
-/// the body at all times; the velocity there is that of the body all the same, and its height changes as that has it.
+/// The parts of a body that can touch a floor, each at its lowest point. On a ring or a ball this is not always the
+/// same point of the body. But the velocity there is that of the body, and the height changes accordingly.
 #[derive(Debug, Clone, Copy)]
 pub enum Knob {
-    /// Centre about the centre of gravity, in the body's axes, and radius; 0 for a sharp corner.
+    /// Centre relative to the centre of gravity, in the body's axes, and radius; 0 for a sharp corner.
     Ball(DVec3, f64),
     /// About the body's z axis: height over the centre of gravity, radius of the circle, radius of the section.
     Ring(f64, f64, f64),
@@ -20,7 +20,7 @@ impl Knob {
             Self::Ball(centre, radius) => *r * centre - DVec3::Z * radius,
             Self::Ring(height, circle, radius) => {
                 let axis = r.z_axis;
-                // Across the axis and down; any of them where the axis is upright.
+                // Across the axis and downwards; any such direction if the axis is upright.
                 let down = (axis * axis.z - DVec3::Z).normalize_or(r.x_axis);
                 axis * height + down * circle - DVec3::Z * radius
             }
@@ -35,7 +35,7 @@ impl Knob {
     }
 }
 
-/// What does not change.
+/// The constant properties.
 #[derive(Debug, Clone)]
 pub struct Solid {
     pub mass: f64,
@@ -62,7 +62,7 @@ pub struct State {
 pub struct Run<'s> {
     solid: &'s Solid,
     pub state: State,
-    /// Impulses at the corners in the last step: where the next begins.
+    /// Impulses at the corners in the last step: the initial guess for the next one.
     loads: Vec<DVec3>,
     closed: Vec<bool>,
     /// Rebound speed below which a corner stays, in m/s.
@@ -75,11 +75,11 @@ pub struct Run<'s> {
 /// Rebound speed below which a corner stays, over √(g·size): thirty times less than at the simulator's finest preset.
 const SETTLE: f64 = 1e-5;
 
-/// Sweeps of a step at most, and the change of impulse over the weight's at which they end.
+/// Maximum number of sweeps of a step, and the change of impulse over the weight's at which they end.
 const SWEEPS: usize = 400;
 const CHANGE: f64 = 1e-11;
 
-/// Speed over √(g·size) below which a body whose corners carry it is left where it is: what sweeps leave.
+/// Speed over √(g·size) below which a body that its corners carry is left where it is: the error of the sweeps.
 const STILL: f64 = 1e-9;
 
 impl<'s> Run<'s> {
@@ -126,7 +126,7 @@ impl<'s> Run<'s> {
         self.closed.iter().filter(|c| **c).count() > 2 && speed < limit
     }
 
-    /// One step, cut short where a corner comes down.
+    /// One step, cut short if a corner comes down.
     fn step(&mut self, dt: f64) {
         let before = (self.state, self.loads.clone(), self.closed.clone());
         let again = |run: &mut Self, dt: f64| {
@@ -148,7 +148,7 @@ impl<'s> Run<'s> {
         self.collide();
     }
 
-    /// Whether a corner that was not on the floor is below it, on its way down.
+    /// Whether a corner that was not on the floor is now below it and moving down.
     fn opening(&self) -> bool {
         let r = DMat3::from_quat(self.state.turn);
         let inverse = self.inverse_inertia(self.state.turn);
@@ -210,7 +210,7 @@ impl<'s> Run<'s> {
         (turn + (a + b * 2.0 + c * 2.0 + d) * (dt / 6.0)).normalize()
     }
 
-    /// Corners that carry stay at height 0: the steps' error of position is taken out, momentum stays as it is.
+    /// Corners that carry stay at height 0: the steps' error of position is removed, and momentum is unchanged.
     fn keep_on_the_floor(&mut self, points: &[(usize, DVec3, DMat3)]) {
         let solid = self.solid;
         for _ in 0..20 {
@@ -230,7 +230,7 @@ impl<'s> Run<'s> {
             }
         }
         for (k, ..) in points {
-            // What has left, left: it may come down again.
+            // A corner that has left may come down again.
             let arm = solid.knobs[*k].arm(&DMat3::from_quat(self.state.turn));
             if self.state.x.z + arm.z > self.touch && self.loads[*k].z == 0.0 {
                 self.closed[*k] = false;
@@ -265,7 +265,7 @@ impl<'s> Run<'s> {
         self.close();
     }
 
-    /// Slow corners on the floor stay; what parts fast enough flies.
+    /// Slow corners on the floor stay there; those that part fast enough fly.
     fn close(&mut self) {
         let (r, inverse) = (DMat3::from_quat(self.state.turn), self.inverse_inertia(self.state.turn));
         for k in 0..self.solid.knobs.len() {
@@ -311,7 +311,7 @@ fn response(mass: f64, inverse: &DMat3, arm: DVec3) -> DMat3 {
     DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
 }
 
-/// The impulse at one point, the others' given, such that it does not approach and rubs as Coulomb has it.
+/// The impulse at one point, with the others given, so that it does not approach and its friction obeys Coulomb's law.
 fn project(k: &DMat3, u: DVec3, old: DVec3, friction: f64) -> DVec3 {
     // Velocity without this point's impulse.
     let free = u - *k * old;

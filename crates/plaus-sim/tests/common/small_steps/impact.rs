@@ -1,19 +1,19 @@
 //! One point's impact: Stronge's restitution with Coulomb's friction, in small increments of the normal impulse.
 //!
-//! An increment's friction is implicit: of all tangential impulses within the cone it leaves the least tangential
-//! energy, so that it sticks where it can and opposes the slip that is left where it cannot. That is of the first order
-//! in the increment; two runs, one with half the increments, take the error of that order out.
+//! Within an increment friction is implicit: of all tangential impulses within the cone, the one is taken that leaves
+//! the least tangential energy. So the contact sticks if it can, and otherwise friction opposes the slip that is left.
+//! This is of the first order in the increment; a second run with half the increments removes the error of that order.
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
-/// Increments up to the end of compression, if friction did nothing.
+/// Number of increments up to the end of compression if friction did nothing.
 const INCREMENTS: f64 = 1000.0;
 
 /// Impulse at a point with relative velocity `u` (z the normal part, negative) and response `k` (velocity per impulse).
 pub fn impulse(k: &DMat3, u: DVec3, restitution: f64, friction: f64) -> DVec3 {
     let [rough, fine] = [0.5 * INCREMENTS, INCREMENTS].map(|n| run(k, u, restitution, friction, n));
     let both = fine * 2.0 - rough;
-    // Where sticking begins the error is of no clean order: never outside the cone, never pulling.
+    // Where sticking begins, the error has no clean order; so the result is kept inside the cone, and never pulls.
     let flat = both.truncate().clamp_length_max(friction * both.z.max(0.0));
     flat.extend(both.z.max(0.0))
 }
@@ -23,7 +23,7 @@ fn run(k: &DMat3, u: DVec3, restitution: f64, friction: f64, increments: f64) ->
     let across = k.z_axis.truncate();
     let dp = -u.z / (k.z_axis.z * increments);
     let (mut u, mut sum) = (u, DVec3::ZERO);
-    // Work of compression, all negative, and what restitution is to give back of it.
+    // Work of compression, all negative, and the part of it that restitution will give back.
     let (mut work, mut back) = (0.0, f64::NAN);
     for _ in 0..(50.0 * increments) as usize {
         let rub = friction_of(&flat, u.truncate() + across * dp, friction * dp);
@@ -45,7 +45,7 @@ fn run(k: &DMat3, u: DVec3, restitution: f64, friction: f64, increments: f64) ->
                 continue;
             }
         } else if work + whole >= back {
-            // u_z s + du_z s²/2 = (back − work)/dp for the part s of the increment.
+            // u_z s + du_z s²/2 = (back − work)/dp for the fraction s of the increment.
             let (b, c) = (u.z, (back - work) / dp);
             let part = 2.0 * c / (b + (b * b + 2.0 * du.z * c).max(0.0).sqrt());
             return sum + push * part.clamp(0.0, 1.0);

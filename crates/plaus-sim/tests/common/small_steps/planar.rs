@@ -1,12 +1,12 @@
 //! Boxes in a row in a vertical plane, without restitution: a wave of dominoes, in steps of one length.
 //!
-//! Moreau's steps over all contacts at once: corners on the floor, corners of a box on a face of its neighbour. A
-//! corner that is still apart may come as near as its gap within the step, so nothing needs to be found in time.
+//! Moreau's steps over all contacts at once: corners on the floor, and corners of a box on a face of its neighbour. A
+//! corner that is still apart may come as near as its gap within the step, so no time of contact has to be found.
 
 use glam::DVec2;
 use std::collections::BTreeMap;
 
-/// A row of boxes alike.
+/// A row of identical boxes.
 #[derive(Debug, Clone, Copy)]
 pub struct Row {
     /// Half the thickness and half the height, in m.
@@ -16,7 +16,7 @@ pub struct Row {
     pub count: usize,
     pub friction: f64,
     pub gravity: f64,
-    /// Rate at which the first tips about its lower front edge, in rad/s.
+    /// Rate at which the first box tips about its lower front edge, in rad/s.
     pub push: f64,
 }
 
@@ -27,14 +27,14 @@ struct Body {
     lean: f64,
     v: DVec2,
     w: f64,
-    /// Nothing happens to it before its neighbour comes near.
+    /// Nothing happens to it until its neighbour comes near.
     sleeps: bool,
 }
 
 /// A corner on the floor, or on a face of another box.
 #[derive(Debug, Clone, Copy)]
 struct Contact {
-    /// Body with the corner, corner, and the other body; the body itself for the floor.
+    /// The body with the corner, the corner, and the other body; for the floor, the body itself.
     key: (usize, usize, usize),
     /// Towards the corner's body.
     normal: DVec2,
@@ -70,7 +70,7 @@ impl Row {
         self.half * DVec2::new([-1.0, 1.0][k & 1], [-1.0, 1.0][k >> 1])
     }
 
-    /// When each box was first pushed by the one before it; boxes that were not by `until` have none.
+    /// When each box was first pushed by the one before it; none for boxes that were not pushed by `until`.
     pub fn wave(&self, until: f64, dt: f64) -> Vec<Option<f64>> {
         let mut bodies: Vec<Body> = (0..self.count)
             .map(|k| {
@@ -179,7 +179,7 @@ impl Row {
         found
     }
 
-    /// What may come together within a step, at up to twice √(g·height).
+    /// How near boxes may be to come together within a step, at up to twice √(g·height).
     fn near(&self, dt: f64) -> f64 {
         4.0 * (2.0 * self.gravity * self.half.y).sqrt() * dt
     }
@@ -190,7 +190,7 @@ impl Row {
             let there = turned(-b.lean, a.x + arm - b.x);
             let out = there.abs() - self.half;
             let gap = out.x.max(out.y);
-            // Beside the other, not beyond a corner of it.
+            // Beside the other box, not beyond a corner of it.
             if gap >= self.near(dt) || out.x.min(out.y) > 0.0 {
                 continue;
             }

@@ -8,7 +8,7 @@ use plaus_sim::shape::{ConvexHull, Cuboid, Profile, Revolution, Shape, Solid as 
 use plaus_sim::{Law, Preset, Scratch};
 use std::sync::Arc;
 
-/// A body, how it touches the floor, and when it is looked at.
+/// A body, how it touches the floor, and when it is observed.
 #[derive(Debug, Clone)]
 pub struct Toss {
     pub name: &'static str,
@@ -19,7 +19,7 @@ pub struct Toss {
     pub looks: Vec<f64>,
 }
 
-/// Where a body is, and how it is turned.
+/// A body's position and orientation.
 #[derive(Debug, Clone, Copy)]
 pub struct Look {
     pub x: DVec3,
@@ -27,9 +27,9 @@ pub struct Look {
 }
 
 impl Look {
-    /// Distance of two looks over a length: of the centres, and of what turns with them at that distance.
+    /// Distance between two looks over a length: of the centres, and of points that turn with them at that distance.
     pub fn off(&self, other: &Self, length: f64) -> f64 {
-        // The product is as turned as the two differ; twice its vector part is the angle, where that is small.
+        // The product is turned by the difference of the two. Twice its vector part is the angle, if that is small.
         let turned = self.turn * other.turn.conjugate();
         let angle = 2.0 * DVec3::new(turned.x, turned.y, turned.z).length();
         (self.x - other.x).length() / length + 0.5 * angle
@@ -37,7 +37,7 @@ impl Look {
 }
 
 impl Look {
-    /// What half the step would have given without its error of first order, `whole` being that of the whole step.
+    /// What half the step would have given without its error of first order; `whole` is the result of the whole step.
     fn extrapolated(&self, whole: &Self) -> Self {
         Self { x: self.x * 2.0 - whole.x, turn: self.turn * (whole.turn.conjugate() * self.turn) }
     }
@@ -57,7 +57,7 @@ impl Toss {
         balls.chain(rings).collect()
     }
 
-    /// In small steps; and how many impacts there were.
+    /// In small steps; also the number of impacts.
     pub fn truth(&self, start: &Start, dt: f64) -> (Vec<Look>, u64) {
         let mass = self.body.mass;
         let solid = Solid {
@@ -79,8 +79,8 @@ impl Toss {
         (looks, run.impacts)
     }
 
-    /// In small steps, the error of first order taken out (Richardson), and how far that is from the same in twice the
-    /// steps: what is unknown of it. And how many impacts there were.
+    /// In small steps, with the error of first order removed (Richardson). Also the distance from the same result for
+    /// twice the step, which is its uncertainty, and the number of impacts.
     pub fn truth_and_doubt(&self, start: &Start, dt: f64) -> (Vec<Look>, Vec<Look>, u64) {
         let [(a, _), (b, _), (c, impacts)] = [1.0, 0.5, 0.25].map(|part| self.truth(start, part * dt));
         let best = |p: &[Look], q: &[Look]| p.iter().zip(q).map(|(p, q)| q.extrapolated(p)).collect();
@@ -127,7 +127,7 @@ pub fn wild(count: u64) -> Vec<Toss> {
     ]
 }
 
-/// Throws of a die with rounded edges, as hands throw them.
+/// Throws of a die with rounded edges, in the way that hands throw dice.
 pub fn dice(count: u64) -> Toss {
     let start = |k: u64| {
         let mut dice = Dice::new(23, k);
@@ -141,7 +141,7 @@ pub fn dice(count: u64) -> Toss {
     Toss { name: "die, e 0.5, µ 0.35", body, law: Law::new(0.35, 0.5), starts, looks: vec![0.12, 0.16, 0.2, 1.0] }
 }
 
-/// A pin that stands on the rim of its foot, leaning too far, falls over and rolls on the rim as it does.
+/// A pin that stands on the rim of its foot and leans too far: it falls over and rolls on the rim as it does so.
 pub fn pin() -> Toss {
     let shape = Revolution::new(&Profile::pin(), 40).expect("a pin");
     let body = BodySpec::solid(Shape::Revolution(Arc::new(shape)), 700.0, M);
@@ -163,11 +163,11 @@ fn on_a_face() -> (BodySpec, Start) {
     (BodySpec::solid(Shape::Hull(Arc::new(hull)), 400.0, M), start)
 }
 
-/// Contact that lasts all the time and has one solution: nothing is struck, nothing is chaotic.
+/// Contact that lasts throughout and has a unique solution: nothing is struck, nothing is chaotic.
 pub fn smooth() -> Vec<Toss> {
     let (d4, lies) = on_a_face();
     let slides = Start { velocity: DVec3::new(0.8, 0.1, 0.0), spin: DVec3::Z * 12.0, ..lies };
-    // A box that stands on an edge and tips over, on ground that is rough, and on ground on which the edge slides.
+    // A box that stands on an edge and tips over: on rough ground, and on ground on which the edge slides.
     let (half, tilt) = (DVec3::new(0.02, 0.03, 0.05), 0.45_f64);
     let orientation = DQuat::from_rotation_y(tilt);
     let low = orientation * DVec3::new(half.x, 0.0, -half.z);
