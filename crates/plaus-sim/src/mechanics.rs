@@ -65,7 +65,7 @@ pub trait Mechanics {
 
     /// The body's own clock.
     fn clock(&self, body: &Self::Body) -> f64;
-    /// Time at which the closed form ends by itself; infinite where it does not.
+    /// Time at which the closed form ends by itself; `f64::MAX` where it does not.
     fn expiry(&self, body: &Self::Body) -> f64;
     /// Whether the body takes part: not before it is released.
     fn is_present(&self, body: &Self::Body) -> bool;

@@ -25,7 +25,7 @@ fn solid(solid: Solid) -> Shape {
     hull(&solid.corners(0.5 * EDGE / unit.size()), 0.0)
 }
 
-/// A stone: the hull of random points in a ball.
+/// A stone: the hull of random points in a cube.
 fn rock(seed: u64, scale: f64) -> Shape {
     let mut stream = Seed(17).chain(0).at(seed, Purpose::START);
     let mut side = || 2.0 * open_unit(&mut stream) - 1.0;

@@ -99,9 +99,9 @@ impl Observer<Rigid> for Depths<'_> {
 }
 
 /// Posts in rows before a wall: all dice end, none deep in anything. Half way through a step of lasting contact a
-/// corner that turns at ω is `(ω h)²/8` of its arm in what it touches: up to a hundredth of the size. A d20 that wedges
-/// itself between two posts and the wall a little deeper than bodies may lie (1e-3 of its size; 1.7e-3 was seen) stands
-/// still there without being called at rest.
+/// corner that turns at ω is `(ω h)²/8` of its arm in what it touches: up to three hundredths of the size in a run that
+/// comes to rest, and three tenths in one that jams. A d20 that wedges itself between two posts and the wall a little
+/// deeper than bodies may lie (1e-3 of its size; 1.7e-3 was seen) stands still there without being called at rest.
 #[test]
 fn dice_among_posts_are_never_in_them() {
     let mut parts = vec![block([-40.0, -40.0, -4.0], [40.0, 40.0, -2.0])];

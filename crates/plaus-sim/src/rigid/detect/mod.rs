@@ -2,9 +2,9 @@
 //!
 //! Each feeler's gap `f` obeys `f(t + τ) ≥ f + f′ τ − M τ²/2`, where `M` bounds its acceleration towards the part:
 //! gravity, rotation, and the surface's curvature times speed squared. The body is advanced by the first root of these
-//! parabolas over all feelers, which cannot overshoot and converges quadratically, until a gap is below `accuracy.gap`
-//! and closing. A gap that is small but opening is no event (rule of `crate::roots`); the search goes on from where it
-//! can close again.
+//! parabolas over all feelers, which cannot overshoot and converges quadratically, until a gap is below half of the one
+//! at which bodies touch, and closing. A gap that is small but opening is no event (rule of `crate::roots`); the search
+//! goes on from where it can close again.
 
 mod block;
 mod corners;

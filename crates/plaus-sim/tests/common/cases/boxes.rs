@@ -124,7 +124,7 @@ pub fn domino_starts(gap: f64) -> Vec<Start> {
     starts
 }
 
-/// Speed of the wave between the 8th and the 18th domino, over √(g h).
+/// Speed of the wave between the ninth and the nineteenth domino, over √(g h).
 pub fn wave_speed(times: &[Option<f64>], gap: f64) -> Option<f64> {
     let (from, to) = ((*times.get(8)?)?, (*times.get(18)?)?);
     Some(10.0 * (DOMINO.x + gap * DOMINO.z) / (to - from) / (G * DOMINO.z).sqrt())

@@ -3,8 +3,8 @@
 use super::record::{Facts, Moment, Record};
 use glam::DVec3;
 
-/// Roundings of one event: a few dozen operations whose errors add up at worst. A flight's rotation is evaluated from
-/// elliptic functions, in which about as many take part.
+/// Roundings of one event: a few dozen operations whose errors add up at worst. A flight's rotation is evaluated from a
+/// series, in which about as many take part.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// The worst breach of a law in a record.
