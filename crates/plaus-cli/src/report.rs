@@ -2,6 +2,7 @@
 
 use crate::progress::acceptance;
 use crate::table::{amount, grouped, lay_out, percent, short};
+use plaus_mcmc::Ladder;
 use plaus_run::{Beside, Diagnosis, Manifest};
 use plaus_scenes::Role;
 use serde_json::{Value, json};
@@ -212,7 +213,7 @@ pub(crate) fn beside(beside: &Beside) -> (String, String) {
 
 /// Restarts of tempered chains and the quality of their ladder, over `seconds` if given. Empty for chains that are not
 /// tempered.
-pub(crate) fn tempering(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
+pub(crate) fn tempering(manifest: &Manifest, diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
     let all: Vec<_> = diagnosis.tally.chains.iter().filter_map(|chain| chain.tempering.as_ref()).collect();
     if all.is_empty() {
         return String::new();
@@ -225,9 +226,17 @@ pub(crate) fn tempering(diagnosis: &Diagnosis, seconds: Option<f64>) -> String {
     let minute = seconds.filter(|&seconds| seconds > 0.0);
     let pace =
         minute.map(|seconds| format!(", {} a minute", short(60.0 * restarts as f64 / seconds))).unwrap_or_default();
-    let rungs = all[0].betas.len();
-    let best = (2.0 * barrier).round() as usize + 1;
-    let advice = if rungs < best { format!("; about {best} rungs would serve better") } else { String::new() };
+    let sizes = || all.iter().map(|one| one.betas.len());
+    let (fewest, most) = (sizes().min().unwrap_or(0), sizes().max().unwrap_or(0));
+    let rungs = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
+    let best = Ladder::best_rungs(barrier);
+    let advice = if restarts == 0 && diagnosis.iterations > 0 {
+        format!("; it did not pay: without it, {most} times as many chains cost the same")
+    } else if fewest < best && !manifest.plan.adapt_rungs {
+        format!("; about {best} rungs would serve better (`--set adapt_rungs=true` lets the warm-up choose)")
+    } else {
+        String::new()
+    };
     format!(
         "tempering: {} restarts from fresh draws{pace}, {} round trips; barrier {} over {rungs} rungs, {} to {} of the \
          swaps rejected{advice}\n",

@@ -36,13 +36,32 @@ fn restarts_are_reported_and_threads_leave_no_trace() {
 }
 
 #[test]
+fn a_ladder_chooses_its_rungs_and_goes_on_with_them() {
+    let place = Place::new();
+    let sizing = format!("{RUNGS} --set adapt_rungs=true");
+    place.run(&format!("sample ball.toml --out whole -q --threads 1 {sizing}"));
+    place.run(&format!("sample ball.toml --out parts -q --threads 3 {sizing} --iterations 250"));
+    place.run("resume parts -q --iterations 900");
+    let tempering = |run: &str| {
+        let json: Value = serde_json::from_str(&place.run(&format!("diagnose {run} --json")).out).unwrap();
+        json["chains"].as_array().unwrap().iter().map(|chain| chain["tempering"].clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(tempering("whole"), tempering("parts"));
+    let sizes: Vec<_> = tempering("whole").iter().map(|one| one["betas"].as_array().unwrap().len()).collect();
+    assert!(sizes.iter().any(|&size| size != 4), "{sizes:?}");
+    place.ok("replay parts --sample 2:777");
+}
+
+#[test]
 fn what_cannot_be_tempered_is_refused() {
     let place = Place::new();
     place
         .ends("sample ball.toml --out run --set rungs=300", 2)
         .says(&["300 is out of range: it must be from 1 to 256"]);
     place.ends("sample ball.toml --out run --set swap_every=0", 2).says(&["swap_every", "from 1 to 1_000_000"]);
-    let printed = "sample ball.toml --out run --set rungs=4 --set sampler.rules.preset=as-printed";
-    place.ends(printed, 2).says(&["tempering needs exact acceptance"]);
+    for tempered in ["rungs=4", "adapt_rungs=true"] {
+        let printed = format!("sample ball.toml --out run --set {tempered} --set sampler.rules.preset=as-printed");
+        place.ends(&printed, 2).says(&["tempering needs exact acceptance"]);
+    }
     assert!(!place.path("run").exists());
 }

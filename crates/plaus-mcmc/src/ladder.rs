@@ -21,6 +21,9 @@ impl From<Ladder> for Vec<f64> {
     }
 }
 
+/// Most rungs of a ladder that sizes itself; as many may be set.
+pub const MOST_RUNGS: usize = 256;
+
 /// This part of the barrier lies between any two neighbours, whatever was seen, so that rungs that never rejected a
 /// swap stay apart.
 const LEAST: f64 = 1e-3;
@@ -67,6 +70,13 @@ impl Ladder {
     #[must_use]
     pub fn barrier(rejected: &[f64]) -> f64 {
         rejected.iter().sum()
+    }
+
+    /// How many rungs suit a barrier: `2 Λ + 1`, rounded, at least 2 and at most [`MOST_RUNGS`].
+    #[must_use]
+    pub fn best_rungs(barrier: f64) -> usize {
+        // A barrier is finite: a sum of shares.
+        ((2.0 * barrier).round() as usize + 1).clamp(2, MOST_RUNGS)
     }
 
     /// A ladder of `rungs` that would divide the barrier equally, given the share of swaps rejected between each rung

@@ -78,7 +78,7 @@ pub use adapt::{Adapted, Scales};
 pub use chain::{Chain, ChainError, MoveCounts, Step, Verdict};
 pub use fit::{Fit, Learning};
 pub use independent::{Independent, Tried, keep_draws, try_draws};
-pub use ladder::Ladder;
+pub use ladder::{Ladder, MOST_RUNGS};
 pub use law::{Law, Offset, Recipe, Rectangle};
 pub use moves::{Mixture, MixtureError, Move, MoveId, Path, Proposal};
 pub use record::{Block, Entry};

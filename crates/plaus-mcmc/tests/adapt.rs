@@ -277,6 +277,7 @@ const PLAN: Plan = Plan {
     block: 64,
     solutions: None,
     rungs: 1,
+    adapt_rungs: false,
     swap_every: 7,
     adapt: true,
     weigh: false,
@@ -323,7 +324,7 @@ fn adapted_runs_have_the_same_bits() {
 fn every_rung_has_its_scale() {
     let number = Number { narrow: 0.05, ..GAUSSIAN };
     let (moves, fresh) = (walking(3.0), Mixture::of(Box::new(Redraw) as Box<dyn Move<Number>>));
-    let tempering = plaus_mcmc::Tempering { rungs: 4, swap_every: 3, warmup: 4000 };
+    let tempering = plaus_mcmc::Tempering { rungs: 4, swap_every: 3, warmup: 4000, adapt_rungs: false };
     let course = plaus_mcmc::Course { target: &number, moves: &moves, fresh: &fresh, tempering };
     let mut replicas = Replicas::start(course, Seed(4), 0).unwrap().adapting(4000);
     replicas.advance(6000, |_, _| ()).unwrap();

@@ -25,6 +25,7 @@ const PLAN: Plan = Plan {
     block: 64,
     solutions: None,
     rungs: 1,
+    adapt_rungs: false,
     swap_every: 1,
     adapt: false,
     weigh: false,

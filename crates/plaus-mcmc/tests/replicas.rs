@@ -14,7 +14,7 @@ impl Moves {
 
     /// Nine places in two arcs with forbidden places between them: steps never lead from one arc to the other.
     fn course<'a>(&'a self, ring: &'a Ring, rungs: u32, swap_every: u64, warmup: u64) -> Course<'a, Ring> {
-        let tempering = Tempering { rungs, swap_every, warmup };
+        let tempering = Tempering { rungs, swap_every, warmup, adapt_rungs: false };
         Course { target: ring, moves: &self.0, fresh: &self.1, tempering }
     }
 }
@@ -126,4 +126,77 @@ fn adaptation_in_the_warm_up_evens_out_rejections() {
     assert!(spread(&after) < 0.5 * spread(&before), "{before:?} became {after:?}");
     // The barrier belongs to the target, not to the ladder.
     assert!((Ladder::barrier(&after) - Ladder::barrier(&before)).abs() < 0.5, "{before:?} {after:?}");
+}
+
+/// A ladder of `rungs` that sizes itself in 6,000 iterations.
+fn sizing<'a>(moves: &'a Moves, ring: &'a Ring, rungs: u32) -> Course<'a, Ring> {
+    let course = moves.course(ring, rungs, 3, 6_000);
+    Course { tempering: Tempering { adapt_rungs: true, ..course.tempering }, ..course }
+}
+
+#[test]
+fn a_ladder_sizes_itself_whatever_it_begins_with() {
+    let (ring, moves) = (Ring::of_nine(12.0), Moves::new());
+    for rungs in [2, 5, 30] {
+        let mut replicas = Replicas::start(sizing(&moves, &ring, rungs), Seed(4), 0).unwrap();
+        go_on(&mut replicas, 6_000);
+        let size = replicas.climb().ladder().betas().len();
+        go_on(&mut replicas, 60_000);
+        let climb = replicas.climb();
+        assert_eq!(climb.ladder().betas().len(), size, "the ladder changed after the warm-up");
+        // The barrier, a sum of rejected shares, was estimated to within 0.5 (the test above); so the size is within 1.
+        let best = Ladder::best_rungs(Ladder::barrier(&climb.rejected()));
+        assert!(size.abs_diff(best) <= 1, "{rungs} rungs became {size}, and {best} are best");
+        assert!(climb.restarts() > 1000, "{rungs}: {} restarts", climb.restarts());
+    }
+}
+
+#[test]
+fn a_ladder_that_sized_itself_samples_the_target() {
+    let (ring, moves) = (Ring::of_nine(4.0), Moves::new());
+    let chain = |seed| {
+        let mut replicas = Replicas::start(sizing(&moves, &ring, 9), Seed(seed), 0).unwrap();
+        go_on(&mut replicas, 6_000);
+        let mut seen = Vec::new();
+        for _ in 0..30_000 {
+            go_on(&mut replicas, 2);
+            seen.push(replicas.top().state().draw);
+        }
+        seen
+    };
+    let seen: Vec<Vec<usize>> = (20..24).map(chain).collect();
+    let worst = |beta: f64| {
+        let z = |(place, expected): (usize, f64)| {
+            let at = |chain: &Vec<usize>| chain.iter().map(|&seen| f64::from(u8::from(seen == place))).collect();
+            let columns: Vec<Vec<f64>> = seen.iter().map(at).collect();
+            if expected == 0.0 {
+                return if columns.iter().flatten().all(|&at| at == 0.0) { 0.0 } else { f64::INFINITY };
+            }
+            let summary = diagnose::summarize(&columns).unwrap();
+            ((summary.mean - expected) / summary.mcse_mean).abs()
+        };
+        law(&ring, beta).into_iter().enumerate().map(z).fold(0.0, f64::max)
+    };
+    // Nine comparisons at 5.4 standard errors: 1e-6 altogether. The law one rung lower is told from it.
+    assert!(worst(1.0) < 5.4, "{}", worst(1.0));
+    assert!(worst(0.8) > 5.4, "{}", worst(0.8));
+}
+
+#[test]
+fn a_ladder_sizes_itself_alike_whatever_the_interruptions_and_threads() {
+    let (ring, moves) = (Ring::of_nine(12.0), Moves::new());
+    let course = sizing(&moves, &ring, 3);
+    let mut whole = Replicas::start(course, Seed(7), 0).unwrap();
+    let mut parted = Replicas::start(course, Seed(7), 0).unwrap();
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for stretch in (1..90).cycle().take(180) {
+        go_on(&mut whole, stretch);
+        alone.install(|| go_on(&mut parted, stretch));
+        let snapshot = parted.snapshot();
+        let rungs = snapshot.climb().ladder().betas().len() as u32;
+        assert!(snapshot.fits(rungs, 1) && !snapshot.fits(rungs + 1, 1));
+        parted = Replicas::resume(course, Seed(7), 0, parted.iteration(), snapshot);
+        assert!(parted.snapshot() == whole.snapshot(), "after iteration {}", whole.iteration());
+    }
+    assert!(whole.iteration() > 6_000 && whole.climb().ladder().betas().len() != 3);
 }

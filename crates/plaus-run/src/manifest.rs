@@ -174,8 +174,9 @@ fn plan(scenario: &Scenario, solutions: Option<u64>) -> Plan {
         thin: sampler.thin,
         block: block.max(1),
         solutions,
-        rungs: sampler.tempering.rungs,
+        rungs: sampler.tempering.first_rungs(),
         swap_every: sampler.tempering.swap_every,
+        adapt_rungs: sampler.tempering.adapts_rungs(),
         adapt: scenario.adapts(),
         weigh: scenario.weighs(),
     }

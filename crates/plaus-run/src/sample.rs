@@ -297,7 +297,9 @@ fn restore_chain(
         let message = "its scales are not those of the scene's moves".to_owned();
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());
     }
-    let (rungs, moves) = (manifest.plan.rungs, manifest.moves.len());
+    let (plan, moves) = (&manifest.plan, manifest.moves.len());
+    let found = snapshot.replicas.as_ref().map(|replicas| replicas.climb().ladder().betas().len() as u32);
+    let rungs = if plan.adapt_rungs { found.unwrap_or(plan.rungs) } else { plan.rungs };
     if snapshot.replicas.as_ref().map_or(rungs != 1, |replicas| !replicas.fits(rungs, moves)) {
         let message = format!("the checkpoint is not for {rungs} rungs");
         return Err(RunFileError::new(folder.checkpoint(chain), RunFileProblem::Mixed(message)).into());

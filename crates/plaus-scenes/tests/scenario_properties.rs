@@ -304,7 +304,8 @@ proptest! {
     ) {
         let read = |overrides: &[String]| Scenario::read("random.toml", &template(scene).unwrap(), overrides);
         // Rungs go with exact acceptance only, learnt weights with adaptation only.
-        let apart = ["sampler.tempering.rungs=1", "sampler.adapt_weights=false"].map(str::to_owned);
+        let apart = ["sampler.tempering.rungs=1", "sampler.tempering.adapt_rungs=false", "sampler.adapt_weights=false"];
+        let apart = apart.map(str::to_owned);
         let alone = [overrides.as_slice(), &apart].concat();
         let together = ["sampler.tempering.rungs", "sampler.adapt_weights"];
         let is_known = |problem: &Problem| together.contains(&problem.key.as_str());

@@ -94,7 +94,7 @@ impl Args {
         } else {
             let solutions = report::solutions(&diagnosis)
                 + &at_this_pace(&reader, &diagnosis)
-                + &report::tempering(&diagnosis, None);
+                + &report::tempering(manifest, &diagnosis, None);
             let findings: String = diagnosis.findings.iter().map(|finding| format!("  {finding}\n")).collect();
             let some = match diagnosis.stride {
                 1 => String::new(),

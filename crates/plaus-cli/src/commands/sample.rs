@@ -333,7 +333,7 @@ fn summary(run: &Run, diagnosis: &Diagnosis, monitor: &Monitor, ending: Ending) 
     let sampling = monitor.seconds() * diagnosis.iterations as f64 / iterations as f64;
     let sampling = (monitor.begun_at() == 0).then_some(sampling);
     text += &report::independent(diagnosis, sampling);
-    text += &report::tempering(diagnosis, sampling);
+    text += &report::tempering(run.manifest(), diagnosis, sampling);
     if diagnosis.draws == 0 {
         let still = "\nstill in the warm-up: there are no draws for statistics yet\n";
         if diagnosis.tally.distinct == 0 {

@@ -109,7 +109,8 @@ fn lay<T: Goal>(
 ) -> Result<Stoned, ChanceError> {
     let Stones { rungs, swap_every, warmup, iterations } = plan;
     let fresh = Mixture::of(Box::new(Redraw));
-    let course = Course { target, moves, fresh: &fresh, tempering: Tempering { rungs, swap_every, warmup } };
+    let tempering = Tempering { rungs, swap_every, warmup, adapt_rungs: false };
+    let course = Course { target, moves, fresh: &fresh, tempering };
     let fail = |source| ChanceError::Chain { batch, source };
     // Numbers of chains from the far end, which no run uses.
     let mut replicas = Replicas::start(course, seed, u32::MAX - batch).map_err(fail)?.adapting(warmup);

@@ -17,11 +17,13 @@ pub struct Tempering {
     pub swap_every: u64,
     /// Iterations in which the ladder is adapted.
     pub warmup: u64,
+    /// Whether the number of rungs is adapted too; `rungs`, at least 2, is then the number to begin with.
+    pub adapt_rungs: bool,
 }
 
 impl Tempering {
     /// None: one chain, of the target.
-    pub const NONE: Self = Self { rungs: 1, swap_every: u64::MAX, warmup: 0 };
+    pub const NONE: Self = Self { rungs: 1, swap_every: u64::MAX, warmup: 0, adapt_rungs: false };
 
     /// Whether the ladder is adapted before the iteration after this one.
     pub(super) fn adapts_at(&self, iteration: u64) -> bool {
@@ -112,10 +114,15 @@ impl Climb {
         self.statistics.iter().map(|one| if one.proposed == 0 { 0.0 } else { share(one).max(0.0) }).collect()
     }
 
+    /// Whether every pair has proposed enough swaps for rejections to mean something.
+    pub(super) fn has_seen_enough(&self) -> bool {
+        self.statistics.iter().all(|seen| seen.proposed >= ENOUGH)
+    }
+
     /// Spaces the ladder again by its rejections, if enough swaps were proposed. With `last`, everything counts from
     /// now on.
     pub(super) fn adapt(&mut self, last: bool) {
-        if self.statistics.iter().all(|seen| seen.proposed >= ENOUGH) {
+        if self.has_seen_enough() {
             self.ladder = self.ladder.adapted(&self.rejected(), self.at.len());
             self.statistics.fill(RungStatistics::default());
         }
@@ -146,7 +153,7 @@ mod tests {
 
     #[test]
     fn the_ladder_is_adapted_in_the_warm_up_only() {
-        let tempering = Tempering { rungs: 4, swap_every: 20, warmup: 1010 };
+        let tempering = Tempering { rungs: 4, swap_every: 20, warmup: 1010, adapt_rungs: false };
         let when: Vec<u64> = (1..5000).filter(|&iteration| tempering.adapts_at(iteration)).collect();
         assert_eq!(when, [60, 120, 240, 500, 1000]);
         assert!(tempering.ends_at(1000) && !tempering.ends_at(500));

@@ -7,9 +7,10 @@
 //! alternate with (1,2), (3,4), …: so a replica keeps its direction until a swap is rejected, and its trip takes a time
 //! proportional to the number of rungs, not to its square (Okabe et al. 2001; Syed et al. 2022, see
 //! [`Ladder::barrier`](crate::Ladder::barrier)). During the warm-up the ladder is spaced again a few times, from the
-//! rejections so far; then it stays, as exactness requires.
+//! rejections so far, and if asked for gets as many rungs as the barrier calls for; then it stays, as exactness requires.
 
 mod climb;
+mod resize;
 
 pub use climb::{Climb, RungStatistics, Tempering};
 
@@ -102,7 +103,8 @@ pub struct Replicas<'a, T: Target> {
     /// Each replica keeps its place in this list, whatever its rung.
     chains: Vec<Chain<'a, T>>,
     climb: Climb,
-    swaps: ChainStreams,
+    seed: Seed,
+    chain: u32,
 }
 
 /// What the chain at the last rung did.
@@ -148,7 +150,7 @@ impl<'a, T: Target> Replicas<'a, T> {
             let started = Chain::start(course.target, course.moves_of(replica), streams(seed, chain, replica))?;
             Ok(started.at(betas[replica]))
         })?;
-        Ok(Self { course, chains, climb, swaps: streams(seed, chain, 0) })
+        Ok(Self { course, chains, climb, seed, chain })
     }
 
     /// The same replicas, adapting the scales of each rung's moves in the iterations before `until`, and keeping them
@@ -192,7 +194,7 @@ impl<'a, T: Target> Replicas<'a, T> {
             }
         };
         let chains = states.into_iter().enumerate().map(resume).collect();
-        Self { course, chains, climb, swaps: streams(seed, chain, 0) }
+        Self { course, chains, climb, seed, chain }
     }
 
     /// A single replica, of the target, that continues.
@@ -286,7 +288,7 @@ impl<'a, T: Target> Replicas<'a, T> {
     /// Proposes the swaps due after iteration `now`, and adapts the ladder if that is due.
     fn swap(&mut self, now: u64, watch: &mut impl FnMut(&Chain<'a, T>, TopStep)) {
         let (tempering, climb) = (self.course.tempering, &mut self.climb);
-        let mut stream = self.swaps.at(now, Purpose::SWAP);
+        let mut stream = streams(self.seed, self.chain, 0).at(now, Purpose::SWAP);
         let parity = now / tempering.swap_every;
         let (top, betas) = (climb.at.len() - 1, climb.ladder.betas());
         for rung in (0..top).filter(|rung| (*rung as u64 + parity).is_multiple_of(2)) {
@@ -311,7 +313,12 @@ impl<'a, T: Target> Replicas<'a, T> {
         }
         climb.note_ends();
         if tempering.adapts_at(now) {
-            climb.adapt(tempering.ends_at(now));
+            let is_last = tempering.ends_at(now);
+            if tempering.adapt_rungs && !is_last && self.resize() {
+                return;
+            }
+            let climb = &mut self.climb;
+            climb.adapt(is_last);
             for (&replica, &beta) in climb.at.iter().zip(climb.ladder.betas()) {
                 self.chains[replica as usize].set_beta(beta);
             }

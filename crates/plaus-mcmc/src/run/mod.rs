@@ -52,6 +52,9 @@ pub struct Plan {
     pub rungs: u32,
     /// See `rungs`.
     pub swap_every: u64,
+    /// Whether the warm-up also chooses the number of rungs; `rungs`, at least 2, is then the number to begin with.
+    #[serde(default)]
+    pub adapt_rungs: bool,
     /// Whether moves' scales are adapted in the warm-up, see [`crate::adapt`].
     pub adapt: bool,
     /// Whether moves' weights are learnt then too, see [`crate::weigh`]; never without `adapt`.
@@ -74,7 +77,8 @@ impl Plan {
     }
 
     pub(crate) fn tempering(&self) -> Tempering {
-        Tempering { rungs: self.rungs, swap_every: self.swap_every, warmup: self.warmup }
+        let Self { rungs, swap_every, warmup, adapt_rungs, .. } = *self;
+        Tempering { rungs, swap_every, warmup, adapt_rungs }
     }
 
     fn check<D, O>(&self, some: &Range<u32>, starts: &[Start<D, O>]) -> Result<(), PlanError> {

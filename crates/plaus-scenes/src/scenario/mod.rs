@@ -109,14 +109,31 @@ pub struct Tempering {
     /// a run reports, plus one, works best. The rungs are spaced during the warm-up, and then stay.
     #[schemars(range(min = 1, max = 256))]
     pub rungs: u32,
+    /// Whether the warm-up also chooses the number of rungs, from the barrier that it sees. `rungs` is then the number to
+    /// begin with, or 2 if it is 1. Unset: no.
+    pub adapt_rungs: Option<bool>,
     /// Iterations between two swaps of neighbouring rungs.
     #[schemars(range(min = 1, max = 1_000_000))]
     pub swap_every: u64,
 }
 
+impl Tempering {
+    /// The number of rungs that a chain begins with.
+    #[must_use]
+    pub fn first_rungs(&self) -> u32 {
+        if self.adapts_rungs() { self.rungs.max(2) } else { self.rungs }
+    }
+
+    /// Whether the warm-up chooses another number.
+    #[must_use]
+    pub fn adapts_rungs(&self) -> bool {
+        self.adapt_rungs.unwrap_or(false)
+    }
+}
+
 impl Default for Tempering {
     fn default() -> Self {
-        Self { rungs: 1, swap_every: 20 }
+        Self { rungs: 1, adapt_rungs: None, swap_every: 20 }
     }
 }
 
@@ -227,11 +244,12 @@ impl Scenario {
             let message = "weights are learnt only where scales are adapted: set sampler.adapt = true";
             return Err(ConfigError::new("sampler.adapt_weights", message));
         }
-        if self.sampler.tempering.rungs > 1 && !self.sampler.rules.is_exact() {
+        let rungs = self.sampler.tempering.first_rungs();
+        if rungs > 1 && !self.sampler.rules.is_exact() {
             let message = "tempering needs exact acceptance, because its swaps use the law of every rung: set sampler.rules.preset = \"exact\", or rungs = 1";
             return Err(ConfigError::new("sampler.tempering.rungs", message));
         }
-        if self.sampler.tempering.rungs > 1 && self.method() != Method::Chain {
+        if rungs > 1 && self.method() != Method::Chain {
             let message = "tempering is only for chains: set sampler.method = \"chain\", or rungs = 1";
             return Err(ConfigError::new("sampler.tempering.rungs", message));
         }

@@ -1,0 +1,46 @@
+//! Another number of rungs, chosen in the warm-up from the barrier.
+
+use super::{Climb, Replicas, ReplicasSnapshot, RungStatistics};
+use crate::ladder::Ladder;
+use crate::target::{State, Target};
+
+impl<T: Target> Replicas<'_, T> {
+    /// As many rungs as suit the barrier that was seen, if enough swaps were proposed; returns whether that changed
+    /// anything. Only in the warm-up: new rungs begin with states of their neighbours.
+    pub(super) fn resize(&mut self) -> bool {
+        let climb = &self.climb;
+        if !climb.has_seen_enough() {
+            return false;
+        }
+        let rungs = Ladder::best_rungs(Ladder::barrier(&climb.rejected()));
+        if rungs == climb.at.len() {
+            return false;
+        }
+        let resized = self.snapshot().resized(rungs);
+        *self = Self::resume(self.course, self.seed, self.chain, self.iteration(), resized);
+        true
+    }
+}
+
+impl<D: Clone, O: Clone> ReplicasSnapshot<D, O> {
+    /// On a ladder of `rungs`, at least 2. Each rung but the first takes the state, counts and scales of an old rung
+    /// that is as far up its ladder; the first and the last keep their own.
+    fn resized(self, rungs: usize) -> Self {
+        let Self { states, counts, scales, climb } = self;
+        let (top, old_top) = (rungs - 1, climb.at.len() - 1);
+        let old = |rung: usize| if rung == 0 { 0 } else { ((rung * old_top + top / 2) / top).max(1) };
+        let old: Vec<usize> = (0..rungs).map(old).collect();
+        let state = |&rung: &usize| -> State<D, O> { states[climb.at[rung] as usize].clone() };
+        let fresh = Climb::new(rungs as u32);
+        Self {
+            states: old.iter().map(state).collect(),
+            counts: old.iter().map(|&rung| counts[rung].clone()).collect(),
+            scales: old.iter().map(|&rung| scales[rung].clone()).collect(),
+            climb: Climb {
+                ladder: climb.ladder.adapted(&climb.rejected(), rungs),
+                statistics: vec![RungStatistics::default(); rungs - 1],
+                ..fresh
+            },
+        }
+    }
+}
