@@ -157,11 +157,16 @@ impl Plan {
     fn check_shapes(&mut self) -> Result<(), ConfigError> {
         let numbers = self.works.numbers(None);
         let wrong = |key: &str, error: WorldError| ConfigError::new(format!("{key}.shape"), error);
+        let mut reaches = Vec::new();
         for body in &self.bodies {
-            body.form.make(&numbers).map_err(|error| wrong(&body.key, error))?;
+            let made = body.form.make(&numbers).map_err(|error| wrong(&body.key, error))?;
+            if !body.is_ball() {
+                reaches.push((body.name.as_str(), made.solid.reach()));
+            }
         }
         for part in &mut self.parts {
             part.check(&numbers).map_err(|error| wrong(&part.key, error))?;
+            part.check_bodies(&reaches, &numbers)?;
         }
         Ok(())
     }
