@@ -48,19 +48,23 @@ fn to_end(stage: &Stage) -> Run<'_> {
     })
 }
 
-/// Runs two worlds in turn and compares them.
+/// Runs two worlds in turn and compares means and medians of a draw's time.
 fn beside(what: &str, draws: u64, mut scene: Run<'_>, mut said: Run<'_>) -> Result<()> {
-    let (mut times, mut ratios) = ([0.0; 2], Vec::new());
+    let mut times = [Vec::new(), Vec::new()];
     for nth in 0..draws {
-        let both = [scene(nth)?, said(nth)?];
-        times = [times[0] + both[0], times[1] + both[1]];
-        if (nth + 1) % (draws / 8).max(1) == 0 {
-            ratios.push(times[1] / times[0]);
-        }
+        times[0].push(1e3 * scene(nth)?);
+        times[1].push(1e3 * said(nth)?);
     }
-    let [scene, said] = times.map(|time| time * 1e3 / draws as f64);
-    let last = ratios.last().copied().unwrap_or(f64::NAN);
-    println!("{what}: the scene {scene:.3} ms, said {said:.3} ms a draw; ratio {last:.2} over {draws} draws");
+    let [mean, said_mean] = times.each_ref().map(|times| times.iter().sum::<f64>() / draws as f64);
+    let [median, said_median] = times.map(|mut times| {
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    });
+    println!(
+        "{what}: mean {mean:.3} and {said_mean:.3} ms, ratio {:.2}; median {median:.3} and {said_median:.3} ms, ratio {:.2}",
+        said_mean / mean,
+        said_median / median
+    );
     Ok(())
 }
 

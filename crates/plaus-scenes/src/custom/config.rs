@@ -33,6 +33,10 @@ pub struct Config {
     /// Gravity, straight down.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s²"))]
     pub gravity: f64,
+    /// A body that touches something below this height is gone: it stays where it is, and touches nothing any more.
+    /// That saves the time of simulating what has fallen off. Unset: no body is ever gone.
+    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = -500.0))]
+    pub bottom_mm: Option<f64>,
     /// Two solutions are the same if every body ends in the same cell of this width, with the same of its axes
     /// uppermost, and if the same things met for the first time in the same order.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
@@ -66,6 +70,7 @@ impl Default for Config {
             duration_s: 10.0,
             accuracy: AccuracyPreset::default(),
             gravity: 9.806_65,
+            bottom_mm: None,
             distinct_mm: 50.0,
             materials: Vec::new(),
             pairs: Vec::new(),

@@ -17,6 +17,9 @@ use plaus_sim::rigid::{BodySpec, Rigid, RigidWorld, Start};
 use plaus_sim::{Accuracy, WorldError};
 use std::collections::BTreeSet;
 
+/// Distance between points of a body's skin over a table, over the table's spacing: as for dice.
+const SKIN: f64 = 1.0;
+
 /// All of it.
 #[derive(Debug, Clone)]
 pub(super) struct Plan {
@@ -27,6 +30,8 @@ pub(super) struct Plan {
     pairs: Vec<([usize; 2], [Option<Value>; 4])>,
     pub(super) works: Works,
     gravity: f64,
+    /// Below which height in m bodies are gone.
+    bottom: f64,
     pub(super) duration: f64,
     pub(super) accuracy: Accuracy,
     /// Whether the world is the same for all draws, but for how its bodies start.
@@ -99,7 +104,8 @@ impl Plan {
         }
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
         let (works, is_steady) = (collector.works(), false);
-        let mut plan = Self { bodies, parts, substances, pairs, works, gravity, duration, accuracy, is_steady };
+        let bottom = config.bottom_mm.map_or(f64::NEG_INFINITY, |height| height * MM);
+        let mut plan = Self { bodies, parts, substances, pairs, works, gravity, bottom, duration, accuracy, is_steady };
         plan.check_shapes()?;
         let plan = Self { is_steady: plan.is_steady(), ..plan };
         Ok((plan, collector))
@@ -199,8 +205,8 @@ impl Plan {
             laws: self.laws(numbers)?,
             gravity: DVec3::new(0.0, 0.0, -self.gravity),
             accuracy: self.accuracy,
-            skin: 0.5,
-            sink: f64::NEG_INFINITY,
+            skin: SKIN,
+            sink: self.bottom,
             duration: self.duration,
         };
         let mut rigid = Rigid::new(world)?;
