@@ -121,7 +121,10 @@ fn main() -> Result<()> {
     let built = begin.elapsed().as_secs_f64();
     let draw = scene.start(&mut Seed(1).chain(0).at(0, Purpose::START));
     scene.simulate(&draw, None, LogPotential::ZERO, &mut AnyScratch::default())?;
-    println!("1,000 bodies: read and built in {built:.3} s; with a first simulation {:.3} s", begin.elapsed().as_secs_f64());
+    println!(
+        "1,000 bodies: read and built in {built:.3} s; with a first simulation {:.3} s",
+        begin.elapsed().as_secs_f64()
+    );
     let mut text = String::from("[world.custom]\n");
     (0..20_000).for_each(|k| _ = writeln!(text, "durations_{k} = 1"));
     let begin = Instant::now();

@@ -95,6 +95,12 @@ impl Bumps {
         self.keys[usize::from(sin.abs() < cos.abs())] = stream.next_u64();
     }
 
+    /// The score of a point.
+    #[must_use]
+    pub fn score(&self, site: Site) -> f64 {
+        self.source()(site)
+    }
+
     /// The scores of its points. One in 5·10⁸ would be beyond [`LARGEST_SCORE`] and is that.
     pub(crate) fn source(&self) -> impl Fn(Site) -> f64 + Send + Sync + 'static {
         let ([a, b], (sin, cos)) = (self.keys.map(streams), math::sin_cos(self.angle));

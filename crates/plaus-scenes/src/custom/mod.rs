@@ -27,17 +27,20 @@ mod tables;
 mod values;
 mod view;
 
+pub use crate::uneven::Bumps;
 pub use amount::{Amount, Measure};
 pub use config::{Body, Config, Finish, Fixed, Material, Pair};
 pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Last, Overlap, Work};
-pub use forms::{Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Hull, Patchy, Piece, Plane, Revolution, Shape, Still, Table};
+pub use forms::{
+    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Hull, Patchy, Piece, Plane, Revolution, Shape, Still,
+    Table,
+};
 pub use from_file::{FromFile, Up};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
 pub use quantity::Quantity;
-pub use crate::uneven::Bumps;
 pub use values::Drawn;
 
 pub(crate) use corners::hull_volume;

@@ -1,10 +1,10 @@
 //! What stands still: planes, tables, solids, and meshes of files.
 
 use super::config::Fixed;
+use super::drawn::mesh;
 use super::forms::Still;
 use super::from_file::Loaded;
 use super::names::{Member, colour};
-use super::drawn::mesh;
 use super::solids::{Form, MM, opened};
 use super::substances::{Substance, substance};
 use super::tables::Uneven;
@@ -67,15 +67,7 @@ impl Standing {
         if matches!(what, What::Table(_)) && turn != [Value::Fixed(0.0); 3] {
             return Err(owner.wrong("turn_deg", "a table with bumps is level and cannot be turned: leave this out"));
         }
-        Ok(Self {
-            name: owner.name.to_owned(),
-            key: member.key.clone(),
-            look,
-            what,
-            substance,
-            at,
-            turn,
-        })
+        Ok(Self { name: owner.name.to_owned(), key: member.key.clone(), look, what, substance, at, turn })
     }
 
     /// Whether no draw changes it.
@@ -106,7 +98,8 @@ impl Standing {
     /// Refuses bodies that its bumps are too fine for: how far these reach, in m, with their names.
     pub(super) fn check_bodies(&self, bodies: &[(&str, f64)], numbers: &Numbers<'_>) -> Result<(), ConfigError> {
         let What::Table(table) = &self.what else { return Ok(()) };
-        let Some((name, least)) = bodies.iter().find_map(|(name, reach)| Some((name, table.too_fine(*reach, numbers)?)))
+        let Some((name, least)) =
+            bodies.iter().find_map(|(name, reach)| Some((name, table.too_fine(*reach, numbers)?)))
         else {
             return Ok(());
         };

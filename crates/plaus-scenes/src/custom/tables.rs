@@ -61,9 +61,7 @@ impl Uneven {
         let grid = Grid { origin: [at.x, at.y], spacing: self.spacing(numbers) };
         let bumps: &Bumps = numbers.table(self.index);
         let score = bumps.source();
-        Spline::new(name, grid, values.range(), move |i, j| {
-            values.at(score(Site { field, i: i as i32, j: j as i32 }))
-        })
+        Spline::new(name, grid, values.range(), move |i, j| values.at(score(Site { field, i: i as i32, j: j as i32 })))
     }
 
     /// Distance of control points in m.

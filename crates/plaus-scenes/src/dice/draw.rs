@@ -6,8 +6,8 @@
 //! field and the point's indices, as if it had been drawn at the start; so a draw holds only the points that moves have
 //! changed, and yet the whole table.
 
-use crate::uneven::{fresh, streams};
 pub use crate::uneven::{Field, LARGEST_SCORE, Site};
+use crate::uneven::{fresh, streams};
 use glam::{DQuat, DVec3};
 use plaus_dist::Stream;
 use plaus_dist::stream::ChainStreams;
