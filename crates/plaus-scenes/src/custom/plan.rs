@@ -46,6 +46,8 @@ pub(super) struct Moving {
     pub(super) key: String,
     pub(super) look: Look,
     form: Form,
+    /// Its shape where no draw changes it.
+    kept: Option<Made>,
     substance: usize,
     at: Values,
     turn: Turned,
@@ -159,16 +161,17 @@ impl Plan {
         &self.bodies[..self.bodies.partition_point(|body| body.way.is_none())]
     }
 
-    /// Blames shapes that are none on their keys, and makes meshes that no draw changes.
+    /// Blames shapes that are none on their keys, and keeps those that no draw changes.
     fn check_shapes(&mut self) -> Result<(), ConfigError> {
         let numbers = self.works.numbers(None);
         let wrong = |key: &str, error: WorldError| ConfigError::new(format!("{key}.shape"), error);
         let mut reaches = Vec::new();
-        for body in &self.bodies {
+        for body in &mut self.bodies {
             let made = body.form.make(&numbers).map_err(|error| wrong(&body.key, error))?;
             if !body.is_ball() {
-                reaches.push((body.name.as_str(), made.solid.reach()));
+                reaches.push((body.name.clone(), made.solid.reach()));
             }
+            body.kept = Some(made).filter(|_| body.form.is_fixed());
         }
         for part in &mut self.parts {
             part.check(&numbers).map_err(|error| wrong(&part.key, error))?;
@@ -194,7 +197,7 @@ impl Plan {
 
     /// The simulator's world of a draw.
     pub(super) fn build(&self, numbers: &Numbers<'_>) -> Result<Built, WorldError> {
-        let shapes = self.bodies.iter().map(|body| body.form.make(numbers)).collect::<Result<Vec<_>, _>>()?;
+        let shapes = self.bodies.iter().map(|body| body.made(numbers)).collect::<Result<Vec<_>, _>>()?;
         let spec = |(body, made): (&Moving, &Made)| {
             let density = self.substances[body.substance].density.of(numbers);
             BodySpec::solid(made.solid.clone(), density, Kind(body.substance as u16))
@@ -302,6 +305,7 @@ impl Moving {
             key: member.key.clone(),
             look,
             form,
+            kept: None,
             substance,
             at,
             turn,
@@ -328,8 +332,12 @@ impl Moving {
         let (at, turn) = way.first();
         let [velocity, spin] = [[Value::Fixed(0.0); 3]; 2];
         let (name, key, turn) = (owner.name.to_owned(), member.key.clone(), Turned::Angles(turn));
-        let (release, acting) = (Value::Fixed(0.0), Acting::default());
-        Ok(Self { name, key, look, form, substance, at, turn, velocity, spin, release, acting, way: Some(way) })
+        let (release, acting, kept) = (Value::Fixed(0.0), Acting::default(), None);
+        Ok(Self { name, key, look, form, kept, substance, at, turn, velocity, spin, release, acting, way: Some(way) })
+    }
+
+    fn made(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {
+        self.kept.clone().map_or_else(|| self.form.make(numbers), Ok)
     }
 
     /// Whether it is the same for all draws, but for how it starts.

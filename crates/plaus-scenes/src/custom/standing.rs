@@ -96,7 +96,7 @@ impl Standing {
     }
 
     /// Refuses bodies that its bumps are too fine for: how far these reach, in m, with their names.
-    pub(super) fn check_bodies(&self, bodies: &[(&str, f64)], numbers: &Numbers<'_>) -> Result<(), ConfigError> {
+    pub(super) fn check_bodies(&self, bodies: &[(String, f64)], numbers: &Numbers<'_>) -> Result<(), ConfigError> {
         let What::Table(table) = &self.what else { return Ok(()) };
         let Some((name, least)) =
             bodies.iter().find_map(|(name, reach)| Some((name, table.too_fine(*reach, numbers)?)))
