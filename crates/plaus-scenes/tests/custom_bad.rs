@@ -59,13 +59,13 @@ const CASES: &[(&str, &str, &[&str])] = &[
     ),
     (
         "[[world.custom.fixed]]\nname = 't'\nshape = { table = { bumps_mm = { normal = [1, 1] }, spacing_mm = 8 } }",
-        "{ normal",
+        "bumps_mm = { normal",
         &["bumps_mm", "at least 0"],
     ),
     (
         "[[world.custom.fixed]]\nname = 't'\n\
          shape = { table = { bumps_mm = 1, spacing_mm = 8, restitution = { mean = 0.9, sd = 0.2 } } }",
-        "{ mean",
+        "restitution = { mean",
         &["table.restitution", "from 0 to 1", "cut off"],
     ),
     (
