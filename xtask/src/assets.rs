@@ -31,7 +31,7 @@ const PROFILE: [[f64; 2]; 10] = [
 ];
 
 /// Cosines of a sixteenth of a turn and its multiples, up to a quarter: the same digits on every machine.
-const COSINES: [f64; 5] = [1.0, 0.923_879_5, 0.707_106_8, 0.382_683_4, 0.0];
+const COSINES: [f64; 5] = [1.0, 0.923_879_5, std::f64::consts::FRAC_1_SQRT_2, 0.382_683_4, 0.0];
 
 /// Corners around the bowl.
 const AROUND_BOWL: u32 = 16;
@@ -60,8 +60,11 @@ const CRACKS: [[[f64; 2]; 4]; 3] = [
 const THICK: f64 = 9.0;
 const LEFT: f64 = 0.97;
 
+/// Makes the text of a file.
+type Make = fn() -> String;
+
 /// The files that worlds name, with what makes each.
-const ALL: [(&str, fn() -> String); 3] = [("spiral.obj", spiral), ("bowl.obj", bowl), ("slab.obj", slab)];
+const ALL: [(&str, Make); 3] = [("spiral.obj", spiral), ("bowl.obj", bowl), ("slab.obj", slab)];
 
 /// Writes all shapes anew.
 pub(crate) fn write() -> Result<(), Failure> {

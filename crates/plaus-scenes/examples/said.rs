@@ -4,7 +4,8 @@
 //!
 //!     cargo run --release -p plaus-scenes --example said -- [DRAWS]
 //!
-//! What a file cannot say: when a shot at pins is decided, and can end (so shots of both are also made to their ends), and the bowls in the bins' floors and their uneven partitions (its floors are flat).
+//! What a file cannot say: when a shot at pins is decided, and can end (so shots of both are also made to their ends);
+//! and the bowls in the bins' floors and their uneven partitions (its floors are flat).
 
 #![allow(clippy::disallowed_methods, reason = "a measurement needs a clock")]
 #![allow(clippy::print_stdout, reason = "it is run to be read")]

@@ -301,7 +301,7 @@ pub struct Body {
     /// Colour as on the web, `#c04030`. Unset: the material's.
     #[serde(default)]
     pub colour: String,
-    /// Where its middle starts. For a hull, the origin of its points; for a solid of revolution, the middle of its foot.
+    /// Where its middle starts. For a hull, the origin of its points; for a solid of revolution, its foot's middle.
     #[serde(default)]
     pub at_mm: [Amount<amount::Place>; 3],
     /// How it is turned at the start: about the world's x axis, then about y, then about z.
