@@ -30,12 +30,115 @@ const PROFILE: [[f64; 2]; 10] = [
     [23.0, 14.0],
 ];
 
+/// Cosines of a sixteenth of a turn and its multiples, up to a quarter: the same digits on every machine.
+const COSINES: [f64; 5] = [1.0, 0.923_879_5, std::f64::consts::FRAC_1_SQRT_2, 0.382_683_4, 0.0];
+
+/// Corners around the bowl.
+const AROUND_BOWL: u32 = 16;
+
+/// The bowl's outside from its foot up, then its inside down again: outwards from its axis and up, in mm.
+const BOWL: [[f64; 2]; 9] = [
+    [50.0, 0.0],
+    [95.0, 22.0],
+    [125.0, 60.0],
+    [135.0, 110.0],
+    [127.0, 110.0],
+    [117.0, 63.0],
+    [90.0, 29.0],
+    [50.0, 11.0],
+    [20.0, 7.0],
+];
+
+/// Corners of the cracks in the slab, in mm: a grid of four by three, of which none but the slab's own lie straight.
+const CRACKS: [[[f64; 2]; 4]; 3] = [
+    [[-90.0, -60.0], [-38.0, -60.0], [26.0, -60.0], [90.0, -60.0]],
+    [[-90.0, 8.0], [-22.0, -14.0], [34.0, 12.0], [90.0, -9.0]],
+    [[-90.0, 60.0], [-41.0, 60.0], [18.0, 60.0], [90.0, 60.0]],
+];
+
+/// Half the slab's thickness in mm, and which part of each shard is left: the cracks are open.
+const THICK: f64 = 9.0;
+const LEFT: f64 = 0.97;
+
+/// Makes the text of a file.
+type Make = fn() -> String;
+
+/// The files that worlds name, with what makes each.
+const ALL: [(&str, Make); 3] = [("spiral.obj", spiral), ("bowl.obj", bowl), ("slab.obj", slab)];
+
 /// Writes all shapes anew.
 pub(crate) fn write() -> Result<(), Failure> {
-    let path = root().join("scenarios/worlds/spiral.obj");
-    std::fs::write(&path, spiral()).map_err(Failure::new)?;
-    println!("wrote {}", path.display());
+    for (name, make) in ALL {
+        let path = root().join("scenarios/worlds").join(name);
+        std::fs::write(&path, make()).map_err(Failure::new)?;
+        println!("wrote {}", path.display());
+    }
     Ok(())
+}
+
+/// A bowl on its foot, as an OBJ in mm with z up: closed, its faces outwards.
+fn bowl() -> String {
+    let mut text = String::from("# A bowl, made by `cargo xtask assets`: mm, z up.\no bowl\n");
+    let cosine = |k: u32| {
+        let k = k % AROUND_BOWL;
+        let k = k.min(AROUND_BOWL - k) as usize;
+        if k <= 4 { COSINES[k] } else { -COSINES[8 - k] }
+    };
+    for [out, up] in BOWL {
+        for k in 0..AROUND_BOWL {
+            let _ = writeln!(text, "v {:.3} {:.3} {:.3}", out * cosine(k), out * cosine(k + 12), up);
+        }
+    }
+    let [foot, last] = [BOWL[0], BOWL[BOWL.len() - 1]];
+    let _ = writeln!(text, "v 0 0 {:.3}\nv 0 0 {:.3}", foot[1], last[1] - 1.0);
+    let rows = BOWL.len() as u32;
+    let at = |row: u32, k: u32| row * AROUND_BOWL + k % AROUND_BOWL + 1;
+    let (under, ground) = (rows * AROUND_BOWL + 1, rows * AROUND_BOWL + 2);
+    let mut face = |corners: [u32; 3]| _ = writeln!(text, "f {} {} {}", corners[0], corners[1], corners[2]);
+    for k in 0..AROUND_BOWL {
+        for row in 0..rows - 1 {
+            let [a, b, c, d] = [at(row, k), at(row, k + 1), at(row + 1, k + 1), at(row + 1, k)];
+            face([a, b, c]);
+            face([a, c, d]);
+        }
+        face([under, at(0, k + 1), at(0, k)]);
+        face([ground, at(rows - 1, k), at(rows - 1, k + 1)]);
+    }
+    text
+}
+
+/// A slab in shards with open cracks, as an OBJ in mm with z up: each shard an object of its own.
+fn slab() -> String {
+    let mut text = String::from("# A broken slab, made by `cargo xtask assets`: mm, z up.\n");
+    let cell = |i: usize, j: usize| vec![CRACKS[j][i], CRACKS[j][i + 1], CRACKS[j + 1][i + 1], CRACKS[j + 1][i]];
+    let mut shards: Vec<Vec<[f64; 2]>> = (0..6).map(|k| cell(k % 3, k / 3)).collect();
+    // One of them is broken once more, from corner to corner.
+    let [a, b, c, d] = [shards[4][0], shards[4][1], shards[4][2], shards[4][3]];
+    shards[4] = vec![a, b, c];
+    shards.push(vec![a, c, d]);
+    let mut before = 0;
+    for (index, shard) in shards.iter().enumerate() {
+        let _ = writeln!(text, "o shard_{}", index + 1);
+        let n = shard.len();
+        let middle = [0, 1].map(|axis| shard.iter().map(|corner| corner[axis]).sum::<f64>() / n as f64);
+        for up in [-THICK, THICK] {
+            for corner in shard {
+                let [x, y] = [0, 1].map(|axis| middle[axis] + LEFT * (corner[axis] - middle[axis]));
+                let _ = writeln!(text, "v {x:.3} {y:.3} {up:.3}");
+            }
+        }
+        let at = |k: usize, up: usize| before + up * n + k % n + 1;
+        for k in 1..n - 1 {
+            let _ = writeln!(text, "f {} {} {}", at(0, 1), at(k, 1), at(k + 1, 1));
+            let _ = writeln!(text, "f {} {} {}", at(0, 0), at(k + 1, 0), at(k, 0));
+        }
+        for k in 0..n {
+            let [a, b, c, d] = [at(k, 0), at(k + 1, 0), at(k + 1, 1), at(k, 1)];
+            let _ = writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}");
+        }
+        before += 2 * n;
+    }
+    text
 }
 
 /// A gutter in a spiral, as an OBJ in mm with z up: closed, its faces outwards.
@@ -83,14 +186,19 @@ mod tests {
 
     #[test]
     fn shapes_in_the_folder_are_those_that_are_made() {
-        let there = std::fs::read_to_string(root().join("scenarios/worlds/spiral.obj")).unwrap_or_default();
-        assert!(there == spiral(), "scenarios/worlds/spiral.obj is another: `cargo xtask assets` makes it");
+        for (name, make) in ALL {
+            let there = std::fs::read_to_string(root().join("scenarios/worlds").join(name)).unwrap_or_default();
+            assert!(there == make(), "scenarios/worlds/{name} is another: `cargo xtask assets` makes it");
+        }
     }
 
     /// Closed: each edge is gone along once in each direction. Outwards: the volume is positive.
     #[test]
-    fn the_spiral_is_closed_and_faces_outwards() {
-        let text = spiral();
+    fn shapes_are_closed_and_face_outwards() {
+        ALL.iter().for_each(|(_, make)| is_closed(&make()));
+    }
+
+    fn is_closed(text: &str) {
         let numbers =
             |line: &str| -> Vec<f64> { line.split(' ').skip(1).filter_map(|word| word.parse().ok()).collect() };
         let corners: Vec<Vec<f64>> = text.lines().filter(|line| line.starts_with("v ")).map(numbers).collect();

@@ -165,6 +165,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         block: 1_000,
         solutions: None,
         rungs: 1,
+        adapt_rungs: false,
         swap_every: 1,
         adapt: false,
         weigh: false,

@@ -15,12 +15,13 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Draws of the prior that are looked at.
+/// Draws of the prior that are looked at, and after how many seconds no more of them are.
 const DRAWS: u64 = 200;
+const LOOKS: f64 = 15.0;
 /// Solutions that are waited for.
 const WANTED: usize = 10;
-/// Seconds after which a file is given up.
-const PATIENCE: f64 = 60.0;
+/// Seconds after which a file is given up: on one core, of which the goals for two cores are half and less.
+const PATIENCE: f64 = 180.0;
 
 struct Look {
     seed: u64,
@@ -30,13 +31,13 @@ struct Look {
 impl Look {
     fn at(&self, scene: &Stage) -> String {
         let begin = Instant::now();
-        let tally = match Tally::of_prior(scene, self.seed, DRAWS, |_| true) {
+        let tally = match Tally::of_prior(scene, self.seed, DRAWS, |_| begin.elapsed().as_secs_f64() < LOOKS) {
             Ok(tally) => tally,
             Err(error) => return error.to_string(),
         };
-        let each = begin.elapsed().as_secs_f64() / DRAWS as f64;
+        let each = begin.elapsed().as_secs_f64() / tally.states as f64;
         let free = tally.clauses.first().map_or(0, |clause| clause.met);
-        let prior = format!("{:.2} ms a draw, {free} of {DRAWS} free, {} meet all", each * 1e3, tally.all);
+        let prior = format!("{:.2} ms a draw, {free} of {} free, {} meet all", each * 1e3, tally.states, tally.all);
         let rules = plaus_scenes::Rules::default();
         let moves: Mixture<Stage> = match scene.moves(&rules) {
             Ok(moves) => moves,

@@ -41,6 +41,7 @@ pub mod scene;
 pub mod spelling;
 mod touch;
 mod turns;
+mod uneven;
 mod way;
 pub mod world;
 

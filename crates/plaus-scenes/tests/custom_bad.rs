@@ -52,6 +52,34 @@ const CASES: &[(&str, &str, &[&str])] = &[
         "[0, 0, 100]",
         &["bodies[0].at_mm", "begin inside each other", "\"ball\" begins 10.000 mm inside \"b\""],
     ),
+    (
+        "[[world.custom.fixed]]\nname = 't'\nshape = { table = { bumps_mm = 1, spacing_mm = 8 } }\nturn_deg = [0, 9, 0]",
+        "[0, 9, 0]",
+        &["fixed[0].turn_deg", "level", "cannot be turned"],
+    ),
+    (
+        "[[world.custom.fixed]]\nname = 't'\nshape = { table = { bumps_mm = { normal = [1, 1] }, spacing_mm = 8 } }",
+        "bumps_mm = { normal",
+        &["bumps_mm", "at least 0"],
+    ),
+    (
+        "[[world.custom.fixed]]\nname = 't'\n\
+         shape = { table = { bumps_mm = 1, spacing_mm = 8, restitution = { mean = 0.9, sd = 0.2 } } }",
+        "restitution = { mean",
+        &["table.restitution", "from 0 to 1", "cut off"],
+    ),
+    (
+        "[[world.custom.fixed]]\nname = 't'\nshape = { table = { bumps_mm = 0.1, spacing_mm = 0.5 } }\n\
+         [[world.custom.bodies]]\nname = 'b'\nshape = { box = { size_mm = [30, 30, 30] } }\nat_mm = [200, 0, 99]",
+        "0.5 }",
+        &["spacing_mm", "too fine for a body as large as \"b\"", "1.299 mm"],
+    ),
+    (
+        "[[world.custom.bodies]]\nname = 'b'\nat_mm = [200, 0, 0]\nshape = { revolution = { foot_mm = 9, rim_mm = 1, \
+         outline_mm = [[5, 9], [20, 12], [30, 8]], top_mm = 33 } }",
+        "shape",
+        &["bodies[1].shape", "top", "rises from a foot to a cap"],
+    ),
     ("velocity_m_s = ['2 * ', 0, 0]", "'2 * '", &["velocity_m_s[0]", "cannot be read as arithmetic"]),
     ("velocity_m_s = ['i * 2', 0, 0]", "'i * 2'", &["\"i\" counts in arrays", "`count`"]),
     ("release_s = '1 - 3'", "'1 - 3'", &["its value is -2", "from 0 to 10000"]),

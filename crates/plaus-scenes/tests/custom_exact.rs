@@ -7,6 +7,7 @@ use plaus_dist::{Purpose, Seed};
 use plaus_mcmc::check::{OneStep, PriorOnly, Statistic, one_step, prior};
 use plaus_mcmc::view::lend;
 use plaus_mcmc::{Chain, ModelError, Move, Path, Proposal, State, StateOf, StateRefOf, Target, Variables};
+use plaus_scenes::dice::{Field, Site};
 use plaus_scenes::{AnyScratch, Rules, Scenario, Scene, Stage, World, custom::Custom};
 use std::sync::Arc;
 
@@ -92,6 +93,13 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 0, 200]\nvelocity_m_s = [1, 0, 0]\ngravity_scale = { uniform = [-0.5, 1] }\n\
          damping = { uniform = [0, 3] }\nforce_n = [0, { normal = [0, 0.3] }, 0]",
         "passes = { x_mm = 300, y_mm = 60, z_mm = 150, within_mm = 30, scale_mm = 60 }",
+    ],
+    // A table whose bumps and friction are random: they alone say where the ball goes.
+    [
+        "duration_s = 0.45\n[[world.custom.fixed]]\nname = 'table'\nat_mm = [0, 0, { normal = [0, 5] }]\n\
+         shape = { table = { bumps_mm = 3, spacing_mm = 30, friction = { mean = 0.4, sd = 0.1 } } }",
+        "at_mm = [0, 0, 250]",
+        "inside = { x_mm = [40, 300], how = 'at_end', scale_mm = 30 }",
     ],
     // The hull of a file falls onto the triangles of another; where these are, and how large both are, is uncertain.
     [
@@ -271,6 +279,9 @@ name = 'brick'
 shape = { box = { size_mm = [10, 20, 30] } }
 any_turn = true
 at_mm = [1000, 0, 500]
+[[world.custom.fixed]]
+name = 'table'
+shape = { table = { bumps_mm = 2, spacing_mm = 20 } }
 ";
 
 fn every_law() -> Custom {
@@ -279,12 +290,15 @@ fn every_law() -> Custom {
     Custom::new(&config).unwrap()
 }
 
-/// Statistics of all variables, and of which way the brick's third axis points.
+/// Statistics of all variables: of the brick's turn which way its third axis points, of the table a point's score.
 fn statistics<'a>(world: &'a Custom) -> Vec<Statistic<'a, <Custom as Target>::Draw, <Custom as Target>::Outcome>> {
     let mut all = Vec::new();
+    let turn = world.vars().iter().position(|var| var.name == "brick.turn").unwrap_or(usize::MAX);
     for (index, var) in world.vars().iter().enumerate() {
-        let value = move |state: &StateOf<Custom>| {
-            world.get(&state.draw, index).map_or_else(|| (state.draw.turns[0] * glam::DVec3::Z).z, |values| values[0])
+        let value = move |state: &StateOf<Custom>| match world.get(&state.draw, index) {
+            Some(values) => values[0],
+            None if index == turn => (state.draw.turns[0] * glam::DVec3::Z).z,
+            None => state.draw.tables[0].score(Site { field: Field::Height, i: 1, j: -2 }),
         };
         all.push(Statistic::new(var.name.clone(), value));
     }

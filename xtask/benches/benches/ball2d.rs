@@ -46,6 +46,7 @@ fn sample(scene: &Ball2d, moves: &Mixture<Ball2d>) {
         block: 20_000,
         solutions: None,
         rungs: 1,
+        adapt_rungs: false,
         swap_every: 1,
         adapt: false,
         weigh: false,

@@ -33,6 +33,10 @@ pub struct Config {
     /// Gravity, straight down.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1000.0, "x-unit" = "m/s²"))]
     pub gravity: f64,
+    /// A body that touches something below this height is gone: it stays where it is, and touches nothing any more.
+    /// That saves the time of simulating what has fallen off. Unset: no body is ever gone.
+    #[schemars(extend("minimum" = -1e6, "maximum" = 1e6, "x-unit" = "mm", "x-example" = -500.0))]
+    pub bottom_mm: Option<f64>,
     /// Two solutions are the same if every body ends in the same cell of this width, with the same of its axes
     /// uppermost, and if the same things met for the first time in the same order.
     #[schemars(extend("minimum" = 1e-3, "maximum" = 1e6, "x-unit" = "mm"))]
@@ -66,6 +70,7 @@ impl Default for Config {
             duration_s: 10.0,
             accuracy: AccuracyPreset::default(),
             gravity: 9.806_65,
+            bottom_mm: None,
             distinct_mm: 50.0,
             materials: Vec::new(),
             pairs: Vec::new(),
@@ -296,7 +301,7 @@ pub struct Body {
     /// Colour as on the web, `#c04030`. Unset: the material's.
     #[serde(default)]
     pub colour: String,
-    /// Where its middle starts. For a hull, the origin of its points.
+    /// Where its middle starts. For a hull, the origin of its points; for a solid of revolution, its foot's middle.
     #[serde(default)]
     pub at_mm: [Amount<amount::Place>; 3],
     /// How it is turned at the start: about the world's x axis, then about y, then about z.

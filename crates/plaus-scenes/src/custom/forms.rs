@@ -22,6 +22,8 @@ pub enum Shape {
     Capsule(Capsule),
     /// The convex hull of points.
     Hull(Hull),
+    /// A solid of revolution about its z axis: a pin, a chess piece.
+    Revolution(Revolution),
     /// Several shapes joined into one body.
     Compound(Compound),
     /// The convex hull of the triangles in a file: hollows are filled.
@@ -54,6 +56,8 @@ pub enum Convex {
 pub enum Still {
     /// A plane: everything below it, seen along its z axis, is solid.
     Plane(Plane),
+    /// A level table with random bumps; like a plane, it has no edges.
+    Table(Table),
     /// A ball.
     Ball(Ball),
     /// A box.
@@ -78,6 +82,37 @@ pub enum Still {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Plane {}
+
+/// A level table with random bumps: its height is a smooth curve (a uniform cubic b-spline) through random control
+/// points on a square grid, whose origin is at `at_mm`. All points of all properties are independent of each other.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// Standard deviation of a control point's height about that of `at_mm`. Heights beyond six of them count as six.
+    pub bumps_mm: Amount<Rounding>,
+    /// Distance between neighbouring control points.
+    pub spacing_mm: Amount<Length>,
+    /// Coulomb's coefficient of friction between the table and whatever touches it. Unset: it follows from the
+    /// materials.
+    #[serde(default)]
+    pub friction: Option<Patchy>,
+    /// Restitution between the table and whatever hits it. Unset: it follows from the materials.
+    #[serde(default)]
+    pub restitution: Option<Patchy>,
+}
+
+/// A coefficient that differs from place to place: a curve through random control points on the same grid as the
+/// bumps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Patchy {
+    /// Mean of a control point's normal law, before the law is cut off where the coefficient can have no values.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub mean: f64,
+    /// Standard deviation of that law. At most a twentieth of it may be cut off.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub sd: f64,
+}
 
 /// A ball.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -138,6 +173,22 @@ pub struct Hull {
     /// How far the body reaches beyond the hull, on all sides; 0 is sharp.
     #[serde(default)]
     pub rounding_mm: Amount<Rounding>,
+}
+
+/// A solid of revolution: a flat foot with a rounded rim, a smooth curve through the points of its outline, and a top
+/// that is part of a ball.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Revolution {
+    /// Radius of the foot's flat.
+    pub foot_mm: Amount<Length>,
+    /// Rounding of the foot's rim.
+    pub rim_mm: Amount<Length>,
+    /// Heights above the foot and radii there, from low to high. The top's ball has the last radius.
+    #[schemars(length(min = 3, max = 100))]
+    pub outline_mm: Vec<[Amount<Length>; 2]>,
+    /// Height of the top.
+    pub top_mm: Amount<Length>,
 }
 
 /// Several shapes joined into one body.
@@ -208,6 +259,7 @@ impl Shape {
             Self::Cone(_) => "cone",
             Self::Capsule(_) => "capsule",
             Self::Hull(_) => "hull",
+            Self::Revolution(_) => "revolution",
             Self::Compound(_) => "compound",
             Self::HullOf(_) => "hull_of",
         }
@@ -224,10 +276,10 @@ impl Shape {
 }
 
 impl Still {
-    /// The solid; `None` for a plane or a mesh.
+    /// The solid; `None` for a plane, a table or a mesh.
     pub(super) fn solid(&self) -> Option<Shape> {
         Some(match self.clone() {
-            Self::Plane(_) | Self::Mesh(_) => return None,
+            Self::Plane(_) | Self::Table(_) | Self::Mesh(_) => return None,
             Self::Ball(form) => Shape::Ball(form),
             Self::Box(form) => Shape::Box(form),
             Self::Cylinder(form) => Shape::Cylinder(form),

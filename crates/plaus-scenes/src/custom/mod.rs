@@ -7,6 +7,7 @@ mod animate;
 mod config;
 mod corners;
 mod domain;
+mod drawn;
 mod driven;
 mod flight;
 mod forms;
@@ -22,15 +23,20 @@ mod range;
 mod solids;
 mod standing;
 mod substances;
+mod tables;
 mod values;
 mod view;
 
+pub use crate::uneven::Bumps;
 pub use amount::{Amount, Measure};
 pub use config::{Body, Config, Finish, Fixed, Material, Pair};
 pub use domain::Domain;
 pub use driven::{At, Driven, Going};
 pub use flight::{Done, Ending, Last, Overlap, Work};
-pub use forms::{Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Hull, Piece, Plane, Shape, Still};
+pub use forms::{
+    Ball, Capsule, Compound, Cone, Convex, Cuboid, Cylinder, Hull, Patchy, Piece, Plane, Revolution, Shape, Still,
+    Table,
+};
 pub use from_file::{FromFile, Up};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
@@ -185,26 +191,30 @@ impl Variables for Custom {
     fn get<'a>(&self, draw: &'a Drawn, var: usize) -> Option<&'a [f64]> {
         match self.slots.get(var)? {
             Slot::Number(index) => draw.numbers.get(*index).map(std::slice::from_ref),
-            Slot::Turn(_) => None,
+            Slot::Turn(_) | Slot::Table(_) => None,
         }
     }
 
     fn get_mut<'a>(&self, draw: &'a mut Drawn, var: usize) -> Option<&'a mut [f64]> {
         match self.slots.get(var)? {
             Slot::Number(index) => draw.numbers.get_mut(*index).map(std::slice::from_mut),
-            Slot::Turn(_) => None,
+            Slot::Turn(_) | Slot::Table(_) => None,
         }
     }
 
     fn renew_own(&self, draw: &mut Drawn, var: usize, stream: &mut Stream) {
-        if let Some(Slot::Turn(index)) = self.slots.get(var) {
-            draw.turns[*index] = any_orientation(stream);
+        match self.slots.get(var) {
+            Some(Slot::Turn(index)) => draw.turns[*index] = any_orientation(stream),
+            Some(Slot::Table(index)) => draw.tables[*index].renew(stream),
+            Some(Slot::Number(_)) | None => {}
         }
     }
 
     fn step_own(&self, draw: &mut Drawn, var: usize, size: f64, stream: &mut Stream) {
-        if let Some(Slot::Turn(index)) = self.slots.get(var) {
-            draw.turns[*index] = turned_a_little(draw.turns[*index], size, stream);
+        match self.slots.get(var) {
+            Some(Slot::Turn(index)) => draw.turns[*index] = turned_a_little(draw.turns[*index], size, stream),
+            Some(Slot::Table(index)) => draw.tables[*index].step(size, stream),
+            Some(Slot::Number(_)) | None => {}
         }
     }
 }

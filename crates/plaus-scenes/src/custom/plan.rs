@@ -17,6 +17,9 @@ use plaus_sim::rigid::{BodySpec, Rigid, RigidWorld, Start};
 use plaus_sim::{Accuracy, WorldError};
 use std::collections::BTreeSet;
 
+/// Distance between points of a body's skin over a table, over the table's spacing: as for dice.
+const SKIN: f64 = 1.0;
+
 /// All of it.
 #[derive(Debug, Clone)]
 pub(super) struct Plan {
@@ -27,6 +30,8 @@ pub(super) struct Plan {
     pairs: Vec<([usize; 2], [Option<Value>; 4])>,
     pub(super) works: Works,
     gravity: f64,
+    /// Below which height in m bodies are gone.
+    bottom: f64,
     pub(super) duration: f64,
     pub(super) accuracy: Accuracy,
     /// Whether the world is the same for all draws, but for how its bodies start.
@@ -41,6 +46,8 @@ pub(super) struct Moving {
     pub(super) key: String,
     pub(super) look: Look,
     form: Form,
+    /// Its shape where no draw changes it.
+    kept: Option<Made>,
     substance: usize,
     at: Values,
     turn: Turned,
@@ -99,7 +106,8 @@ impl Plan {
         }
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
         let (works, is_steady) = (collector.works(), false);
-        let mut plan = Self { bodies, parts, substances, pairs, works, gravity, duration, accuracy, is_steady };
+        let bottom = config.bottom_mm.map_or(f64::NEG_INFINITY, |height| height * MM);
+        let mut plan = Self { bodies, parts, substances, pairs, works, gravity, bottom, duration, accuracy, is_steady };
         plan.check_shapes()?;
         let plan = Self { is_steady: plan.is_steady(), ..plan };
         Ok((plan, collector))
@@ -153,15 +161,21 @@ impl Plan {
         &self.bodies[..self.bodies.partition_point(|body| body.way.is_none())]
     }
 
-    /// Blames shapes that are none on their keys, and makes meshes that no draw changes.
+    /// Blames shapes that are none on their keys, and keeps those that no draw changes.
     fn check_shapes(&mut self) -> Result<(), ConfigError> {
         let numbers = self.works.numbers(None);
         let wrong = |key: &str, error: WorldError| ConfigError::new(format!("{key}.shape"), error);
-        for body in &self.bodies {
-            body.form.make(&numbers).map_err(|error| wrong(&body.key, error))?;
+        let mut reaches = Vec::new();
+        for body in &mut self.bodies {
+            let made = body.form.make(&numbers).map_err(|error| wrong(&body.key, error))?;
+            if !body.is_ball() {
+                reaches.push((body.name.clone(), made.solid.reach()));
+            }
+            body.kept = Some(made).filter(|_| body.form.is_fixed());
         }
         for part in &mut self.parts {
             part.check(&numbers).map_err(|error| wrong(&part.key, error))?;
+            part.check_bodies(&reaches, &numbers)?;
         }
         Ok(())
     }
@@ -183,7 +197,7 @@ impl Plan {
 
     /// The simulator's world of a draw.
     pub(super) fn build(&self, numbers: &Numbers<'_>) -> Result<Built, WorldError> {
-        let shapes = self.bodies.iter().map(|body| body.form.make(numbers)).collect::<Result<Vec<_>, _>>()?;
+        let shapes = self.bodies.iter().map(|body| body.made(numbers)).collect::<Result<Vec<_>, _>>()?;
         let spec = |(body, made): (&Moving, &Made)| {
             let density = self.substances[body.substance].density.of(numbers);
             BodySpec::solid(made.solid.clone(), density, Kind(body.substance as u16))
@@ -194,8 +208,8 @@ impl Plan {
             laws: self.laws(numbers)?,
             gravity: DVec3::new(0.0, 0.0, -self.gravity),
             accuracy: self.accuracy,
-            skin: 0.5,
-            sink: f64::NEG_INFINITY,
+            skin: SKIN,
+            sink: self.bottom,
             duration: self.duration,
         };
         let mut rigid = Rigid::new(world)?;
@@ -291,6 +305,7 @@ impl Moving {
             key: member.key.clone(),
             look,
             form,
+            kept: None,
             substance,
             at,
             turn,
@@ -317,8 +332,12 @@ impl Moving {
         let (at, turn) = way.first();
         let [velocity, spin] = [[Value::Fixed(0.0); 3]; 2];
         let (name, key, turn) = (owner.name.to_owned(), member.key.clone(), Turned::Angles(turn));
-        let (release, acting) = (Value::Fixed(0.0), Acting::default());
-        Ok(Self { name, key, look, form, substance, at, turn, velocity, spin, release, acting, way: Some(way) })
+        let (release, acting, kept) = (Value::Fixed(0.0), Acting::default(), None);
+        Ok(Self { name, key, look, form, kept, substance, at, turn, velocity, spin, release, acting, way: Some(way) })
+    }
+
+    fn made(&self, numbers: &Numbers<'_>) -> Result<Made, WorldError> {
+        self.kept.clone().map_or_else(|| self.form.make(numbers), Ok)
     }
 
     /// Whether it is the same for all draws, but for how it starts.

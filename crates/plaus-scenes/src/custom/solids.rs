@@ -1,5 +1,6 @@
 //! Shapes of a draw: for the simulator, and as they are drawn.
 
+use super::drawn::{mesh, profile};
 use super::forms::{self, Shape};
 use super::from_file::{FromFile, Loaded};
 use super::values::{Collector, Numbers, Owner, Value, Values, vector};
@@ -7,18 +8,17 @@ use crate::animation;
 use crate::scene::ConfigError;
 use crate::turns::by_angles;
 use glam::{DQuat, DVec3};
-use plaus_dist::math;
 use plaus_sim::WorldError;
-use plaus_sim::shape::{Compound, Convex, ConvexHull, Cuboid, Frustum, Member, Shape as Solid};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use plaus_sim::shape::{Compound, Convex, ConvexHull, Cuboid, Frustum, Member, Profile, Revolution, Shape as Solid};
 use std::sync::Arc;
 
 /// Metres of a millimetre.
 pub(super) const MM: f64 = 1e-3;
-/// Points of a drawn quarter circle.
-const ARC: usize = 8;
-/// Corners of a drawn circle.
-const ROUND: u32 = 48;
+/// Points of the drawn outline of a solid of revolution.
+const OUTLINE: usize = 40;
+/// Balls and rings that the simulator makes the skin of a solid of revolution of: between two of them it lies too deep
+/// by a few hundredths of a millimetre for a bowling pin.
+const STATIONS: usize = 40;
 
 /// A shape with its numbers as values.
 #[derive(Debug, Clone)]
@@ -29,6 +29,8 @@ pub(super) enum Form {
     Cone(Value, Value),
     Capsule(Value, Value),
     Hull(Vec<Values>, Value),
+    /// Radius of the foot's flat, rounding of its rim, heights and radii, and the height of the top.
+    Revolution([Value; 2], Vec<[Value; 2]>, Value),
     Compound(Vec<Piece>),
     /// The hull of what a file holds, and how many millimetres its unit is.
     HullOf(Arc<Loaded>, Value),
@@ -101,6 +103,7 @@ impl Form {
                 let points = hull.points_mm.iter().enumerate().map(point).collect::<Result<_, _>>()?;
                 Self::Hull(points, collector.number(owner, &key("rounding_mm"), &short("rounding"), &hull.rounding_mm)?)
             }
+            Shape::Revolution(form) => Self::revolution(collector, owner, [at, prefix], form)?,
             Shape::Compound(compound) => {
                 let mut pieces = Vec::with_capacity(compound.pieces.len());
                 for (index, piece) in compound.pieces.iter().enumerate() {
@@ -115,6 +118,28 @@ impl Form {
         })
     }
 
+    fn revolution(
+        collector: &mut Collector,
+        owner: &Owner<'_>,
+        [at, prefix]: [&str; 2],
+        form: &forms::Revolution,
+    ) -> Result<Self, ConfigError> {
+        let key = |name: &str| format!("{at}.revolution.{name}");
+        let short = |name: &str| format!("{prefix}{name}");
+        let foot = collector.number(owner, &key("foot_mm"), &short("foot"), &form.foot_mm)?;
+        let rim = collector.number(owner, &key("rim_mm"), &short("rim"), &form.rim_mm)?;
+        let mut outline = Vec::with_capacity(form.outline_mm.len());
+        for (index, [height, radius]) in form.outline_mm.iter().enumerate() {
+            let at = |k: u32| key(&format!("outline_mm[{index}][{k}]"));
+            outline.push([
+                collector.number(owner, &at(0), &short(&format!("height_{index}")), height)?,
+                collector.number(owner, &at(1), &short(&format!("radius_{index}")), radius)?,
+            ]);
+        }
+        let top = collector.number(owner, &key("top_mm"), &short("top"), &form.top_mm)?;
+        Ok(Self::Revolution([foot, rim], outline, top))
+    }
+
     /// Whether no draw changes it.
     pub(super) fn is_fixed(&self) -> bool {
         match self {
@@ -122,6 +147,9 @@ impl Form {
             Self::Box(size, rounding) => size.iter().chain([rounding]).all(|value| value.is_fixed()),
             Self::Cylinder(a, b) | Self::Cone(a, b) | Self::Capsule(a, b) => a.is_fixed() && b.is_fixed(),
             Self::Hull(points, rounding) => points.iter().flatten().chain([rounding]).all(|value| value.is_fixed()),
+            Self::Revolution(foot, outline, top) => {
+                foot.iter().chain(outline.iter().flatten()).chain([top]).all(|value| value.is_fixed())
+            }
             Self::Compound(pieces) => pieces.iter().all(Piece::is_fixed),
             Self::HullOf(_, unit) => unit.is_fixed(),
         }
@@ -167,6 +195,12 @@ impl Form {
                 let points: Vec<DVec3> = points.iter().map(|point| vector(point, numbers) * MM).collect();
                 Made::hull(ConvexHull::new(&points, metres(rounding))?)
             }
+            Self::Revolution([foot, rim], outline, top) => Made::revolution(&Profile {
+                foot: metres(foot),
+                rim: metres(rim),
+                points: outline.iter().map(|[height, radius]| [metres(height), metres(radius)]).collect(),
+                top: metres(top),
+            }),
             Self::Compound(pieces) => Made::compound(pieces, numbers),
             Self::HullOf(loaded, unit) => Made::of_file(loaded, metres(unit)),
         }
@@ -248,6 +282,18 @@ impl Made {
         Ok(Self { solid: compound.into(), centre, axes, drawn })
     }
 
+    fn revolution(profile: &Profile) -> Result<Self, WorldError> {
+        let (revolution, outline) = (Revolution::new(profile, STATIONS)?, profile.outline(OUTLINE)?);
+        let balance = revolution.balance();
+        let profile = outline.into_iter().map(|[radius, height]| [radius, height - balance]).collect();
+        Ok(Self {
+            solid: Solid::Revolution(Arc::new(revolution)),
+            centre: DVec3::new(0.0, 0.0, balance),
+            axes: DQuat::IDENTITY,
+            drawn: animation::Shape::Revolution { profile, stripes: Vec::new() },
+        })
+    }
+
     fn hull(hull: ConvexHull) -> Result<Self, WorldError> {
         let (centre, axes) = (hull.centre(), hull.turn());
         let vertices = hull.corners().iter().map(|&corner| axes * corner).collect();
@@ -302,79 +348,11 @@ impl Made {
             Solid::Cuboid(cuboid) => Convex::Cuboid(*cuboid),
             Solid::Hull(hull) => Convex::Hull(Arc::clone(hull)),
             Solid::Compound(compound) => return compound.members().to_vec(),
-            // No form is made so.
+            // No piece of a compound is one.
             Solid::Revolution(_) => return Vec::new(),
         };
         vec![Member { turn: self.axes, ..Member::new(solid, self.centre) }]
     }
-}
-
-/// The outline of a solid of revolution, from the lowest height to the highest: its rounding as arcs.
-fn profile(frustum: &Frustum) -> Vec<[f64; 2]> {
-    let [[low, wide], [high, narrow]] = frustum.discs();
-    let rounding = frustum.rounding();
-    if rounding == 0.0 {
-        return vec![[0.0, low], [wide, low], [narrow, high], [0.0, high]];
-    }
-    let arc = |height: f64, radius: f64, from: f64| {
-        (0..=ARC).map(move |k| {
-            let (sin, cos) = math::sin_cos(from + FRAC_PI_2 * k as f64 / ARC as f64);
-            [radius + rounding * cos.max(0.0), height + rounding * sin]
-        })
-    };
-    arc(low, wide, -FRAC_PI_2).chain(arc(high, narrow, 0.0)).collect()
-}
-
-/// Corners and triangles of a drawn shape, anticlockwise as seen from outside: for what stands still.
-pub(super) fn mesh(shape: &animation::Shape) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let outline: Vec<[f64; 2]> = match shape {
-        animation::Shape::Solid { vertices, triangles } => return (vertices.clone(), triangles.clone()),
-        animation::Shape::Cuboid { half, .. } => return cuboid(*half),
-        animation::Shape::Revolution { profile, .. } => profile.clone(),
-        animation::Shape::Disc { radius, thickness } => {
-            vec![[*radius, -0.5 * thickness], [*radius, 0.5 * thickness]]
-        }
-        animation::Shape::Sphere { radius, .. } => {
-            let point = |k: usize| {
-                let (sin, cos) = math::sin_cos(FRAC_PI_2 * (k as f64 / ARC as f64 - 1.0));
-                [radius * cos.max(0.0), radius * sin]
-            };
-            (0..=2 * ARC).map(point).collect()
-        }
-    };
-    revolved(&outline)
-}
-
-fn cuboid(half: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let side = |k: u32, axis: u32| if k >> axis & 1 == 1 { 1.0 } else { -1.0 };
-    let corners = (0..8).map(|k| half * DVec3::new(side(k, 0), side(k, 1), side(k, 2))).collect();
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    (corners, faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect())
-}
-
-/// An outline turned about the z axis, closed at both ends.
-fn revolved(outline: &[[f64; 2]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let rows = outline.len() as u32;
-    let mut vertices = Vec::new();
-    for &[radius, height] in outline {
-        vertices.extend((0..ROUND).map(|k| {
-            let (sin, cos) = math::sin_cos(TAU * f64::from(k) / f64::from(ROUND));
-            DVec3::new(radius * cos, radius * sin, height)
-        }));
-    }
-    let ends = [outline.first(), outline.last()].map(|end| DVec3::new(0.0, 0.0, end.map_or(0.0, |end| end[1])));
-    vertices.extend(ends);
-    let mut triangles = Vec::new();
-    for k in 0..ROUND {
-        let next = (k + 1) % ROUND;
-        for row in 0..rows.saturating_sub(1) {
-            let [a, b, c, d] = [row * ROUND + k, row * ROUND + next, (row + 1) * ROUND + next, (row + 1) * ROUND + k];
-            triangles.extend([[a, b, c], [a, c, d]]);
-        }
-        let top = rows.saturating_sub(1) * ROUND;
-        triangles.extend([[rows * ROUND, next, k], [rows * ROUND + 1, top + k, top + next]]);
-    }
-    (vertices, triangles)
 }
 
 #[cfg(test)]
@@ -411,6 +389,11 @@ mod tests {
             Form::Cylinder(fixed(20.0), fixed(5.0)),
             Form::Cone(fixed(20.0), fixed(50.0)),
             Form::Capsule(fixed(10.0), fixed(40.0)),
+            Form::Revolution(
+                [fixed(10.0), fixed(3.0)],
+                [[10.0, 16.0], [40.0, 20.0], [70.0, 12.0], [90.0, 14.0]].map(|point| point.map(fixed)).to_vec(),
+                fixed(106.0),
+            ),
             hull(),
         ] {
             let made = form.make(&works.numbers(None)).unwrap();

@@ -1,11 +1,13 @@
-//! What stands still: planes, solids, and meshes of files.
+//! What stands still: planes, tables, solids, and meshes of files.
 
 use super::config::Fixed;
+use super::drawn::mesh;
 use super::forms::Still;
 use super::from_file::Loaded;
 use super::names::{Member, colour};
-use super::solids::{Form, MM, mesh, opened};
+use super::solids::{Form, MM, opened};
 use super::substances::{Substance, substance};
+use super::tables::Uneven;
 use super::values::{Collector, Numbers, Value, Values, vector};
 use crate::animation::{self, Look, UPRIGHT, upright};
 use crate::scene::ConfigError;
@@ -34,6 +36,7 @@ pub(super) struct Standing {
 #[derive(Debug, Clone)]
 enum What {
     Plane,
+    Table(Uneven),
     Solid(Form),
     /// The triangles of a file, how many millimetres its unit is, and the mesh where no draw changes it.
     Mesh(Arc<Loaded>, Value, Option<Arc<Mesh>>),
@@ -56,23 +59,22 @@ impl Standing {
                 let (loaded, unit) = opened(collector, &owner, "shape.mesh", "", file)?;
                 What::Mesh(loaded, unit, None)
             }
+            (Still::Table(table), None) => What::Table(Uneven::new(collector, &owner, table)?),
             (_, None) => What::Plane,
         };
-        Ok(Self {
-            name: owner.name.to_owned(),
-            key: member.key.clone(),
-            look,
-            what,
-            substance,
-            at: collector.three(&owner, "at_mm", ["x", "y", "z"], &fixed.at_mm)?,
-            turn: collector.three(&owner, "turn_deg", ["turn_x", "turn_y", "turn_z"], &fixed.turn_deg)?,
-        })
+        let at = collector.three(&owner, "at_mm", ["x", "y", "z"], &fixed.at_mm)?;
+        let turn = collector.three(&owner, "turn_deg", ["turn_x", "turn_y", "turn_z"], &fixed.turn_deg)?;
+        if matches!(what, What::Table(_)) && turn != [Value::Fixed(0.0); 3] {
+            return Err(owner.wrong("turn_deg", "a table with bumps is level and cannot be turned: leave this out"));
+        }
+        Ok(Self { name: owner.name.to_owned(), key: member.key.clone(), look, what, substance, at, turn })
     }
 
     /// Whether no draw changes it.
     pub(super) fn is_fixed(&self) -> bool {
         let is_fixed = match &self.what {
             What::Plane => true,
+            What::Table(_) => false,
             What::Solid(form) => form.is_fixed(),
             What::Mesh(_, unit, _) => unit.is_fixed(),
         };
@@ -91,6 +93,18 @@ impl Standing {
             *kept = Some(made).filter(|_| keeps);
         }
         Ok(())
+    }
+
+    /// Refuses bodies that its bumps are too fine for: how far these reach, in m, with their names.
+    pub(super) fn check_bodies(&self, bodies: &[(String, f64)], numbers: &Numbers<'_>) -> Result<(), ConfigError> {
+        let What::Table(table) = &self.what else { return Ok(()) };
+        let Some((name, least)) =
+            bodies.iter().find_map(|(name, reach)| Some((name, table.too_fine(*reach, numbers)?)))
+        else {
+            return Ok(());
+        };
+        let message = format!("too fine for a body as large as {name:?}: at least {least:.3} mm");
+        Err(ConfigError::new(format!("{}.shape.table.spacing_mm", self.key), message))
     }
 
     /// What is drawn of it but not simulated, in words.
@@ -125,8 +139,10 @@ impl Standing {
             return Ok(Part::Mesh(mesh));
         }
         let ((at, turn), material) = (self.pose(numbers), Kind(self.substance as u16));
-        let What::Solid(form) = &self.what else {
-            return Ok(Part::Plane(Plane::new(at, turn * DVec3::Z, material)?));
+        let form = match &self.what {
+            What::Solid(form) => form,
+            What::Table(table) => return table.make(at, material, numbers),
+            What::Plane | What::Mesh(..) => return Ok(Part::Plane(Plane::new(at, turn * DVec3::Z, material)?)),
         };
         if let Some(edges) = form.sharp_box(numbers).filter(|_| turn == DQuat::IDENTITY) {
             let bounds = Aabb { min: at - 0.5 * edges, max: at + 0.5 * edges };
@@ -148,6 +164,7 @@ impl Standing {
             What::Plane => {
                 animation::Form::Plane { centre: upright(at), normal: upright(turn * DVec3::Z), half: reach }
             }
+            What::Table(table) => table.drawn(at, reach, numbers)?,
             What::Mesh(loaded, unit, _) => {
                 let vertices = self.corners(loaded, *unit, numbers).into_iter().map(upright).collect();
                 animation::Form::Mesh { vertices, triangles: loaded.triangles.faces.clone() }

@@ -7,6 +7,7 @@ use super::laws::LawOf;
 use super::range::Range;
 use crate::scenario::nearest;
 use crate::scene::ConfigError;
+use crate::uneven::Bumps;
 use glam::{DQuat, DVec3};
 use plaus_mcmc::{Law, Var};
 use serde::{Deserialize, Serialize};
@@ -21,15 +22,18 @@ pub struct Drawn {
     pub numbers: Vec<f64>,
     /// Orientations that are random as a whole.
     pub turns: Vec<DQuat>,
+    /// Tables with random bumps.
+    pub tables: Vec<Bumps>,
 }
 
 impl Clone for Drawn {
     fn clone(&self) -> Self {
-        Self { numbers: self.numbers.clone(), turns: self.turns.clone() }
+        Self { numbers: self.numbers.clone(), turns: self.turns.clone(), tables: self.tables.clone() }
     }
     fn clone_from(&mut self, source: &Self) {
         self.numbers.clone_from(&source.numbers);
         self.turns.clone_from(&source.turns);
+        self.tables.clone_from(&source.tables);
     }
 }
 
@@ -38,6 +42,7 @@ impl Clone for Drawn {
 pub(super) enum Slot {
     Number(usize),
     Turn(usize),
+    Table(usize),
 }
 
 /// A number, once a draw is known.
@@ -78,12 +83,18 @@ pub(super) struct Numbers<'a> {
     drawn: &'a [f64],
     worked: Vec<f64>,
     turns: &'a [DQuat],
+    tables: &'a [Bumps],
 }
 
 impl Numbers<'_> {
     /// An orientation that is random as a whole.
     pub(super) fn turn(&self, index: usize) -> DQuat {
         self.turns[index]
+    }
+
+    /// A table with random bumps.
+    pub(super) fn table(&self, index: usize) -> &Bumps {
+        &self.tables[index]
     }
 }
 
@@ -107,8 +118,8 @@ impl Works {
     /// The numbers of a draw; without one, of values in the middle of their laws.
     pub(super) fn numbers<'a>(&'a self, draw: Option<&'a Drawn>) -> Numbers<'a> {
         let draw = draw.unwrap_or(&self.middle);
-        let mut numbers =
-            Numbers { drawn: &draw.numbers, worked: Vec::with_capacity(self.steps.len()), turns: &draw.turns };
+        let Drawn { numbers: drawn, turns, tables } = draw;
+        let mut numbers = Numbers { drawn, worked: Vec::with_capacity(self.steps.len()), turns, tables };
         for step in &self.steps {
             let values: Vec<Range> = step.values.iter().map(|value| Range::point(value.of(&numbers))).collect();
             numbers.worked.push(step.formula.of(&values).0);
@@ -126,8 +137,9 @@ pub(super) struct Collector {
     pub(super) groups: Vec<Vec<usize>>,
     /// What each drawn number may be, and a value in the middle of its law.
     drawn: Vec<(Range, f64)>,
-    /// Orientations.
+    /// Orientations, and tables with random bumps.
     turns: usize,
+    tables: usize,
     steps: Vec<Step>,
     /// What each may come to.
     worked: Vec<Range>,
@@ -332,9 +344,21 @@ impl Collector {
         index
     }
 
+    /// A table with random bumps: its place among those of the draw.
+    pub(super) fn table(&mut self, owner: &Owner<'_>) -> usize {
+        let index = self.tables;
+        self.tables += 1;
+        self.add(Var::new(format!("{}.bumps", owner.name), "", Law::Own), Slot::Table(index));
+        index
+    }
+
     /// A draw with places for all values.
     pub(super) fn empty(&self) -> Drawn {
-        Drawn { numbers: vec![0.0; self.drawn.len()], turns: vec![DQuat::IDENTITY; self.turns] }
+        Drawn {
+            numbers: vec![0.0; self.drawn.len()],
+            turns: vec![DQuat::IDENTITY; self.turns],
+            tables: vec![Bumps::default(); self.tables],
+        }
     }
 
     /// The way from draws to numbers.

@@ -6,14 +6,13 @@
 //! field and the point's indices, as if it had been drawn at the start; so a draw holds only the points that moves have
 //! changed, and yet the whole table.
 
+pub use crate::uneven::{Field, LARGEST_SCORE, Site};
+use crate::uneven::{fresh, streams};
 use glam::{DQuat, DVec3};
+use plaus_dist::Stream;
 use plaus_dist::stream::ChainStreams;
-use plaus_dist::{Purpose, Seed, Stream, standard_normal};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
-
-/// Scores beyond this have density 0. Without the cut, one in 5·10⁸ would be beyond it.
-pub const LARGEST_SCORE: f64 = 6.0;
 
 /// How one die is thrown: SI units, world axes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -36,38 +35,6 @@ impl Throw {
     pub fn moves_like(&self, other: &Self) -> bool {
         Self { turn: other.turn, ..*self } == *other
     }
-}
-
-/// A property of the table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Field {
-    /// Its height.
-    Height,
-    /// Restitution of what hits it.
-    Restitution,
-    /// Friction of what slides on it.
-    Friction,
-}
-
-impl Field {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Height, Self::Restitution, Self::Friction];
-
-    /// Streams of control points have purposes of their own.
-    fn purpose(self) -> Purpose {
-        Purpose(32 + self as u16)
-    }
-}
-
-/// A control point of one field of a table, by its indices on the grid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Site {
-    /// Which field.
-    pub field: Field,
-    /// Index along x.
-    pub i: i32,
-    /// Index along y.
-    pub j: i32,
 }
 
 /// A whole table: the scores of all its control points.
@@ -124,30 +91,6 @@ impl Draw {
     pub fn offset(&self, die: usize, spacing: f64) -> DVec3 {
         let [x, y] = self.tables[self.table_of(die)].shifted.map(|cells| f64::from(cells) * spacing);
         DVec3::new(x, y, 0.0)
-    }
-}
-
-/// The streams of a table's points, from its key.
-fn streams(key: u64) -> ChainStreams {
-    Seed(key).chain(0)
-}
-
-/// The initial score of a point: a standard normal number within [`LARGEST_SCORE`], from a stream addressed by field
-/// and indices.
-fn fresh(streams: &ChainStreams, site: Site) -> f64 {
-    // Indices repeat after 2²⁴ cells, farther than any table is large.
-    let index = |k: i32| u64::from(k.cast_unsigned() & 0x00ff_ffff);
-    let mut stream = streams.at(index(site.i) << 24 | index(site.j), site.field.purpose());
-    held(&mut stream)
-}
-
-/// A standard normal number within [`LARGEST_SCORE`].
-fn held(stream: &mut Stream) -> f64 {
-    loop {
-        let score = standard_normal(stream);
-        if score.abs() <= LARGEST_SCORE {
-            return score;
-        }
     }
 }
 
@@ -266,6 +209,7 @@ pub(super) fn number_mut(throw: &mut Throw, number: usize) -> &mut f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use plaus_dist::{Purpose, Seed};
 
     fn table(seed: u64) -> Realisation {
         Realisation::new(&mut Seed(seed).chain(0).at(0, Purpose::START))

@@ -4,15 +4,12 @@ use super::constraint::Constraint;
 use super::{Dice, Draw, Field};
 use crate::animation::upright;
 use crate::animation::{Form, Look, Material, Prop};
+use crate::uneven::relief;
 use glam::DVec3;
 use plaus_dist::math;
 use plaus_sim::WorldError;
 use plaus_sim::field::Spline;
 
-/// Heights a cell of the grid, along each axis.
-const FINE: f64 = 3.0;
-/// Most heights along an axis.
-const MOST: usize = 160;
 /// Corners around a puddle.
 const CORNERS: u32 = 48;
 
@@ -45,7 +42,7 @@ pub(super) fn props(scene: &Dice, draw: &Draw, [low, high]: [DVec3; 2]) -> Resul
     if deep > 0.0 {
         let low = [low.x.max(-x), low.y.max(-y)];
         let high = [high.x.min(x), high.y.min(y)];
-        props.push(relief(low, high, plan.surface.spacing() / FINE, height));
+        props.push(Prop::new("surface", Look::FELT, relief([low, high], plan.surface.spacing(), height)));
     }
     let spilt = scene.config.spilt;
     if spilt.radius_mm > 0.0 {
@@ -59,18 +56,6 @@ pub(super) fn props(scene: &Dice, draw: &Draw, [low, high]: [DVec3; 2]) -> Resul
         }
     }
     Ok(props)
-}
-
-/// The surface over a rectangle.
-fn relief(low: [f64; 2], high: [f64; 2], step: f64, height: impl Fn(f64, f64) -> f64) -> Prop {
-    let count = |axis: usize| (((high[axis] - low[axis]) / step).ceil() as usize + 1).clamp(2, MOST);
-    let (columns, rows) = (count(0), count(1));
-    let steps = [(high[0] - low[0]) / (columns - 1) as f64, (high[1] - low[1]) / (rows - 1) as f64];
-    // An animation's z runs against the simulator's y.
-    let at = |i: usize, j: usize| height(low[0] + i as f64 * steps[0], high[1] - j as f64 * steps[1]);
-    let heights = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
-    let origin = upright(DVec3::new(low[0], high[1], 0.0));
-    Prop::new("surface", Look::FELT, Form::Heightfield { origin, step: steps, columns: columns as u32, heights })
 }
 
 /// A thin film over a disc.

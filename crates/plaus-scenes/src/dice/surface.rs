@@ -3,8 +3,9 @@
 use super::config::{Config, Spilt, Table};
 use super::draw::{Field, LARGEST_SCORE, Realisation, Site};
 use crate::scene::ConfigError;
+use crate::uneven::{MOST_CUT, Values};
 use glam::DVec3;
-use plaus_dist::{TruncatedGaussian, math, normal_quantile};
+use plaus_dist::math;
 use plaus_sim::field::{Grid, Points, Spline};
 use plaus_sim::rigid::{Part, Table as Uneven};
 use plaus_sim::scenery::Plane;
@@ -12,52 +13,6 @@ use plaus_sim::{Law, Laws, Material, WorldError};
 
 /// Dice and table are made of one material.
 pub(super) const MATERIAL: Material = Material(0);
-
-/// Largest share of a law that may be cut off.
-const MOST_CUT: f64 = 0.05;
-
-/// The law of a control value: a Gaussian cut off at both ends, as a function of a standard normal score.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Values {
-    mean: f64,
-    sd: f64,
-    low: f64,
-    high: f64,
-    /// The share of the Gaussian below `low`, and the share between the cuts. `None` if no score within
-    /// [`LARGEST_SCORE`] reaches a cut.
-    cut: Option<[f64; 2]>,
-}
-
-/// Share of the standard normal law below `z`.
-fn below(z: f64) -> f64 {
-    0.5 * math::erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
-}
-
-impl Values {
-    fn new(mean: f64, sd: f64, low: f64, high: f64) -> Self {
-        let reach = (LARGEST_SCORE + 1.0) * sd;
-        let cut = (sd > 0.0 && (mean - reach < low || mean + reach > high)).then(|| {
-            let least = below((low - mean) / sd);
-            [least, below((high - mean) / sd) - least]
-        });
-        Self { mean, sd, low, high, cut }
-    }
-
-    /// The value at a score: the law's quantile at the share of scores below.
-    fn at(&self, score: f64) -> f64 {
-        let z = match self.cut {
-            None => score,
-            Some([least, between]) => normal_quantile(least + between * below(score)),
-        };
-        (self.mean + self.sd * z).clamp(self.low, self.high)
-    }
-
-    /// Share of the Gaussian beyond the cuts.
-    fn beyond(mean: f64, sd: f64, low: f64, high: f64) -> f64 {
-        let law = TruncatedGaussian::new(mean, sd, low, high);
-        law.map_or(1.0, |law| 1.0 - math::exp(law.log_mass()))
-    }
-}
 
 /// A field with another mean in the spill.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,8 +48,7 @@ impl Surface {
             ("table", "grip", grip, grip_sd, f64::INFINITY, "[0, ∞)"),
             ("spilt", "grip", wet(spilt.grip, grip), grip_sd, f64::INFINITY, "[0, ∞)"),
         ] {
-            let beyond = if sd > 0.0 { Values::beyond(mean, sd, 0.0, high) } else { 0.0 };
-            if beyond > MOST_CUT {
+            if let Some(beyond) = Values::beyond(mean, sd, 0.0, high) {
                 let message = format!(
                     "a mean {name} of {mean} with a spread of {sd} leaves {range} with probability {beyond:.3}; at most {MOST_CUT} of the law may be cut off: use a smaller {name}_sd, or a mean farther inside"
                 );
@@ -107,14 +61,13 @@ impl Surface {
             Patched { dry: Values::new(dry, sd, 0.0, high), wet: Values::new(wet, sd, 0.0, high) }
         };
         let height = bumps_mm * 1e-3;
-        let reach = LARGEST_SCORE * height;
         let mut random = Vec::new();
         for (field, sd) in Field::ALL.into_iter().zip([bumps_mm, bounce_sd, grip_sd]) {
             random.extend((sd > 0.0).then_some(field));
         }
         Ok(Self {
             grid: Grid { origin: [0.0; 2], spacing: grid_mm * 1e-3 },
-            height: Values { mean: 0.0, sd: height, low: -reach, high: reach, cut: None },
+            height: Values::plain(0.0, height),
             restitution: patched(bounce, wet(spilt.bounce, bounce), bounce_sd, 1.0),
             friction: patched(grip, wet(spilt.grip, grip), grip_sd, f64::INFINITY),
             spilt: is_spilt.then_some(spilt),
@@ -129,7 +82,7 @@ impl Surface {
 
     /// The highest that the table can be anywhere, in m.
     pub(super) fn highest(&self) -> f64 {
-        self.height.high
+        self.height.range()[1]
     }
 
     /// The fields that are random.
@@ -175,9 +128,9 @@ impl Surface {
     /// A field of a table.
     pub(super) fn spline(&self, field: Field, table: &Realisation) -> Result<Spline, WorldError> {
         let (name, range) = match field {
-            Field::Height => ("height", [self.height.low, self.height.high]),
+            Field::Height => ("height", self.height.range()),
             Field::Restitution => ("restitution", [0.0, 1.0]),
-            Field::Friction => ("friction", [0.0, self.friction.dry.high]),
+            Field::Friction => ("friction", [0.0, self.friction.dry.range()[1]]),
         };
         let (laws, source, shifted) = (self.clone(), table.source(), table.shifted);
         Spline::new(name, self.grid, range, move |i, j| {
@@ -209,7 +162,7 @@ impl Surface {
 
     /// The laws where the table has no fields, and between dice.
     pub(super) fn laws(&self) -> Result<Laws, WorldError> {
-        Laws::uniform(Law::new(self.friction.dry.mean, self.restitution.dry.mean))
+        Laws::uniform(Law::new(self.friction.dry.mean(), self.restitution.dry.mean()))
     }
 }
 
@@ -260,34 +213,6 @@ impl Touched {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plaus_dist::{Density, Purpose, Seed, standard_normal};
-
-    /// Values of normal scores have the truncated law: the share below x, by Kolmogorov's distance over 10⁵ values. A
-    /// distance of 0.0095 has a probability below 1e-7 (Dvoretzky, Kiefer, Wolfowitz, Massart).
-    #[test]
-    fn values_have_the_truncated_law() {
-        for (mean, sd, high) in [(0.9, 0.06, 1.0), (0.1, 0.06, f64::INFINITY), (0.5, 0.05, 1.0)] {
-            let values = Values::new(mean, sd, 0.0, f64::min(high, 10.0));
-            let law = TruncatedGaussian::new(mean, sd, 0.0, high).unwrap();
-            let mut stream = Seed(3).chain(0).at(0, Purpose(100));
-            let mut drawn: Vec<f64> = (0..100_000).map(|_| values.at(standard_normal(&mut stream))).collect();
-            drawn.sort_by(f64::total_cmp);
-            assert!(drawn.iter().all(|x| (0.0..=high).contains(x)));
-            // The law's own distribution function, by summing its density.
-            let (from, steps) = (mean - 6.0 * sd, 20_000);
-            let (mut share, mut next, mut farthest) = (0.0, 0, 0.0_f64);
-            for k in 0..steps {
-                let width = 12.0 * sd / f64::from(steps);
-                let x = from + (f64::from(k) + 0.5) * width;
-                share += math::exp(law.log_density(&x).unwrap().value()) * width;
-                while next < drawn.len() && drawn[next] <= x + 0.5 * width {
-                    next += 1;
-                }
-                farthest = farthest.max((share - next as f64 / drawn.len() as f64).abs());
-            }
-            assert!(farthest < 0.0095, "{mean} ± {sd}: {farthest}");
-        }
-    }
 
     #[test]
     fn what_was_spilt_has_means_of_its_own() {

@@ -104,6 +104,11 @@ impl Profile {
             }
             last = height;
         }
+        let cap = self.points[self.points.len() - 1][1];
+        // Where the cap begins, but for rounding, a ball of its radius must fit under the top.
+        if self.top - last < cap * (1.0 - 1e-9) {
+            return bad("top", self.top);
+        }
         Ok(())
     }
 

@@ -63,7 +63,7 @@ fn restarts(word: &Word, warmup: u64, iterations: u64) -> Result<Restarts> {
     // One core: replicas take turns.
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| {
         let fresh = Mixture::of(Box::new(Redraw));
-        let tempering = Tempering { rungs: RUNGS, swap_every: SWAP_EVERY, warmup };
+        let tempering = Tempering { rungs: RUNGS, swap_every: SWAP_EVERY, warmup, adapt_rungs: false };
         let course = Course { target: &word.scene, moves: &word.moves, fresh: &fresh, tempering };
         let mut replicas = Replicas::start(course, Seed(1), 0)?;
         replicas.advance(warmup + 1, |_, _| ())?;
