@@ -90,7 +90,7 @@ impl Reached {
 
 fn reach(bowler: &Bowler, chain: u32, rungs: u32, warmup: u64, iterations: u64) -> Result<Reached> {
     let fresh = Mixture::of(Box::new(Redraw));
-    let tempering = Tempering { rungs, swap_every: SWAP_EVERY, warmup };
+    let tempering = Tempering { rungs, swap_every: SWAP_EVERY, warmup, adapt_rungs: false };
     let course = Course { target: &bowler.scene, moves: &bowler.moves, fresh: &fresh, tempering };
     let mut replicas = Replicas::start(course, Seed(1), chain)?;
     let mut reached = Reached::default();
