@@ -24,6 +24,7 @@ mod standing;
 mod substances;
 mod values;
 mod view;
+mod within;
 
 pub use amount::{Amount, Measure};
 pub use config::{Body, Config, Finish, Fixed, Material, Pair};
@@ -36,6 +37,7 @@ pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
 pub use quantity::Quantity;
 pub use values::Drawn;
+pub use within::{Within, WithinBall, WithinBox, WithinCylinder};
 
 pub(crate) use corners::hull_volume;
 
