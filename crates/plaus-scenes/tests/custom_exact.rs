@@ -121,6 +121,12 @@ const CASES: &[[&str; 3]] = &[
         "at_mm = [0, 0, 100]",
         "passes = { body = 'hammer', x_mm = 45, y_mm = 1000, z_mm = 60, within_mm = 3, scale_mm = 8 }",
     ],
+    // A ball that starts anywhere within a ball of uncertain radius.
+    [
+        "duration_s = 0.4",
+        "at_mm = [0, 0, 300]\nwithin = { ball = { radius_mm = { uniform = [60, 140] } } }\nvelocity_m_s = [1, 0, 0]",
+        "passes = { x_mm = 200, y_mm = 40, z_mm = 150, within_mm = 30, scale_mm = 60 }",
+    ],
 ];
 
 /// The scenario of a case.

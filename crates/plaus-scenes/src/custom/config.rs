@@ -7,6 +7,7 @@ use super::from_file::{FromFile, Known};
 use super::laws::LawOf;
 use super::moves::CustomMoves;
 use super::quantity::Quantity;
+use super::within::Within;
 use crate::accuracy::AccuracyPreset;
 use crate::animation;
 use crate::files::{Assets, Files};
@@ -91,6 +92,7 @@ impl Default for Config {
                 material: String::new(),
                 colour: String::new(),
                 at_mm: [0.0.into(), 0.0.into(), 500.0.into()],
+                within: None,
                 turn_deg: Default::default(),
                 any_turn: false,
                 velocity_m_s: [aimed(1.0), aimed(0.0), 0.0.into()],
@@ -304,6 +306,9 @@ pub struct Body {
     /// Where its middle starts. For a hull, the origin of its points; for a solid of revolution, its foot's middle.
     #[serde(default)]
     pub at_mm: [Amount<amount::Place>; 3],
+    /// A region about `at_mm`: the body starts anywhere in it, all of its volume equally likely.
+    #[serde(default)]
+    pub within: Option<Within>,
     /// How it is turned at the start: about the world's x axis, then about y, then about z.
     #[serde(default)]
     pub turn_deg: [Amount<amount::Angle>; 3],

@@ -26,6 +26,7 @@ mod substances;
 mod tables;
 mod values;
 mod view;
+mod within;
 
 pub use crate::uneven::Bumps;
 pub use amount::{Amount, Measure};
@@ -42,6 +43,7 @@ pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
 pub use quantity::Quantity;
 pub use values::Drawn;
+pub use within::{Within, WithinBall, WithinBox, WithinCylinder};
 
 pub(crate) use corners::hull_volume;
 

@@ -287,6 +287,10 @@ impl Moving {
         let substance = substance(&owner, "material", kinds, &body.material)?;
         let look = substances[substance].look(colour(&owner, &body.colour)?, Look::nth(index));
         let at = collector.three(&owner, "at_mm", ["x", "y", "z"], &body.at_mm)?;
+        let at = match &body.within {
+            Some(region) => region.place(collector, &owner, &at)?,
+            None => at,
+        };
         let angles = collector.three(&owner, "turn_deg", ["turn_x", "turn_y", "turn_z"], &body.turn_deg)?;
         let turn = if body.any_turn {
             if angles != [Value::Fixed(0.0); 3] {

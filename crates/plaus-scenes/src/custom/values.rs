@@ -302,6 +302,19 @@ impl Collector {
             let name = format!("{}{dot}{short}.law{which}", owner.name);
             values.push(self.drawn(&law, name, "", Domain::Any)?);
         }
+        self.step(formula, values)
+    }
+
+    /// What a formula without laws comes to, for these meanings of its names.
+    pub(super) fn follows(&mut self, text: &str, means: &[(&str, Value)]) -> Result<Value, String> {
+        let formula = self.read(text)?;
+        let meaning = |name: &String| means.iter().find(|(known, _)| known == name).map(|(_, value)| *value);
+        let values: Option<Vec<Value>> = formula.names.iter().map(meaning).collect();
+        self.step(formula, values.ok_or("a name without a meaning: a bug")?)
+    }
+
+    /// A formula whose values are known.
+    fn step(&mut self, formula: Arc<Formula>, values: Vec<Value>) -> Result<Value, String> {
         let ranges: Vec<Range> = values.iter().map(|value| self.range(*value)).collect();
         let range = formula.of(&ranges);
         if !range.is_number() {
