@@ -108,6 +108,7 @@ pub(crate) fn sample_target<'py>(
         block,
         solutions,
         rungs: 1,
+        adapt_rungs: false,
         swap_every: 20,
         adapt: false,
         weigh: false,
