@@ -11,6 +11,8 @@ mod custom_exact;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_files;
 #[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
+mod custom_joints;
+#[allow(clippy::disallowed_methods, reason = "expected numbers may differ in the last place")]
 mod custom_within;
 mod imported;
 mod require_bad;

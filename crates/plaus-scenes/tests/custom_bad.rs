@@ -138,6 +138,56 @@ const CASES: &[(&str, &str, &[&str])] = &[
         "'ball'",
         &["driven[0].name", "already"],
     ),
+    (
+        "[[world.custom.joints]]\nname = 'j'\nbody = 'bal'\nkind = { ball = {} }",
+        "'bal'",
+        &["joints[0].body", "no body \"bal\"", "did you mean \"ball\"?"],
+    ),
+    (
+        "[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nto = 'flor'\nkind = { ball = {} }",
+        "'flor'",
+        &["joints[0].to", "no body \"flor\""],
+    ),
+    (
+        "[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nto = 'ball'\nkind = { ball = {} }",
+        "'ball'",
+        &["joints[0].to", "held to itself"],
+    ),
+    (
+        "[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { hinge = { axis = [0, 0, 0] } }",
+        "[0, 0, 0]",
+        &["kind.hinge.axis", "needs a length"],
+    ),
+    (
+        "[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { hinge = { axis = [0, 0, 1], limits_deg = [10, 20] } }",
+        "[10, 20]",
+        &["limits_deg", "where the body starts"],
+    ),
+    (
+        "[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { hinge = { axis = [0, 0, 1], limits_deg = [-180, 180] } }",
+        "[-180",
+        &["limits_deg", "340 apart"],
+    ),
+    (
+        "[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { weld = { breaks_at_n_s = 0 } }",
+        "0",
+        &["breaks_at_n_s", "out of range"],
+    ),
+    (
+        "[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { ball = {}, weld = {} }",
+        "weld",
+        &["joints[0].kind", "exactly one must be chosen"],
+    ),
+    (
+        "[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { slider = {} }",
+        "slider",
+        &["joints[0].kind", "ball"],
+    ),
+    (
+        "asleep = true\n[[world.custom.joints]]\nname = 'j'\nbody = 'ball'\nkind = { ball = {} }",
+        "'ball'",
+        &["joints[0].body", "asleep"],
+    ),
     ("asleep = true\nspin_deg_s = [0, 0, 9]", "true", &["bodies[0].asleep", "what sleeps does not move"]),
     ("damping = -1", "-1", &["bodies[0].damping", "out of range"]),
     ("damping = { normal = [1, 1] }", "damping", &["bodies[0].damping", "must be at least 0"]),

@@ -7,7 +7,8 @@
 //! alternate with (1,2), (3,4), …: so a replica keeps its direction until a swap is rejected, and its trip takes a time
 //! proportional to the number of rungs, not to its square (Okabe et al. 2001; Syed et al. 2022, see
 //! [`Ladder::barrier`](crate::Ladder::barrier)). During the warm-up the ladder is spaced again a few times, from the
-//! rejections so far, and if asked for gets as many rungs as the barrier calls for; then it stays, as exactness requires.
+//! rejections so far, and if asked for gets as many rungs as the barrier calls for; then it stays, as exactness
+//! requires.
 
 mod climb;
 mod resize;

@@ -61,6 +61,10 @@ measures! {
     Force: "N", -1e6 to 1e6, Any;
     /// A component of a torque.
     Torque: "N m", -1e6 to 1e6, Any;
+    /// The size of a torque.
+    Grip: "N m", 0.0 to 1e6, NotNegative;
+    /// An impulse.
+    Impulse: "N s", 1e-9 to 1e9, NotNegative;
     /// A rate at which something is lost.
     Rate: "1/s", 0.0 to 1e3, NotNegative;
     /// A density over another.

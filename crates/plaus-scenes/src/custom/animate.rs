@@ -53,6 +53,7 @@ fn contacts(plan: &Plan, record: &Record, built: &Built, animation: &Animation) 
     let (trace, numbers) = (&record.trace, plan.works.numbers(Some(&record.draw)));
     let of_body = |(index, track): (usize, &Track)| {
         let Track { name, shape, pieces, .. } = track;
+        let is_held = plan.is_held(index);
         let motions = trace.motions.get(index).map_or(&[][..], Vec::as_slice);
         let touches = |piece: usize| {
             // The motion that the piece was made of: the last that had begun.
@@ -63,6 +64,10 @@ fn contacts(plan: &Plan, record: &Record, built: &Built, animation: &Animation) 
             }
             if let Some(&surface) = motion.touching().first() {
                 return Some(plan.parts[part(surface)].name.clone());
+            }
+            if is_held {
+                // A joint may move it, so it need not slide on anything.
+                return None;
             }
             // What carries it is what it met last.
             let hit =

@@ -4,6 +4,7 @@ use super::amount::{self, Amount};
 use super::driven::Driven;
 use super::forms::{Ball, EachFile, Plane, Shape, Still};
 use super::from_file::{FromFile, Known};
+use super::joints::Joint;
 use super::laws::LawOf;
 use super::moves::CustomMoves;
 use super::quantity::Quantity;
@@ -60,6 +61,9 @@ pub struct Config {
     /// Bodies that follow keyframes: a paddle, a tray, a foot.
     #[schemars(length(max = 4096))]
     pub driven: Vec<Driven>,
+    /// Joints between bodies, or between a body and the fixed world: a door, a pendulum, a chain.
+    #[schemars(length(max = 4096))]
+    pub joints: Vec<Joint>,
     /// Relative weights of the moves.
     pub weights: Weights<CustomMoves>,
 }
@@ -106,6 +110,7 @@ impl Default for Config {
                 asleep: false,
             }],
             driven: Vec::new(),
+            joints: Vec::new(),
             weights: Weights::default(),
         }
     }

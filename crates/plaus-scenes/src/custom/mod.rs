@@ -13,6 +13,7 @@ mod flight;
 mod forms;
 mod formula;
 mod from_file;
+mod joints;
 mod laws;
 mod moves;
 mod names;
@@ -39,6 +40,7 @@ pub use forms::{
     Table,
 };
 pub use from_file::{FromFile, Up};
+pub use joints::{Hinge, Joint, JointKind, Weld};
 pub use laws::{Factor, Heading, LawOf, Several, Truncated};
 pub use moves::CustomMoves;
 pub use quantity::Quantity;

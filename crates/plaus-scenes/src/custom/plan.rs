@@ -3,6 +3,7 @@
 use super::acting::Acting;
 use super::config::{Body, Config, Material};
 use super::driven::{Driven, Way};
+use super::joints::Bond;
 use super::names::{Member, check_name, colour, members};
 use super::solids::{Form, MM, Made};
 use super::standing::Standing;
@@ -25,6 +26,7 @@ const SKIN: f64 = 1.0;
 pub(super) struct Plan {
     pub(super) bodies: Vec<Moving>,
     pub(super) parts: Vec<Standing>,
+    joints: Vec<Bond>,
     substances: Vec<Substance>,
     /// Which two substances, and friction, restitution, resistance to rolling and to spinning where they are said.
     pairs: Vec<([usize; 2], [Option<Value>; 4])>,
@@ -104,10 +106,19 @@ impl Plan {
             let body = (bodies.len(), &config.driven[member.entry]);
             bodies.push(Moving::driven(&mut collector, &member, body, &kinds, &substances)?);
         }
+        let fixed: Vec<&str> = parts.iter().map(|part: &Standing| part.name.as_str()).collect();
+        let mut joints = Vec::with_capacity(config.joints.len());
+        let said = config.joints.iter().map(|joint| (joint.name.as_str(), joint.count));
+        for member in members("joints", said, &mut names)? {
+            collector.begin();
+            let joint = &config.joints[member.entry];
+            joints.push(Bond::new(&mut collector, &member, joint, (&bodies, &fixed))?);
+        }
         let (gravity, duration, accuracy) = (config.gravity, config.duration_s, config.accuracy.tolerances());
         let (works, is_steady) = (collector.works(), false);
         let bottom = config.bottom_mm.map_or(f64::NEG_INFINITY, |height| height * MM);
-        let mut plan = Self { bodies, parts, substances, pairs, works, gravity, bottom, duration, accuracy, is_steady };
+        let mut plan =
+            Self { bodies, parts, joints, substances, pairs, works, gravity, bottom, duration, accuracy, is_steady };
         plan.check_shapes()?;
         let plan = Self { is_steady: plan.is_steady(), ..plan };
         Ok((plan, collector))
@@ -191,6 +202,7 @@ impl Plan {
         let said = self.pairs.iter().flat_map(|(_, said)| said).flatten();
         let substances = self.substances.iter().flat_map(|one| one.contact.iter().chain([&one.density]));
         said.chain(substances).all(|value| value.is_fixed())
+            && self.joints.is_empty()
             && self.bodies.iter().all(Moving::is_fixed)
             && self.parts.iter().all(Standing::is_fixed)
     }
@@ -221,7 +233,18 @@ impl Plan {
                 rigid.act_on(index, forces)?;
             }
         }
+        if !self.joints.is_empty() {
+            let starts = self.starts(numbers, &shapes);
+            for joint in &self.joints {
+                rigid.join(joint.joint(numbers, &starts))?;
+            }
+        }
         Ok(Built { rigid, shapes })
+    }
+
+    /// Whether a joint holds a body.
+    pub(super) fn is_held(&self, body: usize) -> bool {
+        self.joints.iter().any(|joint| joint.holds_body(body))
     }
 
     /// The mass of a body, in kg.
@@ -319,6 +342,11 @@ impl Moving {
             acting: Acting::new(collector, &owner, body, [velocity, spin])?,
             way: None,
         })
+    }
+
+    /// Whether it is there from the start.
+    pub(super) fn is_there_at_once(&self) -> bool {
+        self.release == Value::Fixed(0.0)
     }
 
     fn driven(

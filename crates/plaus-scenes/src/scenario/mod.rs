@@ -109,8 +109,8 @@ pub struct Tempering {
     /// a run reports, plus one, works best. The rungs are spaced during the warm-up, and then stay.
     #[schemars(range(min = 1, max = 256))]
     pub rungs: u32,
-    /// Whether the warm-up also chooses the number of rungs, from the barrier that it sees. `rungs` is then the number to
-    /// begin with, or 2 if it is 1. Unset: no.
+    /// Whether the warm-up also chooses the number of rungs, from the barrier that it sees. `rungs` is then the number
+    /// to begin with, or 2 if it is 1. Unset: no.
     pub adapt_rungs: Option<bool>,
     /// Iterations between two swaps of neighbouring rungs.
     #[schemars(range(min = 1, max = 1_000_000))]
