@@ -266,7 +266,7 @@ mod tests {
     /// 40,000 terms of at most about 2, so five standard errors are below 0.03. The wrong twin, the density of both
     /// coordinates instead of one given the other, is caught.
     #[test]
-    fn its_density_is_that_of_its_draws() {
+    fn a_fit_s_density_is_that_of_its_draws() {
         let mut stream = Seed(4).chain(0).at(0, Purpose(100));
         let fit = Fit::to(&points(60, &mut stream), 2).unwrap();
         for (fit, known) in [(fit.clone(), &[][..]), (fit.ordered(&[1, 0]).unwrap(), &[1.5][..])] {
